@@ -1,0 +1,24 @@
+#include "birm3d/model/barrier.hpp"
+
+#include <memory>
+
+#include "arrays.hpp"
+#include "register.hpp"
+
+namespace birm3d::bindings {
+
+void register_barrier(py::module_& m) {
+    py::class_<Barrier, std::shared_ptr<Barrier>>(m, "Barrier",
+                                                  "A flat rigid wall, fixed to the ground. Immutable.")
+        .def(py::init([](double friction, const InputArray& origin, double heading) {
+                 return std::make_shared<Barrier>(friction, vector(origin, "origin"), heading);
+             }),
+             py::kw_only(), py::arg("friction"), py::arg("origin"), py::arg("heading"),
+             "friction: Coulomb coefficient; origin (3,) m on the face; heading of the barrier's line about "
+             "z, rad.")
+        .def_property_readonly(
+            "normal", [](const Barrier& barrier) { return copy(barrier.face.normal); },
+            "(3,) outward, world axes");
+}
+
+}  // namespace birm3d::bindings

@@ -1,0 +1,12 @@
+#include "birm3d/base/error.hpp"
+
+#include "register.hpp"
+
+namespace birm3d::bindings {
+
+// InvalidArgument derives from std::invalid_argument, which pybind11 turns into ValueError by itself.
+void register_errors(pybind11::module_& m) {
+    pybind11::register_exception<UnstableError>(m, "UnstableError", PyExc_ValueError);
+}
+
+}  // namespace birm3d::bindings

@@ -1,0 +1,86 @@
+#include <pybind11/stl.h>
+#include <pybind11/typing.h>
+
+#include "arrays.hpp"
+#include "birm3d/base/rotation.hpp"
+#include "birm3d/sim/recorder.hpp"
+#include "register.hpp"
+
+namespace birm3d::bindings {
+
+namespace {
+
+template <class Class, class T>
+void add_view(py::class_<Class>& cls, const char* name, T Class::* member, const char* doc) {
+    cls.def_property_readonly(
+        name, [member](const py::object& self) { return view(self.cast<const Class&>().*member, self); },
+        doc);
+}
+
+}  // namespace
+
+void register_history(py::module_& m) {
+    py::class_<UnitHistory> unit(m, "UnitHistory",
+                                 "Motion of one unit and the forces on it; read-only views.");
+    add_view(unit, "position", &UnitHistory::position, "(n, 3) m, world");
+    add_view(unit, "velocity", &UnitHistory::velocity, "(n, 3) m/s, world");
+    add_view(unit, "angular_velocity", &UnitHistory::angular_velocity, "(n, 3) rad/s, body axes");
+    add_view(unit, "acceleration", &UnitHistory::acceleration, "(n, 3) m/s^2, interval means, body axes");
+    add_view(unit, "barrier_force", &UnitHistory::barrier_force, "(n, 3) N, interval means, world");
+    add_view(unit, "tire_friction_force", &UnitHistory::tire_friction_force,
+             "(n, 3) N, interval means, world");
+    add_view(unit, "barrier_normal_force", &UnitHistory::barrier_normal_force, "(n,) N, interval means");
+    unit.def_property_readonly(
+        "roll_pitch_yaw",
+        [](const UnitHistory& history) {
+            py::array_t<double> angles(
+                {static_cast<py::ssize_t>(history.orientation.size()), py::ssize_t{3}});
+            auto at = angles.mutable_unchecked<2>();
+            py::ssize_t row = 0;
+            for (const Quat& q : history.orientation) {
+                const Angles a = roll_pitch_yaw(q);
+                at(row, 0) = a.roll, at(row, 1) = a.pitch, at(row, 2) = a.yaw;
+                ++row;
+            }
+            return angles;
+        },
+        "(n, 3) rad");
+    unit.def_property_readonly(
+        "tire_reaction",
+        [](const UnitHistory& history) {
+            const auto rows = static_cast<py::ssize_t>(history.barrier_normal_force.size());
+            py::array_t<double> reaction({rows, static_cast<py::ssize_t>(history.tire_reaction.size())});
+            auto at = reaction.mutable_unchecked<2>();
+            py::ssize_t wheel = 0;
+            for (const Column& column : history.tire_reaction) {
+                for (py::ssize_t row = 0; row < rows; ++row)
+                    at(row, wheel) = column[static_cast<std::size_t>(row)];
+                ++wheel;
+            }
+            return read_only(std::move(reaction));
+        },
+        "(n, wheels) N, interval means");
+
+    py::class_<History> history(m, "History", "Evenly spaced output of a run; read-only views.");
+    add_view(history, "time", &History::time, "(n,) s");
+    add_view(history, "kinetic", &History::kinetic, "(n,) J");
+    add_view(history, "potential", &History::potential, "(n,) J");
+    add_view(history, "stored", &History::stored, "(n,) J");
+    add_view(history, "crushed", &History::crushed, "(n,) J");
+    add_view(history, "barrier_friction", &History::barrier_friction, "(n,) J");
+    add_view(history, "tire_friction", &History::tire_friction, "(n,) J");
+    add_view(history, "impacts", &History::impacts, "(n,) J");
+    history.def_readonly("momentum_residual", &History::momentum_residual,
+                         "max |m a - sum of forces| / max |force|");
+    history.def_property_readonly(
+        "units",
+        [](const py::object& self) {
+            py::typing::List<UnitHistory> units;
+            for (const UnitHistory& one : self.cast<const History&>().units)
+                units.append(py::cast(&one, py::return_value_policy::reference_internal, self));
+            return units;
+        },
+        "One for each unit of the vehicle.");
+}
+
+}  // namespace birm3d::bindings

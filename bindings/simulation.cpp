@@ -1,0 +1,121 @@
+#include "birm3d/sim/simulation.hpp"
+
+#include <pybind11/stl.h>
+
+#include "arrays.hpp"
+#include "register.hpp"
+
+namespace birm3d::bindings {
+
+namespace {
+
+// A column of one unit's trusses in the caller's order.
+OutputArray in_input_order(const Simulation& simulation, std::size_t unit, Lanes TrussBlockState::* column) {
+    const TrussMesh& mesh = simulation.scene().vehicle->units.at(unit).trusses;
+    const TrussState& trusses = simulation.state().units.at(unit).trusses;
+    OutputArray result(static_cast<py::ssize_t>(mesh.count));
+    auto at = result.mutable_unchecked<1>();
+    for (std::size_t i = 0; i < mesh.count; ++i)
+        at(static_cast<py::ssize_t>(mesh.input_index[i])) = (trusses.block[i / lanes].*column)[i % lanes];
+    return read_only(std::move(result));
+}
+
+// The same for the three coordinates of the nodes.
+OutputArray nodes_in_input_order(const Simulation& simulation, std::size_t unit) {
+    const TrussMesh& mesh = simulation.scene().vehicle->units.at(unit).trusses;
+    const TrussState& trusses = simulation.state().units.at(unit).trusses;
+    OutputArray nodes({static_cast<py::ssize_t>(mesh.count), py::ssize_t{3}});
+    auto at = nodes.mutable_unchecked<2>();
+    for (std::size_t i = 0; i < mesh.count; ++i) {
+        const auto row = static_cast<py::ssize_t>(mesh.input_index[i]);
+        const TrussBlockState& block = trusses.block[i / lanes];
+        at(row, 0) = block.x[i % lanes], at(row, 1) = block.y[i % lanes], at(row, 2) = block.z[i % lanes];
+    }
+    return read_only(std::move(nodes));
+}
+
+}  // namespace
+
+void register_simulation(py::module_& m) {
+    py::enum_<EndReason>(m, "EndReason")
+        .value("running", EndReason::running)
+        .value("duration", EndReason::duration)
+        .value("separated", EndReason::separated)
+        .value("stopped", EndReason::stopped)
+        .value("longest", EndReason::longest);
+
+    py::class_<StepStatistics>(m, "StepStatistics")
+        .def_readonly("steps", &StepStatistics::steps)
+        .def_readonly("rejected", &StepStatistics::rejected)
+        .def_readonly("node_evaluations", &StepStatistics::node_evaluations)
+        .def_readonly("shortest_step", &StepStatistics::shortest_step, "s")
+        .def_readonly("longest_step", &StepStatistics::longest_step, "s")
+        .def_readonly("deepest_point", &StepStatistics::deepest_point,
+                      "m, of the rigid body inside a barrier")
+        .def_readonly("least_critical_step", &StepStatistics::least_critical_step,
+                      "s, 2/omega of the trusses in contact");
+
+    py::class_<Simulation::Snapshot>(m, "Snapshot", "A checkpoint: state and record.")
+        .def_property_readonly("time", [](const Simulation::Snapshot& s) { return s.state.time; }, "s");
+
+    py::class_<Simulation>(m, "Simulation", "A run of one scene (SI, rad).")
+        .def(py::init([](std::shared_ptr<Vehicle> vehicle, std::optional<std::shared_ptr<Barrier>> barrier,
+                         double speed, double angle, double offset, double standoff, const Settings& settings,
+                         std::optional<double> duration) {
+                 return Simulation(Scene(std::move(vehicle), barrier.value_or(nullptr),
+                                         {speed, angle, offset, standoff}, settings, duration));
+             }),
+             py::kw_only(), py::arg("vehicle"), py::arg("barrier"), py::arg("speed"), py::arg("angle"),
+             py::arg("offset"), py::arg("standoff"), py::arg("settings"), py::arg("duration"))
+        .def("step", &Simulation::step, py::call_guard<py::gil_scoped_release>(),
+             "One accepted step; False when the run is over.")
+        .def(
+            "run",
+            [](Simulation& simulation) {
+                const py::gil_scoped_release release;
+                simulation.run([] {
+                    const py::gil_scoped_acquire acquire;
+                    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+                });
+            },
+            "From the present state to the end; Ctrl-C stops it.")
+        .def("reset", &Simulation::reset)
+        .def("snapshot", &Simulation::snapshot)
+        .def("restore", &Simulation::restore, py::arg("snapshot"))
+        .def(
+            "history", [](const Simulation& s) { return s.recorder().resample(s.scene()); },
+            py::call_guard<py::gil_scoped_release>(), "Evenly spaced output so far.")
+        .def_property_readonly("state_hash", [](const Simulation& s) { return s.state().hash(); })
+        .def_property_readonly(
+            "time", [](const Simulation& s) { return s.state().time; }, "s")
+        .def_property_readonly("end_reason", &Simulation::end_reason)
+        .def_property_readonly("touched", [](const Simulation& s) { return s.state().touched; })
+        .def_property_readonly("statistics", [](const Simulation& s) { return s.state().statistics; })
+        .def(
+            "velocity",
+            [](const Simulation& s, std::size_t unit) {
+                return copy(s.state().units.at(unit).body.velocity);
+            },
+            py::arg("unit") = 0, "(3,) m/s, world, now")
+        .def("nodes", &nodes_in_input_order, py::arg("unit") = 0, "(n, 3) m: shell nodes now, body axes")
+        .def(
+            "deflection",
+            [](const Simulation& s, std::size_t unit) {
+                return in_input_order(s, unit, &TrussBlockState::deflection);
+            },
+            py::arg("unit") = 0, "(n,) m: truss deflections now")
+        .def(
+            "peak_deflection",
+            [](const Simulation& s, std::size_t unit) {
+                return in_input_order(s, unit, &TrussBlockState::peak_deflection);
+            },
+            py::arg("unit") = 0, "(n,) m: greatest truss deflections so far")
+        .def(
+            "truss_force",
+            [](const Simulation& s, std::size_t unit) {
+                return in_input_order(s, unit, &TrussBlockState::force);
+            },
+            py::arg("unit") = 0, "(n,) N: truss forces now");
+}
+
+}  // namespace birm3d::bindings

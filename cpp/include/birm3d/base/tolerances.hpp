@@ -1,0 +1,75 @@
+// Every tolerance of the core: unit, value, and what breaks when it is changed.
+#pragma once
+
+namespace birm3d::tolerance {
+
+// Approach speed below which a rigid contact does not rebound (m/s). Zero: a parked car hums, because
+// gravity gives every resting tyre a small approach speed in each step. Large: light bounces are lost.
+inline constexpr double restitution_speed = 0.1;
+
+// Share of a tyre's own effective mass added as compliance, so that four tyres on a plane share the load
+// as equal springs would (the rigid problem has no unique answer). Large: tyres sink by a visible amount.
+inline constexpr double tire_compliance = 1e-3;
+
+// The same for the rigid body at the barrier: there the number of touching points is large, and only the
+// resulting wrench matters. Zero: the matrix of coinciding points is singular.
+inline constexpr double body_compliance = 1e-9;
+
+// Velocity by which a solved rigid contact may still approach, relative to the scene's speed.
+inline constexpr double contact_velocity = 1e-11;
+
+// Share of the critical step 2/omega that adaptive stepping uses at the most. 1: the edge of stability.
+inline constexpr double stable_fraction = 0.5;
+
+// Longest and shortest adaptive step (s). Longest: bounds how late a first touch is seen. Shortest:
+// a scene that asks for less is refused rather than run for ever.
+inline constexpr double longest_step = 5e-3;
+inline constexpr double shortest_step = 1e-9;
+
+// The instant at which a vehicle leaves a barrier is located within this (s): the end of the run, and every
+// value taken there, hangs on it.
+inline constexpr double release_resolution = 2e-4;
+
+// First step of a contact (s); the error estimate corrects it at once.
+inline constexpr double first_contact_step = 2e-4;
+
+// Local velocity error allowed in one step, relative to the reference speed and per unit of
+// Settings::tolerance. Larger: the asked and the achieved error of the metrics part.
+inline constexpr double step_error_per_tolerance = 0.003;
+
+// Speed scale of a scene that starts at rest (m/s): errors are judged against it.
+inline constexpr double slowest_reference_speed = 0.1;
+
+// Sliding speed at which friction is fully developed, relative to the reference speed. Smaller: sticking
+// becomes stiff and the steps short. Larger: what should stick creeps at up to this speed.
+inline constexpr double full_friction_speed = 0.01;
+
+// Rigid contacts: how fast a point found inside a surface is pushed out at the most (m/s).
+inline constexpr double recovery_speed = 0.5;
+
+// Points nearer than this to a rigid surface count as touching it (m).
+inline constexpr double touching_gap = 1e-6;
+
+// When a point meets a rigid surface hard, points nearer than this share the impact (m): which of two
+// wheels lands first would else hang on rounding. Large: points that are still in the air are stopped.
+inline constexpr double joint_impact_gap = 1e-3;
+
+// After the vehicle has left the barrier for good the run goes on for this long (s), so that filtered
+// histories settle.
+inline constexpr double tail_duration = 0.02;
+
+// A run without a duration ends here at the latest (s).
+inline constexpr double longest_event = 5.0;
+
+// A vehicle may start this far inside a surface (m): rounding of the initial placement only.
+inline constexpr double initial_overlap = 1e-9;
+
+// Smallest length of a truss and smallest volume of a solid that are not degenerate (m, m^3).
+inline constexpr double truss_length = 1e-6;
+inline constexpr double solid_volume = 1e-12;
+
+// A solid's six tetrahedra must all have positive volume; faces may be warped by this share of the
+// solid's size before Fig. 4's split depends on the diagonal chosen.
+inline constexpr double symmetric_inertia = 1e-9;
+
+}  // namespace birm3d::tolerance

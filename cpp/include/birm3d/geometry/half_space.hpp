@@ -1,0 +1,21 @@
+// The flat wall: all points with normal . p <= offset are inside (paper Eq. 8 with a unit normal).
+#pragma once
+
+#include "birm3d/base/types.hpp"
+
+namespace birm3d {
+
+struct HalfSpace {
+    Vec3 normal = -Vec3::UnitX();  // outward, unit
+    double offset = 0.0;           // m
+
+    // Signed distance of a point along the outward normal; negative = inside (m).
+    double gap(const Vec3& p) const { return normal.dot(p) - offset; }
+
+    // The same surface seen from axes that stand at `position` and are turned by `rotation` (axes to world).
+    HalfSpace seen_from(const Vec3& position, const Mat3& rotation) const {
+        return {rotation.transpose() * normal, offset - normal.dot(position)};
+    }
+};
+
+}  // namespace birm3d

@@ -1,0 +1,34 @@
+// How a scene is computed; constant during a run.
+#pragma once
+
+#include <optional>
+
+namespace birm3d {
+
+enum class ContactModel {
+    projected,    // the truss force projected on the surface normal: keeps the energy (default)
+    along_truss,  // the paper's rule, for comparison: creates or loses energy where truss and normal differ
+};
+
+enum class TireModel {
+    slip,  // lateral force continuous in the slip angle (brush model), default
+    skid,  // the paper's rule: full friction against the velocity once it leaves the heading
+};
+
+struct Settings {
+    std::optional<double> time_step;  // s; fixed, or adaptive where absent
+    double tolerance = 1e-3;          // wanted relative error of the metrics (adaptive steps)
+    double output_interval = 1e-4;    // s
+    double gravity = 9.80665;         // m/s^2
+    bool ground = true;
+    double mu_tire = 0.8;  // tyre-pavement friction coefficient
+    double cornering_stiffness =
+        10.0;                  // lateral force per normal load and radian of slip at small slip (1/rad)
+    double restitution = 0.1;  // of rigid contacts (paper 5.2)
+    ContactModel contact_model = ContactModel::projected;
+    TireModel tire_model = TireModel::slip;
+};
+
+void require_valid(const Settings& settings);
+
+}  // namespace birm3d

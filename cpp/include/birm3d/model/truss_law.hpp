@@ -1,0 +1,53 @@
+// Force-deflection law of an inelastic truss (paper Fig. 3).
+//
+//   force
+//   f_max |            ________ plateau until the member is closed
+//         |           /|
+//         |          / |  k_hardening
+//         |    _____/  /
+//         |   /  knee /  k_unloading: unloads and reloads on this line from wherever
+//         |  /       /   the load turned, zero at the residual deflection
+//         | / k_initial
+//         +----------+----------- deflection (m, shortening positive)
+//
+// The loading envelope is piecewise linear with any number of points: a sum of hinges,
+//   F_env(d) = sum_j slope_change_j * max(0, d - deflection_j),
+// so that one loop without branches serves every curve; the paper's knee is its two-slope case.
+// Below the peak deflection d_p (force F_p) the member moves on  F = max(0, F_p - k_unloading (d_p - d)).
+#pragma once
+
+#include <vector>
+
+#include "birm3d/base/types.hpp"
+
+namespace birm3d {
+
+// A loading envelope with its unloading slope; per truss (m, N, N/m) or per unit area (m, Pa, Pa/m).
+struct TrussCurve {
+    std::vector<double> deflection;  // where the slope changes; starts at 0, increasing (m)
+    std::vector<double> slope;       // slope from there on; the last one holds for ever
+    double k_unloading = 0.0;
+};
+
+// The paper's curve: k_initial to the knee, k_hardening to f_max, then the plateau. knee and f_max may be
+// infinite.
+TrussCurve knee_curve(double k_initial, double knee, double k_hardening, double f_max, double k_unloading);
+
+// A curve through points (deflection, force) that starts at (0, 0) and stays at its last force.
+TrussCurve point_curve(const std::vector<double>& deflection, const std::vector<double>& force,
+                       double k_unloading);
+
+// Refuses a curve that is not a law: slopes not finite, forces below zero, an envelope steeper than
+// k_unloading (unloading would give back more than loading took).
+void require_valid(const TrussCurve& curve, const std::string& name);
+
+double envelope_force(const TrussCurve& curve, double deflection);
+
+// One member's history, for a single truss on its own (the columns of TrussState do the same in bulk).
+struct TrussMemory {
+    double peak_deflection = 0.0;
+    double peak_force = 0.0;
+};
+double truss_force(const TrussCurve& curve, TrussMemory& memory, double deflection);
+
+}  // namespace birm3d

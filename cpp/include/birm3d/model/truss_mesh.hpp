@@ -1,0 +1,79 @@
+// The crushable skin of one rigid unit: massless shell nodes, each tied by one truss to an anchor on the
+// rigid body (paper 4.1). Constant, in the order the kernels walk it.
+//
+// Trusses are sorted along a space-filling curve and cut into blocks of `lanes`, so that nodes that touch
+// a barrier together stand together, a block that can not touch anything is left out by one test, and
+// kernels run over whole blocks without gathers. The last block is padded with trusses of no stiffness.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "birm3d/base/lanes.hpp"
+#include "birm3d/base/types.hpp"
+#include "birm3d/model/truss_law.hpp"
+
+namespace birm3d {
+
+// What a caller gives: one curve for many trusses, scaled by each truss's tributary area (or by 1).
+struct TrussInput {
+    std::vector<Vec3> node;             // (n) body axes, origin at the mass centre (m)
+    std::vector<Vec3> anchor;           // (n) the same
+    std::vector<TrussCurve> curve;      // (c)
+    std::vector<std::size_t> curve_of;  // (n) index into curve
+    std::vector<double> scale;          // (n) tributary area (m^2), or 1 for curves per truss
+};
+
+struct Ball {
+    Vec3 center = Vec3::Zero();
+    double radius = 0.0;
+};
+
+struct alignas(64) TrussBlock {
+    Lanes node_x, node_y, node_z;        // uncrushed, body axes (m)
+    Lanes anchor_x, anchor_y, anchor_z;  // (m)
+    Lanes length;                        // uncrushed (m)
+    Lanes k_unloading;                   // N/m
+    Lanes compliance;                    // 1/k_unloading, or 0 for a member without stiffness (m/N)
+};
+
+// One slope change of each truss's envelope.
+struct alignas(64) Hinge {
+    Lanes deflection;    // m
+    Lanes slope_change;  // N/m
+};
+
+struct TrussMesh {
+    explicit TrussMesh(const TrussInput& input);
+
+    std::size_t count = 0;   // trusses
+    std::size_t blocks = 0;  // blocks of `lanes`
+    std::size_t hinges = 0;  // slope changes of the longest envelope
+
+    std::vector<TrussBlock> block;  // (blocks)
+    std::vector<Hinge> hinge;       // (blocks * hinges), a block's hinges together
+
+    std::vector<Ball> node_ball;           // (blocks) around the uncrushed nodes
+    std::vector<Ball> anchor_ball;         // (blocks)
+    std::vector<std::size_t> input_index;  // (count) the caller's number of each truss
+
+    Vec3 node(std::size_t truss) const {
+        const TrussBlock& b = block[truss / lanes];
+        const std::size_t i = truss % lanes;
+        return {b.node_x[i], b.node_y[i], b.node_z[i]};
+    }
+    Vec3 anchor(std::size_t truss) const {
+        const TrussBlock& b = block[truss / lanes];
+        const std::size_t i = truss % lanes;
+        return {b.anchor_x[i], b.anchor_y[i], b.anchor_z[i]};
+    }
+
+    double reach = 0.0;  // greatest distance of a node or anchor from the mass centre (m)
+
+  private:
+    void fill_lane(const TrussInput& input, std::size_t source, bool padding, std::size_t b, std::size_t i);
+};
+
+}  // namespace birm3d

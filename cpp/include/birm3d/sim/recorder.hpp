@@ -1,0 +1,55 @@
+// The history of a run. One row is kept for each accepted step; evenly spaced output is made from the rows
+// afterwards, so that the output interval costs nothing while stepping and does not bound the step.
+//
+// Within a step the scheme's forces run straight from one end to the other, the impulses of lasting rigid
+// contacts are spread evenly, and rigid impacts stand at the instant at which they happen: velocities at output instants follow from that, and forces are means over the output interval, so
+// that m * (change of velocity) equals the sum of forces times the interval to rounding.
+#pragma once
+
+#include <vector>
+
+#include "birm3d/sim/scene.hpp"
+#include "birm3d/sim/step.hpp"
+
+namespace birm3d {
+
+// Columns at the output instants 0, interval, 2 interval, ...; n rows.
+struct UnitHistory {
+    std::vector<Vec3> position;             // mass centre, world (m)
+    std::vector<Quat> orientation;          // body to world
+    std::vector<Vec3> velocity;             // mass centre, world (m/s)
+    std::vector<Vec3> angular_velocity;     // body axes (rad/s)
+    std::vector<Vec3> acceleration;         // mass centre, mean over the interval, body axes (m/s^2)
+    std::vector<Vec3> barrier_force;        // on the vehicle, mean over the interval, world (N)
+    std::vector<Vec3> tire_friction_force;  // the same, tangential to the ground (N)
+    Column barrier_normal_force;            // sum of the normal forces, mean over the interval (N)
+    std::vector<Column> tire_reaction;      // (wheels)(n) normal force, mean over the interval (N)
+};
+
+struct History {
+    Column time;  // s
+    std::vector<UnitHistory> units;
+    Column kinetic, potential, stored, crushed, barrier_friction, tire_friction, impacts;  // J
+    double momentum_residual = 0.0;  // max |m a - sum of forces| / max |force|
+};
+
+class Recorder {
+  public:
+    Recorder(const Scene& scene, const State& start);
+
+    // A step that was accepted. A rigid impact at one of its ends is a row, and a step without length, of its own.
+    void add(const Scene& scene, const Trial& accepted);
+
+    std::size_t rows() const { return values_.size() / width_; }
+    History resample(const Scene& scene) const;
+
+  private:
+    void add_row(const Scene& scene, double time, const Energies& energies,
+                 const std::vector<BodyState>& bodies, const std::vector<UnitState>& forces,
+                 const std::vector<ContactImpulses>& impulses);
+
+    std::size_t width_;  // numbers in a row
+    Column values_;      // (rows * width), flat: adding a row allocates only when the buffer grows
+};
+
+}  // namespace birm3d

@@ -1,0 +1,40 @@
+// What a run is about: a vehicle, a barrier (or none), the start and the settings. Constant while running.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "birm3d/model/barrier.hpp"
+#include "birm3d/model/settings.hpp"
+#include "birm3d/model/vehicle.hpp"
+#include "birm3d/state/state.hpp"
+
+namespace birm3d {
+
+// The start: the vehicle comes along a straight path at `impact_angle` to the barrier's line and stands
+// `standoff` before its first touch.
+struct Approach {
+    double speed = 0.0;     // m/s, >= 0
+    double angle = 0.0;     // rad between path and barrier line, in (0, pi); pi/2 = head-on
+    double offset = 0.0;    // m along the barrier's line, where the path of the mass centre meets it
+    double standoff = 0.0;  // m between the nearest node and the barrier, >= 0
+};
+
+struct Scene {
+    // Refuses what can not be run; see Approach and require_valid(Settings).
+    Scene(std::shared_ptr<const Vehicle> vehicle, std::shared_ptr<const Barrier> barrier,
+          const Approach& approach, const Settings& settings, std::optional<double> duration);
+
+    std::shared_ptr<const Vehicle> vehicle;
+    std::shared_ptr<const Barrier> barrier;  // may be absent
+    Approach approach;
+    Settings settings;
+    std::optional<double> duration;  // s; absent: until the outcome is decided
+
+    State initial_state() const;
+
+    // Velocity against which errors are judged (m/s).
+    double reference_speed() const;
+};
+
+}  // namespace birm3d

@@ -1,0 +1,62 @@
+// A run: the scene, its state, the step control and the record.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "birm3d/sim/recorder.hpp"
+#include "birm3d/sim/scene.hpp"
+#include "birm3d/sim/step.hpp"
+
+namespace birm3d {
+
+enum class EndReason {
+    running,
+    duration,   // the time asked for is over
+    separated,  // the vehicle has left the barrier and can not come back
+    stopped,    // it stands still at the barrier
+    longest,    // tolerance::longest_event
+};
+
+class Simulation {
+  public:
+    explicit Simulation(Scene scene);
+
+    // One accepted step; false when the run is over and nothing was done. Throws UnstableError where a fixed
+    // step is beyond the critical one; the state then stands as it was before the step.
+    bool step();
+
+    // From the present state to the end. `poll` is called now and then; what it throws ends the run.
+    void run(const std::function<void()>& poll);
+
+    void reset();
+
+    const Scene& scene() const { return scene_; }
+    const State& state() const { return state_; }
+    const Recorder& recorder() const { return recorder_; }
+    EndReason end_reason() const;
+
+    struct Snapshot {
+        std::shared_ptr<const Vehicle> vehicle;
+        std::shared_ptr<const Barrier> barrier;
+        State state;
+        Recorder recorder;
+    };
+    Snapshot snapshot() const { return {scene_.vehicle, scene_.barrier, state_, recorder_}; }
+    void restore(const Snapshot& snapshot);
+
+  private:
+    bool finished() const { return end_reason() != EndReason::running; }
+    double remaining() const;  // s
+    void take(const Trial& trial);
+    void adaptive_step();
+    void fixed_step();
+    [[noreturn]] void refuse_step(double dt, double critical) const;
+
+    Scene scene_;
+    State state_;
+    Trial trial_;
+    Recorder recorder_;
+};
+
+}  // namespace birm3d

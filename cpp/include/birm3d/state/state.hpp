@@ -1,0 +1,94 @@
+// Everything that changes during a run. A copy of it is a checkpoint: nothing is hidden elsewhere.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "birm3d/base/hash.hpp"
+#include "birm3d/model/vehicle.hpp"
+#include "birm3d/state/body_state.hpp"
+#include "birm3d/state/contacts.hpp"
+#include "birm3d/state/truss_state.hpp"
+
+namespace birm3d {
+
+// What a unit has besides its trusses: small, copied whole with every step that is tried.
+struct UnitMotion {
+    BodyState body;
+    SkinForces skin;                           // at this instant, world axes
+    Vec3 acceleration = Vec3::Zero();          // by the skin, world axes (m/s^2)
+    Vec3 angular_acceleration = Vec3::Zero();  // the same (rad/s^2)
+    Vec3 jerk = Vec3::Zero();                  // their rates in the last step
+    Vec3 angular_jerk = Vec3::Zero();
+};
+
+struct UnitState : UnitMotion {
+    explicit UnitState(const Unit& unit) : trusses(unit.trusses) {}
+
+    TrussState trusses;
+};
+
+// Energies in J; all but `kinetic` and `potential` grow from zero.
+struct Energies {
+    double kinetic = 0.0;
+    double potential = 0.0;         // of gravity, zero at the start
+    double stored = 0.0;            // elastic, in trusses
+    double crushed = 0.0;           // plastic, in trusses
+    double barrier_friction = 0.0;  // lost to friction on the barrier
+    double tire_friction = 0.0;     // lost to friction on the ground
+    double impacts = 0.0;           // lost in rigid contacts
+
+    double total() const {
+        return kinetic + potential + stored + crushed + barrier_friction + tire_friction + impacts;
+    }
+};
+
+// How the steps went so far.
+struct StepStatistics {
+    std::uint64_t steps = 0;
+    std::uint64_t rejected = 0;
+    std::uint64_t node_evaluations = 0;
+    double shortest_step = std::numeric_limits<double>::infinity();  // s
+    double longest_step = 0.0;                                       // s
+    double least_critical_step =
+        std::numeric_limits<double>::infinity();  // s, 2/omega of the trusses in contact
+    double deepest_point = 0.0;  // greatest depth of the rigid body inside a barrier at the end of a step (m)
+};
+
+// How far a run has come.
+struct Progress {
+    double time = 0.0;  // s
+    Energies energies;
+    double truss_work = 0.0;  // all work done on trusses: stored + crushed (J)
+    double next_step = 0.0;   // s, proposed by the step control
+    bool touched = false;     // has the barrier been touched at all?
+    bool decided = false;     // is the outcome of the run known?
+    double decided_at = 0.0;  // s
+    StepStatistics statistics;
+};
+
+struct State : Progress {
+    explicit State(const Vehicle& vehicle) {
+        for (const Unit& unit : vehicle.units)
+            units.emplace_back(unit);
+    }
+
+    std::vector<UnitState> units;
+
+    std::uint64_t hash() const {
+        Hash hash;
+        hash.add(time);
+        for (const UnitState& unit : units) {
+            hash.add(unit.body.position);
+            hash.add(unit.body.orientation);
+            hash.add(unit.body.velocity);
+            hash.add(unit.body.angular_momentum);
+            unit.trusses.add_to(hash);
+        }
+        hash.add(energies.total());
+        return hash.value();
+    }
+};
+
+}  // namespace birm3d

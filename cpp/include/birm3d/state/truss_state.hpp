@@ -1,0 +1,43 @@
+// What a crash changes in a unit's skin: blocks parallel to TrussMesh's.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "birm3d/base/hash.hpp"
+#include "birm3d/model/truss_mesh.hpp"
+
+namespace birm3d {
+
+struct alignas(64) TrussBlockState {
+    Lanes x, y, z;                       // shell nodes in body axes (m)
+    Lanes deflection, force;             // of the truss, now (m, N)
+    Lanes peak_deflection, peak_force;   // where the loading envelope was left (m, N)
+    Lanes pushing;                       // 1 while the truss presses its node on a surface, else 0
+    Lanes normal_x, normal_y, normal_z;  // that surface's normal when last seen, body axes
+    double ball_radius;                  // of the node ball, grown over displaced nodes (m)
+    bool touching;                       // does any node push?
+};
+
+struct TrussState {
+    explicit TrussState(const TrussMesh& mesh) : block(mesh.blocks) {
+        for (std::size_t b = 0; b < mesh.blocks; ++b) {
+            block[b] = {};
+            block[b].x = mesh.block[b].node_x;
+            block[b].y = mesh.block[b].node_y;
+            block[b].z = mesh.block[b].node_z;
+            block[b].ball_radius = mesh.node_ball[b].radius;
+        }
+    }
+
+    std::vector<TrussBlockState> block;
+
+    void add_to(Hash& hash) const {
+        for (const TrussBlockState& b : block)
+            for (const Lanes* column :
+                 {&b.x, &b.y, &b.z, &b.deflection, &b.force, &b.peak_deflection, &b.peak_force, &b.pushing})
+                hash.add(*column);
+    }
+};
+
+}  // namespace birm3d

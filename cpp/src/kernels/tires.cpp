@@ -1,0 +1,94 @@
+#include "birm3d/kernels/tires.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "birm3d/base/tolerances.hpp"
+
+namespace birm3d {
+
+namespace {
+
+// From the mass centre to the lowest point of the wheel, world axes.
+Vec3 lowest_point(const Wheel& wheel, const Mat3& R) {
+    const Vec3 axle = R.col(1);
+    const Vec3 down = -Vec3::UnitZ() + axle.z() * axle;  // downwards within the wheel's plane
+    const double size = down.norm();
+    const Vec3 center = R * wheel.center;
+    // A wheel that lies flat touches all around: its centre stands for the rim.
+    return size > 1e-9 ? Vec3(center + (wheel.radius / size) * down) : center;
+}
+
+// Share of mu N that the brush model mobilises, in [-1, 1].
+double brush(double normalised_slip) {
+    const double s = std::min(1.0, std::abs(normalised_slip));
+    const double rest = 1.0 - s;
+    return std::copysign(1.0 - rest * rest * rest, normalised_slip);
+}
+
+}  // namespace
+
+void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& state,
+                        std::vector<RigidContact>& contacts) {
+    const Mat3 R = state.orientation.toRotationMatrix();
+    for (std::size_t i = 0; i < unit.wheels.size(); ++i) {
+        RigidContact contact;
+        contact.source = ContactSource::tire;
+        contact.index = i;
+        contact.body = body;
+        contact.arm = lowest_point(unit.wheels[i], R);
+        contact.normal = Vec3::UnitZ();
+        contact.gap = state.position.z() + contact.arm.z();
+        contact.compliance = tolerance::tire_compliance;
+        contacts.push_back(contact);
+    }
+}
+
+Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState& state, const Twist& motion,
+                     std::span<const double> normal_impulses) {
+    Wrench sum;
+    const double mu = settings.mu_tire;
+    double total = 0.0;
+    for (const double impulse : normal_impulses)
+        total += impulse;
+    if (mu == 0.0 || total == 0.0) return sum;
+
+    const Mat3 R = state.orientation.toRotationMatrix();
+    // Speed that a friction coefficient of 1 would take from a wheel: twice that of the mass centre, as the
+    // body also turns.
+    const double speed_change = 2.0 * total * unit.body.inverse_mass;
+
+    if (settings.tire_model == TireModel::skid) {
+        const Vec3 velocity(motion.velocity.x(), motion.velocity.y(), 0.0);
+        const double speed = velocity.norm();
+        const Vec3 heading = Vec3(R(0, 0), R(1, 0), 0.0).normalized();
+        const double across = std::abs(heading.x() * velocity.y() - heading.y() * velocity.x());
+        if (across <= 1e-9 * speed) return sum;  // the paper's "parallel to the r-direction", to rounding
+        const Vec3 direction = -velocity / std::max(speed, mu * speed_change);
+        for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
+            const Vec3 impulse = mu * normal_impulses[i] * direction;
+            sum += {impulse, lowest_point(unit.wheels[i], R).cross(impulse)};
+        }
+        return sum;
+    }
+
+    const Vec3 across_raw(R(0, 1), R(1, 1), 0.0);  // the axle's direction along the ground
+    const double level = across_raw.norm();
+    if (level < 1e-9) return sum;
+    const Vec3 across = across_raw / level;
+    const Vec3 along(across.y(), -across.x(), 0.0);
+    // At small slip the impulse is C N dt * v_across / v_along: v_along is held where that reverses nothing.
+    const double slowest = settings.cornering_stiffness * speed_change;
+    for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
+        if (normal_impulses[i] == 0.0) continue;
+        const Vec3 arm = lowest_point(unit.wheels[i], R);
+        const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(arm);
+        const double tan_slip = velocity.dot(across) / std::max(std::abs(velocity.dot(along)), slowest);
+        const double share = brush(settings.cornering_stiffness * tan_slip / (3.0 * mu));
+        const Vec3 impulse = -mu * normal_impulses[i] * share * across;
+        sum += {impulse, arm.cross(impulse)};
+    }
+    return sum;
+}
+
+}  // namespace birm3d

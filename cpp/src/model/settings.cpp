@@ -1,0 +1,21 @@
+#include "birm3d/model/settings.hpp"
+
+#include <cmath>
+
+#include "birm3d/base/error.hpp"
+#include "birm3d/base/tolerances.hpp"
+
+namespace birm3d {
+
+void require_valid(const Settings& s) {
+    if (s.time_step && !(std::isfinite(*s.time_step) && *s.time_step >= tolerance::shortest_step))
+        refuse("time_step", "finite and >= " + to_text(tolerance::shortest_step) + " s", *s.time_step);
+    require_within("tolerance", s.tolerance, 1e-9, 0.1);
+    require_positive("output_interval", s.output_interval);
+    require_not_negative("gravity", s.gravity);
+    require_not_negative("mu_tire", s.mu_tire);
+    require_positive("cornering_stiffness", s.cornering_stiffness);
+    require_within("restitution", s.restitution, 0.0, 1.0);
+}
+
+}  // namespace birm3d

@@ -1,0 +1,103 @@
+#include "birm3d/model/truss_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "birm3d/base/error.hpp"
+
+namespace birm3d {
+
+TrussCurve knee_curve(double k_initial, double knee, double k_hardening, double f_max, double k_unloading) {
+    require_not_negative("k_initial", k_initial);
+    require_not_negative("k_hardening", k_hardening);
+    if (!(knee > 0.0)) refuse("knee", "> 0", knee);
+    if (!(f_max > 0.0)) refuse("f_max", "> 0", f_max);
+
+    TrussCurve curve{{0.0}, {k_initial}, k_unloading};
+    const double knee_force = std::isinf(knee) ? (k_initial > 0.0 ? knee : 0.0) : k_initial * knee;
+    if (knee_force < f_max && std::isfinite(knee)) {
+        curve.deflection.push_back(knee);
+        curve.slope.push_back(k_hardening);
+    }
+    if (std::isfinite(f_max)) {
+        const double force_at_last = curve.deflection.size() == 2 ? knee_force : 0.0;
+        const double closing = curve.deflection.back() + (f_max - force_at_last) / curve.slope.back();
+        if (std::isfinite(closing)) {
+            curve.deflection.push_back(closing);
+            curve.slope.push_back(0.0);
+        }
+    }
+    return curve;
+}
+
+TrussCurve point_curve(const std::vector<double>& deflection, const std::vector<double>& force,
+                       double k_unloading) {
+    if (deflection.size() != force.size() || deflection.size() < 2)
+        refuse("envelope", "a list of at least 2 points (deflection, force)",
+               static_cast<double>(deflection.size()));
+    if (deflection[0] != 0.0 || force[0] != 0.0)
+        refuse("envelope[0]", "(0, 0)", "(" + to_text(deflection[0]) + ", " + to_text(force[0]) + ")");
+
+    TrussCurve curve{{}, {}, k_unloading};
+    for (std::size_t i = 0; i + 1 < deflection.size(); ++i) {
+        const std::string name = "envelope[" + std::to_string(i + 1) + "]";
+        if (!(std::isfinite(deflection[i + 1]) && deflection[i + 1] > deflection[i]))
+            refuse(name + " deflection", "finite and > " + to_text(deflection[i]), deflection[i + 1]);
+        require_not_negative((name + " force").c_str(), force[i + 1]);
+        curve.deflection.push_back(deflection[i]);
+        curve.slope.push_back((force[i + 1] - force[i]) / (deflection[i + 1] - deflection[i]));
+    }
+    curve.deflection.push_back(deflection.back());
+    curve.slope.push_back(0.0);
+    return curve;
+}
+
+void require_valid(const TrussCurve& curve, const std::string& name) {
+    require_positive((name + "k_unloading").c_str(), curve.k_unloading);
+    if (curve.deflection.empty() || curve.deflection.size() != curve.slope.size() ||
+        curve.deflection[0] != 0.0)
+        refuse(name + "envelope", "one slope for each deflection, the first at 0",
+               static_cast<double>(curve.deflection.size()));
+    double force = 0.0;
+    for (std::size_t i = 0; i < curve.slope.size(); ++i) {
+        const double slope = curve.slope[i];
+        if (i > 0) {
+            const double length = curve.deflection[i] - curve.deflection[i - 1];
+            if (!(std::isfinite(length) && length >= 0.0))
+                refuse(name + "envelope deflection", "increasing", curve.deflection[i]);
+            force += curve.slope[i - 1] * length;
+        }
+        // A last point reached by rounding a falling slope may stand a hair below zero.
+        if (force < -1e-9 * std::abs(slope)) refuse(name + "envelope force", ">= 0", force);
+        if (!std::isfinite(slope)) refuse(name + "envelope slope", "finite", slope);
+        if (slope > curve.k_unloading * (1.0 + 1e-12))
+            refuse(
+                name + "k_unloading",
+                ">= every slope of the envelope (" + to_text(slope) + "), or unloading would create energy",
+                curve.k_unloading);
+    }
+    if (curve.slope.back() < 0.0) refuse(name + "envelope's last slope", ">= 0", curve.slope.back());
+}
+
+double envelope_force(const TrussCurve& curve, double deflection) {
+    double force = 0.0;
+    double slope = 0.0;
+    for (std::size_t j = 0; j < curve.slope.size(); ++j) {
+        force += (curve.slope[j] - slope) * std::max(0.0, deflection - curve.deflection[j]);
+        slope = curve.slope[j];
+    }
+    return force;
+}
+
+double truss_force(const TrussCurve& curve, TrussMemory& memory, double deflection) {
+    if (deflection > memory.peak_deflection) {
+        memory.peak_deflection = deflection;
+        memory.peak_force = envelope_force(curve, deflection);
+        return memory.peak_force;
+    }
+    return std::max(0.0, memory.peak_force - curve.k_unloading * (memory.peak_deflection - deflection));
+}
+
+}  // namespace birm3d

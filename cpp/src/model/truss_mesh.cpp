@@ -1,0 +1,133 @@
+#include "birm3d/model/truss_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "birm3d/base/error.hpp"
+#include "birm3d/base/tolerances.hpp"
+
+namespace birm3d {
+
+namespace {
+
+void require_valid(const TrussInput& input) {
+    const std::size_t n = input.node.size();
+    if (n == 0) refuse("nodes", "at least 1", 0.0);
+    const auto same_size = [n](const char* name, std::size_t size) {
+        if (size != n)
+            refuse(name, std::to_string(n) + " entries, one for each node", static_cast<double>(size));
+    };
+    same_size("anchors", input.anchor.size());
+    same_size("curve_of", input.curve_of.size());
+    same_size("scale", input.scale.size());
+
+    for (std::size_t c = 0; c < input.curve.size(); ++c)
+        require_valid(input.curve[c], input.curve.size() == 1 ? "" : "curve[" + std::to_string(c) + "] ");
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::string at = "[" + std::to_string(i) + "]";
+        if (!input.node[i].allFinite()) refuse("nodes" + at, "finite", "a coordinate that is not");
+        if (!input.anchor[i].allFinite()) refuse("anchors" + at, "finite", "a coordinate that is not");
+        const double length = (input.node[i] - input.anchor[i]).norm();
+        if (!(length >= tolerance::truss_length))
+            refuse("truss length" + at, ">= " + to_text(tolerance::truss_length) + " m", length);
+        if (input.curve_of[i] >= input.curve.size())
+            refuse("curve_of" + at, "< " + std::to_string(input.curve.size()),
+                   static_cast<double>(input.curve_of[i]));
+        require_not_negative(("scale" + at).c_str(), input.scale[i]);
+    }
+}
+
+// Interleaved bits of the three coordinates: near in space, near in order.
+std::uint64_t morton_code(const Vec3& p, const Vec3& low, double inverse_size) {
+    std::uint64_t code = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double unit = std::clamp((p[axis] - low[axis]) * inverse_size, 0.0, 1.0);
+        const auto cell = static_cast<std::uint64_t>(unit * 2097151.0);  // 21 bits
+        for (int bit = 0; bit < 21; ++bit)
+            code |= ((cell >> bit) & 1U) << (3 * bit + axis);
+    }
+    return code;
+}
+
+std::vector<std::size_t> spatial_order(const std::vector<Vec3>& points) {
+    Vec3 low = points[0];
+    Vec3 high = points[0];
+    for (const Vec3& p : points) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    const double size = (high - low).maxCoeff();
+    const double inverse_size = size > 0.0 ? 1.0 / size : 0.0;
+
+    std::vector<std::uint64_t> code(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        code[i] = morton_code(points[i], low, inverse_size);
+    std::vector<std::size_t> order(points.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return code[a] < code[b]; });
+    return order;
+}
+
+Ball ball_around(const Lanes& x, const Lanes& y, const Lanes& z) {
+    Vec3 low(x[0], y[0], z[0]);
+    Vec3 high = low;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        low = low.cwiseMin(Vec3(x[i], y[i], z[i]));
+        high = high.cwiseMax(Vec3(x[i], y[i], z[i]));
+    }
+    Ball ball{0.5 * (low + high), 0.0};
+    for (std::size_t i = 0; i < lanes; ++i)
+        ball.radius = std::max(ball.radius, (Vec3(x[i], y[i], z[i]) - ball.center).norm());
+    return ball;
+}
+
+}  // namespace
+
+TrussMesh::TrussMesh(const TrussInput& input) {
+    require_valid(input);
+    count = input.node.size();
+    blocks = (count + lanes - 1) / lanes;
+    for (const TrussCurve& curve : input.curve)
+        hinges = std::max(hinges, curve.slope.size());
+
+    input_index = spatial_order(input.node);
+    block.resize(blocks);
+    hinge.resize(blocks * hinges);
+    for (std::size_t b = 0; b < blocks; ++b) {
+        for (std::size_t i = 0; i < lanes; ++i) {
+            const bool padding = b * lanes + i >= count;
+            fill_lane(input, input_index[std::min(b * lanes + i, count - 1)], padding, b, i);
+        }
+        node_ball.push_back(ball_around(block[b].node_x, block[b].node_y, block[b].node_z));
+        anchor_ball.push_back(ball_around(block[b].anchor_x, block[b].anchor_y, block[b].anchor_z));
+    }
+}
+
+void TrussMesh::fill_lane(const TrussInput& input, std::size_t source, bool padding, std::size_t b,
+                          std::size_t i) {
+    const Vec3& node = input.node[source];
+    const Vec3& anchor = input.anchor[source];
+    const double scale = padding ? 0.0 : input.scale[source];
+    const TrussCurve& curve = input.curve[input.curve_of[source]];
+    reach = std::max({reach, node.norm(), anchor.norm()});
+
+    TrussBlock& to = block[b];
+    to.node_x[i] = node.x(), to.node_y[i] = node.y(), to.node_z[i] = node.z();
+    to.anchor_x[i] = anchor.x(), to.anchor_y[i] = anchor.y(), to.anchor_z[i] = anchor.z();
+    to.length[i] = (node - anchor).norm();
+    to.k_unloading[i] = scale * curve.k_unloading;
+    to.compliance[i] = to.k_unloading[i] > 0.0 ? 1.0 / to.k_unloading[i] : 0.0;
+    double slope = 0.0;
+    for (std::size_t j = 0; j < hinges; ++j) {
+        Hinge& h = hinge[b * hinges + j];
+        const bool used = j < curve.slope.size();
+        h.deflection[i] = used ? curve.deflection[j] : 0.0;
+        h.slope_change[i] = used ? scale * (curve.slope[j] - slope) : 0.0;
+        if (used) slope = curve.slope[j];
+    }
+}
+
+}  // namespace birm3d

@@ -1,0 +1,54 @@
+#include "birm3d/model/vehicle.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <string>
+#include <utility>
+
+#include "birm3d/base/error.hpp"
+#include "birm3d/base/tolerances.hpp"
+
+namespace birm3d {
+
+namespace {
+
+Mat3 checked_inertia(const Mat3& inertia) {
+    if (!inertia.allFinite()) refuse("inertia", "finite", "an entry that is not");
+    const double size = inertia.cwiseAbs().maxCoeff();
+    const double skew = (inertia - inertia.transpose()).cwiseAbs().maxCoeff();
+    if (skew > tolerance::symmetric_inertia * size)
+        refuse("inertia", "symmetric", "a difference of " + to_text(skew) + " kg m^2");
+    const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+    if (!(principal[0] > 0.0)) refuse("smallest principal moment of inertia", "> 0 kg m^2", principal[0]);
+    // No body of positive mass has one principal moment above the sum of the others.
+    if (principal[2] > (principal[0] + principal[1]) * (1.0 + tolerance::symmetric_inertia))
+        refuse("largest principal moment of inertia",
+               "at most the sum of the others (" + to_text(principal[0] + principal[1]) + " kg m^2)",
+               principal[2]);
+    return 0.5 * (inertia + inertia.transpose());
+}
+
+}  // namespace
+
+RigidBody::RigidBody(double mass_, const Mat3& inertia_)
+    : mass(require_positive("mass", mass_)),
+      inverse_mass(1.0 / mass_),
+      inertia(checked_inertia(inertia_)),
+      inverse_inertia(inertia.inverse()) {}
+
+Unit::Unit(const RigidBody& body_, const TrussInput& trusses_, std::vector<Wheel> wheels_,
+           double mass_center_height_)
+    : body(body_),
+      trusses(trusses_),
+      wheels(std::move(wheels_)),
+      mass_center_height(require_finite("mass_center_height", mass_center_height_)) {
+    for (std::size_t i = 0; i < wheels.size(); ++i) {
+        const std::string name = "wheels[" + std::to_string(i) + "]";
+        require_positive((name + " radius").c_str(), wheels[i].radius);
+        if (!wheels[i].center.allFinite()) refuse(name + " center", "finite", "a coordinate that is not");
+        const double height = mass_center_height + wheels[i].center.z() - wheels[i].radius;
+        if (height < -1e-3)
+            refuse(name + " height of the lowest point above the ground", ">= -0.001 m", height);
+    }
+}
+
+}  // namespace birm3d

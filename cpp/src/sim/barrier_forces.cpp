@@ -1,0 +1,59 @@
+#include "birm3d/sim/barrier_forces.hpp"
+
+#include <algorithm>
+
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/kernels/crush.hpp"
+#include "birm3d/kernels/detect.hpp"
+#include "birm3d/kernels/friction.hpp"
+#include "birm3d/kernels/integrate.hpp"
+
+namespace birm3d {
+
+namespace {
+
+Wrench turned(const Wrench& w, const Mat3& R) {
+    return {R * w.force, R * w.torque};
+}
+
+}  // namespace
+
+void barrier_forces(const Scene& scene, std::size_t u, const State& from, Trial& trial) {
+    const Unit& unit = scene.vehicle->units[u];
+    const UnitState& before = from.units[u];
+    UnitState& now = trial.state.units[u];
+    const Mat3 R = now.body.orientation.toRotationMatrix();
+    const HalfSpace face = scene.barrier->face.seen_from(now.body.position, R);
+    const double mu = scene.barrier->friction;
+    const double full_speed = std::max(tolerance::full_friction_speed * scene.reference_speed(),
+                                       trial.dt * before.skin.friction_rate);
+    const Vec3 spin = R.transpose() * angular_velocity(unit.body, now.body);
+    const Twist motion{R.transpose() * now.body.velocity, spin};
+
+    SkinForces sum;
+    BlockContact contact;
+    trial.active[u].clear();
+    for (std::size_t b = 0; b < unit.trusses.blocks; ++b) {
+        const TrussBlockState& block = before.trusses.block[b];
+        const double ball_gap = face.gap(unit.trusses.node_ball[b].center) - block.ball_radius;
+        if (ball_gap >= 0.0 && !block.touching) {
+            sum.nearest_gap = std::min(sum.nearest_gap, ball_gap);
+            continue;
+        }
+        TrussBlockState& next = now.trusses.block[b];
+        detect(face, block.x, block.y, block.z, contact);
+        SkinForces forces =
+            crush(unit.body, unit.trusses, scene.settings.contact_model, b, block, next, contact);
+        if (mu > 0.0 && forces.normal_force > 0.0)
+            add_friction(unit.body, mu, full_speed, motion, next, contact, forces);
+        sum += forces;
+        trial.active[u].push_back(b);
+    }
+    trial.nearest_gap = std::min(trial.nearest_gap, sum.nearest_gap);
+    now.skin = sum;
+    now.skin.contact = turned(sum.contact, R);
+    now.skin.friction = turned(sum.friction, R);
+    trial.state.statistics.node_evaluations += trial.active[u].size() * lanes;
+}
+
+}  // namespace birm3d

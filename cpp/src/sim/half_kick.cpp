@@ -1,0 +1,265 @@
+#include "birm3d/sim/half_kick.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/kernels/closed_members.hpp"
+#include "birm3d/kernels/impulse.hpp"
+#include "birm3d/kernels/integrate.hpp"
+#include "birm3d/kernels/tires.hpp"
+
+namespace birm3d {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double power(const Wrench& w, const Twist& motion) {
+    return w.force.dot(motion.velocity) + w.torque.dot(motion.angular_velocity);
+}
+
+Twist mean(const Twist& a, const Twist& b) {
+    return {0.5 * (a.velocity + b.velocity), 0.5 * (a.angular_velocity + b.angular_velocity)};
+}
+
+Wrench scaled(const Wrench& w, double factor) {
+    return {factor * w.force, factor * w.torque};
+}
+
+std::vector<RigidContact> find_rigid_contacts(const Scene& scene, const State& state, double dt,
+                                              const StepOptions& options) {
+    std::vector<RigidContact> contacts;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const Unit& unit = scene.vehicle->units[u];
+        const BodyState& body = state.units[u].body;
+        if (scene.settings.ground) find_tire_contacts(unit, u, body, contacts);
+        if (!scene.barrier || !options.hold_members) continue;
+        const Mat3 R = body.orientation.toRotationMatrix();
+        const HalfSpace face = scene.barrier->face.seen_from(body.position, R);
+        const Twist motion{R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
+        find_closed_members(unit.trusses, u, body, face, motion, dt, contacts);
+    }
+    return contacts;
+}
+
+bool approaches_hard(const RigidContact& contact, std::span<const ContactBody> bodies) {
+    return separation_velocity(contact, bodies) < -tolerance::restitution_speed;
+}
+
+// Contacts that last: before the drift they let the body come to its surface and no further, after it they
+// end its approach.
+void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpulses>& before_drift,
+                         std::span<const ContactBody> bodies, std::vector<RigidContact>& contacts) {
+    if (stage == Stage::before_drift) {
+        for (RigidContact& contact : contacts)
+            contact.target = std::min(-contact.gap / dt, tolerance::recovery_speed);
+        return;
+    }
+    std::erase_if(contacts, [&](const RigidContact& contact) {
+        // A tyre that carried load before the drift still touches after it, whatever the turn did to its gap.
+        const bool loaded =
+            contact.source == ContactSource::tire && before_drift[contact.body].tire[contact.index] > 0.0;
+        const bool touching = contact.gap <= tolerance::touching_gap || loaded;
+        return !touching || approaches_hard(contact, bodies);
+    });
+}
+
+// Impacts, Eq. 1: leaves the contacts that take part, none where nothing approaches hard. Points that arrive
+// together by all but a hair share one impact: their order would be chance.
+void set_impact_targets(double restitution, double reach, std::span<const ContactBody> bodies,
+                        std::vector<RigidContact>& contacts) {
+    const bool impact = std::any_of(contacts.begin(), contacts.end(), [&](const RigidContact& contact) {
+        const double way = std::max(tolerance::touching_gap, -reach * separation_velocity(contact, bodies));
+        return contact.gap <= way && approaches_hard(contact, bodies);
+    });
+    std::erase_if(contacts, [&](const RigidContact& contact) {
+        const double way =
+            std::max(tolerance::joint_impact_gap, -reach * separation_velocity(contact, bodies));
+        return !impact || contact.gap > way;
+    });
+    for (RigidContact& contact : contacts) {
+        const double v = separation_velocity(contact, bodies);
+        contact.target = approaches_hard(contact, bodies) ? -restitution * v : 0.0;
+    }
+}
+
+// Time until the first contact that approaches hard reaches its surface (s).
+double time_to_impact(std::span<const ContactBody> bodies, const std::vector<RigidContact>& contacts) {
+    double earliest = infinity;
+    for (const RigidContact& contact : contacts)
+        if (contact.gap > tolerance::touching_gap && approaches_hard(contact, bodies))
+            earliest = std::min(earliest, -contact.gap / separation_velocity(contact, bodies));
+    return earliest;
+}
+
+std::vector<ContactBody> contact_bodies(const Scene& scene, const State& state) {
+    std::vector<ContactBody> bodies;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const RigidBody& body = scene.vehicle->units[u].body;
+        const BodyState& now = state.units[u].body;
+        bodies.push_back({body.inverse_mass, inverse_inertia_in_world(body, now), twist(body, now)});
+    }
+    return bodies;
+}
+
+// Solves for the contacts' normal impulses on top of the bodies' motion and adds up tyre impulses by wheel.
+void solve_contacts(const Scene& scene, const State& state, std::vector<RigidContact>& contacts,
+                    std::vector<Column>& tire) {
+    std::vector<ContactBody> bodies = contact_bodies(scene, state);
+    for (std::size_t u = 0; u < state.units.size(); ++u)
+        tire[u].assign(scene.vehicle->units[u].wheels.size(), 0.0);
+    solve_impulses(contacts, bodies, scene.reference_speed());
+    for (const RigidContact& contact : contacts)
+        if (contact.source == ContactSource::tire) tire[contact.body][contact.index] += contact.impulse;
+}
+
+std::vector<Twist> motions(const Scene& scene, const State& state) {
+    std::vector<Twist> result;
+    for (std::size_t u = 0; u < state.units.size(); ++u)
+        result.push_back(twist(scene.vehicle->units[u].body, state.units[u].body));
+    return result;
+}
+
+void kick_by_forces(const Scene& scene, double half, State& state) {
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const RigidBody& body = scene.vehicle->units[u].body;
+        UnitState& unit = state.units[u];
+        Wrench impulse = scaled(unit.skin.contact, half);
+        impulse += scaled(unit.skin.friction, half);
+        impulse.force.z() -= half * body.mass * scene.settings.gravity;
+        kick(body, impulse, unit.body);
+    }
+}
+
+void book_forces(const std::vector<Twist>& before, const std::vector<Twist>& after, double half,
+                 State& state) {
+    for (std::size_t u = 0; u < state.units.size(); ++u)
+        state.energies.barrier_friction -=
+            half * power(state.units[u].skin.friction, mean(before[u], after[u]));
+}
+
+// What contacts do at one end of the drift, with their friction.
+struct ContactKick {
+    std::vector<RigidContact> contacts;
+    std::vector<Wrench> on_ground, on_barrier;  // (units) friction impulses
+};
+
+ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> contacts, State& state,
+                             std::vector<ContactImpulses>& sums) {
+    const std::size_t units = state.units.size();
+    ContactKick result{std::move(contacts), std::vector<Wrench>(units), std::vector<Wrench>(units)};
+    const std::vector<Twist> motion = motions(scene, state);
+    std::vector<Column> tire(units);
+    solve_contacts(scene, state, result.contacts, tire);
+    bool sliding = false;
+    for (std::size_t u = 0; u < units; ++u) {
+        const Unit& unit = scene.vehicle->units[u];
+        BodyState& body = state.units[u].body;
+        Wrench& on_ground = result.on_ground[u];
+        Wrench& on_barrier = result.on_barrier[u];
+        on_ground = tire_friction(unit, scene.settings, body, motion[u], tire[u]);
+        if (scene.barrier && scene.barrier->friction > 0.0)
+            on_barrier = member_friction(result.contacts, u, unit.body, scene.barrier->friction,
+                                         tolerance::full_friction_speed * scene.reference_speed(), motion[u]);
+        sliding = sliding || !on_ground.force.isZero(0.0) || !on_barrier.force.isZero(0.0);
+        kick(unit.body, on_ground, body);
+        kick(unit.body, on_barrier, body);
+        sums[u].tire_friction += on_ground.force;
+        sums[u].barrier += on_barrier.force;
+    }
+    // Friction tips the body: the normal impulses are found once more beside it.
+    if (sliding) solve_contacts(scene, state, result.contacts, tire);
+
+    for (const RigidContact& contact : result.contacts) {
+        const Vec3 impulse = contact.impulse * contact.normal;
+        kick(scene.vehicle->units[contact.body].body, {impulse, contact.arm.cross(impulse)},
+             state.units[contact.body].body);
+        ContactImpulses& sum = sums[contact.body];
+        if (contact.source == ContactSource::tire) {
+            sum.tire[contact.index] += contact.impulse;
+        } else {
+            sum.barrier += impulse;
+            sum.barrier_normal += contact.impulse;
+        }
+    }
+    return result;
+}
+
+void book_contacts(const ContactKick& kicked, const std::vector<Twist>& before,
+                   const std::vector<Twist>& after, State& state) {
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const Twist motion = mean(before[u], after[u]);
+        state.energies.barrier_friction -= power(kicked.on_barrier[u], motion);
+        state.energies.tire_friction -= power(kicked.on_ground[u], motion);
+        for (const RigidContact& contact : kicked.contacts) {
+            if (contact.body != u) continue;
+            const Vec3 impulse = contact.impulse * contact.normal;
+            state.energies.impacts -= power({impulse, contact.arm.cross(impulse)}, motion);
+        }
+    }
+}
+
+// State and energies beside an impact.
+void keep(const Scene& scene, const State& state, Impact& impact) {
+    impact.happened = true;
+    impact.bodies.clear();
+    impact.energies = state.energies;
+    impact.energies.kinetic = 0.0;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        impact.bodies.push_back(state.units[u].body);
+        impact.energies.kinetic += kinetic_energy(scene.vehicle->units[u].body, state.units[u].body);
+    }
+}
+
+// An impact takes no time: it stands apart from the forces of the step, in the ledger and in the record.
+void impact_at_once(const Scene& scene, Stage stage, double reach, std::vector<RigidContact> contacts,
+                    Trial& trial) {
+    State& state = trial.state;
+    set_impact_targets(scene.settings.restitution, reach, contact_bodies(scene, state), contacts);
+    if (contacts.empty()) return;
+    const bool start = stage == Stage::before_drift;
+    Impact& impact = start ? trial.at_start : trial.at_end;
+    if (!start) keep(scene, state, impact);
+    const std::vector<Twist> before = motions(scene, state);
+    const ContactKick kicked = kick_by_contacts(scene, std::move(contacts), state, impact.impulses);
+    book_contacts(kicked, before, motions(scene, state), state);
+    if (start) keep(scene, state, impact);
+}
+
+void note_depth(const std::vector<RigidContact>& contacts, StepStatistics& statistics) {
+    for (const RigidContact& contact : contacts)
+        if (contact.source == ContactSource::member)
+            statistics.deepest_point = std::max(statistics.deepest_point, -contact.gap);
+}
+
+}  // namespace
+
+void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Trial& trial) {
+    State& state = trial.state;
+    const double half = 0.5 * trial.dt;
+    const std::vector<RigidContact> contacts = find_rigid_contacts(scene, state, trial.dt, options);
+    if (stage == Stage::before_drift) {
+        // Where impacts are not located, those of the coming step happen now, before anything has passed.
+        impact_at_once(scene, stage, options.locate_impacts ? 0.0 : trial.dt, contacts, trial);
+    } else {
+        note_depth(contacts, state.statistics);
+    }
+
+    const std::vector<Twist> before = motions(scene, state);
+    kick_by_forces(scene, half, state);
+    std::vector<RigidContact> lasting = contacts;
+    const std::vector<ContactBody> bodies = contact_bodies(scene, state);
+    if (stage == Stage::before_drift && options.locate_impacts)
+        trial.impact_after = time_to_impact(bodies, contacts);
+    set_lasting_targets(stage, trial.dt, trial.impulses, bodies, lasting);
+    const ContactKick kicked = kick_by_contacts(scene, std::move(lasting), state, trial.impulses);
+    const std::vector<Twist> after = motions(scene, state);
+    book_forces(before, after, half, state);
+    book_contacts(kicked, before, after, state);
+
+    if (stage == Stage::after_drift) impact_at_once(scene, stage, 0.0, contacts, trial);
+}
+
+}  // namespace birm3d

@@ -1,0 +1,288 @@
+#include "birm3d/sim/recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "birm3d/base/rotation.hpp"
+#include "birm3d/kernels/integrate.hpp"
+
+namespace birm3d {
+
+namespace {
+
+// Where the numbers of a row stand. Energies and bodies at the end of the step, impulses within it.
+enum RowOffset : std::size_t { at_time = 0, at_energies = 1, at_units = 8 };
+enum UnitOffset : std::size_t {
+    at_position = 0,
+    at_orientation = 3,  // x, y, z, w
+    at_velocity = 7,
+    at_angular_velocity = 10,  // body axes
+    at_barrier_force = 13,     // contact and friction, world axes
+    at_normal_force = 16,
+    at_tire_friction = 17,  // impulse
+    at_barrier_impulse = 20,
+    at_normal_impulse = 23,
+    at_tire_impulses = 24
+};
+
+std::size_t unit_width(const Unit& unit) {
+    return at_tire_impulses + unit.wheels.size();
+}
+
+Vec3 vec(const double* p) {
+    return {p[0], p[1], p[2]};
+}
+
+// One step of one unit: its two rows, and the running integrals up to its start.
+struct StepView {
+    const double* a;  // unit part of the row at the start
+    const double* b;  // and at the end
+    double dt;
+
+    // How much of the step has passed at `t` from its start; an impact's step has no length and is over at once.
+    double share(double t) const { return dt > 0.0 ? t / dt : 1.0; }
+    // Integral from the start of the step to `t` of a force with end values a[i], b[i] (N s).
+    double force_integral(std::size_t i, double t) const {
+        return t * (a[i] + 0.5 * share(t) * (b[i] - a[i]));
+    }
+    Vec3 force_integral3(std::size_t i, double t) const {
+        return {force_integral(i, t), force_integral(i + 1, t), force_integral(i + 2, t)};
+    }
+    double impulse(std::size_t i, double t) const { return share(t) * b[i]; }
+};
+
+// Impulses since the start of the run (N s).
+struct Impulses {
+    Vec3 barrier = Vec3::Zero();
+    double barrier_normal = 0.0;
+    Vec3 tire_friction = Vec3::Zero();
+    Column tire;
+
+    static Impulses within(const StepView& step, double t, std::size_t wheels) {
+        Impulses sum;
+        sum.barrier =
+            step.force_integral3(at_barrier_force, t) + step.share(t) * vec(step.b + at_barrier_impulse);
+        sum.barrier_normal = step.force_integral(at_normal_force, t) + step.impulse(at_normal_impulse, t);
+        sum.tire_friction = step.share(t) * vec(step.b + at_tire_friction);
+        for (std::size_t w = 0; w < wheels; ++w)
+            sum.tire.push_back(step.impulse(at_tire_impulses + w, t));
+        return sum;
+    }
+    Impulses& operator+=(const Impulses& other) {
+        barrier += other.barrier;
+        barrier_normal += other.barrier_normal;
+        tire_friction += other.tire_friction;
+        tire.resize(other.tire.size(), 0.0);
+        for (std::size_t w = 0; w < tire.size(); ++w)
+            tire[w] += other.tire[w];
+        return *this;
+    }
+    Vec3 total() const {
+        Vec3 sum = barrier + tire_friction;
+        for (const double j : tire)
+            sum.z() += j;
+        return sum;
+    }
+};
+
+std::vector<BodyState> bodies_of(const State& state) {
+    std::vector<BodyState> bodies;
+    for (const UnitState& unit : state.units)
+        bodies.push_back(unit.body);
+    return bodies;
+}
+
+}  // namespace
+
+Recorder::Recorder(const Scene& scene, const State& start) : width_(at_units) {
+    std::vector<ContactImpulses> none;
+    for (const Unit& unit : scene.vehicle->units) {
+        width_ += unit_width(unit);
+        none.emplace_back(unit.wheels.size());
+    }
+    values_.reserve(512 * width_);
+    add_row(scene, start.time, start.energies, bodies_of(start), start.units, none);
+}
+
+void Recorder::add(const Scene& scene, const Trial& accepted) {
+    const State& state = accepted.state;
+    if (accepted.at_start.happened) {
+        // The forces of that instant are those of the row before.
+        const std::size_t before = values_.size() - width_;
+        add_row(scene, values_[before + at_time], accepted.at_start.energies, accepted.at_start.bodies,
+                state.units, accepted.at_start.impulses);
+        const double* from = values_.data() + before + at_units;
+        double* to = values_.data() + values_.size() - width_ + at_units;
+        for (const Unit& unit : scene.vehicle->units) {
+            std::copy(from + at_barrier_force, from + at_tire_friction, to + at_barrier_force);
+            from += unit_width(unit), to += unit_width(unit);
+        }
+    }
+    if (accepted.at_end.happened) {
+        add_row(scene, state.time, accepted.at_end.energies, accepted.at_end.bodies, state.units,
+                accepted.impulses);
+        add_row(scene, state.time, state.energies, bodies_of(state), state.units, accepted.at_end.impulses);
+    } else {
+        add_row(scene, state.time, state.energies, bodies_of(state), state.units, accepted.impulses);
+    }
+}
+
+void Recorder::add_row(const Scene& scene, double time, const Energies& e,
+                       const std::vector<BodyState>& bodies, const std::vector<UnitState>& forces,
+                       const std::vector<ContactImpulses>& impulses) {
+    const std::size_t begin = values_.size();
+    values_.resize(begin + width_);
+    double* row = values_.data() + begin;
+    const auto put = [](double* to, const Vec3& v) { std::copy_n(v.data(), 3, to); };
+    row[at_time] = time;
+    const std::array energies = {e.kinetic,          e.potential,     e.stored, e.crushed,
+                                 e.barrier_friction, e.tire_friction, e.impacts};
+    std::copy(energies.begin(), energies.end(), row + at_energies);
+    row += at_units;
+    for (std::size_t u = 0; u < bodies.size(); ++u) {
+        const BodyState& body = bodies[u];
+        const SkinForces& skin = forces[u].skin;
+        const Unit& model = scene.vehicle->units[u];
+        put(row + at_position, body.position);
+        std::copy_n(body.orientation.coeffs().data(), 4, row + at_orientation);
+        put(row + at_velocity, body.velocity);
+        put(row + at_angular_velocity, body.orientation.conjugate() * angular_velocity(model.body, body));
+        put(row + at_barrier_force, skin.contact.force + skin.friction.force);
+        row[at_normal_force] = skin.normal_force;
+        put(row + at_tire_friction, impulses[u].tire_friction);
+        put(row + at_barrier_impulse, impulses[u].barrier);
+        row[at_normal_impulse] = impulses[u].barrier_normal;
+        std::copy(impulses[u].tire.begin(), impulses[u].tire.end(), row + at_tire_impulses);
+        row += unit_width(model);
+    }
+}
+
+History Recorder::resample(const Scene& scene) const {
+    History history;
+    const double interval = scene.settings.output_interval;
+    const double end = values_[(rows() - 1) * width_ + at_time];
+    // An end that misses an output instant by rounding only still has it.
+    const auto count = static_cast<std::size_t>(std::floor(end / interval * (1.0 + 1e-12))) + 1;
+    const auto row_at = [&](std::size_t row) { return values_.data() + row * width_; };
+
+    history.time.resize(count);
+    for (std::size_t k = 0; k < count; ++k)
+        history.time[k] = static_cast<double>(k) * interval;
+
+    // The step that holds each output instant.
+    std::vector<std::size_t> step_of(count, 0);
+    for (std::size_t k = 0, row = 0; k < count; ++k) {
+        while (row + 2 < rows() && row_at(row + 1)[at_time] <= history.time[k])
+            ++row;
+        step_of[k] = row;
+    }
+    const auto within_step = [&](std::size_t k) {
+        const double dt = row_at(step_of[k] + 1)[at_time] - row_at(step_of[k])[at_time];
+        return std::clamp(history.time[k] - row_at(step_of[k])[at_time], 0.0, dt);
+    };
+    const bool still = rows() < 2;
+
+    Column* const energies[] = {&history.kinetic, &history.potential,        &history.stored,
+                                &history.crushed, &history.barrier_friction, &history.tire_friction,
+                                &history.impacts};
+    for (std::size_t e = 0; e < std::size(energies); ++e) {
+        energies[e]->resize(count);
+        for (std::size_t k = 0; k < count; ++k) {
+            const double* a = row_at(step_of[k]);
+            const double* b = still ? a : a + width_;
+            const double dt = b[at_time] - a[at_time];
+            const double share = dt > 0.0 ? within_step(k) / dt : 1.0;
+            (*energies[e])[k] = a[at_energies + e] + share * (b[at_energies + e] - a[at_energies + e]);
+        }
+    }
+
+    std::size_t offset = at_units;
+    double worst = 0.0, largest = 0.0;
+    for (const Unit& model : scene.vehicle->units) {
+        const std::size_t wheels = model.wheels.size();
+        const Vec3 gravity(0.0, 0.0, -scene.settings.gravity);
+        UnitHistory unit;
+        unit.tire_reaction.assign(wheels, Column(count, 0.0));
+        unit.barrier_normal_force.resize(count);
+        for (auto* column : {&unit.position, &unit.velocity, &unit.angular_velocity, &unit.acceleration,
+                             &unit.barrier_force, &unit.tire_friction_force})
+            column->resize(count);
+        unit.orientation.resize(count);
+
+        Impulses before_step;  // up to the start of the step that holds the instant
+        before_step.tire.assign(wheels, 0.0);
+        Impulses previous = before_step;  // up to the previous output instant
+        std::size_t row = 0;
+        for (std::size_t k = 0; k < count; ++k) {
+            if (still) {
+                const double* a = row_at(0) + offset;
+                unit.position[k] = vec(a + at_position);
+                unit.orientation[k] = Quat(Eigen::Map<const Eigen::Vector4d>(a + at_orientation));
+                unit.velocity[k] = vec(a + at_velocity);
+                unit.angular_velocity[k] = vec(a + at_angular_velocity);
+                unit.acceleration[k] = unit.barrier_force[k] = unit.tire_friction_force[k] = Vec3::Zero();
+                unit.barrier_normal_force[k] = 0.0;
+                continue;
+            }
+            const auto view = [&](std::size_t r) {
+                return StepView{row_at(r) + offset, row_at(r + 1) + offset,
+                                row_at(r + 1)[at_time] - row_at(r)[at_time]};
+            };
+            for (; row < step_of[k]; ++row)
+                before_step += Impulses::within(view(row), view(row).dt, wheels);
+            const StepView step = view(row);
+            const double t = within_step(k);
+            const double s = step.share(t);
+
+            Impulses now = Impulses::within(step, t, wheels);
+            const Vec3 a_velocity = vec(step.a + at_velocity), b_velocity = vec(step.b + at_velocity);
+            unit.velocity[k] =
+                s < 1.0 ? Vec3(a_velocity + model.body.inverse_mass * now.total() + t * gravity) : b_velocity;
+            now += before_step;
+
+            // Cubic Hermite for the path; the chord of the unit sphere for the small turn.
+            const Vec3 a_position = vec(step.a + at_position), b_position = vec(step.b + at_position);
+            unit.position[k] = a_position + (b_position - a_position) * (s * s * (3.0 - 2.0 * s)) +
+                               step.dt * s * (1.0 - s) * ((1.0 - s) * a_velocity - s * b_velocity);
+            const Eigen::Map<const Eigen::Vector4d> qa(step.a + at_orientation), qb(step.b + at_orientation);
+            unit.orientation[k] =
+                Quat(Eigen::Vector4d((1.0 - s) * qa + s * (qa.dot(qb) < 0.0 ? -1.0 : 1.0) * qb)).normalized();
+            unit.angular_velocity[k] =
+                (1.0 - s) * vec(step.a + at_angular_velocity) + s * vec(step.b + at_angular_velocity);
+
+            if (k > 0) {
+                const double per = 1.0 / (history.time[k] - history.time[k - 1]);
+                unit.barrier_force[k] = per * (now.barrier - previous.barrier);
+                unit.barrier_normal_force[k] = per * (now.barrier_normal - previous.barrier_normal);
+                unit.tire_friction_force[k] = per * (now.tire_friction - previous.tire_friction);
+                Vec3 force = unit.barrier_force[k] + unit.tire_friction_force[k] + model.body.mass * gravity;
+                for (std::size_t w = 0; w < wheels; ++w) {
+                    unit.tire_reaction[w][k] = per * (now.tire[w] - previous.tire[w]);
+                    force.z() += unit.tire_reaction[w][k];
+                }
+                const Vec3 acceleration = per * (unit.velocity[k] - unit.velocity[k - 1]);
+                worst = std::max(worst, (model.body.mass * acceleration - force).norm());
+                largest = std::max(
+                    {largest, force.norm(), unit.barrier_force[k].norm(), model.body.mass * gravity.norm()});
+                unit.acceleration[k] = unit.orientation[k].conjugate() * acceleration;
+            }
+            previous = now;
+        }
+        if (count > 1) {
+            // No interval ends at the first instant: it shows the means of the one that begins there.
+            unit.acceleration[0] =
+                unit.orientation[0].conjugate() * (unit.orientation[1] * unit.acceleration[1]);
+            unit.barrier_force[0] = unit.barrier_force[1];
+            unit.barrier_normal_force[0] = unit.barrier_normal_force[1];
+            unit.tire_friction_force[0] = unit.tire_friction_force[1];
+            for (Column& wheel : unit.tire_reaction)
+                wheel[0] = wheel[1];
+        }
+        history.units.push_back(std::move(unit));
+        offset += unit_width(model);
+    }
+    history.momentum_residual = largest > 0.0 ? worst / largest : 0.0;
+    return history;
+}
+
+}  // namespace birm3d

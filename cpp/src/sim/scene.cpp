@@ -1,0 +1,90 @@
+#include "birm3d/sim/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "birm3d/base/error.hpp"
+#include "birm3d/base/rotation.hpp"
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/kernels/integrate.hpp"
+
+namespace birm3d {
+
+namespace {
+
+double nearest_gap(const Unit& unit, const BodyState& body, const HalfSpace& face) {
+    const HalfSpace seen = face.seen_from(body.position, body.orientation.toRotationMatrix());
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < unit.trusses.count; ++i) {
+        least = std::min({least, seen.gap(unit.trusses.node(i)), seen.gap(unit.trusses.anchor(i))});
+    }
+    return least;
+}
+
+}  // namespace
+
+Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barrier> barrier_,
+             const Approach& approach_, const Settings& settings_, std::optional<double> duration_)
+    : vehicle(std::move(vehicle_)),
+      barrier(std::move(barrier_)),
+      approach(approach_),
+      settings(settings_),
+      duration(duration_) {
+    require_valid(settings);
+    if (!vehicle || vehicle->units.empty()) refuse("vehicle", "at least one unit", 0.0);
+    require_not_negative("impact_speed", approach.speed);
+    if (!(approach.angle > 0.0 && approach.angle < std::numbers::pi))
+        refuse("impact_angle", "> 0 and < 180 deg", approach.angle * 180.0 / std::numbers::pi);
+    require_finite("impact_offset", approach.offset);
+    if (!(std::isfinite(approach.standoff) && approach.standoff >= 0.0))
+        refuse("standoff", "finite and >= 0 m, or the vehicle would start inside the barrier",
+               approach.standoff);
+    if (duration) require_positive("duration", *duration);
+    if (!duration && !barrier) refuse("duration", "given (s) where there is no barrier", "none");
+    if (!duration && !(approach.speed > 0.0))
+        refuse("duration", "given (s) where the vehicle stands still", "none");
+}
+
+double Scene::reference_speed() const {
+    return std::max(approach.speed, tolerance::slowest_reference_speed);
+}
+
+State Scene::initial_state() const {
+    State state(*vehicle);
+    const double barrier_heading = barrier ? barrier->heading : 0.0;
+    const Vec3 origin = barrier ? barrier->origin : Vec3::Zero();
+    // At barrier heading 0 the line runs along +y: the path (sin, cos) meets it at the impact angle.
+    const double yaw = barrier_heading + 0.5 * std::numbers::pi - approach.angle;
+    const Vec3 heading(std::cos(yaw), std::sin(yaw), 0.0);
+    const Vec3 line(-std::sin(barrier_heading), std::cos(barrier_heading), 0.0);
+
+    double least_gap = std::numeric_limits<double>::infinity();
+    for (std::size_t u = 0; u < vehicle->units.size(); ++u) {
+        BodyState& body = state.units[u].body;
+        const Unit& unit = vehicle->units[u];
+        body.position = Vec3(origin.x(), origin.y(), 0.0) + approach.offset * line +
+                        unit.mass_center_height * Vec3::UnitZ();
+        body.orientation = from_roll_pitch_yaw({0.0, 0.0, yaw});
+        body.velocity = approach.speed * heading;
+        if (barrier) least_gap = std::min(least_gap, nearest_gap(unit, body, barrier->face));
+        state.energies.kinetic += kinetic_energy(unit.body, body);
+    }
+    if (barrier) {
+        // Back along the path until the nearest point stands `standoff` before the face.
+        const double closing = -heading.dot(barrier->face.normal);
+        const Vec3 shift = (least_gap - approach.standoff) / closing * heading;
+        for (std::size_t u = 0; u < vehicle->units.size(); ++u) {
+            state.units[u].body.position += shift;
+            const double gap = nearest_gap(vehicle->units[u], state.units[u].body, barrier->face);
+            const double rounding = 1e-15 * shift.norm() + tolerance::initial_overlap;
+            if (gap < -rounding) refuse("initial gap of the vehicle to the barrier", ">= 0 m", gap);
+        }
+    }
+    state.next_step = tolerance::first_contact_step;
+    return state;
+}
+
+}  // namespace birm3d

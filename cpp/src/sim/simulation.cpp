@@ -1,0 +1,209 @@
+#include "birm3d/sim/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "birm3d/base/error.hpp"
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/kernels/integrate.hpp"
+
+namespace birm3d {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Fastest any point of the unit moves (m/s).
+double fastest_point(const Unit& unit, const BodyState& body) {
+    return body.velocity.norm() + angular_velocity(unit.body, body).norm() * unit.trusses.reach;
+}
+
+bool touches(const State& state) {
+    return std::any_of(state.units.begin(), state.units.end(),
+                       [](const UnitState& unit) { return unit.skin.normal_force > 0.0; });
+}
+
+// Moving away, and either faster than any turning could bring a point back or already out of its reach.
+bool has_left(const Scene& scene, const State& state) {
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const Unit& unit = scene.vehicle->units[u];
+        const BodyState& body = state.units[u].body;
+        const HalfSpace& face = scene.barrier->face;
+        const double away = body.velocity.dot(face.normal);
+        const double turning = angular_velocity(unit.body, body).norm() * unit.trusses.reach;
+        if (!(away > 0.0 && (away >= turning || face.gap(body.position) > unit.trusses.reach))) return false;
+    }
+    return true;
+}
+
+// Mean velocity of the pushing nodes along their normals, weighted by their forces (m/s); negative =
+// approaching, zero where nothing pushes.
+double separation_speed(const Scene& scene, const State& state) {
+    double power = 0.0, force = 0.0;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const UnitState& unit = state.units[u];
+        const Twist motion = twist(scene.vehicle->units[u].body, unit.body);
+        power += unit.skin.contact.force.dot(motion.velocity) +
+                 unit.skin.contact.torque.dot(motion.angular_velocity);
+        force += unit.skin.normal_force;
+    }
+    return force > 0.0 ? power / force : 0.0;
+}
+
+// Where the approach turns into separation within a step, the trusses' peak is passed unseen and unloading
+// begins late, by up to the way back in half the step: the error in velocity is the force of that way, half
+// a step long.
+struct Turn {
+    double share = 1.0;  // of the step at which the approach ends
+    double error = 0.0;  // m/s
+};
+Turn find_turn(const Scene& scene, const State& before, const Trial& trial) {
+    const double approach = separation_speed(scene, before);
+    const double separation = separation_speed(scene, trial.state);
+    if (!(approach < 0.0 && separation > 0.0)) return {};
+    double stiffness = 0.0;
+    for (const UnitState& unit : trial.state.units)
+        stiffness = std::max(stiffness, unit.skin.stiffness);
+    return {approach / (approach - separation), 0.25 * trial.dt * trial.dt * stiffness * separation};
+}
+
+bool at_rest(const Scene& scene, const State& state) {
+    double start = 0.0;
+    for (const Unit& unit : scene.vehicle->units)
+        start += 0.5 * unit.body.mass * scene.approach.speed * scene.approach.speed;
+    return state.energies.kinetic + state.energies.stored < 1e-6 * start;
+}
+
+}  // namespace
+
+Simulation::Simulation(Scene scene)
+    : scene_(std::move(scene)),
+      state_(scene_.initial_state()),
+      trial_(*scene_.vehicle),
+      recorder_(scene_, state_) {}
+
+void Simulation::reset() {
+    *this = Simulation(scene_);
+}
+
+void Simulation::restore(const Snapshot& snapshot) {
+    if (snapshot.vehicle != scene_.vehicle || snapshot.barrier != scene_.barrier)
+        refuse("snapshot", "of a simulation of the same vehicle and barrier", "one of others");
+    state_ = snapshot.state;
+    recorder_ = snapshot.recorder;
+}
+
+EndReason Simulation::end_reason() const {
+    if (remaining() > 0.0) return EndReason::running;
+    if (scene_.duration) return EndReason::duration;
+    if (!state_.decided) return EndReason::longest;
+    return has_left(scene_, state_) ? EndReason::separated : EndReason::stopped;
+}
+
+double Simulation::remaining() const {
+    double end = tolerance::longest_event;
+    if (scene_.duration)
+        end = *scene_.duration;
+    else if (state_.decided)
+        end = state_.decided_at + tolerance::tail_duration;
+    const double rest = end - state_.time;
+    return rest > tolerance::shortest_step ? rest : 0.0;  // no step for what rounding leaves over
+}
+
+void Simulation::take(const Trial& trial) {
+    accept(trial, state_);
+    recorder_.add(scene_, trial);
+    if (!std::isfinite(state_.energies.total()))
+        throw std::runtime_error("the state is no longer finite at t = " + to_text(state_.time) +
+                                 " s, step " + to_text(trial.dt) + " s");
+    if (!state_.decided && scene_.barrier && state_.touched &&
+        ((!touches(state_) && has_left(scene_, state_)) || at_rest(scene_, state_))) {
+        state_.decided = true;
+        state_.decided_at = state_.time;
+    }
+}
+
+void Simulation::fixed_step() {
+    const double step = *scene_.settings.time_step;
+    const double dt = std::min(step, remaining());
+    try_step(scene_, state_, dt, {}, trial_);
+    double critical = trial_.critical_step;
+    if (trial_.body_held()) {
+        // The rigid body was held: would the trusses have stopped it, had the step been short enough to see
+        // them? Look at them on the way there.
+        Trial free(*scene_.vehicle);
+        for (double part = dt; part > 1e-3 * dt; part *= 0.5) {
+            try_step(scene_, state_, part, {.hold_members = false}, free);
+            critical = std::min(critical, free.critical_step);
+        }
+    }
+    if (dt > critical) refuse_step(dt, critical);
+    take(trial_);
+}
+
+void Simulation::refuse_step(double dt, double critical) const {
+    Settings adaptive = scene_.settings;
+    adaptive.time_step.reset();
+    Simulation other(Scene(scene_.vehicle, scene_.barrier, scene_.approach, adaptive, scene_.duration));
+    other.run([] {});
+    const double would_do = tolerance::stable_fraction * other.state().statistics.least_critical_step;
+    throw UnstableError(dt, critical, state_.time,
+                        "a step of " + to_text(would_do, 3) + " s would do for the whole run");
+}
+
+void Simulation::adaptive_step() {
+    const double allowed =
+        tolerance::step_error_per_tolerance * scene_.settings.tolerance * scene_.reference_speed();
+    double dt = std::min({state_.next_step, tolerance::longest_step, remaining()});
+    for (;;) {
+        if (dt < tolerance::shortest_step)
+            throw UnstableError(dt, tolerance::shortest_step, state_.time,
+                                "the scene is too stiff for any step worth taking");
+        try_step(scene_, state_, dt, {.locate_impacts = true}, trial_);
+        const double stable = tolerance::stable_fraction * trial_.critical_step;
+        double shorter = infinity;
+        if (trial_.impact_after < dt) shorter = std::max(trial_.impact_after, 2.0 * tolerance::shortest_step);
+        if (dt > stable) shorter = std::min(shorter, 0.9 * stable);
+        if (trial_.error > allowed)
+            shorter = std::min(shorter, dt * std::max(0.2, 0.9 * std::sqrt(allowed / trial_.error)));
+        const Turn turn = find_turn(scene_, state_, trial_);
+        if (turn.error > allowed) shorter = std::min(shorter, dt * std::clamp(turn.share, 0.1, 0.9));
+        if (dt > tolerance::release_resolution && touches(state_) && !touches(trial_.state))
+            shorter = std::min(shorter, 0.5 * dt);
+        if (!(shorter < dt)) break;
+        dt = shorter;
+        ++state_.statistics.rejected;
+    }
+    take(trial_);
+
+    double next = std::min(dt * std::min(2.0, 0.9 * std::cbrt(allowed / std::max(trial_.error, 1e-300))),
+                           0.9 * tolerance::stable_fraction * trial_.critical_step);
+    if (scene_.barrier && !touches(state_)) {
+        // Free flight: up to the first instant at which a node can be at the barrier.
+        double fastest = 0.0;
+        for (std::size_t u = 0; u < state_.units.size(); ++u)
+            fastest = std::max(fastest, fastest_point(scene_.vehicle->units[u], state_.units[u].body));
+        next = std::max(tolerance::first_contact_step,
+                        std::min(next, fastest > 0.0 ? trial_.nearest_gap / fastest : infinity));
+    }
+    state_.next_step = next;
+}
+
+bool Simulation::step() {
+    if (finished()) return false;
+    if (scene_.settings.time_step)
+        fixed_step();
+    else
+        adaptive_step();
+    return true;
+}
+
+void Simulation::run(const std::function<void()>& poll) {
+    constexpr int steps_between_polls = 256;
+    for (int i = 1; step(); ++i)
+        if (i % steps_between_polls == 0) poll();
+}
+
+}  // namespace birm3d

@@ -1,0 +1,85 @@
+"""Barriers: what a vehicle runs into."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from . import _core
+
+__all__ = ["Barrier"]
+
+
+@dataclass(frozen=True)
+class Barrier:
+    """A barrier fixed to the ground. Make one with :meth:`rigid_wall`.
+
+    Its line runs along +y at heading 0 and its traffic face looks to -x; the vehicle comes from there.
+
+    Parameters
+    ----------
+    friction
+        Coulomb coefficient between vehicle and barrier.
+    origin
+        A point of the foot of the traffic face, world axes [m], shape (3,).
+    heading
+        Turn of the barrier's line about the vertical [deg].
+    """
+
+    friction: float = 0.2
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    heading: float = 0.0
+
+    def __post_init__(self) -> None:
+        _ = self.core
+
+    @staticmethod
+    def rigid_wall(
+        *,
+        width: float | None = None,
+        height: float | None = None,
+        friction: float = 0.2,
+        origin: Sequence[float] = (0.0, 0.0, 0.0),
+        heading: float = 0.0,
+    ) -> Barrier:
+        """Return a flat, rigid, vertical wall.
+
+        Parameters
+        ----------
+        width, height
+            Only ``None`` is supported: the wall is wider and higher than any vehicle reaches.
+        friction
+            Coulomb coefficient vehicle-wall, 0.15 to 0.20 for steel on concrete (paper 5.4).
+        origin
+            A point of the foot of the face, world axes [m], shape (3,).
+        heading
+            Turn of the wall about the vertical [deg]; at 0 the face looks to -x.
+
+        Raises
+        ------
+        ValueError
+            If a number is not finite, friction is negative, or a finite width or height is asked for.
+        """
+        for name, value in (("width", width), ("height", height)):
+            if value is not None:
+                raise ValueError(
+                    f"{name} must be None (a wall without end; finite walls are not available), got {value}"
+                )
+        if np.shape(origin) != (3,):
+            raise ValueError(f"origin must have shape (3,), got {np.shape(origin)}")
+        x, y, z = (float(value) for value in origin)
+        return Barrier(friction=float(friction), origin=(x, y, z), heading=float(heading))
+
+    @cached_property
+    def core(self) -> _core.Barrier:
+        """The same barrier for the core."""
+        return _core.Barrier(
+            friction=self.friction, origin=np.asarray(self.origin, float), heading=math.radians(self.heading)
+        )
+
+    def __getstate__(self) -> dict[str, object]:
+        return {name: value for name, value in self.__dict__.items() if name != "core"}

@@ -1,0 +1,242 @@
+"""Command line: results on stdout, everything else on stderr."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from . import units
+
+if TYPE_CHECKING:
+    from .result import Result
+    from .simulation import Simulation
+
+__all__ = ["main"]
+
+
+class _Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]
+    """A number with a unit, such as 50mph; without one SI, angles in degrees."""
+
+    def __init__(self, quantity: str) -> None:
+        self.name = quantity
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        if isinstance(value, float):
+            return value
+        try:
+            return units.parse(value, self.name)
+        except ValueError as error:
+            self.fail(str(error), param, ctx)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="birm3d")
+def _cli() -> None:
+    """Impact response of vehicles and security or roadside barriers."""
+
+
+@_cli.command()
+@click.argument("scene", required=False, type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option("--vehicle", help="Preset (see `birm3d vehicles`) or vehicle file (.toml).")
+@click.option("--gvw", type=_Quantity("mass"), help="Gross vehicle weight, such as 4500lb or 1719kg.")
+@click.option(
+    "--mesh-density", type=float, default=1.0, show_default=True, help="Elements relative to the file's."
+)
+@click.option("--barrier", type=click.Choice(["rigid_wall", "none"]), default="rigid_wall", show_default=True)
+@click.option("--friction", type=float, default=0.2, show_default=True, help="Vehicle on barrier.")
+@click.option("--speed", type=_Quantity("speed"), help="Such as 50mph, 57.09km/h or 15.9 (m/s).")
+@click.option(
+    "--angle", type=_Quantity("angle"), default=90.0, show_default=True, help="Path to barrier line, deg."
+)
+@click.option(
+    "--offset", type=_Quantity("length"), default=0.0, show_default=True, help="Along the barrier, m."
+)
+@click.option("--duration", type=_Quantity("time"), help="Default: until the outcome is decided.")
+@click.option("--tolerance", type=float, help="Wanted relative error.  [default: 0.001]")
+@click.option("--time-step", type=_Quantity("time"), help="Fixed step.  [default: adaptive]")
+@click.option("--json", "as_json", is_flag=True, help="Metrics as JSON on stdout.")
+@click.option("--report", "with_report", is_flag=True, help="Also what was computed and what was left out.")
+@click.option(
+    "--plot",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Write figures to this file (.png, .pdf, .svg).",
+)
+@click.option(
+    "--csv", "csv_path", type=click.Path(dir_okay=False, path_type=Path), help="Write histories to this file."
+)
+def run(
+    scene: Path | None,
+    as_json: bool,
+    with_report: bool,
+    plot: Path | None,
+    csv_path: Path | None,
+    **options: Any,
+) -> None:
+    """Run one crash: a SCENE file, or the options --vehicle and --speed."""
+    simulation = _simulation(scene, options)
+    result = simulation.run()
+    if as_json:
+        click.echo(json.dumps(_as_json(result), indent=2))
+    else:
+        _print_outcome(result)
+    if with_report:
+        click.echo(result.report(), err=as_json)
+    if csv_path is not None:
+        result.to_dataframe().to_csv(csv_path)
+        click.echo(f"histories: {csv_path}", err=True)
+    if plot is not None:
+        result.plot().savefig(plot, dpi=150)
+        click.echo(f"figures: {plot}", err=True)
+
+
+@_cli.command()
+@click.option("--json", "as_json", is_flag=True, help="As JSON on stdout.")
+def vehicles(as_json: bool) -> None:
+    """List the vehicles that come with the package."""
+    from rich.table import Table
+
+    from .vehicle import Vehicle
+
+    rows = {name: Vehicle.preset(name) for name in Vehicle.presets()}
+    if as_json:
+        facts = {
+            name: {
+                "mass": v.mass,
+                "center_of_mass": v.center_of_mass.tolist(),
+                "inertia": v.inertia.tolist(),
+                "n_elements": v.n_elements,
+                "n_trusses": v.n_trusses,
+                "zones": {zone: dict(law) for zone, law in v.zones.items()},
+            }
+            for name, v in rows.items()
+        }
+        click.echo(json.dumps(facts, indent=2))
+        return
+    table = Table(
+        "vehicle",
+        *(f"{name}" for name in ("mass [kg]", "CG height [m]", "Ixx, Iyy, Izz [kg m²]", "elements", "zones")),
+    )
+    for name, v in rows.items():
+        inertia = ", ".join(f"{value:,.0f}" for value in v.inertia.diagonal())
+        height = f"{v.mass_center_height:.3f}"
+        table.add_row(name, f"{v.mass:,.1f}", height, inertia, f"{v.n_elements:,}", ", ".join(v.zones))
+    _print(table)
+
+
+def _simulation(scene: Path | None, options: dict[str, Any]) -> Simulation:
+    from .barrier import Barrier
+    from .settings import Settings
+    from .simulation import Simulation
+    from .vehicle import Vehicle
+
+    context = click.get_current_context()
+    given = [
+        f"--{name.replace('_', '-')}"
+        for name in options
+        if context.get_parameter_source(name) is not click.core.ParameterSource.DEFAULT
+    ]
+    if scene is not None:
+        if given:
+            raise click.UsageError(f"{', '.join(given)}: a scene file states everything itself")
+        from .scene_file import read_scene_file
+
+        return read_scene_file(scene)
+    for name in ("vehicle", "speed"):
+        if options[name] is None:
+            raise click.UsageError(f"give a scene file, or --vehicle and --speed: --{name} is missing")
+    make = Vehicle.from_file if options["vehicle"].endswith(".toml") else Vehicle.preset
+    vehicle = make(options["vehicle"], gvw=options["gvw"], mesh_density=options["mesh_density"])
+    barrier = Barrier.rigid_wall(friction=options["friction"]) if options["barrier"] == "rigid_wall" else None
+    settings = {name: options[name] for name in ("tolerance", "time_step") if options[name] is not None}
+    return Simulation(
+        vehicle,
+        barrier,
+        options["speed"],
+        options["angle"],
+        options["offset"],
+        duration=options["duration"],
+        settings=Settings(**settings),
+    )
+
+
+def _as_json(result: Result) -> dict[str, Any]:
+    scene = result.scene
+    return {
+        "vehicle": scene.vehicle.name,
+        "mass": scene.vehicle.mass,
+        "impact_speed": scene.impact_speed,
+        "impact_angle": scene.impact_angle,
+        "end_reason": result.end_reason,
+        "state_hash": f"{result.state_hash:016x}",
+        "metrics": dict(result.metrics),
+    }
+
+
+_ROWS = (
+    ("dynamic_crush", "dynamic crush (greatest truss shortening)", "m", 1.0, ".3f"),
+    ("residual_crush", "residual crush", "m", 1.0, ".3f"),
+    ("max_displacement", "travel of the mass centre towards the barrier", "m", 1.0, ".3f"),
+    ("vehicle_penetration", "penetration past the barrier's face", "m", 1.0, ".3f"),
+    ("time_of_zero_velocity", "time of zero normal velocity", "ms", 1e-3, ".1f"),
+    ("peak_normal_force_cfc60", "peak normal force, CFC 60", "kN", 1e3, ".0f"),
+    ("peak_force_50ms", "peak 50-ms mean of the normal force", "kN", 1e3, ".0f"),
+    ("peak_deceleration_cfc60", "peak deceleration along r, CFC 60", "g", units.g, ".1f"),
+    ("delta_v", "change of velocity", "m/s", 1.0, ".2f"),
+    ("restitution", "restitution along the normal", "", 1.0, ".2f"),
+    ("exit_speed", "exit speed", "m/s", 1.0, ".2f"),
+    ("exit_angle", "exit angle from the barrier's line", "deg", 1.0, ".1f"),
+    ("max_roll", "greatest roll", "deg", 1.0, ".1f"),
+    ("max_pitch", "greatest pitch", "deg", 1.0, ".1f"),
+    ("max_yaw", "greatest yaw", "deg", 1.0, ".1f"),
+    ("energy_residual", "energy residual / initial kinetic energy", "", 1.0, ".1e"),
+    ("momentum_residual", "momentum residual / greatest force", "", 1.0, ".1e"),
+)
+
+
+def _print_outcome(result: Result) -> None:
+    from rich.table import Table
+
+    scene = result.scene
+    table = Table(
+        "outcome",
+        "value",
+        "unit",
+        title=f"{scene.vehicle.name}, {scene.vehicle.mass:,.0f} kg, {scene.impact_speed:.2f} m/s "
+        f"({scene.impact_speed / units.mph:.1f} mph) at {scene.impact_angle:g}°",
+        caption=f"{result.end_reason} after {result.time[-1] * 1e3:.0f} ms; {result.statistics.steps} steps "
+        f"in {result.run_time * 1e3:.1f} ms of computing",
+    )
+    for name, label, unit, size, form in _ROWS:
+        if name in result.metrics:
+            table.add_row(label, format(result.metrics[name] / size, form), unit)
+    _print(table)
+
+
+def _print(table: object) -> None:
+    from rich.console import Console
+
+    Console(width=None if sys.stdout.isatty() else 120).print(table)
+
+
+def main() -> None:
+    """Entry point: errors that users can mend end with one line on stderr and exit code 2."""
+    from ._core import UnstableError
+
+    try:
+        _cli(standalone_mode=False)
+    except click.ClickException as error:
+        error.show()
+        sys.exit(error.exit_code)
+    except click.Abort:
+        click.echo("stopped", err=True)
+        sys.exit(130)
+    except KeyboardInterrupt:
+        click.echo("stopped", err=True)
+        sys.exit(130)
+    except (ValueError, UnstableError) as error:
+        click.echo(f"birm3d: {error}", err=True)
+        sys.exit(2)

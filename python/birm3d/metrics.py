@@ -1,0 +1,108 @@
+"""Scalars of a run.
+
+Forces and accelerations are taken from the interval means of the result. Filtered values use the channel
+frequency class in their name (SAE J211-1). A scalar that a scene does not have (a crush without a barrier, an
+exit angle of a vehicle that stands) is absent, never NaN.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from .filters import cfc, moving_average
+
+if TYPE_CHECKING:
+    from .result import Result
+
+__all__ = ["compute_metrics"]
+
+# Below this speed a direction of travel means nothing, m/s.
+_SLOWEST = 1e-3
+# Residuals of a vehicle that stands are judged against the energy it has at this speed, m/s.
+_STANDSTILL = 0.1
+
+
+def compute_metrics(result: Result) -> dict[str, float]:
+    """Return the scalars of a run, SI units and degrees.
+
+    Always: ``peak_deceleration`` (along r, unfiltered) [m/s^2], ``max_roll``, ``max_pitch``, ``max_yaw``
+    (greatest magnitudes) [deg], ``exit_speed`` (of the mass centre along the ground, at the end) [m/s],
+    ``energy_residual`` (greatest magnitude relative to the initial kinetic energy), ``momentum_residual``,
+    ``steps``, ``run_time`` [s], ``end_time`` [s].
+
+    With a barrier: ``peak_normal_force``, ``peak_force_50ms`` [N], ``dynamic_crush``, ``residual_crush``
+    (greatest truss shortening, during the run and at its end) [m], ``max_displacement`` (of the mass centre
+    towards the barrier since t = 0 less the standoff) [m], ``vehicle_penetration`` (of any point past the
+    face) [m], ``impact_severity`` (1/2 m (v sin angle)^2) [J], ``delta_v`` (greatest change of velocity)
+    [m/s]; where the motion towards the barrier ends: ``time_of_zero_velocity`` (since the first touch) [s],
+    ``restitution`` (normal separation over approach speed); where the vehicle leaves: ``exit_angle`` (of its
+    path from the barrier's line) [deg].
+
+    At sampling rates that allow it: ``peak_deceleration_cfc60``, ``peak_normal_force_cfc60``.
+    """
+    scene, statistics = result.scene, result.statistics
+    interval = scene.settings.output_interval
+    deceleration = -result.acceleration[:, 0]
+    energy = result.energy
+    scale = max(float(energy["kinetic"][0]), 0.5 * scene.vehicle.mass * _STANDSTILL**2)
+    metrics = {
+        "peak_deceleration": float(deceleration.max()),
+        "max_roll": float(np.abs(result.roll).max()),
+        "max_pitch": float(np.abs(result.pitch).max()),
+        "max_yaw": float(np.abs(result.yaw).max()),
+        "exit_speed": float(np.hypot(*result.final_velocity[:2])),
+        "energy_residual": float(np.abs(energy["residual"]).max() / scale),
+        "momentum_residual": result.momentum_residual,
+        "steps": float(statistics.steps),
+        "run_time": result.run_time,
+        "end_time": float(result.time[-1]),
+    }
+    filtered = interval * 60.0 <= 0.1 and len(result.time) > 1
+    if filtered:
+        metrics["peak_deceleration_cfc60"] = float(cfc(deceleration, 60, interval).max())
+    if scene.barrier is None:
+        return metrics
+
+    force = result.barrier_normal_force
+    metrics["peak_normal_force"] = float(force.max())
+    if filtered:
+        metrics["peak_normal_force_cfc60"] = float(cfc(force, 60, interval).max())
+    metrics["peak_force_50ms"] = float(moving_average(force, 0.05, interval).max())
+    metrics["dynamic_crush"] = float(result.peak_deflection.max())
+    metrics["residual_crush"] = float(max(0.0, result.deflection.max()))
+    metrics.update(_motion(result, -np.asarray(scene.barrier.core.normal)))
+    return metrics
+
+
+def _motion(result: Result, inward: npt.NDArray[np.float64]) -> dict[str, float]:
+    """Scalars of the motion towards the barrier; `inward` is the unit vector into its face."""
+    scene = result.scene
+    approach = result.velocity @ inward
+    travel = (result.position - result.position[0]) @ inward - scene.standoff
+    velocity_change = np.linalg.norm(result.velocity - result.velocity[0], axis=1)
+    angle = math.radians(scene.impact_angle)
+    motion = {
+        "max_displacement": float(travel.max()),
+        "vehicle_penetration": result.statistics.deepest_point,
+        "impact_severity": 0.5 * scene.vehicle.mass * (scene.impact_speed * math.sin(angle)) ** 2,
+        "delta_v": float(velocity_change.max()),
+    }
+    touched = result.peak_deflection.max() > 0.0
+    turned = np.flatnonzero(approach <= 0.0)
+    if touched and len(turned) and turned[0] > 0:
+        i = int(turned[0])
+        share = approach[i - 1] / (approach[i - 1] - approach[i])
+        first_touch = scene.standoff / approach[0]
+        interval = result.time[i] - result.time[i - 1]
+        motion["time_of_zero_velocity"] = float(result.time[i - 1] + share * interval - first_touch)
+        motion["restitution"] = float(max(0.0, -(result.final_velocity @ inward)) / approach[0])
+    horizontal = result.final_velocity[:2]
+    speed = float(np.hypot(*horizontal))
+    if touched and speed > _SLOWEST and result.end_reason == "separated":
+        away = float(-(result.final_velocity @ inward))
+        motion["exit_angle"] = math.degrees(math.asin(min(1.0, max(-1.0, away / speed))))
+    return motion

@@ -1,0 +1,85 @@
+"""What was computed and what was left out, in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from . import units
+
+if TYPE_CHECKING:
+    from .result import Result
+
+__all__ = ["report"]
+
+_ENDS = {
+    "separated": "the vehicle has left the barrier and can not come back",
+    "stopped": "the vehicle stands still at the barrier",
+    "duration": "the duration asked for is over",
+    "longest": "the longest event without a duration is over; the outcome is not decided",
+    "running": "the run is not over yet",
+}
+
+
+def report(result: Result) -> str:
+    """Return the report of a run as text."""
+    scene, settings, statistics = result.scene, result.scene.settings, result.statistics
+    vehicle, metrics = scene.vehicle, result.metrics
+    lines = [
+        f"{vehicle.name}, {vehicle.mass:.1f} kg, {vehicle.n_nodes} shell nodes, {len(vehicle.wheels)} wheels",
+        f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph) "
+        f"at {scene.impact_angle:g} deg "
+        + (f"to a rigid wall, friction {scene.barrier.friction:g}" if scene.barrier else "without a barrier"),
+        f"ended at {result.time[-1]:.4f} s: {_ENDS[result.end_reason]}",
+        "",
+        "computed",
+        f"  {statistics.steps} steps of {statistics.shortest_step:.2e} to {statistics.longest_step:.2e} s "
+        + (
+            f"(fixed at {settings.time_step:g} s)"
+            if settings.time_step
+            else f"(tolerance {settings.tolerance:g}, {statistics.rejected} redone)"
+        ),
+    ]
+    if statistics.least_critical_step < float("inf"):
+        lines.append(
+            f"  critical step of the trusses in contact: at least {statistics.least_critical_step:.2e} s"
+        )
+    lines += [
+        f"  contact model: {settings.contact_model}; energy residual {metrics['energy_residual']:.1e} of the "
+        f"initial kinetic energy, momentum residual {metrics['momentum_residual']:.1e}",
+        "",
+        "left out",
+        *(f"  {line}" for line in _left_out(result)),
+    ]
+    return "\n".join(lines)
+
+
+def _left_out(result: Result) -> list[str]:
+    scene, settings, statistics = result.scene, result.scene.settings, result.statistics
+    vehicle = scene.vehicle
+    lines = []
+    if scene.barrier is None:
+        lines.append(f"barrier contact of all {vehicle.n_nodes} nodes: there is no barrier")
+    else:
+        share = 1.0 - statistics.node_evaluations / max(1, statistics.steps * vehicle.n_nodes)
+        lines.append(
+            f"{max(0.0, share):.1%} of the node tests: blocks of nodes that could not reach the barrier"
+        )
+        touched = int((result.peak_deflection > 0.0).sum())
+        lines.append(f"the crush of {vehicle.n_nodes - touched} nodes that never touched the barrier")
+        if scene.barrier.friction == 0.0:
+            lines.append("barrier friction: its coefficient is 0")
+    if not settings.ground:
+        lines.append("the ground: ground=False")
+    elif len(vehicle.wheels) == 0:
+        lines.append("the ground: the vehicle has no wheels, nothing holds it up against gravity")
+    else:
+        airborne = float((result.tire_reaction == 0.0).mean())
+        lines.append(f"tyre forces of wheels in the air: {airborne:.1%} of all wheel instants")
+        if settings.mu_tire == 0.0:
+            lines.append("tyre friction: mu_tire is 0")
+    if settings.gravity == 0.0:
+        lines.append("gravity: it is 0")
+    if result.end_reason == "separated":
+        lines.append("everything after the vehicle had left the barrier, but for a short tail")
+    lines.append("suspension, occupants, ground contact of the body: not part of the model")
+    return lines

@@ -1,0 +1,228 @@
+"""The outcome of a run: histories, scalars, a report, a table and a plot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from .metrics import compute_metrics
+from .report import report
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+    from .simulation import Scene
+
+__all__ = ["Result"]
+
+Floats = npt.NDArray[np.float64]
+
+_ENERGIES = ("kinetic", "potential", "stored", "crushed", "barrier_friction", "tire_friction", "impacts")
+
+
+class Result:
+    """Histories of n rows at the output interval, and what follows from them.
+
+    Arrays are read-only views, SI, angles in degrees. Positions and velocities hold at the row's instant;
+    accelerations, forces and reactions are means over the interval that ends there (the first row: that
+    begins there), so that they add up to the change of velocity exactly.
+
+    Attributes
+    ----------
+    scene : Scene
+    statistics : StepStatistics
+        Steps taken, node evaluations, shortest and longest step.
+    end_reason : str
+        ``"separated"``, ``"stopped"``, ``"duration"``, ``"longest"`` or ``"running"``.
+    state_hash : int
+        Of the final state.
+    run_time : float
+        Wall time of the stepping [s].
+    nodes, deflection, peak_deflection : ndarray
+        Shell nodes in body axes (k, 3), truss deflections (k,) at the end and their peaks [m].
+    """
+
+    def __init__(
+        self,
+        *,
+        scene: Scene,
+        history: _core.History,
+        statistics: _core.StepStatistics,
+        end_reason: str,
+        state_hash: int,
+        run_time: float,
+        nodes: Floats,
+        deflection: Floats,
+        peak_deflection: Floats,
+        final_velocity: Floats,
+    ) -> None:
+        self.scene = scene
+        self.statistics = statistics
+        self.end_reason = end_reason
+        self.state_hash = state_hash
+        self.run_time = run_time
+        self.nodes = nodes
+        self.deflection = deflection
+        self.peak_deflection = peak_deflection
+        self.final_velocity = final_velocity
+        self._history = history
+        self._unit = history.units[0]
+
+    @classmethod
+    def _of(cls, scene: Scene, simulation: _core.Simulation, run_time: float) -> Result:
+        return cls(
+            scene=scene,
+            history=simulation.history(),
+            statistics=simulation.statistics,
+            end_reason=simulation.end_reason.name,
+            state_hash=simulation.state_hash,
+            run_time=run_time,
+            nodes=simulation.nodes(),
+            deflection=simulation.deflection(),
+            peak_deflection=simulation.peak_deflection(),
+            final_velocity=simulation.velocity(),
+        )
+
+    @property
+    def time(self) -> Floats:
+        """Shape (n,) [s]."""
+        return self._history.time
+
+    @property
+    def position(self) -> Floats:
+        """Mass centre, world axes, shape (n, 3) [m]."""
+        return self._unit.position
+
+    @property
+    def velocity(self) -> Floats:
+        """Of the mass centre, world axes, shape (n, 3) [m/s]."""
+        return self._unit.velocity
+
+    @property
+    def acceleration(self) -> Floats:
+        """Of the mass centre, body axes r, s, t, shape (n, 3) [m/s^2]; interval means."""
+        return self._unit.acceleration
+
+    @property
+    def angular_velocity(self) -> Floats:
+        """Body axes r, s, t, shape (n, 3) [deg/s]."""
+        return _read_only(np.degrees(self._unit.angular_velocity))
+
+    @cached_property
+    def _angles(self) -> Floats:
+        angles = np.unwrap(self._unit.roll_pitch_yaw, axis=0)
+        angles[:, 2] -= angles[0, 2]
+        return _read_only(np.degrees(angles))
+
+    @property
+    def roll(self) -> Floats:
+        """About r, shape (n,) [deg]."""
+        return self._angles[:, 0]
+
+    @property
+    def pitch(self) -> Floats:
+        """About s, positive nose-down, shape (n,) [deg]."""
+        return self._angles[:, 1]
+
+    @property
+    def yaw(self) -> Floats:
+        """About t, from the initial heading, positive to the left, shape (n,) [deg]."""
+        return self._angles[:, 2]
+
+    @property
+    def barrier_force(self) -> Floats:
+        """Of the barrier on the vehicle, world axes, shape (n, 3) [N]; interval means."""
+        return self._unit.barrier_force
+
+    @property
+    def barrier_normal_force(self) -> Floats:
+        """Sum of the normal forces of all nodes, shape (n,) [N]; interval means."""
+        return self._unit.barrier_normal_force
+
+    @property
+    def tire_reaction(self) -> Floats:
+        """Normal force under each wheel, shape (n, wheels) [N]; interval means."""
+        return self._unit.tire_reaction
+
+    @property
+    def tire_friction_force(self) -> Floats:
+        """Of the ground on the vehicle, tangential, world axes, shape (n, 3) [N]; interval means."""
+        return self._unit.tire_friction_force
+
+    @cached_property
+    def energy(self) -> Mapping[str, Floats]:
+        """Energy ledger, name -> shape (n,) [J].
+
+        ``kinetic`` and ``potential`` of the body, ``stored`` (elastic) and ``crushed`` (plastic) in trusses,
+        ``barrier_friction``, ``tire_friction`` and ``impacts`` (lost in rigid contacts); their ``total``; and
+        ``residual``, total now less total at the start: no work enters from outside.
+        """
+        terms = {name: getattr(self._history, name) for name in _ENERGIES}
+        total = np.sum(list(terms.values()), axis=0)
+        return MappingProxyType(
+            {**terms, "total": _read_only(total), "residual": _read_only(total - total[0])}
+        )
+
+    @property
+    def momentum_residual(self) -> float:
+        """Greatest |m a - sum of forces| over the greatest force, of all rows."""
+        return self._history.momentum_residual
+
+    @cached_property
+    def metrics(self) -> Mapping[str, float]:
+        """Scalars in SI, angles in degrees; see :mod:`birm3d.metrics`. Only those that the scene has."""
+        if len(self.time) < 2:
+            interval = self.scene.settings.output_interval
+            raise ValueError(f"output_interval must be shorter than the run for metrics, got {interval} s")
+        return MappingProxyType(compute_metrics(self))
+
+    def report(self) -> str:
+        """Return what was computed, what was left out, and how the ledgers close, as text."""
+        return report(self)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the histories as a table, one row an output instant, indexed by time [s]."""
+        try:
+            import pandas as pd
+        except ImportError as error:
+            raise ImportError("to_dataframe() needs pandas: pip install 'birm3d[table]'") from error
+        columns: dict[str, Floats] = {}
+        for name, unit, axes in (
+            ("position", "m", "xyz"),
+            ("velocity", "m/s", "xyz"),
+            ("acceleration", "m/s^2", "rst"),
+            ("barrier_force", "N", "xyz"),
+        ):
+            for i, axis in enumerate(axes):
+                columns[f"{name}_{axis} [{unit}]"] = getattr(self, name)[:, i]
+        for name in ("roll", "pitch", "yaw"):
+            columns[f"{name} [deg]"] = getattr(self, name)
+        columns["barrier_normal_force [N]"] = self.barrier_normal_force
+        for i in range(self.tire_reaction.shape[1]):
+            columns[f"tire_reaction_{i} [N]"] = self.tire_reaction[:, i]
+        for name, values in self.energy.items():
+            columns[f"energy_{name} [J]"] = values
+        return pd.DataFrame(columns, index=pd.Index(self.time, name="time [s]"))
+
+    def plot(self) -> Figure:
+        """Return a figure of force, motion, angles and energies against time; see :mod:`birm3d.plotting`."""
+        from .plotting import plot_result
+
+        return plot_result(self)
+
+    def __repr__(self) -> str:
+        rows, steps = len(self.time), self.statistics.steps
+        return f"Result({rows} rows to {self.time[-1]:g} s, {self.end_reason}, {steps} steps)"
+
+
+def _read_only(array: Any) -> Floats:
+    result: Floats = np.asarray(array, float)
+    result.setflags(write=False)
+    return result

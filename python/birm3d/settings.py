@@ -1,0 +1,87 @@
+"""How a scene is computed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+from . import _core
+
+__all__ = ["Settings"]
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a scene is computed: SI units, immutable, checked when made.
+
+    Parameters
+    ----------
+    time_step
+        Fixed step [s]; ``None`` chooses steps by an error estimate (adaptive).
+    tolerance
+        Wanted relative error of the metrics with adaptive steps, 1e-9 to 0.1.
+    output_interval
+        Interval of the result's rows [s]; costs nothing while stepping and does not bound the step.
+    gravity
+        [m/s^2].
+    ground
+        Whether the tyres meet the ground z = 0.
+    mu_tire
+        Tyre-pavement friction coefficient.
+    cornering_stiffness
+        Lateral tyre force per normal load and radian of slip, at small slip [1/rad].
+    restitution
+        Of rigid contacts: tyres on the ground, the rigid body at the barrier (paper 5.2).
+    contact_model
+        ``"projected"``: the truss force projected on the surface's normal, which keeps the energy;
+        ``"along_truss"``: the paper's rule, for comparison.
+    tire_model
+        ``"slip"``: lateral force continuous in the slip angle; ``"skid"``: the paper's rule.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, its limit and the value received.
+    """
+
+    time_step: float | None = None
+    tolerance: float = 1e-3
+    output_interval: float = 1e-4
+    gravity: float = 9.80665
+    ground: bool = True
+    mu_tire: float = 0.8
+    cornering_stiffness: float = 10.0
+    restitution: float = 0.1
+    contact_model: Literal["projected", "along_truss"] = "projected"
+    tire_model: Literal["slip", "skid"] = "slip"
+
+    def __post_init__(self) -> None:
+        _ = self.core
+
+    @cached_property
+    def core(self) -> _core.Settings:
+        """The same settings for the core."""
+        contact_models = _core.ContactModel.__members__
+        tire_models = _core.TireModel.__members__
+        for name, value, known in (
+            ("contact_model", self.contact_model, contact_models),
+            ("tire_model", self.tire_model, tire_models),
+        ):
+            if value not in known:
+                raise ValueError(f"{name} must be one of {', '.join(known)}; got {value!r}")
+        return _core.Settings(
+            time_step=self.time_step,
+            tolerance=self.tolerance,
+            output_interval=self.output_interval,
+            gravity=self.gravity,
+            ground=self.ground,
+            mu_tire=self.mu_tire,
+            cornering_stiffness=self.cornering_stiffness,
+            restitution=self.restitution,
+            contact_model=contact_models[self.contact_model],
+            tire_model=tire_models[self.tire_model],
+        )
+
+    def __getstate__(self) -> dict[str, object]:
+        return {name: value for name, value in self.__dict__.items() if name != "core"}

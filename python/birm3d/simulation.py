@@ -1,0 +1,174 @@
+"""A run: a vehicle, a barrier, a speed and an angle."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+from . import _core
+from .barrier import Barrier
+from .result import Result
+from .settings import Settings
+from .vehicle import Vehicle
+
+__all__ = ["Scene", "Simulation"]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What a run is about; the arguments of :class:`Simulation`."""
+
+    vehicle: Vehicle
+    barrier: Barrier | None
+    impact_speed: float
+    impact_angle: float
+    impact_offset: float
+    standoff: float
+    duration: float | None
+    settings: Settings
+
+
+class Simulation:
+    """A vehicle that runs into a barrier.
+
+    The vehicle comes along a straight path with its nose ahead and stands before the barrier at t = 0.
+
+    Parameters
+    ----------
+    vehicle
+        See :class:`birm3d.Vehicle`.
+    barrier
+        See :class:`birm3d.Barrier`; ``None`` for a vehicle on its own (then give ``duration``).
+    impact_speed
+        [m/s], >= 0.
+    impact_angle
+        Between the vehicle's path and the barrier's line [deg], above 0 and below 180; 90 is head-on.
+    impact_offset
+        Where the path of the mass centre meets the barrier's line, from its origin [m].
+    standoff
+        Distance of the nearest node from the barrier at t = 0 [m], >= 0.
+    duration
+        [s]; ``None``: until the outcome is decided.
+    settings
+        See :class:`birm3d.Settings`.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, its limit and the value received.
+    """
+
+    def __init__(
+        self,
+        vehicle: Vehicle,
+        barrier: Barrier | None,
+        impact_speed: float,
+        impact_angle: float = 90.0,
+        impact_offset: float = 0.0,
+        *,
+        standoff: float = 0.0,
+        duration: float | None = None,
+        settings: Settings | None = None,
+    ) -> None:
+        if not isinstance(vehicle, Vehicle):
+            raise TypeError(f"vehicle must be a birm3d.Vehicle, got {type(vehicle).__name__}")
+        if barrier is not None and not isinstance(barrier, Barrier):
+            raise TypeError(f"barrier must be a birm3d.Barrier or None, got {type(barrier).__name__}")
+        self._scene = Scene(
+            vehicle,
+            barrier,
+            float(impact_speed),
+            float(impact_angle),
+            float(impact_offset),
+            float(standoff),
+            duration,
+            settings if settings is not None else Settings(),
+        )
+        self._core = _core.Simulation(
+            vehicle=vehicle.core,
+            barrier=None if barrier is None else barrier.core,
+            speed=self._scene.impact_speed,
+            angle=math.radians(self._scene.impact_angle),
+            offset=self._scene.impact_offset,
+            standoff=self._scene.standoff,
+            settings=self._scene.settings.core,
+            duration=duration,
+        )
+        self._run_time = 0.0
+
+    @property
+    def scene(self) -> Scene:
+        """What the run is about."""
+        return self._scene
+
+    @property
+    def time(self) -> float:
+        """Present time of the state [s]."""
+        return self._core.time
+
+    def run(self) -> Result:
+        """Run from the present state to the end; a run that is over starts anew. Ctrl-C stops it.
+
+        Raises
+        ------
+        UnstableError
+            If a fixed time step is beyond what the scene allows; the message names one that would do.
+        """
+        if self._core.end_reason != _core.EndReason.running:
+            self.reset()
+        start = time.perf_counter()
+        self._core.run()
+        self._run_time += time.perf_counter() - start
+        return self.result()
+
+    def step(self) -> bool:
+        """Take one accepted step; return ``False`` when the run is over and nothing was done."""
+        start = time.perf_counter()
+        moved = self._core.step()
+        self._run_time += time.perf_counter() - start
+        return moved
+
+    def result(self) -> Result:
+        """Return the result so far."""
+        return Result._of(self._scene, self._core, self._run_time)
+
+    def reset(self) -> None:
+        """Go back to t = 0."""
+        self._core.reset()
+        self._run_time = 0.0
+
+    def state_hash(self) -> int:
+        """Return a 64-bit hash of the state: equal hashes mean equal bits."""
+        return self._core.state_hash
+
+    def snapshot(self) -> _core.Snapshot:
+        """Return a checkpoint: the whole state and the record so far."""
+        return self._core.snapshot()
+
+    def restore(self, snapshot: _core.Snapshot) -> None:
+        """Go back to a checkpoint of the same scene."""
+        self._core.restore(snapshot)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return (_rebuild, (self._scene,))
+
+    def __repr__(self) -> str:
+        scene = self._scene
+        return (
+            f"Simulation({scene.vehicle.name}, {scene.barrier}, {scene.impact_speed:g} m/s, "
+            f"{scene.impact_angle:g} deg)"
+        )
+
+
+def _rebuild(scene: Scene) -> Simulation:
+    return Simulation(
+        scene.vehicle,
+        scene.barrier,
+        scene.impact_speed,
+        scene.impact_angle,
+        scene.impact_offset,
+        standoff=scene.standoff,
+        duration=scene.duration,
+        settings=scene.settings,
+    )

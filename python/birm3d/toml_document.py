@@ -1,0 +1,200 @@
+"""Strict reading of TOML files: every error names file, line, key, limit and the value received."""
+
+from __future__ import annotations
+
+import re
+import sys
+from bisect import bisect_right
+from pathlib import Path
+from typing import Any, NoReturn, TypeAlias, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails, PydanticCustomError
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+__all__ = ["Document", "DocumentError", "KeyPath", "Locator", "Strict", "frozen", "received", "reject"]
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+class DocumentError(ValueError):
+    """A file that can not be used; the message gives file, line, key, limit and value."""
+
+
+class Strict(BaseModel):
+    """A block of a file: immutable, no unknown keys, no NaN, no conversion from text."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+def reject(key: str, message: str) -> NoReturn:
+    """Fail on one key of a block, so that the error is reported on the key's own line."""
+    raise PydanticCustomError("document", "{message}", {"key": key, "message": message})
+
+
+KeyPath: TypeAlias = tuple[str | int, ...]
+_HEADER = re.compile(r"(\[\[?)([^\[\]]+)\]")
+_KEY = re.compile(r"""((?:[\w-]+|"[^"]*"|'[^']*')(?:\s*\.\s*(?:[\w-]+|"[^"]*"|'[^']*'))*)\s*=\s*""")
+_PART = re.compile(r"""[\w-]+|"[^"]*"|'[^']*'""")
+_BLANK = re.compile(r"(?:[\s,]|#[^\n]*)*")
+_STRING = re.compile(
+    r'"""(?:[^\\]|\\.)*?"{3,5}'  # text over several lines, with escapes
+    r"|'{3}.*?'{3,5}"
+    r'|"(?:[^"\\]|\\.)*"'
+    r"|'[^']*'",
+    re.DOTALL,
+)
+_SCALAR = re.compile(r"[^,\]}\n#]*")
+
+
+class Locator:
+    """Line of every key and array element of a valid TOML text, by its path in the parsed document."""
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+        self._starts = [0, *(m.end() for m in re.finditer("\n", text))]
+        self.lines: dict[KeyPath, int] = {(): 1}
+        self._scan()
+
+    def _scan(self) -> None:
+        text = self._text
+        at = 0
+        table: KeyPath = ()
+        elements: dict[KeyPath, int] = {}  # array of tables -> index of the element being written
+        while (at := self._skip(at)) < len(text):
+            if header := _HEADER.match(text, at):
+                table = ()
+                parts = self._parts(header[2])
+                for depth, part in enumerate(parts, start=1):
+                    table = (*table, part)
+                    self._note(table, at)
+                    if header[1] == "[[" and depth == len(parts):
+                        elements[table] = elements.get(table, -1) + 1
+                    if table in elements:
+                        table = (*table, elements[table])
+                        self._note(table, at)
+                at = text.find("\n", header.end()) % (len(text) + 1)
+            else:
+                at = self._pair(at, table)
+
+    def _pair(self, at: int, table: KeyPath) -> int:
+        key = _KEY.match(self._text, at)
+        if key is None:  # the text has been parsed before, so this can not happen; lines are then coarser
+            return len(self._text)
+        path = table
+        for part in self._parts(key[1]):
+            path = (*path, part)
+            self._note(path, at)
+        return self._value(key.end(), path)
+
+    def _value(self, at: int, path: KeyPath) -> int:
+        text = self._text
+        if string := _STRING.match(text, at):
+            return string.end()
+        if text[at] == "[":
+            index = 0
+            at = self._skip(at + 1)
+            while text[at] != "]":
+                self._note((*path, index), at)
+                at = self._skip(self._value(at, (*path, index)))
+                index += 1
+            return at + 1
+        if text[at] == "{":
+            at = self._skip(at + 1)
+            while text[at] != "}":
+                at = self._skip(self._pair(at, path))
+            return at + 1
+        scalar = _SCALAR.match(text, at)
+        return scalar.end() if scalar else at
+
+    def _skip(self, at: int) -> int:
+        blank = _BLANK.match(self._text, at)
+        return blank.end() if blank else at
+
+    def _note(self, path: KeyPath, at: int) -> None:
+        self.lines.setdefault(path, bisect_right(self._starts, at))
+
+    @staticmethod
+    def _parts(dotted: str) -> list[str]:
+        return [part.strip("\"'") for part in _PART.findall(dotted)]
+
+
+class Document:
+    """A parsed file and the place every value was written."""
+
+    error: type[DocumentError] = DocumentError
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        try:
+            text = path.read_text(encoding="utf-8")
+            self.data: dict[str, Any] = tomllib.loads(text)
+        except OSError as error:
+            raise self.error(f"{path}: can not be read: {error.strerror}") from error
+        except UnicodeDecodeError as error:
+            byte = error.object[error.start]
+            raise self.error(f"{path}: must be UTF-8 text, got byte {byte:#x}") from error
+        except tomllib.TOMLDecodeError as error:
+            raise self.error(f"{path}: not valid TOML: {error}") from error
+        self._places: dict[KeyPath, tuple[Path, int]] = {
+            key: (path, line) for key, line in Locator(text).lines.items()
+        }
+
+    def place(self, key: KeyPath) -> str:
+        """Return "file:line" of a key, or of the innermost block around it that the file has."""
+        while key and key not in self._places:
+            key = key[:-1]
+        path, line = self._places[key]
+        return f"{path}:{line}"
+
+    def written_key(self, key: KeyPath) -> KeyPath:
+        """Return where a key of the checked data stands in the file."""
+        return key
+
+    def validate(self, model: type[Model], data: Any) -> Model:
+        """Return the checked data, or fail with everything that is wrong with them."""
+        try:
+            return model.model_validate(data)
+        except ValidationError as error:
+            # A misspelt key is an unknown one and a missing one: the unknown one says more.
+            problems = sorted(error.errors(include_url=False), key=lambda e: e["type"] == "missing")
+            raise self.error("\n".join(self._message(problem) for problem in problems)) from error
+
+    def _message(self, error: ErrorDetails) -> str:
+        key = self.written_key(error["loc"])
+        context = error.get("ctx", {})
+        if error["type"] == "document":
+            text = context["message"]
+            key = (
+                *key,
+                *(int(part) if part.isdigit() else part for part in context["key"].split(".") if part),
+            )
+        elif error["type"] == "missing":
+            text = "required key is missing"
+        elif error["type"] == "extra_forbidden":
+            text = f"unknown key, got {received(error['input'])}"
+        elif error["type"] == "value_error":
+            text = str(context["error"])
+        else:
+            text = f"{error['msg'].replace('Input should', 'must')}, got {received(error['input'])}"
+        dotted = ".".join(str(part) for part in key)
+        return f"{self.place(key)}: {dotted}: {text}"
+
+
+def frozen(value: Any) -> Any:
+    """Turn lists into tuples, all the way down."""
+    if isinstance(value, list):
+        return tuple(frozen(item) for item in value)
+    if isinstance(value, dict):
+        return {key: frozen(item) for key, item in value.items()}
+    return value
+
+
+def received(value: Any) -> str:
+    """Return a value as an error message shows it."""
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,434 @@
+"""Vehicles: a rigid body, its crushable skin and its wheels."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+
+if TYPE_CHECKING:
+    from .vehicle_file import VehicleFile
+    from .vehicle_file import Zone as FileZone
+
+__all__ = ["Vehicle", "Zone"]
+
+Floats = npt.NDArray[np.float64]
+FloatsLike = npt.ArrayLike
+
+
+_KNEE = ("k_initial", "knee", "k_hardening", "f_max")
+
+
+@dataclass(frozen=True)
+class Zone(Mapping[str, Any]):
+    """Crush stiffness of a part of the skin per unit of area (paper Fig. 3); also a read-only mapping.
+
+    A truss has this curve times its node's tributary area. Either the first four numbers, or ``envelope``.
+
+    Parameters
+    ----------
+    k_initial, k_hardening
+        Slopes before and after the knee [N/m per m^2].
+    knee
+        Deflection at the knee [m].
+    f_max
+        Stress of the plateau [N per m^2]; ``None`` beside a knee: without end.
+    k_unloading
+        Slope of unloading and reloading [N/m per m^2], not below any slope of the envelope.
+    envelope
+        Points (deflection [m], stress [N per m^2]) from (0, 0); constant after the last.
+    """
+
+    k_initial: float | None = None
+    knee: float | None = None
+    k_hardening: float | None = None
+    f_max: float | None = None
+    k_unloading: float = math.nan
+    envelope: tuple[tuple[float, float], ...] | None = None
+
+    def __post_init__(self) -> None:
+        if self.envelope is None:
+            if self.f_max is None:
+                object.__setattr__(self, "f_max", math.inf)
+        else:
+            for name in _KNEE:
+                if getattr(self, name) is not None:
+                    raise ValueError(f"{name} must be None beside an envelope, got {getattr(self, name)}")
+        _ = self.curve
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._names:
+            raise KeyError(name)
+        return getattr(self, name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    @property
+    def _names(self) -> tuple[str, ...]:
+        if self.envelope is not None:
+            return ("envelope", "k_unloading")
+        return (*_KNEE, "k_unloading")
+
+    @cached_property
+    def curve(self) -> _core.TrussCurve:
+        """The law of 1 m^2 for the core."""
+        if self.envelope is not None:
+            points = np.asarray(self.envelope, float)
+            if points.ndim != 2 or points.shape[1] != 2:
+                raise ValueError(f"envelope must have shape (n, 2), got {points.shape}")
+            return _core.point_curve(points[:, 0].tolist(), points[:, 1].tolist(), self.k_unloading)
+        numbers = {name: getattr(self, name) for name in _KNEE}
+        for name, value in numbers.items():
+            if value is None:
+                raise ValueError(f"{name} must be given where there is no envelope, got None")
+        return _core.knee_curve(**numbers, k_unloading=self.k_unloading)
+
+    def __getstate__(self) -> dict[str, object]:
+        return {name: value for name, value in self.__dict__.items() if name != "curve"}
+
+    @staticmethod
+    def _from_file(zone: FileZone) -> Zone:
+        if zone.envelope_m_Pa is not None:
+            return Zone(envelope=zone.envelope_m_Pa, k_unloading=zone.k_unloading_Pa_per_m)
+        return Zone(
+            k_initial=zone.k_initial_Pa_per_m,
+            knee=zone.knee_m,
+            k_hardening=zone.k_hardening_Pa_per_m,
+            f_max=zone.f_max_Pa,
+            k_unloading=zone.k_unloading_Pa_per_m,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Vehicle:
+    """A vehicle; immutable. Make one with :meth:`preset`, :meth:`from_file` or :meth:`from_arrays`.
+
+    Arrays are read-only, float64, SI, body axes r, s, t (forward, left, up) with the origin at the mass
+    centre unless stated.
+
+    Attributes
+    ----------
+    name : str
+    mass : float
+        [kg].
+    center_of_mass : ndarray, shape (3,)
+        In the axes of the vehicle's file (x forward, y left, z up, origin on the ground below the front
+        axle) [m]; of a vehicle made from arrays: (0, 0, height above the ground).
+    inertia : ndarray, shape (3, 3)
+        About the mass centre [kg m^2].
+    nodes, anchors : ndarray, shape (n, 3)
+        Uncrushed shell nodes and the points of the rigid body that their trusses start from [m].
+    area : ndarray, shape (n,)
+        Tributary area of each node [m^2]; 1 for vehicles made from arrays.
+    zone_of_node : ndarray of int, shape (n,)
+        Index into ``zones``; -1 for vehicles made from arrays.
+    quads : ndarray of int, shape (m, 4)
+        Shell elements; empty for vehicles made from arrays.
+    wheels : ndarray, shape (w, 4)
+        Centres and radius [m].
+    mass_center_height : float
+        Above the ground at rest [m].
+    zones : mapping of str to Zone
+    """
+
+    name: str
+    mass: float
+    center_of_mass: Floats
+    inertia: Floats
+    nodes: Floats
+    anchors: Floats
+    area: Floats
+    zone_of_node: npt.NDArray[np.int64]
+    quads: npt.NDArray[np.int64]
+    wheels: Floats
+    mass_center_height: float
+    zones: Mapping[str, Zone]
+    # What made the vehicle: laws per truss (m, N, N/m), or a file with its mesh density.
+    _truss_laws: Floats | None = None
+    _file: VehicleFile | None = None
+    _mesh_density: float = 1.0
+
+    def __post_init__(self) -> None:
+        for field in dataclasses.fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+        object.__setattr__(self, "zones", MappingProxyType(dict(self.zones)))
+        _ = self.core  # the core checks every number
+
+    # ---- making vehicles ----------------------------------------------------------------------------------
+
+    @staticmethod
+    def presets() -> tuple[str, ...]:
+        """Names of the vehicles that come with the package."""
+        from .vehicle_file import preset_names
+
+        return preset_names()
+
+    @staticmethod
+    def preset(name: str, *, gvw: float | None = None, mesh_density: float = 1.0) -> Vehicle:
+        """Return a vehicle that comes with the package.
+
+        Parameters
+        ----------
+        name
+            One of :meth:`presets`.
+        gvw
+            Gross vehicle weight as a mass [kg]; ``None``: the file's.
+        mesh_density
+            Number of shell elements relative to the file's choice (about 6,000).
+        """
+        from .vehicle_file import preset_path
+
+        return Vehicle.from_file(preset_path(name), gvw=gvw, mesh_density=mesh_density)
+
+    @staticmethod
+    def from_file(path: str | Path, *, gvw: float | None = None, mesh_density: float = 1.0) -> Vehicle:
+        """Read a vehicle file (TOML); the presets are files of the same format.
+
+        Raises
+        ------
+        ValueError
+            Naming file, line, key, limit and value of everything that is wrong.
+        """
+        from .vehicle_file import read_vehicle_file
+
+        return _from_file(read_vehicle_file(path), gvw, mesh_density, None)
+
+    @staticmethod
+    def from_arrays(
+        *,
+        mass: float,
+        inertia: FloatsLike,
+        nodes: FloatsLike,
+        anchors: FloatsLike,
+        k_initial: FloatsLike,
+        k_unloading: FloatsLike,
+        knee: FloatsLike = math.inf,
+        k_hardening: FloatsLike = 0.0,
+        f_max: FloatsLike = math.inf,
+        mass_center_height: float = 0.0,
+        wheels: Sequence[Sequence[float]] = (),
+        name: str = "from_arrays",
+    ) -> Vehicle:
+        """Make a vehicle for laboratories, tests and importers, truss by truss.
+
+        Parameters
+        ----------
+        mass
+            [kg].
+        inertia
+            Shape (3, 3), about the mass centre, body axes [kg m^2].
+        nodes, anchors
+            Shape (n, 3), body axes, origin at the mass centre [m].
+        k_initial, knee, k_hardening, f_max, k_unloading
+            Law of each truss (Fig. 3), shape (n,) or scalars: N/m, m, N/m, N, N/m. ``knee`` and ``f_max``
+            may be infinite.
+        mass_center_height
+            Above the ground at rest [m].
+        wheels
+            Shape (w, 4): centre in body axes and radius [m].
+        """
+        node = np.array(nodes, float)
+        n = len(node)
+        laws = np.empty((n, 5))
+        columns = {
+            "k_initial": k_initial,
+            "knee": knee,
+            "k_hardening": k_hardening,
+            "f_max": f_max,
+            "k_unloading": k_unloading,
+        }
+        for i, (label, value) in enumerate(columns.items()):
+            column = np.asarray(value, float)
+            if column.shape not in ((), (n,)):
+                raise ValueError(f"{label} must have shape () or ({n},), got {column.shape}")
+            laws[:, i] = column
+        discs = np.array(wheels, float).reshape(-1, 4) if len(wheels) == 0 else np.array(wheels, float)
+        return Vehicle(
+            name=name,
+            mass=float(mass),
+            center_of_mass=np.array([0.0, 0.0, float(mass_center_height)]),
+            inertia=np.array(inertia, float),
+            nodes=node,
+            anchors=np.array(anchors, float),
+            area=np.ones(n),
+            zone_of_node=np.full(n, -1, np.int64),
+            quads=np.empty((0, 4), np.int64),
+            wheels=discs,
+            mass_center_height=float(mass_center_height),
+            zones={},
+            _truss_laws=laws,
+        )
+
+    def with_gvw(self, gvw: float) -> Vehicle:
+        """Return the vehicle with another mass [kg]; every mass property follows.
+
+        Payload solids are rescaled first; below the unladen mass the structure is rescaled, without payload.
+        A vehicle made from arrays keeps its mass centre and scales its inertia.
+        """
+        gvw = _positive("gvw", gvw)
+        if self._file is None:
+            return dataclasses.replace(
+                self, mass=gvw, inertia=self.inertia * (gvw / self.mass), wheels=self.wheels.copy()
+            )
+        return _from_file(self._file, gvw, self._mesh_density, self.zones)
+
+    def with_zone(self, name: str, **changes: Any) -> Vehicle:
+        """Return the vehicle with other stiffness numbers in one zone (see :class:`Zone`).
+
+        A zone with an envelope becomes one with a knee when ``k_initial``, ``knee`` and ``k_hardening`` are
+        given, and the other way round when ``envelope`` is.
+        """
+        if name not in self.zones:
+            known = ", ".join(self.zones) or "none: the vehicle was made from arrays"
+            raise ValueError(f"zone must be one of {known}; got {name!r}")
+        known = ", ".join((*_KNEE, "k_unloading", "envelope"))
+        for key in changes:
+            if key not in known.split(", "):
+                raise ValueError(f"zone parameter must be one of {known}; got {key!r}")
+        if "envelope" in changes:
+            changes = {**dict.fromkeys(_KNEE), **changes}
+        elif self.zones[name].envelope is not None and any(key in changes for key in _KNEE):
+            missing = [key for key in _KNEE[:3] if key not in changes]
+            if missing:
+                raise ValueError(
+                    f"{missing[0]} must be given too: zone {name!r} has an envelope, "
+                    f"which needs {', '.join(_KNEE[:3])} to take its place; got {', '.join(changes)}"
+                )
+            changes = {"envelope": None, **changes}
+        zone = dataclasses.replace(self.zones[name], **changes)
+        return dataclasses.replace(self, zones={**self.zones, name: zone})
+
+    # ---- what it is ---------------------------------------------------------------------------------------
+
+    @property
+    def n_nodes(self) -> int:
+        """Number of shell nodes."""
+        return len(self.nodes)
+
+    @property
+    def n_trusses(self) -> int:
+        """Number of trusses: one for each shell node."""
+        return len(self.nodes)
+
+    @property
+    def n_elements(self) -> int:
+        """Number of four-node shell elements."""
+        return len(self.quads)
+
+    @cached_property
+    def core(self) -> _core.Vehicle:
+        """The same vehicle for the core."""
+        if self._truss_laws is not None:
+            laws, which = np.unique(self._truss_laws, axis=0, return_inverse=True)
+            curves = [
+                _core.knee_curve(k_initial=a, knee=d, k_hardening=b, f_max=f, k_unloading=u)
+                for a, d, b, f, u in laws.tolist()
+            ]
+            curve_of = which.reshape(-1)
+        else:
+            curves = [zone.curve for zone in self.zones.values()]
+            curve_of = self.zone_of_node
+        unit = _core.Unit(
+            mass=self.mass,
+            inertia=self.inertia,
+            nodes=self.nodes,
+            anchors=self.anchors,
+            curves=curves,
+            curve_of=curve_of.tolist(),
+            scale=self.area,
+            wheels=self.wheels,
+            mass_center_height=self.mass_center_height,
+        )
+        return _core.Vehicle([unit])
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Vehicle):
+            return NotImplemented
+        mine, theirs = self._arguments(), other._arguments()
+        return all(np.array_equal(mine[key], theirs[key]) for key in mine)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def _arguments(self) -> dict[str, Any]:
+        arguments = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        return {**arguments, "zones": dict(self.zones)}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_rebuild, (self._arguments(),))
+
+    def __repr__(self) -> str:
+        return (
+            f"Vehicle({self.name!r}, mass={self.mass:.6g} kg, {self.n_nodes} nodes, "
+            f"{len(self.wheels)} wheels, zones: {', '.join(self.zones) or 'none'})"
+        )
+
+
+def _rebuild(arguments: dict[str, Any]) -> Vehicle:
+    return Vehicle(**arguments)
+
+
+def _positive(name: str, value: float) -> float:
+    if not (math.isfinite(value) and value > 0.0):
+        raise ValueError(f"{name} must be finite and > 0, got {value}")
+    return float(value)
+
+
+def _densities(file: VehicleFile, gvw: float) -> Floats:
+    """Densities of the solids (n,) [kg/m^3] that add up to `gvw` [kg]: payload first, then the structure."""
+    mass = np.array([solid.mass for solid in file.solids])
+    density = np.array([solid.density for solid in file.solids])
+    payload = np.array([solid.payload for solid in file.solids])
+    if not payload.any():
+        payload = np.ones_like(payload)
+    structure = float(mass[~payload].sum())
+    if gvw >= structure:
+        scale = np.where(payload, (gvw - structure) / mass[payload].sum(), 1.0)
+    else:
+        scale = np.where(payload, 0.0, gvw / structure)
+    return np.asarray(density * scale)
+
+
+def _from_file(
+    file: VehicleFile, gvw: float | None, mesh_density: float, zones: Mapping[str, Zone] | None
+) -> Vehicle:
+    from .mesher import build_mesh
+
+    mass = file.gvw_kg if gvw is None else _positive("gvw", gvw)
+    corners = np.array([solid.corners for solid in file.solids], float)
+    properties = _core.mass_properties(corners, _densities(file, mass))
+    center = np.array(properties.center_of_mass)
+    mesh = build_mesh(file, mesh_density)
+    wheels = np.array([[*wheel.center_m, wheel.radius_m] for wheel in file.wheels], float).reshape(-1, 4)
+    wheels[:, :3] -= center
+    return Vehicle(
+        name=file.name,
+        mass=properties.mass,
+        center_of_mass=center,
+        inertia=np.array(properties.inertia),
+        nodes=mesh.nodes - center,
+        anchors=mesh.anchors - center,
+        area=np.array(mesh.area),
+        zone_of_node=np.array(mesh.zone, np.int64),
+        quads=np.array(mesh.quads, np.int64),
+        wheels=wheels,
+        mass_center_height=float(center[2]),
+        zones=zones if zones is not None else {zone.name: Zone._from_file(zone) for zone in file.zones},
+        _file=file,
+        _mesh_density=mesh_density,
+    )

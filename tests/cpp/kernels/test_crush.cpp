@@ -1,0 +1,167 @@
+#include "birm3d/kernels/crush.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "birm3d/base/rotation.hpp"
+#include "birm3d/kernels/detect.hpp"
+#include "check.hpp"
+#include "laboratory.hpp"
+
+using namespace birm3d;
+
+namespace {
+
+// 1 MN/m to 0.1 m, 2 MN/m beyond; unloading 10 MN/m.
+const TrussCurve curve = knee_curve(1e6, 0.1, 2e6, laboratory::infinity, 10e6);
+
+// One node that is pressed by a plane; all in body axes.
+struct Press {
+    Press(const Vec3& node, const Vec3& anchor, const Vec3& normal_,
+          ContactModel model_ = ContactModel::projected)
+        : mesh({{node}, {anchor}, {curve}, {0}, {1.0}}),
+          now(mesh),
+          normal(normal_),
+          model(model_),
+          start(normal_.dot(node)) {}
+
+    // The plane moves to `depth` behind the place where it touches the uncrushed node.
+    SkinForces to(double depth) {
+        const TrussBlockState before = now.block[0];
+        const HalfSpace face{normal, start + depth};
+        BlockContact contact;
+        detect(face, before.x, before.y, before.z, contact);
+        forces = crush(laboratory::body(), mesh, model, 0, before, now.block[0], contact);
+        work += forces.work;
+        return forces;
+    }
+
+    Vec3 node() const { return {now.block[0].x[0], now.block[0].y[0], now.block[0].z[0]}; }
+
+    TrussMesh mesh;
+    TrussState now;
+    Vec3 normal;
+    ContactModel model;
+    double start;
+    SkinForces forces;
+    double work = 0.0;
+};
+
+const std::vector<Vec3> normals = {{-1.0, 0.0, 0.0},
+                                   {0.0, 1.0, 0.0},
+                                   {0.0, 0.0, 1.0},
+                                   Vec3(-2.0, 1.0, 0.5).normalized(),
+                                   Vec3(1.0, -1.0, -3.0).normalized()};
+
+}  // namespace
+
+TEST("a truss along the normal is pressed by the law of Fig. 3, whichever way the plane looks") {
+    for (const Vec3& n : normals) {
+        const Vec3 place(0.4, -0.7, 0.2);
+        Press press(place, place + 2.0 * n, n);
+        const SkinForces f = press.to(0.25);
+        const double force = 1e6 * 0.1 + 2e6 * 0.15;
+        CHECK_CLOSE((f.contact.force - force * n).norm(), 0.0, 1e-8, "rounding of lengths near 2 m");
+        CHECK_CLOSE((f.contact.torque - (place + 0.25 * n).cross(f.contact.force)).norm(), 0.0, 1e-8,
+                    "the same");
+        CHECK_CLOSE(f.normal_force, force, 1e-8, "the same");
+        CHECK_CLOSE((press.node() - place - 0.25 * n).norm(), 0.0, 1e-15, "held on the plane");
+        CHECK(press.now.block[0].touching);
+    }
+}
+
+TEST("a plane that is not reached does nothing") {
+    Press press({1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {-1.0, 0.0, 0.0});
+    const SkinForces f = press.to(-0.03);
+    CHECK_CLOSE(f.contact.force.norm(), 0.0, 0.0, "exact");
+    CHECK_CLOSE(f.nearest_gap, 0.03, 1e-15, "rounding");
+    CHECK_CLOSE(f.stiffness, 0.0, 0.0, "exact");
+    CHECK(!press.now.block[0].touching);
+}
+
+TEST("a slanted truss presses with the share that points along the normal") {
+    // Node and anchor 1 m apart, 30 degrees off the normal.
+    const Vec3 n(-1.0, 0.0, 0.0);
+    const Vec3 b0(std::cos(laboratory::pi / 6.0), std::sin(laboratory::pi / 6.0), 0.0);
+    for (const ContactModel model : {ContactModel::projected, ContactModel::along_truss}) {
+        Press press(b0, Vec3::Zero(), n, model);
+        const SkinForces f = press.to(0.08);
+        const Vec3 b = b0 + 0.08 * n;
+        const double force = envelope_force(curve, 1.0 - b.norm());
+        const Vec3 expected = model == ContactModel::projected ? Vec3(force * (-b.normalized().dot(n)) * n)
+                                                               : Vec3(-force * b.normalized());
+        CHECK_CLOSE((f.contact.force - expected).norm(), 0.0, 1e-8, "rounding");
+    }
+}
+
+TEST("unloading releases the node at its residual deflection, and the loop costs its area") {
+    for (const Vec3& n : normals) {
+        Press press(Vec3::Zero(), 2.0 * n, n);
+        for (const double depth : {0.1, 0.2, 0.25})
+            press.to(depth);  // stops at the knee: trapezoids are exact
+        const double peak = 4e5, residual = 0.25 - peak / 10e6;
+        press.to(0.23);
+        CHECK_CLOSE(press.forces.normal_force, peak - 10e6 * 0.02, 1e-6,
+                    "on the unloading line; rounding of 10 MN/m");
+        CHECK_CLOSE(press.forces.stored, 0.5 * 2e5 * 2e5 / 10e6, 1e-6, "what the line still gives back");
+        press.to(0.05);
+        CHECK_CLOSE(press.forces.contact.force.norm(), 0.0, 0.0, "exact");
+        CHECK(!press.now.block[0].touching);
+        CHECK_CLOSE((press.node() - residual * n).norm(), 0.0, 1e-14,
+                    "it stays where its truss reached zero");
+        CHECK_CLOSE(press.work, 0.5 * 0.1 * 1e5 + 0.15 * 2.5e5 - 0.5 * peak * peak / 10e6, 1e-7,
+                    "rounding of 4e4 J");
+
+        press.to(residual - 0.01);
+        CHECK_CLOSE(press.forces.contact.force.norm(), 0.0, 0.0, "exact: the plane is short of the node");
+        press.to(residual + 0.01);
+        CHECK_CLOSE(press.forces.normal_force, 1e5, 1e-6, "reloads on the unloading line");
+    }
+}
+
+TEST("the projected force and the trusses exchange the same work, slanted or not") {
+    // The plane presses in and out again in small steps: work on the trusses against force times way.
+    const Vec3 n = Vec3(-1.0, 0.3, 0.0).normalized();
+    for (const ContactModel model : {ContactModel::projected, ContactModel::along_truss}) {
+        Press press({1.0, 0.2, 0.1}, {0.0, 0.0, 0.0}, n, model);
+        double by_plane = 0.0, force = 0.0, depth = 0.0, most = 0.0;
+        const int steps = 4000;
+        for (int i = 1; i <= steps; ++i) {
+            const double next = 0.2 * std::sin(laboratory::pi * i / steps);
+            const double next_force = press.to(next).contact.force.dot(n);
+            by_plane += 0.5 * (force + next_force) * (next - depth);
+            force = next_force;
+            depth = next;
+            most = std::max(most, press.work);
+        }
+        const double gap = std::abs(by_plane - press.work) / most;
+        CHECK_CLOSE(gap, 0.0, 1e-6, "trapezoid rule of 4000 steps across two kinks");
+    }
+}
+
+TEST("a truss that would pull the surface towards it does not press") {
+    // Node beyond the anchor along the normal: shortening is impossible, the truss gets longer.
+    const Vec3 n(-1.0, 0.0, 0.0);
+    Press press({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, n);
+    CHECK_CLOSE(press.to(0.3).contact.force.norm(), 0.0, 0.0, "exact");
+}
+
+TEST("the block sums what its trusses do") {
+    const TrussInput input = laboratory::front_face(laboratory::w2_curve(), 8, 8);
+    const TrussMesh mesh(input);
+    TrussState state(mesh);
+    const TrussBlockState before = state.block[0];
+    BlockContact contact;
+    detect({{-1.0, 0.0, 0.0}, -2.5}, before.x, before.y, before.z, contact);
+    const SkinForces f =
+        crush(laboratory::body(), mesh, ContactModel::projected, 0, before, state.block[0], contact);
+    const double force = 3e6 * 0.4 + 6e6 * 0.1;
+    CHECK_CLOSE((f.contact.force - Vec3(-force, 0.0, 0.0)).norm(), 0.0, 1e-6, "rounding of 64 shares");
+    CHECK_CLOSE(f.contact.torque.norm(), 0.0, 1e-6, "symmetric");
+    CHECK_CLOSE(f.work, 0.25 * force, 1e-6,
+                "one straight line from the origin: the trapezoid of a single step");
+    CHECK_CLOSE(f.stored, 0.5 * force * force / 60e6, 1e-6, "rounding");
+    // The bound holds, and is not idle: the nodes' own inverse effective masses are 1/m and a bit more.
+    CHECK(f.stiffness >= 60e6 / 6804.0);
+    CHECK(f.stiffness <= 2.0 * 60e6 / 6804.0);
+}

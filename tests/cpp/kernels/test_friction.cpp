@@ -1,0 +1,92 @@
+#include "birm3d/kernels/friction.hpp"
+
+#include "check.hpp"
+#include "laboratory.hpp"
+
+using namespace birm3d;
+
+namespace {
+
+// A block of nodes at which a wall of normal -x presses with `pressure` each.
+struct Pressed {
+    explicit Pressed(double pressure)
+        : mesh(laboratory::front_face(laboratory::w2_curve(), 8, 8)), state(mesh) {
+        contact.normal_x.fill(-1.0);
+        contact.normal_y.fill(0.0);
+        contact.normal_z.fill(0.0);
+        contact.pressure.fill(pressure);
+    }
+    SkinForces friction(double mu, double full_speed, const Twist& motion) const {
+        SkinForces forces;
+        add_friction(laboratory::body(), mu, full_speed, motion, state.block[0], contact, forces);
+        return forces;
+    }
+
+    TrussMesh mesh;
+    TrussState state;
+    BlockContact contact;
+};
+
+}  // namespace
+
+TEST("full sliding: mu times the normal force against the sliding, nothing along the normal") {
+    const Pressed pressed(250.0);
+    const Vec3 sliding(0.0, 3.0, 4.0);
+    for (const double approach : {0.0, 20.0, -5.0}) {
+        const SkinForces f = pressed.friction(0.2, 0.1, {Vec3(approach, 0.0, 0.0) + sliding, Vec3::Zero()});
+        CHECK_CLOSE((f.friction.force + 0.2 * 250.0 * 64.0 * sliding / 5.0).norm(), 0.0, 1e-9,
+                    "rounding of 64 nodes");
+        CHECK_CLOSE((f.friction.torque - Vec3(3.0, 0.0, 0.0).cross(f.friction.force)).norm(), 0.0, 1e-8,
+                    "the nodes lie evenly about (3 m, 0, 0)");
+        CHECK_CLOSE(f.contact.force.norm(), 0.0, 0.0, "friction is booked apart");
+        CHECK(f.friction_rate >= 0.2 * 250.0 * 64.0 / 6804.0);
+    }
+}
+
+TEST("below the speed of full friction the force falls with the speed") {
+    const Pressed pressed(250.0);
+    for (const double share : {1.0, 0.5, 0.1, 0.0}) {
+        const SkinForces f = pressed.friction(0.3, 0.2, {Vec3(0.0, 0.2 * share, 0.0), Vec3::Zero()});
+        CHECK_CLOSE(f.friction.force.y(), -share * 0.3 * 250.0 * 64.0, 1e-9, "rounding of 64 nodes");
+    }
+}
+
+TEST("friction takes energy out of every motion") {
+    const Pressed pressed(250.0);
+    for (int i = 0; i < 50; ++i) {
+        const Twist motion{Vec3(std::sin(1.0 * i), std::sin(2.0 * i), std::sin(3.0 * i)),
+                           Vec3(std::sin(5.0 * i), std::sin(7.0 * i), std::sin(11.0 * i))};
+        const SkinForces f = pressed.friction(0.4, 0.05, motion);
+        CHECK(f.friction.force.dot(motion.velocity) + f.friction.torque.dot(motion.angular_velocity) <= 0.0);
+    }
+}
+
+TEST("a turn about the normal is braked by a torque alone") {
+    const Pressed pressed(100.0);
+    const SkinForces f = pressed.friction(0.5, 1e-3, {Vec3::Zero(), Vec3(2.0, 0.0, 0.0)});
+    CHECK_CLOSE(f.friction.force.norm(), 0.0, 1e-9, "symmetric; rounding of 64 nodes");
+    CHECK(f.friction.torque.x() < 0.0);
+    CHECK_CLOSE(f.friction.torque.tail<2>().norm(), 0.0, 1e-9, "symmetric");
+}
+
+TEST("friction brings sliding to rest on the wall and never turns it round") {
+    for (const double mu : {0.1, 0.5, 2.0, 10.0}) {
+        Simulation simulation(laboratory::scene(laboratory::block(laboratory::w2_curve()),
+                                                laboratory::wall(mu), laboratory::weightless(),
+                                                80.0 * laboratory::pi / 180.0));
+        double beyond_limit = 0.0, power = 0.0;
+        double lost = 0.0;
+        while (simulation.step()) {
+            const State& state = simulation.state();
+            const UnitState& unit = state.units[0];
+            beyond_limit =
+                std::max(beyond_limit, unit.skin.friction.force.norm() - mu * unit.skin.normal_force);
+            // Energy flows one way: friction that turned a sliding round would give some back.
+            power = std::min(power, state.energies.barrier_friction - lost);
+            lost = state.energies.barrier_friction;
+        }
+        CHECK(beyond_limit <= 1e-6);
+        CHECK(lost > 0.0);
+        CHECK(power >= -1e-3 * lost);
+    }
+}

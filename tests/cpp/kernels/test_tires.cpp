@@ -1,0 +1,125 @@
+#include "birm3d/kernels/tires.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "birm3d/base/rotation.hpp"
+#include "check.hpp"
+#include "laboratory.hpp"
+
+using namespace birm3d;
+
+namespace {
+
+constexpr double pi = laboratory::pi;
+
+const Unit unit(laboratory::body(), laboratory::front_face(laboratory::w2_curve(), 2, 2),
+                laboratory::four_wheels(), 1.0);
+
+// Lowest of many points on a wheel's rim, relative to the mass centre.
+double lowest_rim_point(const Wheel& wheel, const Quat& q) {
+    double lowest = 1e9;
+    for (int i = 0; i < 100000; ++i) {
+        const double a = 2.0 * pi * i / 100000;
+        lowest =
+            std::min(lowest, (q * (wheel.center + wheel.radius * Vec3(std::cos(a), 0.0, std::sin(a)))).z());
+    }
+    return lowest;
+}
+
+// Friction at 1000 N s under each wheel.
+Wrench friction(const Settings& settings, const BodyState& state, const Twist& motion,
+                double normal = 1000.0) {
+    return tire_friction(unit, settings, state, motion, std::vector<double>(4, normal));
+}
+
+}  // namespace
+
+TEST("a tilted wheel touches the ground with its lowest point") {
+    for (const Angles& angles :
+         {Angles{}, {0.3, 0.0, 0.0}, {-0.2, 0.4, 1.0}, {1.2, -0.5, 2.0}, {0.0, 0.9, -2.5}}) {
+        BodyState state;
+        state.position = {5.0, 6.0, 1.3};
+        state.orientation = from_roll_pitch_yaw(angles);
+        std::vector<RigidContact> contacts;
+        find_tire_contacts(unit, 0, state, contacts);
+        CHECK(contacts.size() == 4);
+        for (std::size_t i = 0; i < contacts.size(); ++i) {
+            const double lowest = lowest_rim_point(unit.wheels[i], state.orientation);
+            CHECK_CLOSE(contacts[i].arm.z(), lowest, 1e-9,
+                        "nearest of 100,000 points on the rim: radius * (pi/1e5)^2 / 2");
+            CHECK_CLOSE(contacts[i].gap, 1.3 + lowest, 1e-9, "the same");
+            const Vec3 spoke = contacts[i].arm - state.orientation * unit.wheels[i].center;
+            CHECK_CLOSE(spoke.norm(), 0.4, 1e-15, "on the rim");
+            CHECK_CLOSE(spoke.dot(state.orientation * Vec3::UnitY()), 0.0, 1e-15, "in the wheel's plane");
+        }
+    }
+}
+
+TEST("a wheel that lies flat is held at its centre") {
+    BodyState state;
+    state.orientation = from_roll_pitch_yaw({0.5 * pi, 0.0, 0.0});
+    std::vector<RigidContact> contacts;
+    find_tire_contacts(unit, 0, state, contacts);
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+        CHECK_CLOSE((contacts[i].arm - state.orientation * unit.wheels[i].center).norm(), 0.0, 1e-15,
+                    "exact but for rounding");
+}
+
+TEST("a wheel that rolls straight ahead feels no friction, by either rule") {
+    BodyState state;
+    state.orientation = from_roll_pitch_yaw({0.0, 0.0, 0.6});
+    for (const TireModel model : {TireModel::slip, TireModel::skid}) {
+        Settings settings;
+        settings.tire_model = model;
+        const Wrench f = friction(settings, state, {state.orientation * Vec3(20.0, 0.0, 0.0), Vec3::Zero()});
+        CHECK_CLOSE(f.force.norm(), 0.0, 1e-9, "rounding");
+    }
+}
+
+TEST("slip: the slope at zero is the cornering stiffness, the limit is mu N, and it grows in between") {
+    Settings settings;
+    double last = 0.0;
+    for (int degrees = 1; degrees <= 90; ++degrees) {
+        const double slip = degrees * pi / 180.0;
+        const Wrench f =
+            friction(settings, {}, {20.0 * Vec3(std::cos(slip), std::sin(slip), 0.0), Vec3::Zero()});
+        CHECK_CLOSE(f.force.x(), 0.0, 1e-9, "a rolling wheel resists nothing along its plane");
+        CHECK(-f.force.y() >= last);
+        CHECK(-f.force.y() <= settings.mu_tire * 4000.0 * (1.0 + 1e-15));
+        last = -f.force.y();
+    }
+    CHECK_CLOSE(last, settings.mu_tire * 4000.0, 1e-9, "full sliding");
+    const Wrench small = friction(settings, {}, {Vec3(20.0, 20.0 * 1e-6, 0.0), Vec3::Zero()});
+    CHECK_CLOSE(-small.force.y() / (4000.0 * 1e-6), settings.cornering_stiffness, 1e-3,
+                "next term: slip / (3 mu) smaller");
+}
+
+TEST("skid: mu N against the velocity as soon as it leaves the heading") {
+    Settings settings;
+    settings.tire_model = TireModel::skid;
+    const Vec3 velocity(20.0, 0.1, -3.0);
+    const Wrench f = friction(settings, {}, {velocity, Vec3::Zero()});
+    const Vec3 along(20.0, 0.1, 0.0);
+    CHECK_CLOSE((f.force + settings.mu_tire * 4000.0 * along.normalized()).norm(), 0.0, 1e-9, "rounding");
+}
+
+TEST("friction does not turn a slow motion round") {
+    // 4000 N s on 6,804 kg at mu 0.8 would take 0.47 m/s from a body that moves sideways with 1 mm/s.
+    for (const TireModel model : {TireModel::slip, TireModel::skid}) {
+        Settings settings;
+        settings.tire_model = model;
+        const Wrench f = friction(settings, {}, {Vec3(0.0, 1e-3, 0.0), Vec3::Zero()});
+        CHECK(f.force.y() < 0.0);
+        CHECK(1e-3 + f.force.y() / 6804.0 >= 0.0);
+    }
+}
+
+TEST("without load or grip there is no friction") {
+    Settings slippery;
+    slippery.mu_tire = 0.0;
+    const Twist sideways{Vec3(0.0, 5.0, 0.0), Vec3::Zero()};
+    CHECK_CLOSE(friction(slippery, {}, sideways).force.norm(), 0.0, 0.0, "exact");
+    CHECK_CLOSE(friction(Settings{}, {}, sideways, 0.0).force.norm(), 0.0, 0.0, "exact");
+}

@@ -1,0 +1,102 @@
+#include "birm3d/model/truss_law.hpp"
+
+#include <limits>
+#include <stdexcept>
+
+#include "check.hpp"
+
+using namespace birm3d;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+// 100 N/m to 0.2 m, 300 N/m to 50 N (0.3 m), plateau; unloading 1000 N/m.
+const TrussCurve curve = knee_curve(100.0, 0.2, 300.0, 50.0, 1000.0);
+
+// A truss led through deflections; force at the last, work done on it by straight lines between them.
+struct Path {
+    TrussMemory memory;
+    double deflection = 0.0, force = 0.0, work = 0.0;
+
+    void to(double d) {
+        const double next = truss_force(curve, memory, d);
+        work += 0.5 * (force + next) * (d - deflection);
+        deflection = d;
+        force = next;
+    }
+};
+
+}  // namespace
+
+TEST("the three segments of Fig. 3") {
+    CHECK_CLOSE(envelope_force(curve, -0.1), 0.0, 0.0, "exact");
+    CHECK_CLOSE(envelope_force(curve, 0.1), 10.0, 1e-14, "rounding");
+    CHECK_CLOSE(envelope_force(curve, 0.2), 20.0, 1e-14, "rounding");
+    CHECK_CLOSE(envelope_force(curve, 0.25), 35.0, 1e-13, "rounding");
+    CHECK_CLOSE(envelope_force(curve, 0.3), 50.0, 1e-13, "rounding");
+    CHECK_CLOSE(envelope_force(curve, 5.0), 50.0, 1e-12, "rounding: the sum of hinges cancels");
+}
+
+TEST("unloading and reloading run on one line") {
+    Path truss;
+    truss.to(0.25);
+    CHECK_CLOSE(truss.force, 35.0, 1e-13, "rounding");
+    truss.to(0.235);
+    CHECK_CLOSE(truss.force, 20.0, 1e-12, "k_unloading times 15 mm below the peak");
+    truss.to(0.245);
+    CHECK_CLOSE(truss.force, 30.0, 1e-12, "back on the same line");
+    truss.to(0.26);
+    CHECK_CLOSE(truss.force, 38.0, 1e-12, "on the envelope again");
+    truss.to(0.1);
+    CHECK_CLOSE(truss.force, 0.0, 0.0, "exact: a truss pulls at nothing");
+    truss.to(0.222);
+    CHECK_CLOSE(truss.force, 0.0, 1e-12, "residual deflection 0.26 - 38/1000");
+}
+
+TEST("a closed loop costs the area of the envelope less what unloading returns") {
+    Path truss;
+    // Straight pieces end at the knees, so that the trapezoid rule is exact.
+    for (const double d : {0.2, 0.3, 0.4, 0.35})
+        truss.to(d);
+    const double area = 0.5 * 0.2 * 20.0 + 0.1 * 35.0 + 0.1 * 50.0;
+    CHECK_CLOSE(truss.work, area - 0.5 * 50.0 * 0.05, 1e-13, "rounding");
+}
+
+TEST("no deflection path gains energy") {
+    Path truss;
+    double least = 0.0;
+    for (int i = 0; i < 10000; ++i) {
+        const double d = 0.4 * std::abs(std::sin(0.37 * i) * std::sin(0.0011 * i));
+        truss.to(d);
+        least = std::min(least, truss.work - 0.5 * truss.force * truss.force / curve.k_unloading);
+    }
+    // The trapezoid rule across a kink may err in favour of the truss by this much: k_unloading * step^2.
+    CHECK(least >= -1e-9);
+}
+
+TEST("knee and plateau may lie at infinity") {
+    const TrussCurve elastic = knee_curve(100.0, infinity, 0.0, infinity, 100.0);
+    CHECK_CLOSE(envelope_force(elastic, 7.0), 700.0, 1e-12, "rounding");
+    const TrussCurve plastic = knee_curve(100.0, infinity, 0.0, 50.0, 100.0);
+    CHECK_CLOSE(envelope_force(plastic, 7.0), 50.0, 1e-12, "rounding");
+    const TrussCurve early = knee_curve(100.0, 2.0, 300.0, 50.0, 300.0);
+    CHECK_CLOSE(envelope_force(early, 1.9), 50.0, 1e-12, "the plateau begins before the knee");
+}
+
+TEST("a curve through points passes through them and stays at its last force") {
+    const TrussCurve points = point_curve({0.0, 0.1, 0.3, 0.4}, {0.0, 20.0, 10.0, 30.0}, 500.0);
+    for (const auto& [d, f] : {std::pair{0.1, 20.0}, {0.2, 15.0}, {0.3, 10.0}, {0.4, 30.0}, {2.0, 30.0}})
+        CHECK_CLOSE(envelope_force(points, d), f, 1e-12, "rounding");
+    require_valid(points, "");
+}
+
+TEST("a curve that is no law is refused") {
+    CHECK_THROWS(require_valid(knee_curve(100.0, 0.2, 300.0, 50.0, 200.0), ""), std::invalid_argument);
+    CHECK_THROWS(require_valid(knee_curve(100.0, 0.2, 300.0, 50.0, 0.0), ""), std::invalid_argument);
+    CHECK_THROWS(knee_curve(-1.0, 0.2, 300.0, 50.0, 1000.0), std::invalid_argument);
+    CHECK_THROWS(knee_curve(100.0, 0.0, 300.0, 50.0, 1000.0), std::invalid_argument);
+    CHECK_THROWS(knee_curve(100.0, 0.2, infinity, 50.0, 1000.0), std::invalid_argument);
+    CHECK_THROWS(point_curve({0.0, 0.1}, {1.0, 2.0}, 100.0), std::invalid_argument);
+    CHECK_THROWS(point_curve({0.0, 0.1, 0.1}, {0.0, 2.0, 3.0}, 100.0), std::invalid_argument);
+    CHECK_THROWS(point_curve({0.0, 0.1}, {0.0, -2.0}, 100.0), std::invalid_argument);
+}

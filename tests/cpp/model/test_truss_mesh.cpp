@@ -1,0 +1,83 @@
+#include "birm3d/model/truss_mesh.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "check.hpp"
+#include "laboratory.hpp"
+
+using namespace birm3d;
+
+namespace {
+
+constexpr int columns = 13, rows = 10;  // 130 trusses: two full blocks and two trusses more
+const TrussInput input = laboratory::front_face(laboratory::w2_curve(), columns, rows);
+
+}  // namespace
+
+TEST("trusses are cut into blocks, the last one padded with members of no stiffness") {
+    const TrussMesh mesh(input);
+    CHECK(mesh.count == 130);
+    CHECK(mesh.blocks == 3);
+    CHECK(mesh.hinges == 2);
+    CHECK(mesh.hinge.size() == mesh.blocks * mesh.hinges);
+    double stiffness = 0.0, first_slope = 0.0;
+    for (std::size_t b = 0; b < mesh.blocks; ++b) {
+        for (std::size_t i = 0; i < lanes; ++i) {
+            const bool padding = b * lanes + i >= mesh.count;
+            CHECK((mesh.block[b].k_unloading[i] == 0.0) == padding);
+            CHECK((mesh.block[b].compliance[i] == 0.0) == padding);
+            stiffness += mesh.block[b].k_unloading[i];
+            first_slope += mesh.hinge[b * mesh.hinges].slope_change[i];
+        }
+    }
+    CHECK_CLOSE(stiffness, 60e6, 1e-6, "rounding of 130 shares");
+    CHECK_CLOSE(first_slope, 3e6, 1e-6, "rounding of 130 shares");
+}
+
+TEST("the order of the trusses is a permutation of the caller's") {
+    const TrussMesh mesh(input);
+    std::vector<std::size_t> order = mesh.input_index;
+    CHECK(order.size() == mesh.count);
+    for (std::size_t i = 0; i < mesh.count; ++i) {
+        CHECK(mesh.node(i) == input.node[mesh.input_index[i]]);
+        CHECK(mesh.anchor(i) == input.anchor[mesh.input_index[i]]);
+    }
+    std::sort(order.begin(), order.end());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        CHECK(order[i] == i);
+}
+
+TEST("balls and reach hold every node and anchor") {
+    const TrussMesh mesh(input);
+    double farthest = 0.0;
+    for (std::size_t i = 0; i < mesh.count; ++i) {
+        const Ball& nodes = mesh.node_ball[i / lanes];
+        const Ball& anchors = mesh.anchor_ball[i / lanes];
+        CHECK((mesh.node(i) - nodes.center).norm() <= nodes.radius);
+        CHECK((mesh.anchor(i) - anchors.center).norm() <= anchors.radius);
+        farthest = std::max({farthest, mesh.node(i).norm(), mesh.anchor(i).norm()});
+    }
+    CHECK_CLOSE(mesh.reach, farthest, 0.0, "exact");
+}
+
+TEST("neighbours in order are neighbours in space") {
+    const TrussMesh mesh(laboratory::front_face(laboratory::w2_curve(), 64, 64));
+    for (const Ball& ball : mesh.node_ball)
+        CHECK(ball.radius < 0.5);  // of a face 2.4 m by 1.6 m
+}
+
+TEST("what is no skin is refused") {
+    const auto refused = [](auto change) {
+        TrussInput bad = input;
+        change(bad);
+        CHECK_THROWS(TrussMesh(bad), std::invalid_argument);
+    };
+    refused([](TrussInput& bad) { bad = {}; });
+    refused([](TrussInput& bad) { bad.anchor.pop_back(); });
+    refused([](TrussInput& bad) { bad.anchor[7] = bad.node[7]; });
+    refused([](TrussInput& bad) { bad.node[3].x() = std::nan(""); });
+    refused([](TrussInput& bad) { bad.curve_of[5] = 1; });
+    refused([](TrussInput& bad) { bad.scale[5] = -1.0; });
+    refused([](TrussInput& bad) { bad.curve[0].k_unloading = 1.0; });
+}

@@ -1,0 +1,93 @@
+"""Scenes that several files look at, run once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cache
+from types import MappingProxyType
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from birm3d import Barrier, Result, Settings, Simulation, Vehicle, scenes
+from hypothesis import settings
+from scipy.spatial.transform import Rotation
+
+mpl.use("Agg")
+
+# The same examples in every run: a test-suite that fails now and then is not trusted.
+settings.register_profile("birm3d", derandomize=True, deadline=None)
+settings.load_profile("birm3d")
+
+# Every scene of birm3d.scenes, and a soft vehicle whose rigid body ends up at the wall.
+SCENES: Mapping[str, Callable[[], Simulation]] = MappingProxyType(
+    {
+        "w1": scenes.w1,
+        "w2": scenes.w2,
+        **{f"table_2_{mph}_mph": lambda mph=mph: scenes.paper_table_2(mph) for mph in scenes.TABLE_2},
+        "nhtsa_10146": scenes.nhtsa_10146,
+        **{f"oblique_{angle}": lambda angle=angle: scenes.oblique(angle) for angle in (10, 24, 45, 66)},
+        **{f"oblique_{a}_friction": lambda a=a: scenes.oblique(a, friction=0.2) for a in (10, 24, 45, 66)},
+        "rolling": scenes.rolling,
+        "parked": scenes.parked,
+        "soft": lambda: soft_scene(),
+    }
+)
+
+
+def soft_scene(angle: float = 90.0, settings: Settings | None = None) -> Simulation:
+    """The block of W1 at 30 m/s with a front that yields at 100 kN: its trusses of 2 m close."""
+    block = scenes.laboratory_block(100, k_initial=5e5, knee=0.2, k_unloading=5e6, stagger=0.05)
+    wall = Barrier.rigid_wall(friction=0.0)
+    return Simulation(block, wall, 30.0, angle, settings=settings or Settings(gravity=0.0, ground=False))
+
+
+@cache
+def _result(name: str) -> Result:
+    return SCENES[name]().run()
+
+
+@pytest.fixture(params=SCENES)
+def scene_result(request: pytest.FixtureRequest) -> Result:
+    """The result of every scene in turn, default settings."""
+    return _result(request.param)
+
+
+@pytest.fixture(scope="session")
+def result_of() -> Callable[[str], Result]:
+    """Result of a scene by its name in ``SCENES``."""
+    return _result
+
+
+@pytest.fixture(scope="session")
+def make_soft_scene() -> Callable[..., Simulation]:
+    return soft_scene
+
+
+@pytest.fixture(scope="session")
+def body_to_world() -> Callable[[Result], Rotation]:
+    """Orientations of all rows, from the angles a user sees (ISO 8855: yaw, pitch, roll in turn)."""
+
+    def orientation(result: Result) -> Rotation:
+        scene = result.scene
+        barrier_heading = scene.barrier.heading if scene.barrier else 0.0
+        yaw = result.yaw + barrier_heading + 90.0 - scene.impact_angle
+        return Rotation.from_euler("ZYX", np.column_stack([yaw, result.pitch, result.roll]), degrees=True)
+
+    return orientation
+
+
+@pytest.fixture(scope="session")
+def spring_body() -> Callable[..., Vehicle]:
+    """A body on one spring through its mass centre (elastic unless told), `length` long."""
+
+    def make(mass: float, k: float, length: float, **law: float) -> Vehicle:
+        return Vehicle.from_arrays(
+            mass=mass,
+            inertia=mass * np.eye(3),
+            nodes=[[length, 0.0, 0.0]],
+            anchors=[[0.0, 0.0, 0.0]],
+            **{"k_initial": k, "k_unloading": k, **law},
+        )
+
+    return make

@@ -1,0 +1,87 @@
+"""The benchmark program shows error and time together. Nothing here depends on a time."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PROGRAM = Path(__file__).resolve().parents[1] / "bench/bench_birm3d.py"
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict]:
+    file = tmp_path_factory.mktemp("bench") / "out.json"
+    done = subprocess.run(
+        [sys.executable, "-W", "error", PROGRAM, "--quick", "--repeats", "1", "--json", file],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout, json.loads(file.read_text(encoding="utf-8"))
+
+
+def test_table_has_errors_beside_times(bench: tuple[str, dict]) -> None:
+    output, document = bench
+    head = next(line for line in output.splitlines() if line.startswith("case"))
+    assert "error" in head
+    assert "time [ms]" in head
+    assert "state hash" in head
+    assert len([line for line in output.splitlines() if line.startswith(("W2", "NHTSA"))]) == len(
+        document["rows"]
+    )
+
+
+def test_errors_are_finite_and_small(bench: tuple[str, dict]) -> None:
+    for row in bench[1]["rows"]:
+        assert math.isfinite(row["error"])
+        assert 0.0 < row["time"] < math.inf
+        limit = {"tolerance 1e-3 (default)": 0.01, "tolerance 1e-4": 0.005}.get(row["setting"], 0.002)
+        assert row["error"] < limit, row
+
+
+def test_numpy_reference_computes_the_same_law(bench: tuple[str, dict]) -> None:
+    rows = {(row["solver"], row["setting"]): row for row in bench[1]["rows"]}
+    for setting in ("fixed 1 ms", "fixed 0.1 ms"):
+        ours = rows["BIRM3D", setting]
+        for solver in ("NumPy", "NumPy, lean"):
+            # One scheme, one law: errors differ by how a peak between two steps is read only.
+            assert rows[solver, setting]["worst"] == ours["worst"]
+            assert rows[solver, setting]["error"] == pytest.approx(ours["error"], rel=0.01)
+
+
+def test_numpy_is_not_asked_for_a_smaller_error(bench: tuple[str, dict]) -> None:
+    ours = None
+    for row in bench[1]["rows"]:
+        if row["solver"] == "BIRM3D":
+            ours = row
+        else:
+            assert ours is not None
+            assert row["case"] == ours["case"]
+            assert row["error"] >= 0.99 * ours["error"]
+
+
+def test_marks_are_stated(bench: tuple[str, dict]) -> None:
+    output, document = bench
+    assert document["marks"]
+    for mark in document["marks"]:
+        assert mark["mark"] in output
+
+
+@pytest.mark.parametrize(
+    "path", sorted((PROGRAM.parent / "results").glob("*.csv")), ids=lambda path: path.stem
+)
+def test_committed_results_are_small_and_name_no_place(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert len(text) < 10_000
+    assert os.sep + "home" not in text
+    rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+    assert {"case", "error", "time_ms"} <= set(rows[0])
+    assert all(float(row["error"]) < 0.01 for row in rows)

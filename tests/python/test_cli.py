@@ -1,0 +1,147 @@
+"""The command line: results on stdout, the rest on stderr, errors that name the argument."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from birm3d.cli import main
+
+SEDAN = [
+    "run",
+    "--vehicle",
+    "passenger_car",
+    "--gvw",
+    "1719kg",
+    "--speed",
+    "57.09km/h",
+    "--mesh-density",
+    "0.3",
+]
+
+
+def birm3d(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    """Run the command line in this process; returns the exit code."""
+    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
+    try:
+        main()
+    except SystemExit as stop:
+        return int(stop.code or 0)
+    return 0
+
+
+def test_run_prints_a_table(monkeypatch, capsys):
+    assert birm3d(monkeypatch, *SEDAN) == 0
+    out, err = capsys.readouterr()
+    assert "dynamic crush" in out
+    assert "1,719 kg" in out
+    assert err == ""
+
+
+def test_run_as_json_with_files(monkeypatch, capsys, tmp_path):
+    figure, table = tmp_path / "crash.png", tmp_path / "crash.csv"
+    assert birm3d(monkeypatch, *SEDAN, "--json", "--report", "--plot", str(figure), "--csv", str(table)) == 0
+    out, err = capsys.readouterr()
+    outcome = json.loads(out)
+    assert outcome["mass"] == pytest.approx(1719.0)
+    assert outcome["impact_speed"] == pytest.approx(57.09 / 3.6)
+    # The walk of one value: the speed of the command line is the speed of the first row.
+    assert table.read_text().splitlines()[1].split(",")[4] == str(outcome["impact_speed"])
+    assert 0.6 < outcome["metrics"]["dynamic_crush"] < 0.8
+    assert figure.stat().st_size > 10_000
+    assert "left out" in err
+
+
+def test_vehicles(monkeypatch, capsys):
+    assert birm3d(monkeypatch, "vehicles", "--json") == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["passenger_car"]["mass"] == pytest.approx(1814.37)
+    assert "bumper" in facts["pickup"]["zones"]
+    assert birm3d(monkeypatch, "vehicles") == 0
+    assert "paper_pickup" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parts"),
+    [
+        (["--vehicle", "pickup"], ["--speed", "missing"]),
+        (["--vehicle", "pikcup", "--speed", "5"], ["preset", "pickup", "'pikcup'"]),
+        (["--vehicle", "pickup", "--speed", "5 knots"], ["speed", "mph", "5 knots"]),
+        (["--vehicle", "pickup", "--speed", "-3"], ["impact_speed", ">= 0", "-3"]),
+        (["--vehicle", "pickup", "--speed", "5", "--angle", "190"], ["impact_angle", "180", "190"]),
+        (["--vehicle", "pickup", "--speed", "5", "--friction", "-1"], ["friction", ">= 0", "-1"]),
+        (["--vehicle", "pickup", "--speed", "5", "--barrier", "none"], ["duration", "no barrier"]),
+        (["--vehicle", "missing.toml", "--speed", "5"], ["missing.toml", "can not be read"]),
+        (
+            ["--vehicle", "pickup", "--speed", "15", "--time-step", "0.2"],
+            ["time_step", "critical step", "0.2"],
+        ),
+    ],
+)
+def test_errors_say_what_is_wrong(monkeypatch, capsys, arguments, parts):
+    assert birm3d(monkeypatch, "run", *arguments) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    for part in parts:
+        assert part in err
+
+
+SCENE = """
+[vehicle]
+preset = "passenger_car"
+gvw = "4500 lb"
+mesh_density = 0.3
+
+[barrier]
+kind = "rigid_wall"
+friction = 0.0
+
+[impact]
+speed = "30 mph"
+angle = "45 deg"
+"""
+
+
+def scene_file(folder: Path, text: str) -> str:
+    path = folder / "scene.toml"
+    path.write_text(text)
+    return str(path)
+
+
+def test_scene_file(monkeypatch, capsys, tmp_path):
+    assert birm3d(monkeypatch, "run", scene_file(tmp_path, SCENE), "--json") == 0
+    outcome = json.loads(capsys.readouterr().out)
+    assert outcome["impact_angle"] == 45.0
+    assert outcome["mass"] == pytest.approx(4500 * 0.45359237)
+
+
+def test_the_example_scene_is_read(monkeypatch, capsys):
+    example = Path(__file__).parents[2] / "examples" / "scene.toml"
+    assert birm3d(monkeypatch, "run", str(example), "--json") == 0
+    assert json.loads(capsys.readouterr().out)["end_reason"] == "separated"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "line", "parts"),
+    [
+        (("friction", "fricton"), 9, ["fricton", "unknown key"]),
+        (("0.0", "-0.5"), 9, ["friction", "greater than or equal to 0", "-0.5"]),
+        (('"30 mph"', "30"), 12, ["speed", "string", "30"]),
+        (('"45 deg"', '"45 m"'), 13, ["angle", "deg", "45 m"]),
+        (('preset = "passenger_car"', ""), 2, ["preset or file"]),
+        (("[barrier]", "[barrier"), 7, ["TOML"]),
+    ],
+)
+def test_scene_file_errors(monkeypatch, capsys, tmp_path, wrong, line, parts):
+    path = scene_file(tmp_path, SCENE.replace(*wrong, 1))
+    assert birm3d(monkeypatch, "run", path) == 2
+    err = capsys.readouterr().err
+    for part in parts:
+        assert part in err
+    assert f"{path}:{line}:" in err or f"line {line}" in err
+
+
+def test_options_beside_a_scene_file_are_refused(monkeypatch, capsys, tmp_path):
+    assert birm3d(monkeypatch, "run", scene_file(tmp_path, SCENE), "--speed", "5") == 2
+    assert "--speed" in capsys.readouterr().err

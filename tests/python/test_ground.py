@@ -1,0 +1,154 @@
+"""Tyres on the ground (paper 5.2): a vehicle that rolls, stands and slides."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from birm3d import Barrier, Result, Settings, Simulation, Vehicle, scenes, units
+
+SETTLED = 0.5  # s
+
+
+@pytest.mark.parametrize("name", Vehicle.presets())
+@pytest.mark.parametrize(
+    ("speed", "duration"), [(units.mph(30.0), 2.0), (0.0, 10.0)], ids=["rolling", "parked"]
+)
+def test_tyre_reactions_carry_the_weight(name: str, speed: float, duration: float) -> None:
+    """Paper, case 1."""
+    vehicle = Vehicle.preset(name, mesh_density=0.1)
+    result = Simulation(vehicle, None, speed, duration=duration).run()
+    weight = vehicle.mass * 9.80665
+    settled = result.time > SETTLED
+    reaction = result.tire_reaction[settled]
+    total = reaction.sum(axis=1)
+    # 0.1 %: of the mean; 1 %: what a parked car may hum. Measured: 1e-9 of both.
+    assert total.mean() == pytest.approx(weight, rel=1e-3)
+    assert total.std() < 0.01 * weight
+    assert (reaction > 0.0).all()
+
+    # Lever rule about the axles; left and right alike.
+    front = vehicle.wheels[:, 0] > 0.0
+    a, b = vehicle.wheels[front, 0].mean(), -vehicle.wheels[~front, 0].mean()
+    assert reaction[:, front].sum(axis=1).mean() == pytest.approx(weight * b / (a + b), rel=1e-3)
+    left = vehicle.wheels[:, 1] > 0.0
+    assert reaction[:, left].sum(axis=1) == pytest.approx(reaction[:, ~left].sum(axis=1), rel=1e-6)
+
+
+def test_a_parked_vehicle_stays_where_it_is(result_of: Callable[[str], Result]) -> None:
+    result = result_of("parked")
+    assert np.abs(result.position - result.position[0]).max() < 1e-3  # m, in 10 s
+    assert max(result.metrics[f"max_{angle}"] for angle in ("roll", "pitch", "yaw")) < 1e-2  # deg
+
+
+def test_a_rolling_vehicle_keeps_its_speed(result_of: Callable[[str], Result]) -> None:
+    result = result_of("rolling")
+    # Nothing resists along the wheels; only rounding is left.
+    assert result.velocity[-1] == pytest.approx([units.mph(30.0), 0.0, 0.0], abs=1e-9)
+    assert result.energy["tire_friction"][-1] == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("gravity", [1.62, 9.80665, 20.0])
+def test_the_weight_goes_with_gravity(gravity: float) -> None:
+    result = scenes.rolling(1.0, Settings(gravity=gravity)).run()
+    settled = result.time > SETTLED
+    weight = result.scene.vehicle.mass * gravity
+    assert result.tire_reaction[settled].sum(axis=1).mean() == pytest.approx(weight, rel=1e-3)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.1, 0.5])
+def test_drop(restitution: float) -> None:
+    """Free fall by 0.2 m, then rebounds of the given restitution, then rest."""
+    drop, g = 0.2, 9.80665
+    # Wheels at equal distance fore and aft: the fall stays level.
+    vehicle = Vehicle.from_arrays(
+        mass=1000.0,
+        inertia=np.diag([300.0, 1500.0, 1600.0]),
+        nodes=[[2.0, 0.0, 0.0]],
+        anchors=[[1.5, 0.0, 0.0]],
+        k_initial=1e6,
+        k_unloading=1e6,
+        wheels=[[x, y, -0.2, 0.3] for x in (1.2, -1.2) for y in (0.7, -0.7)],
+        mass_center_height=0.5 + drop,
+    )
+    choice = Settings(restitution=restitution, output_interval=1e-5)
+    result = Simulation(vehicle, None, 0.0, duration=2.0, settings=choice).run()
+    z, fall = result.position[:, 2], np.sqrt(2.0 * drop / g)
+    before = result.time < fall - 1e-4  # the rows beside the landing hold part of it
+    assert z[before] == pytest.approx(0.7 - 0.5 * g * result.time[before] ** 2, abs=1e-6)
+    landing = np.sqrt(2.0 * g * drop)
+    # The rebound is seen within a row of the landing; gravity takes 1e-4 m/s per row.
+    assert result.velocity[:, 2].max() == pytest.approx(restitution * landing, abs=1e-3)
+    if restitution > 0.0:
+        after = result.time > fall
+        assert z[after].max() - 0.5 == pytest.approx(restitution**2 * drop, rel=1e-2)
+    assert z[-1] == pytest.approx(0.5, abs=1e-4)  # tyres stand within the contact's compliance
+    assert result.energy["impacts"][-1] == pytest.approx(1000.0 * g * drop, rel=1e-3)
+    assert np.diff(result.energy["impacts"]).min() > -1e-6 * 1000.0 * g * drop
+
+
+def slide(**changes: object) -> Result:
+    """Against a smooth wall, so that only tyres rub."""
+    return scenes.oblique(24.0, settings=Settings(**changes)).run()  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("tire_model", ["slip", "skid"])
+def test_sliding_tyres_take_energy(tire_model: str) -> None:
+    result = slide(tire_model=tire_model)
+    lost = result.energy["tire_friction"]
+    kinetic = result.energy["kinetic"][0]
+    assert lost[-1] > 1e-3 * kinetic
+    assert np.diff(lost).min() >= -1e-15 * kinetic  # rounding
+    assert result.metrics["energy_residual"] < 1e-3
+    assert result.metrics["momentum_residual"] < 1e-9
+    # Never more than mu N, as means over the interval.
+    friction = np.linalg.norm(result.tire_friction_force, axis=1)
+    assert (friction <= 0.8 * result.tire_reaction.sum(axis=1) * (1.0 + 1e-9) + 1e-6).all()
+    assert np.abs(result.tire_friction_force[:, 2]).max() == 0.0
+
+
+@pytest.mark.parametrize("tire_model", ["slip", "skid"])
+def test_without_friction_tyres_only_carry(tire_model: str) -> None:
+    result = slide(mu_tire=0.0, tire_model=tire_model)
+    assert np.abs(result.tire_friction_force).max() == 0.0
+    assert np.abs(result.energy["tire_friction"]).max() == 0.0
+    assert result.tire_reaction.sum(axis=1).max() > 0.0
+
+
+def test_more_friction_takes_more_energy() -> None:
+    lost = [slide(mu_tire=mu).energy["tire_friction"][-1] for mu in (0.1, 0.3, 0.8)]
+    assert lost[0] < lost[1] < lost[2]
+
+
+def test_the_skid_rule_leaves_a_straight_roll_alone() -> None:
+    result = scenes.rolling(1.0, Settings(tire_model="skid")).run()
+    assert result.velocity[-1, 0] == pytest.approx(units.mph(30.0), abs=1e-9)
+
+
+def test_ground_can_be_left_out() -> None:
+    vehicle = Vehicle.preset("passenger_car", mesh_density=0.2)
+    choice = Settings(ground=False)
+    result = Simulation(
+        vehicle, Barrier.rigid_wall(), 10.0, standoff=2.0, duration=0.15, settings=choice
+    ).run()
+    assert np.abs(result.tire_reaction).max() == 0.0
+    # Free fall until the wall is reached.
+    assert result.position[-1, 2] - result.position[0, 2] == pytest.approx(-0.5 * 9.80665 * 0.15**2, rel=1e-3)
+
+
+def test_a_landing_does_not_hang_on_the_steps() -> None:
+    """After an oblique impact the car falls back on its rear wheels while it slides sideways."""
+    car = Vehicle.preset("passenger_car", gvw=units.lb(4500))
+
+    def run(**choice: float) -> Result:
+        wall = Barrier.rigid_wall()
+        return Simulation(car, wall, 26.7, 65.0, duration=0.5, settings=Settings(**choice)).run()  # type: ignore[arg-type]
+
+    fine = run(time_step=2e-5)
+    for choice in ({"tolerance": 1e-4}, {"tolerance": 1e-5}, {"tolerance": 1e-6}, {"time_step": 1e-4}):
+        other = run(**choice)
+        # A thousandth of the impact speed, and of that over a metre for the spin.
+        assert np.abs(other.velocity[-1] - fine.velocity[-1]).max() < 1e-3 * 26.7, choice
+        spin = np.radians(other.angular_velocity[-1] - fine.angular_velocity[-1])
+        assert np.abs(spin).max() < 1e-3 * 26.7, choice

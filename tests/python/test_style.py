@@ -1,0 +1,131 @@
+"""Formatting, linting, types, layering, and the generated stub: rules that a machine can hold."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+CPP_FILES = sorted(
+    path
+    for folder in ("cpp", "bindings", "tests/cpp", "examples/cpp")
+    for path in (ROOT / folder).rglob("*")
+    if path.suffix in {".cpp", ".hpp"}
+)
+
+
+def passes(*command: str | Path) -> None:
+    """Run a checker in the repository; its findings are the failure message."""
+    done = subprocess.run(
+        [str(c) for c in command],
+        cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+    )  # fmt: skip
+    if done.returncode != 0:
+        pytest.fail(f"{command[0]} exit status {done.returncode}\n{done.stdout}", pytrace=False)
+
+
+def test_python_lint() -> None:
+    passes(sys.executable, "-m", "ruff", "check", "--no-cache", ".")
+
+
+def test_python_format() -> None:
+    passes(sys.executable, "-m", "ruff", "format", "--check", "--diff", "--no-cache", ".")
+
+
+def test_python_types(tmp_path: Path) -> None:
+    passes(sys.executable, "-m", "mypy", "--strict", "--cache-dir", tmp_path, "python/birm3d")
+
+
+def test_cpp_format() -> None:
+    clang_format = shutil.which("clang-format", path=sysconfig.get_path("scripts"))
+    assert clang_format, "clang-format is missing; pip install '.[test]' brings it"
+    passes(clang_format, "--dry-run", "--Werror", *CPP_FILES)
+
+
+def test_stub_is_what_the_module_says(tmp_path: Path) -> None:
+    passes(sys.executable, "-m", "pybind11_stubgen", "birm3d._core", "--exit-code", "-o", tmp_path)
+    generated = (tmp_path / "birm3d/_core.pyi").read_text(encoding="utf-8")
+    committed = (ROOT / "python/birm3d/_core.pyi").read_text(encoding="utf-8")
+    assert committed == generated, "regenerate: python -m pybind11_stubgen birm3d._core -o python"
+
+
+# Layers of the C++ code, lowest first. A file may include its own layer and those before it.
+LAYERS = ("base", "geometry", "model", "state", "kernels", "sim", "ensemble")
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^">]+)[">]', re.MULTILINE)
+# Printing, files and Python belong to the layers above the core.
+FOREIGN = re.compile(r"(iostream|ostream|istream|fstream|cstdio|stdio\.h|print|Python\.h|pybind11/.*)")
+
+
+def layering_errors(root: Path) -> list[str]:
+    """Every include below cpp/ that points upwards, sideways between kernels, or out of the core."""
+    errors = []
+    folders = {"include": root / "cpp/include/birm3d", "src": root / "cpp/src"}
+    for folder in folders.values():
+        for path in sorted(p for p in folder.rglob("*") if p.suffix in {".hpp", ".cpp"}):
+            name = path.relative_to(folder)
+            where = path.relative_to(root).as_posix()
+            layer = name.parts[0]
+            if layer not in LAYERS:
+                errors.append(f"{where}: is in none of the layers {', '.join(LAYERS)}")
+                continue
+            for bracket, included in INCLUDE.findall(path.read_text(encoding="utf-8")):
+                if FOREIGN.fullmatch(included):
+                    errors.append(f"{where}: the core may not include {included}")
+                    continue
+                target = included_file(path, bracket, included, folders)
+                if target is None:
+                    continue
+                if target.parts[0] not in LAYERS or LAYERS.index(target.parts[0]) > LAYERS.index(layer):
+                    errors.append(f"{where}: layer {layer} may not include {included}")
+                elif layer == target.parts[0] == "kernels" and target.with_suffix("") != name.with_suffix(""):
+                    errors.append(f"{where}: kernels may not include each other, but it includes {included}")
+    return errors
+
+
+def included_file(path: Path, bracket: str, included: str, folders: dict[str, Path]) -> Path | None:
+    """The included file relative to its folder of layers; None for the standard library and Eigen."""
+    if included.startswith("birm3d/"):
+        return Path(included.removeprefix("birm3d/"))
+    if bracket == '"':
+        for candidate in (path.parent / included, folders["src"] / included):
+            for folder in folders.values():
+                file = Path(os.path.normpath(candidate))
+                if file.is_file() and file.is_relative_to(folder):
+                    return file.relative_to(folder)
+    return None
+
+
+def test_layers_include_downwards_only() -> None:
+    assert (ROOT / "cpp/include/birm3d/base").is_dir()
+    assert layering_errors(ROOT) == []
+
+
+@pytest.mark.parametrize(
+    ("file", "line", "finding"),
+    [
+        ("include/birm3d/base/a.hpp", '#include "birm3d/geometry/b.hpp"', "layer base may not include"),
+        ("src/model/a.cpp", "#  include <birm3d/sim/step.hpp>", "layer model may not include"),
+        ("src/kernels/a.cpp", '#include "b.hpp"', "kernels may not include each other"),
+        ("src/sim/a.cpp", "#include <iostream>", "the core may not include iostream"),
+        ("include/birm3d/state/a.hpp", "#include <pybind11/numpy.h>", "the core may not include pybind11"),
+        ("src/extras/a.cpp", "", "is in none of the layers"),
+        ("src/kernels/b.cpp", '#include "birm3d/kernels/b.hpp"', None),
+        ("src/sim/a.cpp", '#include "birm3d/kernels/b.hpp"\n#include <Eigen/Core>\n#include <vector>', None),
+    ],
+)
+def test_layering_check_itself(tmp_path: Path, file: str, line: str, finding: str | None) -> None:
+    for name, text in (("src/kernels/b.hpp", ""), (file, line)):
+        path = tmp_path / "cpp" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    errors = layering_errors(tmp_path)
+    if finding is None:
+        assert errors == []
+    else:
+        assert len(errors) == 1
+        assert finding in errors[0]
