@@ -53,7 +53,7 @@ void register_simulation(py::module_& m) {
         .def_readonly("deepest_point", &StepStatistics::deepest_point,
                       "m, of the rigid body inside a barrier")
         .def_readonly("least_critical_step", &StepStatistics::least_critical_step,
-                      "s, 2/omega of the trusses in contact");
+                      "s, sqrt(3)/omega of the trusses in contact");
 
     py::class_<Simulation::Snapshot>(m, "Snapshot", "A checkpoint: state and record.")
         .def_property_readonly("time", [](const Simulation::Snapshot& s) { return s.state.time; }, "s");

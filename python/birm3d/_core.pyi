@@ -349,7 +349,7 @@ class StepStatistics:
     @property
     def least_critical_step(self) -> float:
         """
-        s, 2/omega of the trusses in contact
+        s, sqrt(3)/omega of the trusses in contact
         """
     @property
     def longest_step(self) -> float:

@@ -1,10 +1,10 @@
-"""The law and the scheme of BIRM3D in NumPy, written as an expert would: the rival of the benchmark.
+"""The law of BIRM3D in NumPy, written as an expert would: the rival of the benchmark.
 
 Nodes are columns of (3, n) arrays that are allocated once; every operation writes in place; nothing in a step
 is done node by node in Python, and the few numbers of the body itself are plain floats, not small arrays.
-Same physics, same order of operations: leapfrog (kick, drift, kick) of a body that turns, nodes held on a
-plane, the three-segment truss law with unloading and release, the truss force projected on the normal, its
-torque, the energy ledger of the trusses.
+Same physics, by leapfrog (kick, drift, kick) with a fixed step: a body that turns, nodes held on a plane,
+the three-segment truss law with unloading and release, the truss force projected on the normal, its torque,
+the energy ledger of the trusses.
 
 Left out, in NumPy's favour: friction, tyres and ground, closed trusses, the error estimate and the stability
 bound, the broad phase, the histories (it keeps one number a step, the wall force), and the 20 ms that BIRM3D

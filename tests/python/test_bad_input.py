@@ -307,8 +307,8 @@ def test_a_step_that_is_too_long_is_refused_and_a_good_one_named(
     result = simulation(advised).run()
     assert result.end_reason == "separated"
     assert result.statistics.longest_step <= advised
-    # Half the critical step, where leapfrog's energy sways by (omega dt)^2 / 8 = 1/8.
-    assert result.metrics["energy_residual"] < 0.15
+    # Half the critical step is stable, not accurate: the scheme damps by a quarter in W1's half cycle.
+    assert result.metrics["energy_residual"] < 0.3
 
 
 def test_the_refusal_leaves_the_state_as_it_was() -> None:
@@ -325,11 +325,11 @@ def test_the_refusal_leaves_the_state_as_it_was() -> None:
     assert (simulation.state_hash(), simulation.time) == state[-1]
 
 
-def test_the_limit_is_two_over_omega() -> None:
-    """A mass on one spring: leapfrog is stable below 2 sqrt(m/k)."""
+def test_the_limit_is_the_root_of_three_over_omega() -> None:
+    """A mass on one spring: the scheme is stable below sqrt(3) sqrt(m/k)."""
     k, mass = 1e6, 1000.0
     vehicle = arrays(nodes=[[2.0, 0.0, 0.0]], anchors=[[0.5, 0.0, 0.0]], k_initial=k, k_unloading=k)
-    limit = 2.0 * math.sqrt(mass / k)
+    limit = math.sqrt(3.0) * math.sqrt(mass / k)
 
     def run(step: float) -> Result:
         settings = Settings(time_step=step, gravity=0.0, ground=False)

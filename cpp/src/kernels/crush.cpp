@@ -99,17 +99,31 @@ void release(const TrussBlock& truss, const TrussBlockState& before, BlockContac
 // Sums over the block, and the bounds that the step control and the broad phase need.
 struct Load {
     double force_x, force_y, force_z, torque_x, torque_y, torque_z, normal_force, work, stored;
-    double k_unloading;     // of the pushing nodes (N/m)
-    double nearest_gap;     // of the nodes that do not push (m)
+    double stiffness;       // see SkinForces (1/s^2)
     double largest_square;  // of the distance from the ball's centre (m^2)
 };
 
-// 3. Forces on the vehicle. along_truss is 0 or 1.
+// Inverse mass and inertia as plain numbers, for the loop.
+struct Inverse {
+    explicit Inverse(const RigidBody& body)
+        : mass(body.inverse_mass),
+          xx(body.inverse_inertia(0, 0)),
+          yy(body.inverse_inertia(1, 1)),
+          zz(body.inverse_inertia(2, 2)),
+          xy(2.0 * body.inverse_inertia(0, 1)),
+          xz(2.0 * body.inverse_inertia(0, 2)),
+          yz(2.0 * body.inverse_inertia(1, 2)) {}
+    double mass, xx, yy, zz, xy, xz, yz;
+};
+
+// 3. Forces on the vehicle. along_truss is 0 or 1; center is that of the block's ball.
 BIRM3D_LANE_LOOP Load load_vehicle(const TrussBlock& truss, const Geometry& geometry, double along_truss,
-                                   double cx, double cy, double cz, const TrussBlockState& now,
-                                   BlockContact& contact) {
+                                   const Inverse& inverse, const std::array<double, 3>& center,
+                                   const TrussBlockState& now, BlockContact& contact) {
     const double along_normal = 1.0 - along_truss;
-    alignas(64) Lanes force_x, force_y, force_z, torque_x, torque_y, torque_z, stiffness, minus_gap, square;
+    const double center_x = center[0], center_y = center[1], center_z = center[2];
+    const Inverse W = inverse;
+    alignas(64) Lanes force_x, force_y, force_z, torque_x, torque_y, torque_z, stiffness, square;
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
         const double x = now.x[i], y = now.y[i], z = now.z[i];
@@ -129,24 +143,19 @@ BIRM3D_LANE_LOOP Load load_vehicle(const TrussBlock& truss, const Geometry& geom
         torque_x[i] = y * fz - z * fy;
         torque_y[i] = z * fx - x * fz;
         torque_z[i] = x * fy - y * fx;
-        stiffness[i] = now.pushing[i] * truss.k_unloading[i];
-        const double gap = contact.gap[i] > 0.0 ? contact.gap[i] : 0.0;
-        minus_gap[i] = now.pushing[i] > 0.0 ? -1e300 : -gap;
-        square[i] = (x - cx) * (x - cx) + (y - cy) * (y - cy) + (z - cz) * (z - cz);
+        // Inverse effective mass of the node along n (the denominator of Eq. 1): 1/m + c . I^-1 c, c = r x n.
+        const double nx = contact.normal_x[i], ny = contact.normal_y[i], nz = contact.normal_z[i];
+        const double cx = y * nz - z * ny, cy = z * nx - x * nz, cz = x * ny - y * nx;
+        const double turning =
+            cx * (W.xx * cx + W.xy * cy + W.xz * cz) + cy * (W.yy * cy + W.yz * cz) + W.zz * cz * cz;
+        stiffness[i] = now.pushing[i] * truss.k_unloading[i] * (W.mass + turning);
+        const double dx = x - center_x, dy = y - center_y, dz = z - center_z;
+        square[i] = dx * dx + dy * dy + dz * dz;
     }
-    return {lane_sum(force_x),        lane_sum(force_y),   lane_sum(force_z),          lane_sum(torque_x),
-            lane_sum(torque_y),       lane_sum(torque_z),  lane_sum(contact.pressure), lane_sum(contact.work),
-            lane_sum(contact.stored), lane_sum(stiffness), -lane_max(minus_gap),       lane_max(square)};
-}
-
-// Bound over the ball of the inverse effective mass along n (denominator of Eq. 1): 1/m + c . I^-1 c with
-// c = r x n; within the ball c departs from its centre's by at most the radius, and only across n.
-double inverse_effective_mass(const RigidBody& body, const Vec3& center, double radius, const Vec3& normal) {
-    const Vec3 c = center.cross(normal);
-    const double at_center = std::sqrt(c.dot(body.inverse_inertia * c));
-    const double across = body.inverse_inertia.trace() - normal.dot(body.inverse_inertia * normal);
-    const double root = at_center + radius * std::sqrt(across);
-    return body.inverse_mass + root * root;
+    return {lane_sum(force_x),          lane_sum(force_y),      lane_sum(force_z),
+            lane_sum(torque_x),         lane_sum(torque_y),     lane_sum(torque_z),
+            lane_sum(contact.pressure), lane_sum(contact.work), lane_sum(contact.stored),
+            lane_sum(stiffness),        lane_max(square)};
 }
 
 }  // namespace
@@ -162,9 +171,9 @@ SkinForces crush(const RigidBody& body, const TrussMesh& mesh, ContactModel mode
         add_hinge(mesh.hinge[b * mesh.hinges + j], now.deflection, law);
     if (press_trusses(truss, law, before, contact, now) > 0.0) release(truss, before, contact, now);
     const double along_truss = model == ContactModel::along_truss ? 1.0 : 0.0;
-    const Load load =
-        load_vehicle(truss, geometry, along_truss, center.x(), center.y(), center.z(), now, contact);
-    now.touching = load.k_unloading > 0.0;
+    const Load load = load_vehicle(truss, geometry, along_truss, Inverse(body),
+                                   {center.x(), center.y(), center.z()}, now, contact);
+    now.touching = load.stiffness > 0.0;
     now.ball_radius = std::max(before.ball_radius, std::sqrt(load.largest_square));
 
     SkinForces sum;
@@ -173,11 +182,7 @@ SkinForces crush(const RigidBody& body, const TrussMesh& mesh, ContactModel mode
     sum.normal_force = load.normal_force;
     sum.work = load.work;
     sum.stored = load.stored;
-    sum.nearest_gap = load.nearest_gap;
-    if (now.touching) {
-        const Vec3 normal(contact.normal_x[0], contact.normal_y[0], contact.normal_z[0]);
-        sum.stiffness = load.k_unloading * inverse_effective_mass(body, center, now.ball_radius, normal);
-    }
+    sum.stiffness = load.stiffness;
     return sum;
 }
 

@@ -1,6 +1,7 @@
 #include "birm3d/sim/barrier_forces.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/crush.hpp"
@@ -35,11 +36,8 @@ void barrier_forces(const Scene& scene, std::size_t u, const State& from, Trial&
     trial.active[u].clear();
     for (std::size_t b = 0; b < unit.trusses.blocks; ++b) {
         const TrussBlockState& block = before.trusses.block[b];
-        const double ball_gap = face.gap(unit.trusses.node_ball[b].center) - block.ball_radius;
-        if (ball_gap >= 0.0 && !block.touching) {
-            sum.nearest_gap = std::min(sum.nearest_gap, ball_gap);
-            continue;
-        }
+        const bool reaches = within_reach(face, unit.trusses.node_ball[b].center, block.ball_radius, 0.0);
+        if (!reaches && !block.touching) continue;
         TrussBlockState& next = now.trusses.block[b];
         detect(face, block.x, block.y, block.z, contact);
         SkinForces forces =
@@ -49,11 +47,28 @@ void barrier_forces(const Scene& scene, std::size_t u, const State& from, Trial&
         sum += forces;
         trial.active[u].push_back(b);
     }
-    trial.nearest_gap = std::min(trial.nearest_gap, sum.nearest_gap);
     now.skin = sum;
     now.skin.contact = turned(sum.contact, R);
     now.skin.friction = turned(sum.friction, R);
     trial.state.statistics.node_evaluations += trial.active[u].size() * lanes;
+}
+
+double nearest_gap(const Scene& scene, const State& state) {
+    double nearest = std::numeric_limits<double>::infinity();
+    BlockContact contact;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const UnitState& unit = state.units[u];
+        const Mat3 R = unit.body.orientation.toRotationMatrix();
+        const HalfSpace face = scene.barrier->face.seen_from(unit.body.position, R);
+        const TrussMesh& mesh = scene.vehicle->units[u].trusses;
+        for (std::size_t b = 0; b < mesh.blocks; ++b) {
+            const TrussBlockState& block = unit.trusses.block[b];
+            if (!within_reach(face, mesh.node_ball[b].center, block.ball_radius, nearest)) continue;
+            detect(face, block.x, block.y, block.z, contact);
+            nearest = std::min(nearest, *std::min_element(contact.gap.begin(), contact.gap.end()));
+        }
+    }
+    return nearest;
 }
 
 }  // namespace birm3d

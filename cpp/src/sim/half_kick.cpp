@@ -24,10 +24,6 @@ Twist mean(const Twist& a, const Twist& b) {
     return {0.5 * (a.velocity + b.velocity), 0.5 * (a.angular_velocity + b.angular_velocity)};
 }
 
-Wrench scaled(const Wrench& w, double factor) {
-    return {factor * w.force, factor * w.torque};
-}
-
 std::vector<RigidContact> find_rigid_contacts(const Scene& scene, const State& state, double dt,
                                               const StepOptions& options) {
     std::vector<RigidContact> contacts;
@@ -122,12 +118,13 @@ std::vector<Twist> motions(const Scene& scene, const State& state) {
     return result;
 }
 
-void kick_by_forces(const Scene& scene, double half, State& state) {
-    for (std::size_t u = 0; u < state.units.size(); ++u) {
+void kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial) {
+    for (std::size_t u = 0; u < trial.state.units.size(); ++u) {
         const RigidBody& body = scene.vehicle->units[u].body;
-        UnitState& unit = state.units[u];
-        Wrench impulse = scaled(unit.skin.contact, half);
-        impulse += scaled(unit.skin.friction, half);
+        UnitState& unit = trial.state.units[u];
+        const ThirdOrder& extra = trial.third_order[u];
+        Wrench impulse = scaled(unit.load, half);
+        impulse += stage == Stage::before_drift ? extra.lead : difference(extra.correction, extra.lead);
         impulse.force.z() -= half * body.mass * scene.settings.gravity;
         kick(body, impulse, unit.body);
     }
@@ -182,6 +179,7 @@ ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> conta
         } else {
             sum.barrier += impulse;
             sum.barrier_normal += contact.impulse;
+            if (contact.impulse > 0.0) ++sum.member_contacts;
         }
     }
     return result;
@@ -248,7 +246,7 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     }
 
     const std::vector<Twist> before = motions(scene, state);
-    kick_by_forces(scene, half, state);
+    kick_by_forces(scene, stage, half, trial);
     std::vector<RigidContact> lasting = contacts;
     const std::vector<ContactBody> bodies = contact_bodies(scene, state);
     if (stage == Stage::before_drift && options.locate_impacts)

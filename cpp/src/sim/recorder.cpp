@@ -22,7 +22,9 @@ enum UnitOffset : std::size_t {
     at_tire_friction = 17,  // impulse
     at_barrier_impulse = 20,
     at_normal_impulse = 23,
-    at_tire_impulses = 24
+    at_barrier_bend = 24,  // what the third order adds to the straight course of the force: impulse
+    at_normal_bend = 27,
+    at_tire_impulses = 28
 };
 
 std::size_t unit_width(const Unit& unit) {
@@ -42,11 +44,14 @@ struct StepView {
     // How much of the step has passed at `t` from its start; an impact's step has no length and is over at once.
     double share(double t) const { return dt > 0.0 ? t / dt : 1.0; }
     // Integral from the start of the step to `t` of a force with end values a[i], b[i] (N s).
-    double force_integral(std::size_t i, double t) const {
-        return t * (a[i] + 0.5 * share(t) * (b[i] - a[i]));
+    // With it the bend of a parabola that meets the end values, given by its impulse b[bend] over the step.
+    double force_integral(std::size_t i, std::size_t bend, double t) const {
+        const double s = share(t);
+        return t * (a[i] + 0.5 * s * (b[i] - a[i])) + s * s * (3.0 - 2.0 * s) * b[bend];
     }
-    Vec3 force_integral3(std::size_t i, double t) const {
-        return {force_integral(i, t), force_integral(i + 1, t), force_integral(i + 2, t)};
+    Vec3 force_integral3(std::size_t i, std::size_t bend, double t) const {
+        return {force_integral(i, bend, t), force_integral(i + 1, bend + 1, t),
+                force_integral(i + 2, bend + 2, t)};
     }
     double impulse(std::size_t i, double t) const { return share(t) * b[i]; }
 };
@@ -60,9 +65,10 @@ struct Impulses {
 
     static Impulses within(const StepView& step, double t, std::size_t wheels) {
         Impulses sum;
-        sum.barrier =
-            step.force_integral3(at_barrier_force, t) + step.share(t) * vec(step.b + at_barrier_impulse);
-        sum.barrier_normal = step.force_integral(at_normal_force, t) + step.impulse(at_normal_impulse, t);
+        sum.barrier = step.force_integral3(at_barrier_force, at_barrier_bend, t) +
+                      step.share(t) * vec(step.b + at_barrier_impulse);
+        sum.barrier_normal =
+            step.force_integral(at_normal_force, at_normal_bend, t) + step.impulse(at_normal_impulse, t);
         sum.tire_friction = step.share(t) * vec(step.b + at_tire_friction);
         for (std::size_t w = 0; w < wheels; ++w)
             sum.tire.push_back(step.impulse(at_tire_impulses + w, t));
@@ -101,16 +107,18 @@ Recorder::Recorder(const Scene& scene, const State& start) : width_(at_units) {
         none.emplace_back(unit.wheels.size());
     }
     values_.reserve(512 * width_);
-    add_row(scene, start.time, start.energies, bodies_of(start), start.units, none);
+    add_row(scene, start.time, start.energies, bodies_of(start), start.units, none,
+            std::vector<ThirdOrder>(none.size()));
 }
 
 void Recorder::add(const Scene& scene, const Trial& accepted) {
     const State& state = accepted.state;
+    const std::vector<ThirdOrder> none(state.units.size());
     if (accepted.at_start.happened) {
         // The forces of that instant are those of the row before.
         const std::size_t before = values_.size() - width_;
         add_row(scene, values_[before + at_time], accepted.at_start.energies, accepted.at_start.bodies,
-                state.units, accepted.at_start.impulses);
+                state.units, accepted.at_start.impulses, none);
         const double* from = values_.data() + before + at_units;
         double* to = values_.data() + values_.size() - width_ + at_units;
         for (const Unit& unit : scene.vehicle->units) {
@@ -118,18 +126,17 @@ void Recorder::add(const Scene& scene, const Trial& accepted) {
             from += unit_width(unit), to += unit_width(unit);
         }
     }
-    if (accepted.at_end.happened) {
-        add_row(scene, state.time, accepted.at_end.energies, accepted.at_end.bodies, state.units,
-                accepted.impulses);
-        add_row(scene, state.time, state.energies, bodies_of(state), state.units, accepted.at_end.impulses);
-    } else {
-        add_row(scene, state.time, state.energies, bodies_of(state), state.units, accepted.impulses);
-    }
+    const std::vector<BodyState> bodies = bodies_of(state);
+    const Impact& end = accepted.at_end;
+    add_row(scene, state.time, end.happened ? end.energies : state.energies,
+            end.happened ? end.bodies : bodies, state.units, accepted.impulses, accepted.third_order);
+    if (end.happened) add_row(scene, state.time, state.energies, bodies, state.units, end.impulses, none);
 }
 
 void Recorder::add_row(const Scene& scene, double time, const Energies& e,
                        const std::vector<BodyState>& bodies, const std::vector<UnitState>& forces,
-                       const std::vector<ContactImpulses>& impulses) {
+                       const std::vector<ContactImpulses>& impulses,
+                       const std::vector<ThirdOrder>& third_order) {
     const std::size_t begin = values_.size();
     values_.resize(begin + width_);
     double* row = values_.data() + begin;
@@ -152,6 +159,8 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e,
         put(row + at_tire_friction, impulses[u].tire_friction);
         put(row + at_barrier_impulse, impulses[u].barrier);
         row[at_normal_impulse] = impulses[u].barrier_normal;
+        put(row + at_barrier_bend, third_order[u].correction.force);
+        row[at_normal_bend] = third_order[u].normal_correction;
         std::copy(impulses[u].tire.begin(), impulses[u].tire.end(), row + at_tire_impulses);
         row += unit_width(model);
     }

@@ -52,6 +52,33 @@ double Scene::reference_speed() const {
     return std::max(approach.speed, tolerance::slowest_reference_speed);
 }
 
+std::uint64_t Scene::fingerprint() const {
+    Hash hash;
+    for (const Unit& unit : vehicle->units) {
+        hash.add(unit.body.mass);
+        for (int column = 0; column < 3; ++column)
+            hash.add(Vec3(unit.body.inertia.col(column)));
+        for (const TrussBlock& b : unit.trusses.block)
+            for (const Lanes* lane :
+                 {&b.node_x, &b.node_y, &b.node_z, &b.anchor_x, &b.anchor_y, &b.anchor_z, &b.k_unloading})
+                hash.add(*lane);
+        for (const Hinge& hinge : unit.trusses.hinge) {
+            hash.add(hinge.deflection);
+            hash.add(hinge.slope_change);
+        }
+        for (const Wheel& wheel : unit.wheels) {
+            hash.add(wheel.center);
+            hash.add(wheel.radius);
+        }
+    }
+    if (barrier) {
+        hash.add(barrier->friction);
+        hash.add(barrier->face.normal);
+        hash.add(barrier->face.offset);
+    }
+    return hash.value();
+}
+
 State Scene::initial_state() const {
     State state(*vehicle);
     const double barrier_heading = barrier ? barrier->heading : 0.0;

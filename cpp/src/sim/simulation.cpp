@@ -8,6 +8,7 @@
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
+#include "birm3d/sim/barrier_forces.hpp"
 
 namespace birm3d {
 
@@ -89,7 +90,7 @@ void Simulation::reset() {
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
-    if (snapshot.vehicle != scene_.vehicle || snapshot.barrier != scene_.barrier)
+    if (snapshot.scene != scene_.fingerprint())
         refuse("snapshot", "of a simulation of the same vehicle and barrier", "one of others");
     state_ = snapshot.state;
     recorder_ = snapshot.recorder;
@@ -186,7 +187,7 @@ void Simulation::adaptive_step() {
         for (std::size_t u = 0; u < state_.units.size(); ++u)
             fastest = std::max(fastest, fastest_point(scene_.vehicle->units[u], state_.units[u].body));
         next = std::max(tolerance::first_contact_step,
-                        std::min(next, fastest > 0.0 ? trial_.nearest_gap / fastest : infinity));
+                        std::min(next, fastest > 0.0 ? nearest_gap(scene_, state_) / fastest : infinity));
     }
     state_.next_step = next;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/sim/barrier_forces.hpp"
 #include "birm3d/sim/half_kick.hpp"
@@ -13,35 +14,57 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Smooth accelerations of the unit, for the error estimate.
-void set_accelerations(const Unit& unit, UnitState& now) {
-    Wrench sum = now.skin.contact;
-    sum += now.skin.friction;
-    now.acceleration = unit.body.inverse_mass * sum.force;
-    now.angular_acceleration = inverse_inertia_in_world(unit.body, now.body) * sum.torque;
-}
-
-double velocity_error(const Unit& unit, const UnitState& before, UnitState& now, double dt) {
-    // Leapfrog integrates a force that is linear in time exactly: the departure from a straight line over
-    // the step bounds the error. An eighth of it covers a slope that changes anywhere within the step.
-    const Vec3 departure = now.acceleration - (before.acceleration + dt * before.jerk);
-    const Vec3 angular_departure =
-        now.angular_acceleration - (before.angular_acceleration + dt * before.angular_jerk);
-    now.jerk = (now.acceleration - before.acceleration) / dt;
-    now.angular_jerk = (now.angular_acceleration - before.angular_acceleration) / dt;
+// A slope that changes within the step costs up to an eighth of the departure it makes (m/s).
+double error_of(const Unit& unit, const BodyState& body, const Wrench& departure, double dt) {
     const double gyration = std::sqrt(0.5 * unit.body.inertia.trace() * unit.body.inverse_mass);
-    return dt / 8.0 * (departure.norm() + gyration * angular_departure.norm());
+    const Vec3 turning = inverse_inertia_in_world(unit.body, body) * departure.torque;
+    return dt / 8.0 * (unit.body.inverse_mass * departure.force.norm() + gyration * turning.norm());
 }
 
-// 2/omega of the trusses in contact, infinite without any.
+// The load at the new instant, its rate, and what the third order adds to the trapezoid rule. Returns the
+// estimated error of the step's velocity (m/s).
+double load_and_correct(const Unit& unit, const UnitMotion& before, double dt, UnitMotion& now,
+                        ThirdOrder& extra) {
+    now.load = now.skin.contact;
+    now.load += now.skin.friction;
+    if (now.skin.normal_force == 0.0) {
+        // Nothing presses any more: the rate ends with the load, and a straight line is the better course
+        // through the corner that a release makes.
+        now.load_rate = {};
+        now.normal_rate = now.rate_step = 0.0;
+        extra.correction = {};
+        extra.normal_correction = 0.0;
+        return error_of(unit, now.body, difference(now.load, before.load), dt);
+    }
+    now.rate_step = dt;
+    now.load_rate = scaled(difference(now.load, before.load), 1.0 / dt);
+    now.normal_rate = (now.skin.normal_force - before.skin.normal_force) / dt;
+
+    // How far the load departs from a straight line over this step and the last.
+    const Wrench departure = scaled(difference(now.load_rate, before.load_rate), dt);
+    const double normal_departure = dt * (now.normal_rate - before.normal_rate);
+    double weight = -dt * dt / (6.0 * (dt + before.rate_step));
+    // A wall does not pull: the parabola of the normal force stays above zero while its bend is at most
+    // (sqrt(F0) + sqrt(F1))^2.
+    const double bend = 6.0 / dt * weight * normal_departure;
+    const double root = std::sqrt(before.skin.normal_force) + std::sqrt(now.skin.normal_force);
+    if (-bend > root * root) weight *= root * root / -bend;
+    extra.correction = scaled(departure, weight);
+    extra.normal_correction = weight * normal_departure;
+
+    return error_of(unit, now.body, departure, dt);
+}
+
+// Infinite where nothing pushes.
 double critical_step(const SkinForces& skin) {
-    return skin.stiffness > 0.0 ? 2.0 / std::sqrt(skin.stiffness) : infinity;
+    return skin.stiffness > 0.0 ? tolerance::critical_phase / std::sqrt(skin.stiffness) : infinity;
 }
 
 void clear(ContactImpulses& impulses) {
     std::fill(impulses.tire.begin(), impulses.tire.end(), 0.0);
     impulses.tire_friction = impulses.barrier = Vec3::Zero();
     impulses.barrier_normal = 0.0;
+    impulses.member_contacts = 0;
 }
 
 void begin(const State& from, double dt, Trial& trial) {
@@ -49,7 +72,7 @@ void begin(const State& from, double dt, Trial& trial) {
     trial.state.time += dt;
     trial.dt = dt;
     trial.error = 0.0;
-    trial.critical_step = trial.impact_after = trial.nearest_gap = infinity;
+    trial.critical_step = trial.impact_after = infinity;
     trial.at_start.happened = trial.at_end.happened = false;
     for (std::size_t u = 0; u < from.units.size(); ++u) {
         static_cast<UnitMotion&>(trial.state.units[u]) = from.units[u];
@@ -57,6 +80,8 @@ void begin(const State& from, double dt, Trial& trial) {
         clear(trial.impulses[u]);
         clear(trial.at_start.impulses[u]);
         clear(trial.at_end.impulses[u]);
+        trial.third_order[u] = {};
+        trial.third_order[u].lead = scaled(from.units[u].load_rate, dt * dt / 6.0);
     }
 }
 
@@ -81,10 +106,11 @@ Trial::Trial(const Vehicle& vehicle) : state(vehicle), active(vehicle.units.size
     for (const Unit& unit : vehicle.units)
         impulses.emplace_back(unit.wheels.size());
     at_start.impulses = at_end.impulses = impulses;
+    third_order.resize(vehicle.units.size());
 }
 
 bool Trial::body_held() const {
-    const auto held = [](const ContactImpulses& sum) { return sum.barrier_normal > 0.0; };
+    const auto held = [](const ContactImpulses& sum) { return sum.member_contacts > 0; };
     return std::any_of(impulses.begin(), impulses.end(), held) ||
            std::any_of(at_start.impulses.begin(), at_start.impulses.end(), held) ||
            std::any_of(at_end.impulses.begin(), at_end.impulses.end(), held);
@@ -104,8 +130,8 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
         if (scene.barrier) barrier_forces(scene, u, from, trial);
         if (moved.skin.normal_force > 0.0) now.touched = true;
 
-        set_accelerations(unit, moved);
-        trial.error = std::max(trial.error, velocity_error(unit, from.units[u], moved, dt));
+        const double error = load_and_correct(unit, from.units[u], dt, moved, trial.third_order[u]);
+        trial.error = std::max(trial.error, error);
         trial.critical_step = std::min(trial.critical_step, critical_step(moved.skin));
     }
 

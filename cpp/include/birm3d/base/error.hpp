@@ -17,7 +17,7 @@ class UnstableError : public std::runtime_error {
     UnstableError(double time_step, double limit, double time, const std::string& advice);
 
     double time_step;  // s, the step asked for
-    double limit;      // s, the critical step 2/omega at that instant
+    double limit;      // s, the critical step at that instant
     double time;       // s, when it happened
 };
 

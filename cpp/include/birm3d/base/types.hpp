@@ -26,6 +26,14 @@ struct Wrench {
     }
 };
 
+inline Wrench scaled(const Wrench& w, double factor) {
+    return {factor * w.force, factor * w.torque};
+}
+
+inline Wrench difference(const Wrench& a, const Wrench& b) {
+    return {a.force - b.force, a.torque - b.torque};
+}
+
 // Linear and angular velocity of a rigid body in world axes (m/s, rad/s).
 struct Twist {
     Vec3 velocity = Vec3::Zero();

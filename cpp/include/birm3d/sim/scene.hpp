@@ -1,6 +1,7 @@
 // What a run is about: a vehicle, a barrier (or none), the start and the settings. Constant while running.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -32,6 +33,9 @@ struct Scene {
     std::optional<double> duration;  // s; absent: until the outcome is decided
 
     State initial_state() const;
+
+    // Hash of the vehicle and the barrier: equal for equal scenes, wherever they were made.
+    std::uint64_t fingerprint() const;
 
     // Velocity against which errors are judged (m/s).
     double reference_speed() const;

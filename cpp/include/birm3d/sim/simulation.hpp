@@ -37,12 +37,11 @@ class Simulation {
     EndReason end_reason() const;
 
     struct Snapshot {
-        std::shared_ptr<const Vehicle> vehicle;
-        std::shared_ptr<const Barrier> barrier;
+        std::uint64_t scene;  // fingerprint
         State state;
         Recorder recorder;
     };
-    Snapshot snapshot() const { return {scene_.vehicle, scene_.barrier, state_, recorder_}; }
+    Snapshot snapshot() const { return {scene_.fingerprint(), state_, recorder_}; }
     void restore(const Snapshot& snapshot);
 
   private:

@@ -16,7 +16,8 @@ struct ContactImpulses {
     Column tire;                        // (wheels) normal impulse (N s)
     Vec3 tire_friction = Vec3::Zero();  // of all wheels, world axes (N s)
     Vec3 barrier = Vec3::Zero();        // of closed trusses, world axes (N s)
-    double barrier_normal = 0.0;        // its sum along the normals (N s)
+    double barrier_normal = 0.0;        // its part along the normals (N s)
+    std::size_t member_contacts = 0;    // closed trusses that carried load
 };
 
 // A rigid impact at one end of a step: an instant of its own, not spread over the step.
@@ -25,6 +26,13 @@ struct Impact {
     std::vector<BodyState> bodies;          // (units) after an impact at the start, before one at the end
     Energies energies;                      // the same
     std::vector<ContactImpulses> impulses;  // (units)
+};
+
+// What the scheme adds to half kicks by the trapezoid rule (see step.hpp), N s and N m s.
+struct ThirdOrder {
+    Wrench lead;        // lent to the drift, taken back after it
+    Wrench correction;  // of the whole step
+    double normal_correction = 0.0;
 };
 
 // The step that was tried, beside the state it started from.
@@ -36,10 +44,10 @@ struct Trial {
     std::vector<std::vector<std::size_t>> active;  // (units) blocks near the barrier
     std::vector<ContactImpulses> impulses;         // (units) of lasting contacts, even over the step
     Impact at_start, at_end;
-    double error = 0.0;    // estimated velocity error of this step (m/s)
-    double critical_step;  // 2/omega of the trusses in contact (s)
-    double impact_after;   // a rigid impact begins this long after t (s)
-    double nearest_gap;    // least gap of nodes that do not push (m)
+    std::vector<ThirdOrder> third_order;  // (units)
+    double error = 0.0;                   // estimated velocity error of this step (m/s)
+    double critical_step;                 // sqrt(3)/omega of the trusses in contact (s)
+    double impact_after;                  // a rigid impact begins this long after t (s)
 
     bool body_held() const;  // did the rigid body meet the barrier?
 };

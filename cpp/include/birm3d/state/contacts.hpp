@@ -25,9 +25,8 @@ struct SkinForces {
     double normal_force = 0.0;   // sum over nodes of the force along each surface normal (N)
     double work = 0.0;           // done on the trusses since the last instant, trapezoid rule (J)
     double stored = 0.0;         // elastic energy that unloading would return (J), blocks seen only
-    double stiffness = 0.0;      // bound of the sum of k_unloading times inverse effective mass (1/s^2)
+    double stiffness = 0.0;      // sum of k_unloading of pushing nodes times inverse effective mass (1/s^2)
     double friction_rate = 0.0;  // sum of mu * pressure times inverse effective mass (m/s^2)
-    double nearest_gap = std::numeric_limits<double>::infinity();  // of the nodes that do not push (m)
 
     SkinForces& operator+=(const SkinForces& o) {
         contact += o.contact;
@@ -37,7 +36,6 @@ struct SkinForces {
         stored += o.stored;
         stiffness += o.stiffness;
         friction_rate += o.friction_rate;
-        nearest_gap = std::min(nearest_gap, o.nearest_gap);
         return *this;
     }
 };

@@ -16,11 +16,11 @@ namespace birm3d {
 // What a unit has besides its trusses: small, copied whole with every step that is tried.
 struct UnitMotion {
     BodyState body;
-    SkinForces skin;                           // at this instant, world axes
-    Vec3 acceleration = Vec3::Zero();          // by the skin, world axes (m/s^2)
-    Vec3 angular_acceleration = Vec3::Zero();  // the same (rad/s^2)
-    Vec3 jerk = Vec3::Zero();                  // their rates in the last step
-    Vec3 angular_jerk = Vec3::Zero();
+    SkinForces skin;           // at this instant, world axes
+    Wrench load;               // all of the skin: contact and friction, world axes
+    Wrench load_rate;          // its change over the last step, per second
+    double normal_rate = 0.0;  // the same of skin.normal_force (N/s)
+    double rate_step = 0.0;    // length of that step (s)
 };
 
 struct UnitState : UnitMotion {
@@ -52,7 +52,7 @@ struct StepStatistics {
     double shortest_step = std::numeric_limits<double>::infinity();  // s
     double longest_step = 0.0;                                       // s
     double least_critical_step =
-        std::numeric_limits<double>::infinity();  // s, 2/omega of the trusses in contact
+        std::numeric_limits<double>::infinity();  // s, sqrt(3)/omega of the trusses in contact
     double deepest_point = 0.0;  // greatest depth of the rigid body inside a barrier at the end of a step (m)
 };
 
