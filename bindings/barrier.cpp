@@ -10,10 +10,12 @@ namespace birm3d::bindings {
 void register_barrier(py::module_& m) {
     py::class_<Barrier, std::shared_ptr<Barrier>>(m, "Barrier",
                                                   "A flat rigid wall, fixed to the ground. Immutable.")
-        .def(py::init([](double friction, const InputArray& origin, double heading) {
-                 return std::make_shared<Barrier>(friction, vector(origin, "origin"), heading);
+        .def(py::init([](double friction, const InputArray& origin, double heading, double width,
+                         double height) {
+                 return std::make_shared<Barrier>(friction, vector(origin, "origin"), heading, width, height);
              }),
-             py::kw_only(), py::arg("friction"), py::arg("origin"), py::arg("heading"),
+             py::kw_only(), py::arg("friction"), py::arg("origin"), py::arg("heading"), py::arg("width"),
+             py::arg("height"),
              "friction: Coulomb coefficient; origin (3,) m on the face; heading of the barrier's line about "
              "z, rad.")
         .def_property_readonly(

@@ -1,5 +1,4 @@
 #include <pybind11/stl.h>
-#include <pybind11/typing.h>
 
 #include "arrays.hpp"
 #include "birm3d/base/rotation.hpp"
@@ -72,15 +71,10 @@ void register_history(py::module_& m) {
     add_view(history, "impacts", &History::impacts, "(n,) J");
     history.def_readonly("momentum_residual", &History::momentum_residual,
                          "max |m a - sum of forces| / max |force|");
-    history.def_property_readonly(
-        "units",
-        [](const py::object& self) {
-            py::typing::List<UnitHistory> units;
-            for (const UnitHistory& one : self.cast<const History&>().units)
-                units.append(py::cast(&one, py::return_value_policy::reference_internal, self));
-            return units;
-        },
-        "One for each unit of the vehicle.");
+    history.def(
+        "unit",
+        [](const History& self, std::size_t index) -> const UnitHistory& { return self.units.at(index); },
+        py::return_value_policy::reference_internal, py::arg("index"), "Of one unit of the vehicle.");
 }
 
 }  // namespace birm3d::bindings

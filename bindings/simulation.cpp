@@ -9,6 +9,12 @@ namespace birm3d::bindings {
 
 namespace {
 
+// None or one: a scene has at most one barrier.
+std::shared_ptr<const Barrier> only(const std::vector<std::shared_ptr<Barrier>>& barriers) {
+    if (barriers.size() > 1) refuse("barriers", "at most 1", static_cast<double>(barriers.size()));
+    return barriers.empty() ? nullptr : barriers.front();
+}
+
 // A column of one unit's trusses in the caller's order.
 OutputArray in_input_order(const Simulation& simulation, std::size_t unit, Lanes TrussBlockState::* column) {
     const TrussMesh& mesh = simulation.scene().vehicle->units.at(unit).trusses;
@@ -59,13 +65,14 @@ void register_simulation(py::module_& m) {
         .def_property_readonly("time", [](const Simulation::Snapshot& s) { return s.state.time; }, "s");
 
     py::class_<Simulation>(m, "Simulation", "A run of one scene (SI, rad).")
-        .def(py::init([](std::shared_ptr<Vehicle> vehicle, std::optional<std::shared_ptr<Barrier>> barrier,
-                         double speed, double angle, double offset, double standoff, const Settings& settings,
+        .def(py::init([](std::shared_ptr<Vehicle> vehicle,
+                         const std::vector<std::shared_ptr<Barrier>>& barriers, double speed, double angle,
+                         double offset, double standoff, const Settings& settings,
                          std::optional<double> duration) {
-                 return Simulation(Scene(std::move(vehicle), barrier.value_or(nullptr),
-                                         {speed, angle, offset, standoff}, settings, duration));
+                 return Simulation(Scene(std::move(vehicle), only(barriers), {speed, angle, offset, standoff},
+                                         settings, duration));
              }),
-             py::kw_only(), py::arg("vehicle"), py::arg("barrier"), py::arg("speed"), py::arg("angle"),
+             py::kw_only(), py::arg("vehicle"), py::arg("barriers"), py::arg("speed"), py::arg("angle"),
              py::arg("offset"), py::arg("standoff"), py::arg("settings"), py::arg("duration"))
         .def("step", &Simulation::step, py::call_guard<py::gil_scoped_release>(),
              "One accepted step; False when the run is over.")

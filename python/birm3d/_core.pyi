@@ -7,78 +7,11 @@ import numpy
 import numpy.typing
 import typing
 __all__: list[str] = ['Barrier', 'ContactModel', 'EndReason', 'History', 'MassProperties', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tumble']
-class UnstableError(ValueError):
-    pass
-class MassProperties:
-    """
-    Mass, mass centre and inertia about it (paper Eq. 2-7).
-    """
-    @property
-    def center_of_mass(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (3,) m
-        """
-    @property
-    def inertia(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (3, 3) kg m^2
-        """
-    @property
-    def mass(self) -> float:
-        """
-        kg
-        """
-class TrussCurve:
-    """
-    Piecewise-linear loading envelope with an unloading slope (paper Fig. 3).
-    """
-    def envelope(self, deflection: typing.SupportsFloat | typing.SupportsIndex) -> float:
-        ...
-    def follow(self, path: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Forces (n,) along a path of deflections (n,) that starts uncrushed.
-        """
-    @property
-    def deflection(self) -> list[float]:
-        """
-        m, where the slope changes
-        """
-    @property
-    def k_unloading(self) -> float:
-        ...
-    @property
-    def slope(self) -> list[float]:
-        """
-        slope from there on
-        """
-class Unit:
-    """
-    A rigid body with its crushable skin and wheels; body axes r, s, t, origin at the mass centre.
-    """
-    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex) -> None:
-        """
-        mass kg; inertia (3, 3) kg m^2; nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,);
-        wheels (w, 4): centre and radius, m; mass_center_height m above the ground.
-        """
-    @property
-    def input_index(self) -> list[int]:
-        """
-        The caller's number of each truss in the order of the state's columns.
-        """
-    @property
-    def n_trusses(self) -> int:
-        ...
-class Vehicle:
-    """
-    One or more units. Immutable.
-    """
-    def __init__(self, units: collections.abc.Sequence[Unit]) -> None:
-        ...
 class Barrier:
     """
     A flat rigid wall, fixed to the ground. Immutable.
     """
-    def __init__(self, *, friction: typing.SupportsFloat | typing.SupportsIndex, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, *, friction: typing.SupportsFloat | typing.SupportsIndex, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, width: typing.SupportsFloat | typing.SupportsIndex, height: typing.SupportsFloat | typing.SupportsIndex) -> None:
         """
         friction: Coulomb coefficient; origin (3,) m on the face; heading of the barrier's line about z, rad.
         """
@@ -95,13 +28,9 @@ class ContactModel:
     
       along_truss
     """
-    __members__: typing.ClassVar[dict[str, ContactModel]]
-    along_truss: typing.ClassVar[ContactModel]
-    projected: typing.ClassVar[ContactModel]
-    @typing.overload
-    def __eq__(self, other: ContactModel) -> bool:
-        ...
-    @typing.overload
+    __members__: typing.ClassVar[dict[str, ContactModel]]  # value = {'projected': <ContactModel.projected: 0>, 'along_truss': <ContactModel.along_truss: 1>}
+    along_truss: typing.ClassVar[ContactModel]  # value = <ContactModel.along_truss: 1>
+    projected: typing.ClassVar[ContactModel]  # value = <ContactModel.projected: 0>
     def __eq__(self, other: typing.Any) -> bool:
         ...
     def __getstate__(self) -> int:
@@ -114,10 +43,6 @@ class ContactModel:
         ...
     def __int__(self) -> int:
         ...
-    @typing.overload
-    def __ne__(self, other: ContactModel) -> bool:
-        ...
-    @typing.overload
     def __ne__(self, other: typing.Any) -> bool:
         ...
     def __repr__(self) -> str:
@@ -132,21 +57,26 @@ class ContactModel:
     @property
     def value(self) -> int:
         ...
-class TireModel:
+class EndReason:
     """
     Members:
     
-      slip
+      running
     
-      skid
+      duration
+    
+      separated
+    
+      stopped
+    
+      longest
     """
-    __members__: typing.ClassVar[dict[str, TireModel]]
-    skid: typing.ClassVar[TireModel]
-    slip: typing.ClassVar[TireModel]
-    @typing.overload
-    def __eq__(self, other: TireModel) -> bool:
-        ...
-    @typing.overload
+    __members__: typing.ClassVar[dict[str, EndReason]]  # value = {'running': <EndReason.running: 0>, 'duration': <EndReason.duration: 1>, 'separated': <EndReason.separated: 2>, 'stopped': <EndReason.stopped: 3>, 'longest': <EndReason.longest: 4>}
+    duration: typing.ClassVar[EndReason]  # value = <EndReason.duration: 1>
+    longest: typing.ClassVar[EndReason]  # value = <EndReason.longest: 4>
+    running: typing.ClassVar[EndReason]  # value = <EndReason.running: 0>
+    separated: typing.ClassVar[EndReason]  # value = <EndReason.separated: 2>
+    stopped: typing.ClassVar[EndReason]  # value = <EndReason.stopped: 3>
     def __eq__(self, other: typing.Any) -> bool:
         ...
     def __getstate__(self) -> int:
@@ -159,10 +89,6 @@ class TireModel:
         ...
     def __int__(self) -> int:
         ...
-    @typing.overload
-    def __ne__(self, other: TireModel) -> bool:
-        ...
-    @typing.overload
     def __ne__(self, other: typing.Any) -> bool:
         ...
     def __repr__(self) -> str:
@@ -177,65 +103,14 @@ class TireModel:
     @property
     def value(self) -> int:
         ...
-class Settings:
-    """
-    How a scene is computed (SI). Immutable.
-    """
-    def __init__(self, *, time_step: typing.SupportsFloat | typing.SupportsIndex | None, tolerance: typing.SupportsFloat | typing.SupportsIndex, output_interval: typing.SupportsFloat | typing.SupportsIndex, gravity: typing.SupportsFloat | typing.SupportsIndex, ground: bool, mu_tire: typing.SupportsFloat | typing.SupportsIndex, cornering_stiffness: typing.SupportsFloat | typing.SupportsIndex, restitution: typing.SupportsFloat | typing.SupportsIndex, contact_model: ContactModel, tire_model: TireModel) -> None:
-        ...
-class UnitHistory:
-    """
-    Motion of one unit and the forces on it; read-only views.
-    """
-    @property
-    def acceleration(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (n, 3) m/s^2, interval means, body axes
-        """
-    @property
-    def angular_velocity(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (n, 3) rad/s, body axes
-        """
-    @property
-    def barrier_force(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (n, 3) N, interval means, world
-        """
-    @property
-    def barrier_normal_force(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (n,) N, interval means
-        """
-    @property
-    def position(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (n, 3) m, world
-        """
-    @property
-    def roll_pitch_yaw(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (n, 3) rad
-        """
-    @property
-    def tire_friction_force(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (n, 3) N, interval means, world
-        """
-    @property
-    def tire_reaction(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (n, wheels) N, interval means
-        """
-    @property
-    def velocity(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (n, 3) m/s, world
-        """
 class History:
     """
     Evenly spaced output of a run; read-only views.
     """
+    def unit(self, index: typing.SupportsInt | typing.SupportsIndex) -> UnitHistory:
+        """
+        Of one unit of the vehicle.
+        """
     @property
     def barrier_friction(self) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -281,109 +156,36 @@ class History:
         """
         (n,) J
         """
-    @property
-    def units(self) -> list[UnitHistory]:
-        """
-        One for each unit of the vehicle.
-        """
-class EndReason:
+class MassProperties:
     """
-    Members:
-    
-      running
-    
-      duration
-    
-      separated
-    
-      stopped
-    
-      longest
-    """
-    __members__: typing.ClassVar[dict[str, EndReason]]
-    duration: typing.ClassVar[EndReason]
-    longest: typing.ClassVar[EndReason]
-    running: typing.ClassVar[EndReason]
-    separated: typing.ClassVar[EndReason]
-    stopped: typing.ClassVar[EndReason]
-    @typing.overload
-    def __eq__(self, other: EndReason) -> bool:
-        ...
-    @typing.overload
-    def __eq__(self, other: typing.Any) -> bool:
-        ...
-    def __getstate__(self) -> int:
-        ...
-    def __hash__(self) -> int:
-        ...
-    def __index__(self) -> int:
-        ...
-    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None:
-        ...
-    def __int__(self) -> int:
-        ...
-    @typing.overload
-    def __ne__(self, other: EndReason) -> bool:
-        ...
-    @typing.overload
-    def __ne__(self, other: typing.Any) -> bool:
-        ...
-    def __repr__(self) -> str:
-        ...
-    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None:
-        ...
-    def __str__(self) -> str:
-        ...
-    @property
-    def name(self) -> str:
-        ...
-    @property
-    def value(self) -> int:
-        ...
-class StepStatistics:
-    @property
-    def deepest_point(self) -> float:
-        """
-        m, of the rigid body inside a barrier
-        """
-    @property
-    def least_critical_step(self) -> float:
-        """
-        s, sqrt(3)/omega of the trusses in contact
-        """
-    @property
-    def longest_step(self) -> float:
-        """
-        s
-        """
-    @property
-    def node_evaluations(self) -> int:
-        ...
-    @property
-    def rejected(self) -> int:
-        ...
-    @property
-    def shortest_step(self) -> float:
-        """
-        s
-        """
-    @property
-    def steps(self) -> int:
-        ...
-class Snapshot:
-    """
-    A checkpoint: state and record.
+    Mass, mass centre and inertia about it (paper Eq. 2-7).
     """
     @property
-    def time(self) -> float:
+    def center_of_mass(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        s
+        (3,) m
         """
+    @property
+    def inertia(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3, 3) kg m^2
+        """
+    @property
+    def mass(self) -> float:
+        """
+        kg
+        """
+class Settings:
+    """
+    How a scene is computed (SI). Immutable.
+    """
+    def __init__(self, *, time_step: typing.SupportsFloat | typing.SupportsIndex | None, tolerance: typing.SupportsFloat | typing.SupportsIndex, output_interval: typing.SupportsFloat | typing.SupportsIndex, gravity: typing.SupportsFloat | typing.SupportsIndex, ground: bool, mu_tire: typing.SupportsFloat | typing.SupportsIndex, cornering_stiffness: typing.SupportsFloat | typing.SupportsIndex, restitution: typing.SupportsFloat | typing.SupportsIndex, contact_model: ContactModel, tire_model: TireModel) -> None:
+        ...
 class Simulation:
     """
     A run of one scene (SI, rad).
     """
-    def __init__(self, *, vehicle: Vehicle, barrier: Barrier | None, speed: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, offset: typing.SupportsFloat | typing.SupportsIndex, standoff: typing.SupportsFloat | typing.SupportsIndex, settings: Settings, duration: typing.SupportsFloat | typing.SupportsIndex | None) -> None:
+    def __init__(self, *, vehicle: Vehicle, barriers: collections.abc.Sequence[Barrier], speed: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, offset: typing.SupportsFloat | typing.SupportsIndex, standoff: typing.SupportsFloat | typing.SupportsIndex, settings: Settings, duration: typing.SupportsFloat | typing.SupportsIndex | None) -> None:
         ...
     def deflection(self, unit: typing.SupportsInt | typing.SupportsIndex = 0) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -439,6 +241,179 @@ class Simulation:
         """
     @property
     def touched(self) -> bool:
+        ...
+class Snapshot:
+    """
+    A checkpoint: state and record.
+    """
+    @property
+    def time(self) -> float:
+        """
+        s
+        """
+class StepStatistics:
+    @property
+    def deepest_point(self) -> float:
+        """
+        m, of the rigid body inside a barrier
+        """
+    @property
+    def least_critical_step(self) -> float:
+        """
+        s, sqrt(3)/omega of the trusses in contact
+        """
+    @property
+    def longest_step(self) -> float:
+        """
+        s
+        """
+    @property
+    def node_evaluations(self) -> int:
+        ...
+    @property
+    def rejected(self) -> int:
+        ...
+    @property
+    def shortest_step(self) -> float:
+        """
+        s
+        """
+    @property
+    def steps(self) -> int:
+        ...
+class TireModel:
+    """
+    Members:
+    
+      slip
+    
+      skid
+    """
+    __members__: typing.ClassVar[dict[str, TireModel]]  # value = {'slip': <TireModel.slip: 0>, 'skid': <TireModel.skid: 1>}
+    skid: typing.ClassVar[TireModel]  # value = <TireModel.skid: 1>
+    slip: typing.ClassVar[TireModel]  # value = <TireModel.slip: 0>
+    def __eq__(self, other: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> int:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __index__(self) -> int:
+        ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None:
+        ...
+    def __int__(self) -> int:
+        ...
+    def __ne__(self, other: typing.Any) -> bool:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None:
+        ...
+    def __str__(self) -> str:
+        ...
+    @property
+    def name(self) -> str:
+        ...
+    @property
+    def value(self) -> int:
+        ...
+class TrussCurve:
+    """
+    Piecewise-linear loading envelope with an unloading slope (paper Fig. 3).
+    """
+    def envelope(self, deflection: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        ...
+    def follow(self, path: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Forces (n,) along a path of deflections (n,) that starts uncrushed.
+        """
+    @property
+    def deflection(self) -> list[float]:
+        """
+        m, where the slope changes
+        """
+    @property
+    def k_unloading(self) -> float:
+        ...
+    @property
+    def slope(self) -> list[float]:
+        """
+        slope from there on
+        """
+class Unit:
+    """
+    A rigid body with its crushable skin and wheels; body axes r, s, t, origin at the mass centre.
+    """
+    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        """
+        mass kg; inertia (3, 3) kg m^2; nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,);
+        wheels (w, 4): centre and radius, m; mass_center_height m above the ground.
+        """
+    @property
+    def input_index(self) -> list[int]:
+        """
+        The caller's number of each truss in the order of the state's columns.
+        """
+    @property
+    def n_trusses(self) -> int:
+        ...
+class UnitHistory:
+    """
+    Motion of one unit and the forces on it; read-only views.
+    """
+    @property
+    def acceleration(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) m/s^2, interval means, body axes
+        """
+    @property
+    def angular_velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) rad/s, body axes
+        """
+    @property
+    def barrier_force(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) N, interval means, world
+        """
+    @property
+    def barrier_normal_force(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) N, interval means
+        """
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) m, world
+        """
+    @property
+    def roll_pitch_yaw(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) rad
+        """
+    @property
+    def tire_friction_force(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) N, interval means, world
+        """
+    @property
+    def tire_reaction(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, wheels) N, interval means
+        """
+    @property
+    def velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) m/s, world
+        """
+class UnstableError(ValueError):
+    pass
+class Vehicle:
+    """
+    One or more units. Immutable.
+    """
+    def __init__(self, units: collections.abc.Sequence[Unit]) -> None:
         ...
 def collide(mass_a: typing.SupportsFloat | typing.SupportsIndex, inertia_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_b: typing.SupportsFloat | typing.SupportsIndex, inertia_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arm_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arm_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], restitution: typing.SupportsFloat | typing.SupportsIndex) -> tuple[float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """

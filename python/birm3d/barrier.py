@@ -28,11 +28,15 @@ class Barrier:
         A point of the foot of the traffic face, world axes [m], shape (3,).
     heading
         Turn of the barrier's line about the vertical [deg].
+    width, height
+        Of the wall, its middle at the origin [m]; may be infinite.
     """
 
     friction: float = 0.2
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     heading: float = 0.0
+    width: float = math.inf
+    height: float = math.inf
 
     def __post_init__(self) -> None:
         _ = self.core
@@ -51,7 +55,8 @@ class Barrier:
         Parameters
         ----------
         width, height
-            Only ``None`` is supported: the wall is wider and higher than any vehicle reaches.
+            Of the wall, its middle at the origin [m]; ``None``: without end. The ends and the top are not
+            modelled: a vehicle that meets the wall's plane beyond them is refused while running.
         friction
             Coulomb coefficient vehicle-wall, 0.15 to 0.20 for steel on concrete (paper 5.4).
         origin
@@ -62,23 +67,28 @@ class Barrier:
         Raises
         ------
         ValueError
-            If a number is not finite, friction is negative, or a finite width or height is asked for.
+            If a number is not finite, friction is negative, or width or height is not above 0.
         """
-        for name, value in (("width", width), ("height", height)):
-            if value is not None:
-                raise ValueError(
-                    f"{name} must be None (a wall without end; finite walls are not available), got {value}"
-                )
         if np.shape(origin) != (3,):
             raise ValueError(f"origin must have shape (3,), got {np.shape(origin)}")
         x, y, z = (float(value) for value in origin)
-        return Barrier(friction=float(friction), origin=(x, y, z), heading=float(heading))
+        return Barrier(
+            friction=float(friction),
+            origin=(x, y, z),
+            heading=float(heading),
+            width=math.inf if width is None else float(width),
+            height=math.inf if height is None else float(height),
+        )
 
     @cached_property
     def core(self) -> _core.Barrier:
         """The same barrier for the core."""
         return _core.Barrier(
-            friction=self.friction, origin=np.asarray(self.origin, float), heading=math.radians(self.heading)
+            friction=self.friction,
+            origin=np.asarray(self.origin, float),
+            heading=math.radians(self.heading),
+            width=self.width,
+            height=self.height,
         )
 
     def __getstate__(self) -> dict[str, object]:

@@ -39,8 +39,8 @@ def compute_metrics(result: Result) -> dict[str, float]:
     towards the barrier since t = 0 less the standoff) [m], ``vehicle_penetration`` (of any point past the
     face) [m], ``impact_severity`` (1/2 m (v sin angle)^2) [J], ``delta_v`` (greatest change of velocity)
     [m/s]; where the motion towards the barrier ends: ``time_of_zero_velocity`` (since the first touch) [s],
-    ``restitution`` (normal separation over approach speed); where the vehicle leaves: ``exit_angle`` (of its
-    path from the barrier's line) [deg].
+    ``restitution`` (normal separation over approach speed); where the vehicle has left: ``exit_angle`` (of
+    its path from the barrier's line) [deg].
 
     At sampling rates that allow it: ``peak_deceleration_cfc60``, ``peak_normal_force_cfc60``.
     """
@@ -102,7 +102,7 @@ def _motion(result: Result, inward: npt.NDArray[np.float64]) -> dict[str, float]
         motion["restitution"] = float(max(0.0, -(result.final_velocity @ inward)) / approach[0])
     horizontal = result.final_velocity[:2]
     speed = float(np.hypot(*horizontal))
-    if touched and speed > _SLOWEST and result.end_reason == "separated":
-        away = float(-(result.final_velocity @ inward))
+    away = float(-(result.final_velocity @ inward))
+    if touched and speed > _SLOWEST and away > 0.0 and result.barrier_normal_force[-1] == 0.0:
         motion["exit_angle"] = math.degrees(math.asin(min(1.0, max(-1.0, away / speed))))
     return motion

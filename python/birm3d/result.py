@@ -73,7 +73,7 @@ class Result:
         self.peak_deflection = peak_deflection
         self.final_velocity = final_velocity
         self._history = history
-        self._unit = history.units[0]
+        self._unit = history.unit(0)
 
     @classmethod
     def _of(cls, scene: Scene, simulation: _core.Simulation, run_time: float) -> Result:

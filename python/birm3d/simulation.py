@@ -87,7 +87,7 @@ class Simulation:
         )
         self._core = _core.Simulation(
             vehicle=vehicle.core,
-            barrier=None if barrier is None else barrier.core,
+            barriers=[] if barrier is None else [barrier.core],
             speed=self._scene.impact_speed,
             angle=math.radians(self._scene.impact_angle),
             offset=self._scene.impact_offset,

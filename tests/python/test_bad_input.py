@@ -68,13 +68,32 @@ def test_settings_know_no_other_name() -> None:
         ("heading", INF, INF),
         ("origin", (0.0, NAN, 0.0), "a coordinate that is not"),
         ("origin", (INF, 0.0, 0.0), "a coordinate that is not"),
-        ("width", 3.0, 3.0),
-        ("height", 0.8, 0.8),
+        ("width", 0.0, 0.0),
+        ("width", NAN, NAN),
+        ("height", -0.8, -0.8),
     ],
 )
 def test_rigid_wall(name: str, value: Any, got: float | str) -> None:
     with refused(name, got):
         Barrier.rigid_wall(**{name: value})
+
+
+@pytest.mark.parametrize(("name", "size"), [("width", 2.0), ("height", 0.5)])
+def test_a_wall_met_beyond_its_end_is_refused(name: str, size: float) -> None:
+    """The block of W1 is 2.4 m wide and reaches 0.8 m above its mass centre."""
+    settings = Settings(gravity=0.0, ground=False)
+    wall = Barrier.rigid_wall(**{name: size})
+    with pytest.raises(ValueError, match=rf"{name} must be >= .* not modelled"):
+        Simulation(scenes.elastic_block(100), wall, 10.0, settings=settings).run()
+
+
+def test_a_wall_that_is_large_enough_is_a_wall_without_end() -> None:
+    settings = Settings(gravity=0.0, ground=False)
+    large, endless = (
+        Simulation(scenes.elastic_block(100), Barrier.rigid_wall(**size), 10.0, settings=settings).run()
+        for size in ({"width": 3.0, "height": 1.0}, {})
+    )
+    assert large.state_hash == endless.state_hash
 
 
 @pytest.mark.parametrize("origin", [(0.0, 0.0), (0.0, 0.0, 0.0, 0.0), ()])

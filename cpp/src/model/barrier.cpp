@@ -6,13 +6,28 @@
 
 namespace birm3d {
 
-Barrier::Barrier(double friction_, const Vec3& origin_, double heading_)
+namespace {
+
+double positive(const char* name, double value) {
+    if (!(value > 0.0)) refuse(name, "> 0", value);
+    return value;
+}
+
+}  // namespace
+
+Barrier::Barrier(double friction_, const Vec3& origin_, double heading_, double width_, double height_)
     : friction(require_not_negative("friction", friction_)),
       origin(origin_),
-      heading(require_finite("heading", heading_)) {
+      heading(require_finite("heading", heading_)),
+      width(positive("width", width_)),
+      height(positive("height", height_)) {
     if (!origin.allFinite()) refuse("origin", "finite", "a coordinate that is not");
     face.normal = Vec3(-std::cos(heading), -std::sin(heading), 0.0);
     face.offset = face.normal.dot(origin);
+}
+
+bool Barrier::finite() const {
+    return std::isfinite(width) || std::isfinite(height);
 }
 
 }  // namespace birm3d

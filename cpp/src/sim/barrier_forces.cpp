@@ -1,8 +1,10 @@
 #include "birm3d/sim/barrier_forces.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "birm3d/base/error.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/crush.hpp"
 #include "birm3d/kernels/detect.hpp"
@@ -12,6 +14,28 @@
 namespace birm3d {
 
 namespace {
+
+// A wall's plane is met only within its width and height: a node that presses on it beyond them would need
+// the wall's end, which is not modelled.
+void require_on_wall(const Barrier& barrier, const BodyState& body, const Mat3& R,
+                     const TrussBlockState& block) {
+    const Vec3 line(-std::sin(barrier.heading), std::cos(barrier.heading), 0.0);
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!(block.force[i] > 0.0)) continue;
+        const Vec3 place = body.position + R * Vec3(block.x[i], block.y[i], block.z[i]) - barrier.origin;
+        const double across = 2.0 * std::abs(place.dot(line));
+        if (across > barrier.width)
+            refuse("width",
+                   ">= " + to_text(across, 4) +
+                       " m, where the vehicle meets the wall's plane (its ends are not modelled)",
+                   barrier.width);
+        if (place.z() > barrier.height)
+            refuse("height",
+                   ">= " + to_text(place.z(), 4) +
+                       " m, where the vehicle meets the wall's plane (its top is not modelled)",
+                   barrier.height);
+    }
+}
 
 Wrench turned(const Wrench& w, const Mat3& R) {
     return {R * w.force, R * w.torque};
@@ -44,6 +68,7 @@ void barrier_forces(const Scene& scene, std::size_t u, const State& from, Trial&
             crush(unit.body, unit.trusses, scene.settings.contact_model, b, block, next, contact);
         if (mu > 0.0 && forces.normal_force > 0.0)
             add_friction(unit.body, mu, full_speed, motion, next, contact, forces);
+        if (next.touching && scene.barrier->finite()) require_on_wall(*scene.barrier, now.body, R, next);
         sum += forces;
         trial.active[u].push_back(b);
     }

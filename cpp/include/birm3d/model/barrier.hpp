@@ -2,6 +2,8 @@
 // face looks to -x.
 #pragma once
 
+#include <limits>
+
 #include "birm3d/base/types.hpp"
 #include "birm3d/geometry/half_space.hpp"
 
@@ -9,11 +11,18 @@ namespace birm3d {
 
 struct Barrier {
     // origin: a point of the traffic face's foot (m). heading: turn of the barrier's line about z (rad).
-    Barrier(double friction, const Vec3& origin, double heading);
+    // width, height: of the wall (m), may be infinite; its middle stands at the origin.
+    Barrier(double friction, const Vec3& origin, double heading,
+            double width = std::numeric_limits<double>::infinity(),
+            double height = std::numeric_limits<double>::infinity());
+
+    bool finite() const;
 
     double friction;  // Coulomb coefficient vehicle-barrier (paper 5.4: 0.15 to 0.20 steel on concrete)
     Vec3 origin;      // m
     double heading;   // rad
+    double width;     // m
+    double height;    // m
     HalfSpace face;   // world axes
 };
 
