@@ -104,5 +104,6 @@ def _motion(result: Result, inward: npt.NDArray[np.float64]) -> dict[str, float]
     speed = float(np.hypot(*horizontal))
     away = float(-(result.final_velocity @ inward))
     if touched and speed > _SLOWEST and away > 0.0 and result.barrier_normal_force[-1] == 0.0:
-        motion["exit_angle"] = math.degrees(math.asin(min(1.0, max(-1.0, away / speed))))
+        along = float(np.hypot(*(horizontal + away * inward[:2])))
+        motion["exit_angle"] = math.degrees(math.atan2(away, along))
     return motion

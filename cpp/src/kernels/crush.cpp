@@ -24,29 +24,41 @@ BIRM3D_LANE_LOOP void add_hinge(const Hinge& hinge, const Lanes& deflection, Lan
     }
 }
 
+// Which way held nodes move: along n where they arrive, along n + m where they were held already, m the
+// normal of the step before; `share` is 1 / ((n + m) . n).
+struct Slide {
+    Slide(const Vec3& normal, const Vec3& before)
+        : nx(normal.x()),
+          ny(normal.y()),
+          nz(normal.z()),
+          mx(before.x()),
+          my(before.y()),
+          mz(before.z()),
+          share(1.0 / (1.0 + normal.dot(before))) {}
+    double nx, ny, nz, mx, my, mz, share;
+};
+
 // 1. Moves the nodes that are at the surface onto it, and finds the deflection of their trusses.
 BIRM3D_LANE_LOOP void hold_on_surface(const TrussBlock& truss, const TrussBlockState& before,
-                                      const BlockContact& contact, TrussBlockState& now, Geometry& geometry) {
+                                      const Slide& slide, const Lanes& gap, TrussBlockState& now,
+                                      Geometry& geometry) {
+    const Slide s = slide;
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
-        const double nx = contact.normal_x[i], ny = contact.normal_y[i], nz = contact.normal_z[i];
-        const double was = before.pushing[i];  // 0 or 1: a node that arrives has no earlier normal
-        const double dx = nx + was * before.normal_x[i], dy = ny + was * before.normal_y[i],
-                     dz = nz + was * before.normal_z[i];
-        const double held = contact.gap[i] < 0.0 ? 1.0 : was;
-        const double shift = held * contact.gap[i] / (dx * nx + dy * ny + dz * nz);
-        const double x = before.x[i] - shift * dx, y = before.y[i] - shift * dy, z = before.z[i] - shift * dz;
+        const double was = before.force[i] > 0.0 ? 1.0 : 0.0;
+        const double held = gap[i] < 0.0 ? 1.0 : was;
+        const double shift = held * gap[i] * (before.force[i] > 0.0 ? s.share : 1.0);
+        const double x = before.x[i] - shift * (s.nx + was * s.mx);
+        const double y = before.y[i] - shift * (s.ny + was * s.my);
+        const double z = before.z[i] - shift * (s.nz + was * s.mz);
         const double bx = x - truss.anchor_x[i], by = y - truss.anchor_y[i], bz = z - truss.anchor_z[i];
         const double length = std::sqrt(bx * bx + by * by + bz * bz);
         now.x[i] = x;
         now.y[i] = y;
         now.z[i] = z;
-        now.normal_x[i] = nx;
-        now.normal_y[i] = ny;
-        now.normal_z[i] = nz;
         now.deflection[i] = truss.length[i] - length;
         geometry.length[i] = length;
-        geometry.facing[i] = -(bx * nx + by * ny + bz * nz);
+        geometry.facing[i] = -(bx * s.nx + by * s.ny + bz * s.nz);
     }
 }
 
@@ -58,7 +70,7 @@ BIRM3D_LANE_LOOP double press_trusses(const TrussBlock& truss, const Lanes& law,
     Lanes left;
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
-        const double gap = contact.gap[i], was = before.pushing[i], on_envelope = law[i];
+        const double gap = contact.gap[i], was = before.force[i] > 0.0 ? 1.0 : 0.0, on_envelope = law[i];
         const double d0 = before.deflection[i], d1 = now.deflection[i], dp = before.peak_deflection[i],
                      Fp = before.peak_force[i];
         const double held = gap < 0.0 ? 1.0 : was;
@@ -68,7 +80,6 @@ BIRM3D_LANE_LOOP double press_trusses(const TrussBlock& truss, const Lanes& law,
         const double d = held > 0.0 ? d1 : d0;
         const double further = d1 > dp ? held : 0.0;
         now.force[i] = F;
-        now.pushing[i] = F > 0.0 ? 1.0 : 0.0;
         now.deflection[i] = d;
         now.peak_deflection[i] = dp + further * (d1 - dp);
         now.peak_force[i] = Fp + further * (on_envelope - Fp);
@@ -83,7 +94,7 @@ BIRM3D_LANE_LOOP double press_trusses(const TrussBlock& truss, const Lanes& law,
 void release(const TrussBlock& truss, const TrussBlockState& before, BlockContact& contact,
              TrussBlockState& now) {
     for (std::size_t i = 0; i < lanes; ++i) {
-        if (!(contact.gap[i] > 0.0 && before.pushing[i] > 0.0 && now.force[i] == 0.0)) continue;
+        if (!(contact.gap[i] > 0.0 && before.force[i] > 0.0 && now.force[i] == 0.0)) continue;
         const double d0 = before.deflection[i];
         const double residual = before.peak_deflection[i] - before.peak_force[i] * truss.compliance[i];
         const double way = d0 - now.deflection[i];
@@ -99,8 +110,7 @@ void release(const TrussBlock& truss, const TrussBlockState& before, BlockContac
 // Sums over the block, and the bounds that the step control and the broad phase need.
 struct Load {
     double force_x, force_y, force_z, torque_x, torque_y, torque_z, normal_force, work, stored;
-    double stiffness;       // see SkinForces (1/s^2)
-    double largest_square;  // of the distance from the ball's centre (m^2)
+    double stiffness;  // see SkinForces (1/s^2)
 };
 
 // Inverse mass and inertia as plain numbers, for the loop.
@@ -116,46 +126,76 @@ struct Inverse {
     double mass, xx, yy, zz, xy, xz, yz;
 };
 
-// 3. Forces on the vehicle. along_truss is 0 or 1; center is that of the block's ball.
-BIRM3D_LANE_LOOP Load load_vehicle(const TrussBlock& truss, const Geometry& geometry, double along_truss,
-                                   const Inverse& inverse, const std::array<double, 3>& center,
-                                   const TrussBlockState& now, BlockContact& contact) {
-    const double along_normal = 1.0 - along_truss;
-    const double center_x = center[0], center_y = center[1], center_z = center[2];
-    const Inverse W = inverse;
-    alignas(64) Lanes force_x, force_y, force_z, torque_x, torque_y, torque_z, stiffness, square;
+// 3. Forces on the vehicle, along the normal (projected) or along each truss.
+template <bool along_truss>
+BIRM3D_IN_LANE_LOOP Load sum_load(const TrussBlock& truss, const Geometry& geometry, const Inverse& W,
+                                  double nx, double ny, double nz, const TrussBlockState& now,
+                                  BlockContact& contact) {
+    alignas(64) Lanes force_x, force_y, force_z, torque_x, torque_y, torque_z, stiffness;
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
-        const double x = now.x[i], y = now.y[i], z = now.z[i];
+        const double x = now.x[i], y = now.y[i], z = now.z[i], force = now.force[i];
         const double size = geometry.length[i], facing = geometry.facing[i];
         // A closed truss has no direction of its own any more: it presses along the normal.
         const double open = size > tolerance::truss_length ? 1.0 : 0.0;
-        const double scale = now.force[i] * open / (size > tolerance::truss_length ? size : 1.0);
-        const double pressure = scale * (facing > 0.0 ? facing : 0.0) + now.force[i] * (1.0 - open);
-        const double by_normal = along_normal * pressure, by_truss = along_truss * scale;
-        const double fx = by_normal * contact.normal_x[i] - by_truss * (x - truss.anchor_x[i]);
-        const double fy = by_normal * contact.normal_y[i] - by_truss * (y - truss.anchor_y[i]);
-        const double fz = by_normal * contact.normal_z[i] - by_truss * (z - truss.anchor_z[i]);
+        const double scale = force * open / (size > tolerance::truss_length ? size : 1.0);
+        const double pressure = scale * (facing > 0.0 ? facing : 0.0) + force * (1.0 - open);
         contact.pressure[i] = pressure;
-        force_x[i] = fx;
-        force_y[i] = fy;
-        force_z[i] = fz;
-        torque_x[i] = y * fz - z * fy;
-        torque_y[i] = z * fx - x * fz;
-        torque_z[i] = x * fy - y * fx;
-        // Inverse effective mass of the node along n (the denominator of Eq. 1): 1/m + c . I^-1 c, c = r x n.
-        const double nx = contact.normal_x[i], ny = contact.normal_y[i], nz = contact.normal_z[i];
+        // Arm of the node about the normal through the mass centre.
         const double cx = y * nz - z * ny, cy = z * nx - x * nz, cz = x * ny - y * nx;
+        if constexpr (along_truss) {
+            const double fx = -scale * (x - truss.anchor_x[i]), fy = -scale * (y - truss.anchor_y[i]),
+                         fz = -scale * (z - truss.anchor_z[i]);
+            force_x[i] = fx;
+            force_y[i] = fy;
+            force_z[i] = fz;
+            torque_x[i] = y * fz - z * fy;
+            torque_y[i] = z * fx - x * fz;
+            torque_z[i] = x * fy - y * fx;
+        } else {
+            torque_x[i] = pressure * cx;
+            torque_y[i] = pressure * cy;
+            torque_z[i] = pressure * cz;
+        }
+        // Inverse effective mass of the node along n (the denominator of Eq. 1): 1/m + c . I^-1 c, c = r x n.
         const double turning =
             cx * (W.xx * cx + W.xy * cy + W.xz * cz) + cy * (W.yy * cy + W.yz * cz) + W.zz * cz * cz;
-        stiffness[i] = now.pushing[i] * truss.k_unloading[i] * (W.mass + turning);
-        const double dx = x - center_x, dy = y - center_y, dz = z - center_z;
-        square[i] = dx * dx + dy * dy + dz * dz;
+        stiffness[i] = (force > 0.0 ? truss.k_unloading[i] : 0.0) * (W.mass + turning);
     }
-    return {lane_sum(force_x),          lane_sum(force_y),      lane_sum(force_z),
-            lane_sum(torque_x),         lane_sum(torque_y),     lane_sum(torque_z),
-            lane_sum(contact.pressure), lane_sum(contact.work), lane_sum(contact.stored),
-            lane_sum(stiffness),        lane_max(square)};
+    Load load{};
+    load.normal_force = lane_sum(contact.pressure);
+    if constexpr (along_truss) {
+        load.force_x = lane_sum(force_x), load.force_y = lane_sum(force_y), load.force_z = lane_sum(force_z);
+    } else {
+        load.force_x = load.normal_force * nx;
+        load.force_y = load.normal_force * ny;
+        load.force_z = load.normal_force * nz;
+    }
+    load.torque_x = lane_sum(torque_x), load.torque_y = lane_sum(torque_y),
+    load.torque_z = lane_sum(torque_z);
+    load.work = lane_sum(contact.work), load.stored = lane_sum(contact.stored);
+    load.stiffness = lane_sum(stiffness);
+    return load;
+}
+
+BIRM3D_LANE_LOOP Load load_projected(const TrussBlock& truss, const Geometry& geometry,
+                                     const Inverse& inverse, double nx, double ny, double nz,
+                                     const TrussBlockState& now, BlockContact& contact) {
+    return sum_load<false>(truss, geometry, inverse, nx, ny, nz, now, contact);
+}
+
+BIRM3D_LANE_LOOP Load load_along_truss(const TrussBlock& truss, const Geometry& geometry,
+                                       const Inverse& inverse, double nx, double ny, double nz,
+                                       const TrussBlockState& now, BlockContact& contact) {
+    return sum_load<true>(truss, geometry, inverse, nx, ny, nz, now, contact);
+}
+
+// Greatest distance of a node from the centre of the block's ball (m).
+double farthest(const TrussBlockState& block, const Vec3& center) {
+    double square = 0.0;
+    for (std::size_t i = 0; i < lanes; ++i)
+        square = std::max(square, (Vec3(block.x[i], block.y[i], block.z[i]) - center).squaredNorm());
+    return std::sqrt(square);
 }
 
 }  // namespace
@@ -163,18 +203,20 @@ BIRM3D_LANE_LOOP Load load_vehicle(const TrussBlock& truss, const Geometry& geom
 SkinForces crush(const RigidBody& body, const TrussMesh& mesh, ContactModel model, std::size_t b,
                  const TrussBlockState& before, TrussBlockState& now, BlockContact& contact) {
     const TrussBlock& truss = mesh.block[b];
-    const Vec3& center = mesh.node_ball[b].center;
     Geometry geometry;
-    hold_on_surface(truss, before, contact, now, geometry);
+    now.normal = contact.normal;
+    hold_on_surface(truss, before, Slide(contact.normal, before.normal), contact.gap, now, geometry);
     alignas(64) Lanes law{};
     for (std::size_t j = 0; j < mesh.hinges; ++j)
         add_hinge(mesh.hinge[b * mesh.hinges + j], now.deflection, law);
     if (press_trusses(truss, law, before, contact, now) > 0.0) release(truss, before, contact, now);
-    const double along_truss = model == ContactModel::along_truss ? 1.0 : 0.0;
-    const Load load = load_vehicle(truss, geometry, along_truss, Inverse(body),
-                                   {center.x(), center.y(), center.z()}, now, contact);
+    const auto load_vehicle = model == ContactModel::projected ? load_projected : load_along_truss;
+    const Vec3& n = contact.normal;
+    const Load load = load_vehicle(truss, geometry, Inverse(body), n.x(), n.y(), n.z(), now, contact);
     now.touching = load.stiffness > 0.0;
-    now.ball_radius = std::max(before.ball_radius, std::sqrt(load.largest_square));
+    // A block that touches is looked at in any case; its ball matters once it lets go.
+    now.ball_radius = now.touching ? before.ball_radius
+                                   : std::max(before.ball_radius, farthest(now, mesh.node_ball[b].center));
 
     SkinForces sum;
     sum.contact = {Vec3(load.force_x, load.force_y, load.force_z),

@@ -18,7 +18,7 @@ TEST("the gap is the signed distance along the outward normal") {
     detect(face, x, y, z, contact);
     for (std::size_t i = 0; i < lanes; ++i) {
         CHECK_CLOSE(contact.gap[i], 0.1 * static_cast<double>(i) - 3.0, 1e-14, "rounding");
-        CHECK(Vec3(contact.normal_x[i], contact.normal_y[i], contact.normal_z[i]) == n);
+        CHECK(contact.normal == n);
     }
 }
 

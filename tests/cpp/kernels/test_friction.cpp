@@ -11,9 +11,7 @@ namespace {
 struct Pressed {
     explicit Pressed(double pressure)
         : mesh(laboratory::front_face(laboratory::w2_curve(), 8, 8)), state(mesh) {
-        contact.normal_x.fill(-1.0);
-        contact.normal_y.fill(0.0);
-        contact.normal_z.fill(0.0);
+        contact.normal = -Vec3::UnitX();
         contact.pressure.fill(pressure);
     }
     SkinForces friction(double mu, double full_speed, const Twist& motion) const {

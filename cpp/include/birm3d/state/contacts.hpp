@@ -12,10 +12,10 @@ namespace birm3d {
 
 // One block of nodes beside a surface, body axes.
 struct alignas(64) BlockContact {
-    Lanes gap;                           // before the nodes are moved (m)
-    Lanes normal_x, normal_y, normal_z;  // outward normal of the surface
-    Lanes pressure;                      // normal force of each node (N)
-    Lanes work, stored;                  // of each truss (J): see SkinForces
+    Lanes gap;                   // before the nodes are moved (m)
+    Vec3 normal = Vec3::Zero();  // outward, of the flat surface beside all of them
+    Lanes pressure;              // normal force of each node (N)
+    Lanes work, stored;          // of each truss (J): see SkinForces
 };
 
 // All that a unit's skin feels at one instant; wrenches in body axes until the step turns them to the world.

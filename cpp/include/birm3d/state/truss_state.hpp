@@ -10,13 +10,12 @@
 namespace birm3d {
 
 struct alignas(64) TrussBlockState {
-    Lanes x, y, z;                       // shell nodes in body axes (m)
-    Lanes deflection, force;             // of the truss, now (m, N)
-    Lanes peak_deflection, peak_force;   // where the loading envelope was left (m, N)
-    Lanes pushing;                       // 1 while the truss presses its node on a surface, else 0
-    Lanes normal_x, normal_y, normal_z;  // that surface's normal when last seen, body axes
-    double ball_radius;                  // of the node ball, grown over displaced nodes (m)
-    bool touching;                       // does any node push?
+    Lanes x, y, z;                      // shell nodes in body axes (m)
+    Lanes deflection, force;            // of the truss, now (m, N)
+    Lanes peak_deflection, peak_force;  // where the loading envelope was left (m, N)
+    Vec3 normal = Vec3::Zero();         // of the surface when last seen, body axes
+    double ball_radius;                 // of the node ball, grown over displaced nodes (m)
+    bool touching;                      // does any node push?
 };
 
 struct TrussState {
@@ -35,7 +34,7 @@ struct TrussState {
     void add_to(Hash& hash) const {
         for (const TrussBlockState& b : block)
             for (const Lanes* column :
-                 {&b.x, &b.y, &b.z, &b.deflection, &b.force, &b.peak_deflection, &b.peak_force, &b.pushing})
+                 {&b.x, &b.y, &b.z, &b.deflection, &b.force, &b.peak_deflection, &b.peak_force})
                 hash.add(*column);
     }
 };
