@@ -72,8 +72,8 @@ inline constexpr double initial_overlap = 1e-9;
 inline constexpr double truss_length = 1e-6;
 inline constexpr double solid_volume = 1e-12;
 
-// A solid's six tetrahedra must all have positive volume; faces may be warped by this share of the
-// solid's size before Fig. 4's split depends on the diagonal chosen.
+// Rounding that an inertia tensor may show, relative: of its symmetry, and of the rule that no principal
+// moment is above the sum of the other two.
 inline constexpr double symmetric_inertia = 1e-9;
 
 }  // namespace birm3d::tolerance
