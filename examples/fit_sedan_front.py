@@ -31,6 +31,7 @@ TARGETS = {
     "restitution": (0.20, 0.02),
     "peak_normal_force_cfc60": (678e3, 30e3),
 }
+RAMP = 0.10  # length over which the engine meets the fire wall, m
 CURVE_WEIGHT = 3.0 / 50e3  # of the root mean square difference of the force, per N
 
 
@@ -38,12 +39,12 @@ def front(car: birm3d.Vehicle, numbers: np.ndarray) -> birm3d.Vehicle:
     """Return the car with the envelope that six numbers give."""
     rails, engine, behind, above = np.exp(numbers[:4]) * 1e6
     start, meets = numbers[4:]
-    unloading = (engine - rails) / 0.10 + above  # below the steepest slope unloading would create energy
+    unloading = (engine - rails) / RAMP + above  # below the steepest slope unloading would create energy
     envelope = (
         (0.0, 0.0),
         (start, rails),
         (meets, rails),
-        (meets + 0.10, engine),
+        (meets + RAMP, engine),
         (meets + 0.18, engine),
         (meets + 0.30, behind),
         (0.75, behind),
@@ -59,6 +60,10 @@ def crash(car: birm3d.Vehicle, duration: float | None = 0.13) -> birm3d.Result:
     return birm3d.Simulation(car, wall, units.km_h(57.09), duration=duration).run()
 
 
+def wall_force(result: birm3d.Result) -> np.ndarray:
+    return filters.cfc(result.barrier_normal_force, 60, result.scene.settings.output_interval)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -72,14 +77,14 @@ def main() -> None:
 
     def residuals(numbers: np.ndarray) -> np.ndarray:
         result = crash(front(car, numbers))
-        force = filters.cfc(result.barrier_normal_force, 60, result.scene.settings.output_interval)[::10]
+        force = wall_force(result)[::10]
         curve = (force[:130] - measured) * CURVE_WEIGHT / np.sqrt(130.0)
         scalars = [(result.metrics[name] - value) / size for name, (value, size) in TARGETS.items()]
         return np.concatenate([curve, scalars])
 
     shipped = car.zones["bumper"]
     (_, _), (start, rails), (meets, _), (_, engine), _, (_, behind), *_ = shipped.envelope
-    above = shipped.k_unloading - (engine - rails) / 0.10
+    above = shipped.k_unloading - (engine - rails) / RAMP
     now = np.array([*np.log(np.array([rails, engine, behind, above]) / 1e6), start, meets])
     low = np.array([*np.log([0.05, 0.5, 0.05, 0.05]), 0.05, 0.18])
     high = np.array([*np.log([0.4, 1.5, 0.8, 30.0]), 0.17, 0.35])
@@ -110,8 +115,12 @@ def main() -> None:
         axes.plot(test["time"] * 1e3, test["wall_force"] / 1e3, "k", lw=1.0, label="NHTSA 10146")
         for label, numbers in (("in the file", now), ("fitted", best.x)):
             result = crash(front(car, numbers))
-            force = filters.cfc(result.barrier_normal_force, 60, result.scene.settings.output_interval)
-            axes.plot(result.time * 1e3, force / 1e3, label=label, ls="--" if numbers is best.x else "-")
+            axes.plot(
+                result.time * 1e3,
+                wall_force(result) / 1e3,
+                label=label,
+                ls="--" if numbers is best.x else "-",
+            )
         axes.set(xlabel="time [ms]", ylabel="wall force, CFC 60 [kN]", xlim=(0.0, 130.0))
         axes.legend(frameon=False)
         axes.grid(alpha=0.3)

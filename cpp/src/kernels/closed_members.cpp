@@ -15,7 +15,7 @@ void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyStat
     const double bend = tolerance::touching_gap + 0.5 * spin * spin * mesh.reach * dt * dt;
     for (std::size_t b = 0; b < mesh.blocks; ++b) {
         const Ball& ball = mesh.anchor_ball[b];
-        if (face.gap(ball.center) - ball.radius >= bend + dt * fastest) continue;
+        if (!face.within_reach(ball.center, ball.radius, bend + dt * fastest)) continue;
         for (std::size_t i = b * lanes; i < (b + 1) * lanes && i < mesh.count; ++i) {
             const Vec3 anchor = mesh.anchor(i);
             const double gap = face.gap(anchor);

@@ -60,7 +60,7 @@ void barrier_forces(const Scene& scene, std::size_t u, const State& from, Trial&
     trial.active[u].clear();
     for (std::size_t b = 0; b < unit.trusses.blocks; ++b) {
         const TrussBlockState& block = before.trusses.block[b];
-        const bool reaches = within_reach(face, unit.trusses.node_ball[b].center, block.ball_radius, 0.0);
+        const bool reaches = face.within_reach(unit.trusses.node_ball[b].center, block.ball_radius, 0.0);
         if (!reaches && !block.touching) continue;
         TrussBlockState& next = now.trusses.block[b];
         detect(face, block.x, block.y, block.z, contact);
@@ -88,7 +88,7 @@ double nearest_gap(const Scene& scene, const State& state) {
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         for (std::size_t b = 0; b < mesh.blocks; ++b) {
             const TrussBlockState& block = unit.trusses.block[b];
-            if (!within_reach(face, mesh.node_ball[b].center, block.ball_radius, nearest)) continue;
+            if (!face.within_reach(mesh.node_ball[b].center, block.ball_radius, nearest)) continue;
             detect(face, block.x, block.y, block.z, contact);
             nearest = std::min(nearest, *std::min_element(contact.gap.begin(), contact.gap.end()));
         }

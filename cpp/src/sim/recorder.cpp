@@ -113,12 +113,12 @@ Recorder::Recorder(const Scene& scene, const State& start) : width_(at_units) {
 
 void Recorder::add(const Scene& scene, const Trial& accepted) {
     const State& state = accepted.state;
-    const std::vector<ThirdOrder> none(state.units.size());
+    const auto none = [&state] { return std::vector<ThirdOrder>(state.units.size()); };
     if (accepted.at_start.happened) {
         // The forces of that instant are those of the row before.
         const std::size_t before = values_.size() - width_;
         add_row(scene, values_[before + at_time], accepted.at_start.energies, accepted.at_start.bodies,
-                state.units, accepted.at_start.impulses, none);
+                state.units, accepted.at_start.impulses, none());
         const double* from = values_.data() + before + at_units;
         double* to = values_.data() + values_.size() - width_ + at_units;
         for (const Unit& unit : scene.vehicle->units) {
@@ -130,7 +130,7 @@ void Recorder::add(const Scene& scene, const Trial& accepted) {
     const Impact& end = accepted.at_end;
     add_row(scene, state.time, end.happened ? end.energies : state.energies,
             end.happened ? end.bodies : bodies, state.units, accepted.impulses, accepted.third_order);
-    if (end.happened) add_row(scene, state.time, state.energies, bodies, state.units, end.impulses, none);
+    if (end.happened) add_row(scene, state.time, state.energies, bodies, state.units, end.impulses, none());
 }
 
 void Recorder::add_row(const Scene& scene, double time, const Energies& e,

@@ -32,8 +32,6 @@ double load_and_correct(const Unit& unit, const UnitMotion& before, double dt, U
         // through the corner that a release makes.
         now.load_rate = {};
         now.normal_rate = now.rate_step = 0.0;
-        extra.correction = {};
-        extra.normal_correction = 0.0;
         return error_of(unit, now.body, difference(now.load, before.load), dt);
     }
     now.rate_step = dt;

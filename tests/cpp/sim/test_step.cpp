@@ -31,8 +31,7 @@ TEST("the critical step is that of a mass on all unloading springs") {
     const State state = scene.initial_state();
     Trial trial(*scene.vehicle);
     try_step(scene, state, 1e-3, {}, trial);
-    // One node on the line through the mass centre: nothing but the mass stands against it. The bound also
-    // allows for levers as long as the block's ball is wide, which the node has widened by its own way.
+    // One node on the line through the mass centre: nothing but the mass stands against it.
     const double exact = std::sqrt(3.0) * std::sqrt(6804.0 / 60e6);
     CHECK(trial.critical_step <= exact);
     CHECK(trial.critical_step >= 0.999 * exact);

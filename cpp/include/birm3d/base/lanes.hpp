@@ -47,16 +47,4 @@ BIRM3D_IN_LANE_LOOP double lane_sum(const Lanes& values) {
     return ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
 }
 
-BIRM3D_IN_LANE_LOOP double lane_max(const Lanes& values) {
-    std::array<double, 8> most;
-    for (std::size_t i = 0; i < 8; ++i)
-        most[i] = values[i];
-    for (std::size_t row = 8; row < lanes; row += 8)
-        for (std::size_t i = 0; i < 8; ++i)
-            most[i] = values[row + i] > most[i] ? values[row + i] : most[i];
-    for (std::size_t i = 1; i < 8; ++i)
-        most[0] = most[i] > most[0] ? most[i] : most[0];
-    return most[0];
-}
-
 }  // namespace birm3d

@@ -12,6 +12,11 @@ struct HalfSpace {
     // Signed distance of a point along the outward normal; negative = inside (m).
     double gap(const Vec3& p) const { return normal.dot(p) - offset; }
 
+    // Can any point of the ball be nearer to the surface than `margin` (m)?
+    bool within_reach(const Vec3& center, double radius, double margin) const {
+        return gap(center) - radius < margin;
+    }
+
     // The same surface seen from axes that stand at `position` and are turned by `rotation` (axes to world).
     HalfSpace seen_from(const Vec3& position, const Mat3& rotation) const {
         return {rotation.transpose() * normal, offset - normal.dot(position)};

@@ -6,11 +6,6 @@
 
 namespace birm3d {
 
-// Can any point of the ball be nearer to the surface than `margin` (m)?
-inline bool within_reach(const HalfSpace& face, const Vec3& center, double radius, double margin) {
-    return face.gap(center) - radius < margin;
-}
-
 // Gap and normal of the nodes x, y, z; face and nodes in the same axes.
 void detect(const HalfSpace& face, const Lanes& x, const Lanes& y, const Lanes& z, BlockContact& contact);
 

@@ -2,8 +2,9 @@
 // afterwards, so that the output interval costs nothing while stepping and does not bound the step.
 //
 // Within a step the scheme's forces run along the parabola that its third order integrates, the impulses of
-// lasting rigid contacts are spread evenly, and rigid impacts stand at the instant at which they happen: velocities at output instants follow from that, and forces are means over the output interval, so
-// that m * (change of velocity) equals the sum of forces times the interval to rounding.
+// lasting rigid contacts are spread evenly, and rigid impacts stand at the instant at which they happen:
+// velocities at output instants follow from that, and forces are means over the output interval, so that
+// m * (change of velocity) equals the sum of forces times the interval to rounding.
 #pragma once
 
 #include <vector>
