@@ -17,16 +17,20 @@ import numpy.typing as npt
 from . import _core
 
 if TYPE_CHECKING:
+    from .mesher import ExteriorMesh
     from .vehicle_file import VehicleFile
     from .vehicle_file import Zone as FileZone
 
-__all__ = ["Vehicle", "Zone"]
+__all__ = ["TRUSS_LAW", "Vehicle", "Zone"]
 
 Floats = npt.NDArray[np.float64]
 FloatsLike = npt.ArrayLike
 
 
 _KNEE = ("k_initial", "knee", "k_hardening", "f_max")
+
+TRUSS_LAW = ("k_initial", "knee", "k_hardening", "f_max", "k_unloading")
+"""The numbers of the paper's law (Fig. 3)."""
 
 
 @dataclass(frozen=True)
@@ -97,6 +101,17 @@ class Zone(Mapping[str, Any]):
                 raise ValueError(f"{name} must be given where there is no envelope, got None")
         return _core.knee_curve(**numbers, k_unloading=self.k_unloading)
 
+    def scaled(self, factor: float) -> Zone:
+        """Return the zone with all its stresses and slopes times a factor > 0; deflections stay."""
+        factor = _positive("scale", factor)
+        if self.envelope is not None:
+            return Zone(
+                envelope=tuple((d, factor * stress) for d, stress in self.envelope),
+                k_unloading=factor * self.k_unloading,
+            )
+        changes = {name: factor * getattr(self, name) for name in TRUSS_LAW if name != "knee"}
+        return dataclasses.replace(self, **changes)
+
     def __getstate__(self) -> dict[str, object]:
         return {name: value for name, value in self.__dict__.items() if name != "curve"}
 
@@ -160,7 +175,9 @@ class Vehicle:
     # What made the vehicle: laws per truss (m, N, N/m), or a file with its mesh density.
     _truss_laws: Floats | None = None
     _file: VehicleFile | None = None
+    _mesh: ExteriorMesh | None = None
     _mesh_density: float = 1.0
+    _raised: float = 0.0  # of the mass centre above that of the solids [m]
 
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):
@@ -286,7 +303,33 @@ class Vehicle:
             return dataclasses.replace(
                 self, mass=gvw, inertia=self.inertia * (gvw / self.mass), wheels=self.wheels.copy()
             )
-        return _from_file(self._file, gvw, self._mesh_density, self.zones)
+        assert self._mesh is not None  # made together with _file
+        return _assemble(self._file, self._mesh, gvw, self._mesh_density, self.zones, self._raised)
+
+    def with_mesh_density(self, mesh_density: float) -> Vehicle:
+        """Return the vehicle with another number of shell elements, relative to its file's choice."""
+        if self._file is None:
+            raise ValueError(f"mesh_density needs a vehicle that has a file, got {self.name!r} from arrays")
+        return _from_file(self._file, self.mass, mesh_density, self.zones, self._raised)
+
+    def with_mass_center_height(self, height: float) -> Vehicle:
+        """Return the vehicle with its mass centre at another height above the ground [m].
+
+        Mass and inertia about the mass centre stay. A later :meth:`with_gvw` keeps the shift.
+        """
+        height = _positive("mass_center_height", height)
+        up = np.array([0.0, 0.0, height - self.mass_center_height])
+        wheels = self.wheels.copy()
+        wheels[:, :3] -= up
+        return dataclasses.replace(
+            self,
+            center_of_mass=self.center_of_mass + up,
+            nodes=self.nodes - up,
+            anchors=self.anchors - up,
+            wheels=wheels,
+            mass_center_height=height,
+            _raised=self._raised + float(up[2]),
+        )
 
     def with_zone(self, name: str, **changes: Any) -> Vehicle:
         """Return the vehicle with other stiffness numbers in one zone (see :class:`Zone`).
@@ -311,10 +354,55 @@ class Vehicle:
                     f"which needs {', '.join(_KNEE[:3])} to take its place; got {', '.join(changes)}"
                 )
             changes = {"envelope": None, **changes}
-        zone = dataclasses.replace(self.zones[name], **changes)
-        return dataclasses.replace(self, zones={**self.zones, name: zone})
+        return self.with_zones({name: dataclasses.replace(self.zones[name], **changes)})
+
+    def with_zones(self, zones: Mapping[str, Zone]) -> Vehicle:
+        """Return the vehicle with some of its zones replaced."""
+        for name in zones:
+            if name not in self.zones:
+                raise ValueError(f"zone must be one of {', '.join(self.zones) or 'none'}; got {name!r}")
+        return dataclasses.replace(self, zones={**self.zones, **zones})
+
+    def with_truss_law(self, **changes: float) -> Vehicle:
+        """Return a vehicle made from arrays with another law, given for all trusses together.
+
+        Stiffnesses and forces [N/m, N] are sums over the trusses and are shared as the present ones are; a
+        knee [m] goes to every truss.
+        """
+        now = self.truss_law
+        for name in changes:
+            if name not in now:
+                raise ValueError(f"truss law must be one of {', '.join(now)}; got {name!r}")
+        assert self._truss_laws is not None  # else truss_law has raised
+        laws = self._truss_laws.copy()
+        for name, value in changes.items():
+            column = laws[:, TRUSS_LAW.index(name)]
+            if name == "knee" or not (math.isfinite(now[name]) and now[name] > 0.0):
+                column[:] = value if name == "knee" else value / len(column)
+            else:
+                column *= value / now[name]
+        return dataclasses.replace(self, _truss_laws=laws)
 
     # ---- what it is ---------------------------------------------------------------------------------------
+
+    @property
+    def has_file(self) -> bool:
+        """Whether the vehicle comes from a file, so that it can be meshed anew."""
+        return self._file is not None
+
+    @property
+    def mesh_density(self) -> float:
+        """Number of shell elements relative to the choice of the vehicle's file."""
+        return self._mesh_density
+
+    @property
+    def truss_law(self) -> Mapping[str, float]:
+        """Law of a vehicle made from arrays: sums over its trusses [N/m, N], and its mean knee [m]."""
+        if self._truss_laws is None:
+            raise ValueError(f"truss law needs a vehicle made from arrays, got {self.name!r} with zones")
+        total = self._truss_laws.sum(axis=0)
+        total[TRUSS_LAW.index("knee")] /= len(self._truss_laws)
+        return MappingProxyType(dict(zip(TRUSS_LAW, total.tolist(), strict=True)))
 
     @property
     def n_nodes(self) -> int:
@@ -361,7 +449,8 @@ class Vehicle:
         if not isinstance(other, Vehicle):
             return NotImplemented
         mine, theirs = self._arguments(), other._arguments()
-        return all(np.array_equal(mine[key], theirs[key]) for key in mine)
+        # The mesh follows from file and density.
+        return all(np.array_equal(mine[key], theirs[key]) for key in mine if key != "_mesh")
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -405,15 +494,30 @@ def _densities(file: VehicleFile, gvw: float) -> Floats:
 
 
 def _from_file(
-    file: VehicleFile, gvw: float | None, mesh_density: float, zones: Mapping[str, Zone] | None
+    file: VehicleFile,
+    gvw: float | None,
+    mesh_density: float,
+    zones: Mapping[str, Zone] | None,
+    raised: float = 0.0,
 ) -> Vehicle:
     from .mesher import build_mesh
 
     mass = file.gvw_kg if gvw is None else _positive("gvw", gvw)
+    return _assemble(file, build_mesh(file, mesh_density), mass, mesh_density, zones, raised)
+
+
+def _assemble(
+    file: VehicleFile,
+    mesh: ExteriorMesh,
+    mass: float,
+    mesh_density: float,
+    zones: Mapping[str, Zone] | None,
+    raised: float,
+) -> Vehicle:
     corners = np.array([solid.corners for solid in file.solids], float)
     properties = _core.mass_properties(corners, _densities(file, mass))
     center = np.array(properties.center_of_mass)
-    mesh = build_mesh(file, mesh_density)
+    center[2] += raised
     wheels = np.array([[*wheel.center_m, wheel.radius_m] for wheel in file.wheels], float).reshape(-1, 4)
     wheels[:, :3] -= center
     return Vehicle(
@@ -430,5 +534,7 @@ def _from_file(
         mass_center_height=float(center[2]),
         zones=zones if zones is not None else {zone.name: Zone._from_file(zone) for zone in file.zones},
         _file=file,
+        _mesh=mesh,
         _mesh_density=mesh_density,
+        _raised=raised,
     )

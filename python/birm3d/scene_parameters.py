@@ -1,0 +1,192 @@
+"""Names for everything a scene has, so that sweeps, studies and calibrations can vary it.
+
+=============================  ========================================================================
+name                           value
+=============================  ========================================================================
+``impact_speed`` ...           an argument of :class:`birm3d.Simulation` (``impact_angle``, ``impact_offset``,
+                               ``standoff``, ``duration``, ``vehicle``, ``barrier``, ``settings``)
+``barrier.<field>``            a field of :class:`birm3d.Barrier`, as ``barrier.friction``
+``settings.<field>``           a field of :class:`birm3d.Settings`, as ``settings.tolerance``
+``vehicle.gvw``                mass [kg], see :meth:`birm3d.Vehicle.with_gvw`
+``vehicle.mass_center_height`` above the ground at rest [m]
+``vehicle.mesh_density``       relative number of shell elements
+``zone.<zone>.<number>``       ``k_initial``, ``knee``, ``k_hardening``, ``f_max`` or ``k_unloading`` of
+                               :class:`birm3d.Zone`
+``zone.<zone>.stress[i]``      stress of point i of the zone's envelope [N per m^2]
+``zone.<zone>.deflection[i]``  its deflection [m]
+``zone.<zone>.scale``          factor on all stresses and slopes of the zone (now 1)
+``truss.<number>``             the same five numbers of a vehicle made from arrays: sums over all trusses
+                               [N/m, N], shared as they are now
+=============================  ========================================================================
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Mapping
+from difflib import get_close_matches
+from typing import Any
+
+from .barrier import Barrier
+from .settings import Settings
+from .simulation import Scene, Simulation
+from .vehicle import TRUSS_LAW, Vehicle, Zone
+
+__all__ = ["parameter_names", "value_of", "varied"]
+
+_VEHICLE = ("gvw", "mass_center_height", "mesh_density")
+_POINT = re.compile(r"(stress|deflection)\[(\d+)\]")
+
+
+def parameter_names(simulation: Simulation) -> tuple[str, ...]:
+    """Return the names of all numbers that the scene has; see the table above."""
+    scene = simulation.scene
+    names = [f.name for f in dataclasses.fields(Scene) if f.name not in ("vehicle", "barrier", "settings")]
+    if scene.barrier is not None:
+        names += [f"barrier.{f.name}" for f in dataclasses.fields(Barrier)]
+    names += [f"settings.{f.name}" for f in dataclasses.fields(Settings)]
+    vehicle = scene.vehicle
+    names += [f"vehicle.{name}" for name in _VEHICLE if name != "mesh_density" or vehicle.has_file]
+    if not vehicle.zones:
+        names += [f"truss.{name}" for name in TRUSS_LAW]
+    for zone, law in vehicle.zones.items():
+        names += [f"zone.{zone}.{number}" for number in _zone_numbers(law)]
+    return tuple(names)
+
+
+def value_of(simulation: Simulation, name: str) -> Any:
+    """Return the present value of a parameter.
+
+    Raises
+    ------
+    ValueError
+        If the scene has no such parameter; the message names those it has.
+    """
+    scene = simulation.scene
+    group, _, rest = name.partition(".")
+    if not rest and name in (field.name for field in dataclasses.fields(Scene)):
+        return getattr(scene, name)
+    if name not in parameter_names(simulation):
+        raise _unknown(simulation, name)
+    if group == "barrier":
+        return getattr(scene.barrier, rest)
+    if group == "settings":
+        return getattr(scene.settings, rest)
+    if group == "truss":
+        return scene.vehicle.truss_law[rest]
+    if group == "vehicle":
+        return scene.vehicle.mass if rest == "gvw" else getattr(scene.vehicle, rest)
+    zone, number = rest.rsplit(".", 1)
+    return _zone_value(scene.vehicle.zones[zone], number)
+
+
+def varied(simulation: Simulation, changes: Mapping[str, Any]) -> Simulation:
+    """Return a new simulation of the same scene with some parameters changed.
+
+    Raises
+    ------
+    ValueError
+        If a name is unknown or a value is out of range; the message names it.
+    """
+    given = {field.name: getattr(simulation.scene, field.name) for field in dataclasses.fields(Scene)}
+    whole = {name: value for name, value in changes.items() if name in given}
+    given.update(whole)
+    base = _build(given) if whole else simulation
+    groups: dict[str, dict[str, Any]] = {}
+    for name, value in changes.items():
+        if name in whole:
+            continue
+        if name not in parameter_names(base):
+            raise _unknown(base, name)
+        group, rest = name.split(".", 1)
+        groups.setdefault(group, {})[rest] = value
+    if not groups:
+        return _build(given)
+    if "barrier" in groups:
+        given["barrier"] = dataclasses.replace(given["barrier"], **groups["barrier"])
+    if "settings" in groups:
+        given["settings"] = dataclasses.replace(given["settings"], **groups["settings"])
+    given["vehicle"] = _varied_vehicle(given["vehicle"], groups)
+    return _build(given)
+
+
+def _build(given: Mapping[str, Any]) -> Simulation:
+    vehicle = given["vehicle"]
+    if isinstance(vehicle, str):
+        vehicle = Vehicle.preset(vehicle)
+    keywords = {name: given[name] for name in ("standoff", "duration", "settings")}
+    return Simulation(
+        vehicle,
+        given["barrier"],
+        given["impact_speed"],
+        given["impact_angle"],
+        given["impact_offset"],
+        **keywords,
+    )
+
+
+def _varied_vehicle(vehicle: Vehicle | str, groups: Mapping[str, Mapping[str, Any]]) -> Vehicle:
+    changed = Vehicle.preset(vehicle) if isinstance(vehicle, str) else vehicle
+    zones: dict[str, dict[str, Any]] = {}
+    for rest, value in groups.get("zone", {}).items():
+        zone, number = rest.rsplit(".", 1)
+        zones.setdefault(zone, {})[number] = value
+    if zones:
+        changed = changed.with_zones({name: _zone(changed.zones[name], new) for name, new in zones.items()})
+    if "truss" in groups:
+        changed = changed.with_truss_law(**groups["truss"])
+    numbers = groups.get("vehicle", {})
+    if "mesh_density" in numbers:
+        changed = changed.with_mesh_density(numbers["mesh_density"])
+    if "gvw" in numbers:
+        changed = changed.with_gvw(numbers["gvw"])
+    if "mass_center_height" in numbers:
+        changed = changed.with_mass_center_height(numbers["mass_center_height"])
+    return changed
+
+
+def _zone_numbers(zone: Zone) -> tuple[str, ...]:
+    if zone.envelope is None:
+        return (*zone, "scale")
+    points = range(1, len(zone.envelope))
+    return (
+        *(f"{axis}[{i}]" for i in points for axis in ("deflection", "stress")),
+        "k_unloading",
+        "scale",
+    )
+
+
+def _zone_value(zone: Zone, number: str) -> float:
+    if number == "scale":
+        return 1.0
+    point = _POINT.fullmatch(number)
+    if point is None:
+        return float(zone[number])
+    assert zone.envelope is not None  # else the name would be unknown
+    return zone.envelope[int(point[2])][0 if point[1] == "deflection" else 1]
+
+
+def _zone(zone: Zone, numbers: Mapping[str, float]) -> Zone:
+    """Return the zone with other numbers; a scale comes last."""
+    changes: dict[str, Any] = {}
+    points = [list(point) for point in zone.envelope or ()]
+    for number, value in numbers.items():
+        point = _POINT.fullmatch(number)
+        if point is not None:
+            points[int(point[2])][0 if point[1] == "deflection" else 1] = float(value)
+            changes["envelope"] = tuple((d, s) for d, s in points)
+        elif number != "scale":
+            changes[number] = float(value)
+    return dataclasses.replace(zone, **changes).scaled(float(numbers.get("scale", 1.0)))
+
+
+def _unknown(simulation: Simulation, name: str) -> ValueError:
+    known = parameter_names(simulation)
+    near = get_close_matches(name, known, n=5) or [
+        known_ for known_ in known if not known_.startswith("zone.")
+    ]
+    return ValueError(
+        f"parameter must be one of the {len(known)} that birm3d.scene_parameters.parameter_names() lists "
+        f"(near: {', '.join(near)}); got {name!r}"
+    )
