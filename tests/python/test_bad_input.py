@@ -326,8 +326,8 @@ def test_a_step_that_is_too_long_is_refused_and_a_good_one_named(
     result = simulation(advised).run()
     assert result.end_reason == "separated"
     assert result.statistics.longest_step <= advised
-    # Half the critical step is stable, not accurate: the scheme damps by a quarter in W1's half cycle.
-    assert result.metrics["energy_residual"] < 0.3
+    # Stable, not accurate.
+    assert result.metrics["energy_residual"] < 0.15
 
 
 def test_the_refusal_leaves_the_state_as_it_was() -> None:

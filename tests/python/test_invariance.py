@@ -138,8 +138,7 @@ def test_the_output_interval_changes_nothing_but_rows(interval: float) -> None:
         (car, 90.0, Settings(), 1e-9),
         (car, 65.0, Settings(**FREE), 1e-9),
         (car, 24.0, Settings(**FREE), 1e-9),
-        # The speed of separation is small here, and with it the reference of the exit angle.
-        (car, 24.0, Settings(), 1e-8),
+        (car, 24.0, Settings(), 1e-9),
     ],
 )
 @pytest.mark.parametrize(

@@ -13,9 +13,10 @@ void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyStat
     const double fastest = motion.velocity.norm() + spin * mesh.reach;
     // What a turn within the step adds to a point's straight way: its centripetal part.
     const double bend = tolerance::touching_gap + 0.5 * spin * spin * mesh.reach * dt * dt;
+    const double margin = bend + dt * fastest;
+    if (!face.within_reach(mesh.anchors, margin)) return;
     for (std::size_t b = 0; b < mesh.blocks; ++b) {
-        const Ball& ball = mesh.anchor_ball[b];
-        if (!face.within_reach(ball.center, ball.radius, bend + dt * fastest)) continue;
+        if (!face.within_reach(mesh.anchor_box[b], margin)) continue;
         for (std::size_t i = b * lanes; i < (b + 1) * lanes && i < mesh.count; ++i) {
             const Vec3 anchor = mesh.anchor(i);
             const double gap = face.gap(anchor);

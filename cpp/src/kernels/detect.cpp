@@ -13,9 +13,10 @@ BIRM3D_LANE_LOOP void plane_gaps(double nx, double ny, double nz, double offset,
 
 }  // namespace
 
-void detect(const HalfSpace& face, const Lanes& x, const Lanes& y, const Lanes& z, BlockContact& contact) {
-    contact.normal = face.normal;
-    plane_gaps(face.normal.x(), face.normal.y(), face.normal.z(), face.offset, x, y, z, contact.gap);
+Lanes gaps(const HalfSpace& face, const Lanes& x, const Lanes& y, const Lanes& z) {
+    Lanes gap;
+    plane_gaps(face.normal.x(), face.normal.y(), face.normal.z(), face.offset, x, y, z, gap);
+    return gap;
 }
 
 }  // namespace birm3d

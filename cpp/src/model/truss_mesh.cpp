@@ -51,14 +51,14 @@ std::uint64_t morton_code(const Vec3& p, const Vec3& low, double inverse_size) {
     return code;
 }
 
+Box box_around(const std::vector<Vec3>& points) {
+    return Box::around(points.size(), [&](std::size_t i) { return points[i]; });
+}
+
 std::vector<std::size_t> spatial_order(const std::vector<Vec3>& points) {
-    Vec3 low = points[0];
-    Vec3 high = points[0];
-    for (const Vec3& p : points) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
-    const double size = (high - low).maxCoeff();
+    const Box box = box_around(points);
+    const Vec3 low = box.center - box.half;
+    const double size = 2.0 * box.half.maxCoeff();
     const double inverse_size = size > 0.0 ? 1.0 / size : 0.0;
 
     std::vector<std::uint64_t> code(points.size());
@@ -71,17 +71,8 @@ std::vector<std::size_t> spatial_order(const std::vector<Vec3>& points) {
     return order;
 }
 
-Ball ball_around(const Lanes& x, const Lanes& y, const Lanes& z) {
-    Vec3 low(x[0], y[0], z[0]);
-    Vec3 high = low;
-    for (std::size_t i = 0; i < lanes; ++i) {
-        low = low.cwiseMin(Vec3(x[i], y[i], z[i]));
-        high = high.cwiseMax(Vec3(x[i], y[i], z[i]));
-    }
-    Ball ball{0.5 * (low + high), 0.0};
-    for (std::size_t i = 0; i < lanes; ++i)
-        ball.radius = std::max(ball.radius, (Vec3(x[i], y[i], z[i]) - ball.center).norm());
-    return ball;
+Box box_around(const Lanes& x, const Lanes& y, const Lanes& z) {
+    return Box::around(lanes, [&](std::size_t i) { return Vec3(x[i], y[i], z[i]); });
 }
 
 }  // namespace
@@ -93,6 +84,7 @@ TrussMesh::TrussMesh(const TrussInput& input) {
     for (const TrussCurve& curve : input.curve)
         hinges = std::max(hinges, curve.slope.size());
 
+    anchors = box_around(input.anchor);
     input_index = spatial_order(input.node);
     block.resize(blocks);
     hinge.resize(blocks * hinges);
@@ -101,9 +93,24 @@ TrussMesh::TrussMesh(const TrussInput& input) {
             const bool padding = b * lanes + i >= count;
             fill_lane(input, input_index[std::min(b * lanes + i, count - 1)], padding, b, i);
         }
-        node_ball.push_back(ball_around(block[b].node_x, block[b].node_y, block[b].node_z));
-        anchor_ball.push_back(ball_around(block[b].anchor_x, block[b].anchor_y, block[b].anchor_z));
+        add_stiffness(block[b]);
+        node_box.push_back(box_around(block[b].node_x, block[b].node_y, block[b].node_z));
+        anchor_box.push_back(box_around(block[b].anchor_x, block[b].anchor_y, block[b].anchor_z));
     }
+}
+
+void TrussMesh::add_stiffness(const TrussBlock& trusses) {
+    double count_of_block = 0.0;
+    StiffnessMoments sum;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const double k = trusses.k_unloading[i];
+        const Vec3 r(trusses.node_x[i], trusses.node_y[i], trusses.node_z[i]);
+        if (k > 0.0) count_of_block += 1.0;
+        sum.total += k;
+        sum.second += k * r * r.transpose();
+    }
+    pushable.push_back(count_of_block);
+    moments.push_back(sum);
 }
 
 void TrussMesh::fill_lane(const TrussInput& input, std::size_t source, bool padding, std::size_t b,

@@ -55,32 +55,37 @@ void barrier_forces(const Scene& scene, std::size_t u, const State& from, Trial&
     const Vec3 spin = R.transpose() * angular_velocity(unit.body, now.body);
     const Twist motion{R.transpose() * now.body.velocity, spin};
 
-    SkinForces sum;
+    const InverseMass inverse_mass(unit.body, face.normal);
+    const bool along = scene.settings.contact_model == ContactModel::along_truss;
+    CrushSums sums;
+    Wrench by_trusses;
+    SkinForces friction;
     BlockContact contact;
     trial.active[u].clear();
     for (std::size_t b = 0; b < unit.trusses.blocks; ++b) {
         const TrussBlockState& block = before.trusses.block[b];
-        const bool reaches = face.within_reach(unit.trusses.node_ball[b].center, block.ball_radius, 0.0);
-        if (!reaches && !block.touching) continue;
+        if (!block.touching && !face.within_reach(block.box, 0.0)) continue;
         TrussBlockState& next = now.trusses.block[b];
-        detect(face, block.x, block.y, block.z, contact);
-        SkinForces forces =
-            crush(unit.body, unit.trusses, scene.settings.contact_model, b, block, next, contact);
-        if (mu > 0.0 && forces.normal_force > 0.0)
-            add_friction(unit.body, mu, full_speed, motion, next, contact, forces);
-        if (next.touching && scene.barrier->finite()) require_on_wall(*scene.barrier, now.body, R, next);
-        sum += forces;
-        trial.active[u].push_back(b);
+        crush(inverse_mass, unit.trusses, b, face, block, next, contact, sums);
+        if (next.touching) {
+            if (along) by_trusses += along_trusses(unit.trusses.block[b], next, face.normal);
+            if (mu > 0.0) add_friction(unit.body, mu, full_speed, motion, next, contact, friction);
+            if (scene.barrier->finite()) require_on_wall(*scene.barrier, now.body, R, next);
+        }
+        trial.active[u].add(b);
+        trial.stale[u].add(b);
     }
+    SkinForces sum = total(sums, face.normal);
+    if (along) sum.contact = by_trusses;
+    sum += friction;
     now.skin = sum;
     now.skin.contact = turned(sum.contact, R);
     now.skin.friction = turned(sum.friction, R);
-    trial.state.statistics.node_evaluations += trial.active[u].size() * lanes;
+    trial.state.statistics.node_evaluations += trial.active[u].blocks().size() * lanes;
 }
 
 double nearest_gap(const Scene& scene, const State& state) {
     double nearest = std::numeric_limits<double>::infinity();
-    BlockContact contact;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const UnitState& unit = state.units[u];
         const Mat3 R = unit.body.orientation.toRotationMatrix();
@@ -88,9 +93,9 @@ double nearest_gap(const Scene& scene, const State& state) {
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         for (std::size_t b = 0; b < mesh.blocks; ++b) {
             const TrussBlockState& block = unit.trusses.block[b];
-            if (!face.within_reach(mesh.node_ball[b].center, block.ball_radius, nearest)) continue;
-            detect(face, block.x, block.y, block.z, contact);
-            nearest = std::min(nearest, *std::min_element(contact.gap.begin(), contact.gap.end()));
+            if (!face.within_reach(block.box, nearest)) continue;
+            const Lanes gap = gaps(face, block.x, block.y, block.z);
+            nearest = std::min(nearest, *std::min_element(gap.begin(), gap.end()));
         }
     }
     return nearest;

@@ -1,6 +1,7 @@
 #include "birm3d/sim/half_kick.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -122,9 +123,10 @@ void kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial) 
     for (std::size_t u = 0; u < trial.state.units.size(); ++u) {
         const RigidBody& body = scene.vehicle->units[u].body;
         UnitState& unit = trial.state.units[u];
-        const ThirdOrder& extra = trial.third_order[u];
-        Wrench impulse = scaled(unit.load, half);
-        impulse += stage == Stage::before_drift ? extra.lead : difference(extra.correction, extra.lead);
+        const HigherOrder& extra = trial.higher_order[u];
+        Load load = scaled(unit.course.now, half);
+        load += stage == Stage::before_drift ? extra.lead : difference(extra.correction, extra.lead);
+        Wrench impulse = load.wrench;
         impulse.force.z() -= half * body.mass * scene.settings.gravity;
         kick(body, impulse, unit.body);
     }
@@ -143,31 +145,56 @@ struct ContactKick {
     std::vector<Wrench> on_ground, on_barrier;  // (units) friction impulses
 };
 
+bool slides(const ContactKick& kicked) {
+    const auto is_there = [](const Wrench& friction) { return !friction.force.isZero(0.0); };
+    return std::any_of(kicked.on_ground.begin(), kicked.on_ground.end(), is_there) ||
+           std::any_of(kicked.on_barrier.begin(), kicked.on_barrier.end(), is_there);
+}
+
+double normal_impulse(const std::vector<RigidContact>& contacts) {
+    double sum = 0.0;
+    for (const RigidContact& contact : contacts)
+        sum += contact.impulse;
+    return sum;
+}
+
 ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> contacts, State& state,
                              std::vector<ContactImpulses>& sums) {
+    if (contacts.empty()) return {};
     const std::size_t units = state.units.size();
     ContactKick result{std::move(contacts), std::vector<Wrench>(units), std::vector<Wrench>(units)};
     const std::vector<Twist> motion = motions(scene, state);
     std::vector<Column> tire(units);
     solve_contacts(scene, state, result.contacts, tire);
-    bool sliding = false;
-    for (std::size_t u = 0; u < units; ++u) {
-        const Unit& unit = scene.vehicle->units[u];
-        BodyState& body = state.units[u].body;
-        Wrench& on_ground = result.on_ground[u];
-        Wrench& on_barrier = result.on_barrier[u];
-        on_ground = tire_friction(unit, scene.settings, body, motion[u], tire[u]);
-        if (scene.barrier && scene.barrier->friction > 0.0)
-            on_barrier = member_friction(result.contacts, u, unit.body, scene.barrier->friction,
-                                         tolerance::full_friction_speed * scene.reference_speed(), motion[u]);
-        sliding = sliding || !on_ground.force.isZero(0.0) || !on_barrier.force.isZero(0.0);
-        kick(unit.body, on_ground, body);
-        kick(unit.body, on_barrier, body);
-        sums[u].tire_friction += on_ground.force;
-        sums[u].barrier += on_barrier.force;
+    // Friction follows from the normal impulses and tips the body, which changes them: to and fro, until their
+    // sum stays. Where only gravity and the ground act it does at once; at impacts it takes some rounds.
+    constexpr int most_rounds = 30;
+    double carried = -1.0;
+    for (int round = 0; round < most_rounds; ++round) {
+        const double now = normal_impulse(result.contacts);
+        if (std::abs(now - carried) <= 1e-12 * now) break;
+        carried = now;
+        for (std::size_t u = 0; u < units; ++u) {
+            const Unit& unit = scene.vehicle->units[u];
+            BodyState& body = state.units[u].body;
+            const Wrench on_ground = tire_friction(unit, scene.settings, body, motion[u], tire[u]);
+            Wrench on_barrier;
+            if (scene.barrier && scene.barrier->friction > 0.0)
+                on_barrier =
+                    member_friction(result.contacts, u, unit.body, scene.barrier->friction,
+                                    tolerance::full_friction_speed * scene.reference_speed(), motion[u]);
+            kick(unit.body, difference(on_ground, result.on_ground[u]), body);
+            kick(unit.body, difference(on_barrier, result.on_barrier[u]), body);
+            result.on_ground[u] = on_ground;
+            result.on_barrier[u] = on_barrier;
+        }
+        if (!slides(result)) break;
+        solve_contacts(scene, state, result.contacts, tire);
     }
-    // Friction tips the body: the normal impulses are found once more beside it.
-    if (sliding) solve_contacts(scene, state, result.contacts, tire);
+    for (std::size_t u = 0; u < units; ++u) {
+        sums[u].tire_friction += result.on_ground[u].force;
+        sums[u].barrier += result.on_barrier[u].force;
+    }
 
     for (const RigidContact& contact : result.contacts) {
         const Vec3 impulse = contact.impulse * contact.normal;
@@ -187,6 +214,7 @@ ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> conta
 
 void book_contacts(const ContactKick& kicked, const std::vector<Twist>& before,
                    const std::vector<Twist>& after, State& state) {
+    if (kicked.contacts.empty()) return;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Twist motion = mean(before[u], after[u]);
         state.energies.barrier_friction -= power(kicked.on_barrier[u], motion);
@@ -214,6 +242,7 @@ void keep(const Scene& scene, const State& state, Impact& impact) {
 // An impact takes no time: it stands apart from the forces of the step, in the ledger and in the record.
 void impact_at_once(const Scene& scene, Stage stage, double reach, std::vector<RigidContact> contacts,
                     Trial& trial) {
+    if (contacts.empty()) return;
     State& state = trial.state;
     set_impact_targets(scene.settings.restitution, reach, contact_bodies(scene, state), contacts);
     if (contacts.empty()) return;
@@ -247,6 +276,10 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
 
     const std::vector<Twist> before = motions(scene, state);
     kick_by_forces(scene, stage, half, trial);
+    if (contacts.empty()) {
+        book_forces(before, motions(scene, state), half, state);
+        return;
+    }
     std::vector<RigidContact> lasting = contacts;
     const std::vector<ContactBody> bodies = contact_bodies(scene, state);
     if (stage == Stage::before_drift && options.locate_impacts)

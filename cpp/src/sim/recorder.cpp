@@ -22,7 +22,7 @@ enum UnitOffset : std::size_t {
     at_tire_friction = 17,  // impulse
     at_barrier_impulse = 20,
     at_normal_impulse = 23,
-    at_barrier_bend = 24,  // what the third order adds to the straight course of the force: impulse
+    at_barrier_bend = 24,  // what the higher order adds to the straight course of the force: impulse
     at_normal_bend = 27,
     at_tire_impulses = 28
 };
@@ -108,12 +108,12 @@ Recorder::Recorder(const Scene& scene, const State& start) : width_(at_units) {
     }
     values_.reserve(512 * width_);
     add_row(scene, start.time, start.energies, bodies_of(start), start.units, none,
-            std::vector<ThirdOrder>(none.size()));
+            std::vector<HigherOrder>(none.size()));
 }
 
 void Recorder::add(const Scene& scene, const Trial& accepted) {
     const State& state = accepted.state;
-    const auto none = [&state] { return std::vector<ThirdOrder>(state.units.size()); };
+    const auto none = [&state] { return std::vector<HigherOrder>(state.units.size()); };
     if (accepted.at_start.happened) {
         // The forces of that instant are those of the row before.
         const std::size_t before = values_.size() - width_;
@@ -129,14 +129,14 @@ void Recorder::add(const Scene& scene, const Trial& accepted) {
     const std::vector<BodyState> bodies = bodies_of(state);
     const Impact& end = accepted.at_end;
     add_row(scene, state.time, end.happened ? end.energies : state.energies,
-            end.happened ? end.bodies : bodies, state.units, accepted.impulses, accepted.third_order);
+            end.happened ? end.bodies : bodies, state.units, accepted.impulses, accepted.higher_order);
     if (end.happened) add_row(scene, state.time, state.energies, bodies, state.units, end.impulses, none());
 }
 
 void Recorder::add_row(const Scene& scene, double time, const Energies& e,
                        const std::vector<BodyState>& bodies, const std::vector<UnitState>& forces,
                        const std::vector<ContactImpulses>& impulses,
-                       const std::vector<ThirdOrder>& third_order) {
+                       const std::vector<HigherOrder>& higher_order) {
     const std::size_t begin = values_.size();
     values_.resize(begin + width_);
     double* row = values_.data() + begin;
@@ -159,8 +159,8 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e,
         put(row + at_tire_friction, impulses[u].tire_friction);
         put(row + at_barrier_impulse, impulses[u].barrier);
         row[at_normal_impulse] = impulses[u].barrier_normal;
-        put(row + at_barrier_bend, third_order[u].correction.force);
-        row[at_normal_bend] = third_order[u].normal_correction;
+        put(row + at_barrier_bend, higher_order[u].correction.wrench.force);
+        row[at_normal_bend] = higher_order[u].correction.normal_force;
         std::copy(impulses[u].tire.begin(), impulses[u].tire.end(), row + at_tire_impulses);
         row += unit_width(model);
     }

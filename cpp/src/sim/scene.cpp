@@ -58,6 +58,7 @@ std::uint64_t Scene::fingerprint() const {
         hash.add(unit.body.mass);
         for (int column = 0; column < 3; ++column)
             hash.add(Vec3(unit.body.inertia.col(column)));
+        hash.add(unit.mass_center_height);
         for (const TrussBlock& b : unit.trusses.block)
             for (const Lanes* lane :
                  {&b.node_x, &b.node_y, &b.node_z, &b.anchor_x, &b.anchor_y, &b.anchor_z, &b.k_unloading})
@@ -75,6 +76,9 @@ std::uint64_t Scene::fingerprint() const {
         hash.add(barrier->friction);
         hash.add(barrier->face.normal);
         hash.add(barrier->face.offset);
+        hash.add(barrier->origin);
+        hash.add(barrier->width);
+        hash.add(barrier->height);
     }
     return hash.value();
 }

@@ -70,6 +70,31 @@ Turn find_turn(const Scene& scene, const State& before, const Trial& trial) {
     return {approach / (approach - separation), 0.25 * trial.dt * trial.dt * stiffness * separation};
 }
 
+// When the last load is gone, by the course of the loads so far (s); half of `dt` where that does not tell.
+double time_to_release(const State& state, double dt) {
+    double latest = 0.0;
+    for (const UnitState& unit : state.units) {
+        const double force = unit.course.now.normal_force, rate = unit.course.rate.normal_force,
+                     bend = unit.course.bend.normal_force, step = unit.course.step;
+        if (!(force > 0.0)) continue;
+        // Root of force + rate s + bend s (s + step), written for small bends.
+        const double slope = rate + bend * step;
+        const double square = slope * slope - 4.0 * bend * force;
+        const double root =
+            square > 0.0 && slope < 0.0 ? 2.0 * force / (std::sqrt(square) - slope) : infinity;
+        latest = std::max(latest, root < dt ? root : 0.5 * dt);
+    }
+    return latest;
+}
+
+// Steps that an estimate asks for are taken from a ladder of sixteen lengths an octave: estimates are made of
+// high differences of the load, and their rounding must not travel from step to step.
+double on_ladder(double dt) {
+    int octave = 0;
+    const double part = std::frexp(dt, &octave);  // 0.5 to 1
+    return std::ldexp(std::floor(part * 32.0) / 32.0, octave);
+}
+
 bool at_rest(const Scene& scene, const State& state) {
     double start = 0.0;
     for (const Unit& unit : scene.vehicle->units)
@@ -93,6 +118,7 @@ void Simulation::restore(const Snapshot& snapshot) {
     if (snapshot.scene != scene_.fingerprint())
         refuse("snapshot", "of a simulation of the same vehicle and barrier", "one of others");
     state_ = snapshot.state;
+    trial_ = Trial(*scene_.vehicle);
     recorder_ = snapshot.recorder;
 }
 
@@ -113,7 +139,7 @@ double Simulation::remaining() const {
     return rest > tolerance::shortest_step ? rest : 0.0;  // no step for what rounding leaves over
 }
 
-void Simulation::take(const Trial& trial) {
+void Simulation::take(Trial& trial) {
     accept(trial, state_);
     recorder_.add(scene_, trial);
     if (!std::isfinite(state_.energies.total()))
@@ -149,7 +175,7 @@ void Simulation::refuse_step(double dt, double critical) const {
     adaptive.time_step.reset();
     Simulation other(Scene(scene_.vehicle, scene_.barrier, scene_.approach, adaptive, scene_.duration));
     other.run([] {});
-    const double would_do = tolerance::stable_fraction * other.state().statistics.least_critical_step;
+    const double would_do = tolerance::advised_fraction * other.state().statistics.least_critical_step;
     throw UnstableError(dt, critical, state_.time,
                         "a step of " + to_text(would_do, 3) + " s would do for the whole run");
 }
@@ -164,23 +190,28 @@ void Simulation::adaptive_step() {
                                 "the scene is too stiff for any step worth taking");
         try_step(scene_, state_, dt, {.locate_impacts = true}, trial_);
         const double stable = tolerance::stable_fraction * trial_.critical_step;
-        double shorter = infinity;
-        if (trial_.impact_after < dt) shorter = std::max(trial_.impact_after, 2.0 * tolerance::shortest_step);
-        if (dt > stable) shorter = std::min(shorter, 0.9 * stable);
+        double wanted = dt;
+        if (dt > stable) wanted = 0.9 * stable;
         if (trial_.error > allowed)
-            shorter = std::min(shorter, dt * std::max(0.2, 0.9 * std::sqrt(allowed / trial_.error)));
+            wanted = std::min(wanted, dt * std::max(0.2, 0.9 * std::sqrt(allowed / trial_.error)));
+        double shorter = wanted < dt ? on_ladder(wanted) : infinity;
         const Turn turn = find_turn(scene_, state_, trial_);
         if (turn.error > allowed) shorter = std::min(shorter, dt * std::clamp(turn.share, 0.1, 0.9));
+        if (trial_.impact_after < dt)
+            shorter = std::min(shorter, std::max(trial_.impact_after, 2.0 * tolerance::shortest_step));
         if (dt > tolerance::release_resolution && touches(state_) && !touches(trial_.state))
-            shorter = std::min(shorter, 0.5 * dt);
+            shorter = std::min(shorter, std::max(time_to_release(state_, dt), tolerance::release_resolution));
         if (!(shorter < dt)) break;
         dt = shorter;
         ++state_.statistics.rejected;
     }
     take(trial_);
 
-    double next = std::min(dt * std::min(2.0, 0.9 * std::cbrt(allowed / std::max(trial_.error, 1e-300))),
-                           0.9 * tolerance::stable_fraction * trial_.critical_step);
+    // The sixth root rather than the fourth, by which a smooth load's error grows: gentle changes of the step
+    // keep the estimates, which compare three steps, quiet.
+    const double growth = 0.9 * std::pow(allowed / std::max(trial_.error, 1e-300), 1.0 / 6.0);
+    double next = on_ladder(
+        std::min(dt * std::min(4.0, growth), 0.9 * tolerance::stable_fraction * trial_.critical_step));
     if (scene_.barrier && !touches(state_)) {
         // Free flight: up to the first instant at which a node can be at the barrier.
         double fastest = 0.0;

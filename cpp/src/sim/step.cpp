@@ -15,42 +15,60 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // A slope that changes within the step costs up to an eighth of the departure it makes (m/s).
-double error_of(const Unit& unit, const BodyState& body, const Wrench& departure, double dt) {
+double error_of(const Unit& unit, const BodyState& body, const Load& departure, double dt) {
     const double gyration = std::sqrt(0.5 * unit.body.inertia.trace() * unit.body.inverse_mass);
-    const Vec3 turning = inverse_inertia_in_world(unit.body, body) * departure.torque;
-    return dt / 8.0 * (unit.body.inverse_mass * departure.force.norm() + gyration * turning.norm());
+    const Vec3 turning = inverse_inertia_in_world(unit.body, body) * departure.wrench.torque;
+    return dt / 8.0 * (unit.body.inverse_mass * departure.wrench.force.norm() + gyration * turning.norm());
 }
 
-// The load at the new instant, its rate, and what the third order adds to the trapezoid rule. Returns the
+// Before the new load is known: the integral of (1 - s/dt) times the load's course, less that of a constant.
+Load lead(const LoadCourse& before, double dt) {
+    Load sum = scaled(before.rate, dt * dt / 6.0);
+    if (before.bend_lasts) sum += scaled(before.bend, dt * dt * (dt / 12.0 + before.step / 6.0));
+    return sum;
+}
+
+// A wall does not pull: the parabola of the normal force stays above zero while its bend is at most
+// (sqrt(F0) + sqrt(F1))^2.
+Load within_push(const Load& correction, const LoadCourse& before, const LoadCourse& now, double dt) {
+    const double bend = -6.0 / dt * correction.normal_force;
+    const double root = std::sqrt(before.now.normal_force) + std::sqrt(now.now.normal_force);
+    return bend > root * root ? scaled(correction, root * root / bend) : correction;
+}
+
+// The load at the new instant, its course, and what the higher order adds to the trapezoid rule. Returns the
 // estimated error of the step's velocity (m/s).
-double load_and_correct(const Unit& unit, const UnitMotion& before, double dt, UnitMotion& now,
-                        ThirdOrder& extra) {
-    now.load = now.skin.contact;
-    now.load += now.skin.friction;
-    if (now.skin.normal_force == 0.0) {
-        // Nothing presses any more: the rate ends with the load, and a straight line is the better course
-        // through the corner that a release makes.
-        now.load_rate = {};
-        now.normal_rate = now.rate_step = 0.0;
-        return error_of(unit, now.body, difference(now.load, before.load), dt);
-    }
-    now.rate_step = dt;
-    now.load_rate = scaled(difference(now.load, before.load), 1.0 / dt);
-    now.normal_rate = (now.skin.normal_force - before.skin.normal_force) / dt;
+double load_and_correct(const Unit& unit, const LoadCourse& before, double dt, UnitMotion& moved,
+                        HigherOrder& extra) {
+    LoadCourse& now = moved.course;
+    now = {};
+    now.now = {moved.skin.contact, moved.skin.normal_force};
+    now.now.wrench += moved.skin.friction;
+    const Load rise = difference(now.now, before.now);
+    // Where nothing presses any more, the rate ends with the load: a straight line is the better course
+    // through the corner that a release makes.
+    if (moved.skin.normal_force == 0.0) return error_of(unit, moved.body, rise, dt);
 
-    // How far the load departs from a straight line over this step and the last.
-    const Wrench departure = scaled(difference(now.load_rate, before.load_rate), dt);
-    const double normal_departure = dt * (now.normal_rate - before.normal_rate);
-    double weight = -dt * dt / (6.0 * (dt + before.rate_step));
-    // A wall does not pull: the parabola of the normal force stays above zero while its bend is at most
-    // (sqrt(F0) + sqrt(F1))^2.
-    const double bend = 6.0 / dt * weight * normal_departure;
-    const double root = std::sqrt(before.skin.normal_force) + std::sqrt(now.skin.normal_force);
-    if (-bend > root * root) weight *= root * root / -bend;
-    extra.correction = scaled(departure, weight);
-    extra.normal_correction = weight * normal_departure;
+    const double span = dt + before.step;
+    now.step = dt;
+    now.step_before = before.step;
+    now.rate = scaled(rise, 1.0 / dt);
+    const Load departure = scaled(difference(now.rate, before.rate), dt);  // from a straight line
+    now.bend = scaled(departure, 1.0 / (dt * span));
+    extra.correction = scaled(departure, -dt * dt / (6.0 * span));
 
-    return error_of(unit, now.body, departure, dt);
+    // A cubic follows the change of the bend, where the bend lasts. At a corner it does not, and a bend of the
+    // last step that was a corner says nothing of this one.
+    const Load change = scaled(difference(now.bend, before.bend), dt * span);
+    if (before.bend_lasts)
+        extra.correction +=
+            scaled(change, -dt * dt * (dt / 12.0 + before.step / 6.0) / (span * (span + before.step_before)));
+    extra.correction = within_push(extra.correction, before, now, dt);
+
+    const double by_departure = error_of(unit, moved.body, departure, dt);
+    const double by_change = error_of(unit, moved.body, change, dt);
+    now.bend_lasts = before.step > 0.0 && by_change < tolerance::lasting_bend * by_departure;
+    return std::min(by_departure, by_change);
 }
 
 // Infinite where nothing pushes.
@@ -78,8 +96,7 @@ void begin(const State& from, double dt, Trial& trial) {
         clear(trial.impulses[u]);
         clear(trial.at_start.impulses[u]);
         clear(trial.at_end.impulses[u]);
-        trial.third_order[u] = {};
-        trial.third_order[u].lead = scaled(from.units[u].load_rate, dt * dt / 6.0);
+        trial.higher_order[u] = {lead(from.units[u].course, dt), {}};
     }
 }
 
@@ -100,11 +117,17 @@ void book_motion(const Scene& scene, State& now) {
 
 }  // namespace
 
-Trial::Trial(const Vehicle& vehicle) : state(vehicle), active(vehicle.units.size()) {
+Trial::Trial(const Vehicle& vehicle) : state(vehicle) {
     for (const Unit& unit : vehicle.units)
         impulses.emplace_back(unit.wheels.size());
+    for (const Unit& unit : vehicle.units) {
+        active.emplace_back(unit.trusses.blocks);
+        stale.emplace_back(unit.trusses.blocks);
+        for (std::size_t block = 0; block < unit.trusses.blocks; ++block)
+            stale.back().add(block);
+    }
     at_start.impulses = at_end.impulses = impulses;
-    third_order.resize(vehicle.units.size());
+    higher_order.resize(vehicle.units.size());
 }
 
 bool Trial::body_held() const {
@@ -128,7 +151,7 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
         if (scene.barrier) barrier_forces(scene, u, from, trial);
         if (moved.skin.normal_force > 0.0) now.touched = true;
 
-        const double error = load_and_correct(unit, from.units[u], dt, moved, trial.third_order[u]);
+        const double error = load_and_correct(unit, from.units[u].course, dt, moved, trial.higher_order[u]);
         trial.error = std::max(trial.error, error);
         trial.critical_step = std::min(trial.critical_step, critical_step(moved.skin));
     }
@@ -139,13 +162,16 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
     book_motion(scene, now);
 }
 
-void accept(const Trial& trial, State& state) {
+void accept(Trial& trial, State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         UnitState& to = state.units[u];
-        const UnitState& with = trial.state.units[u];
+        UnitState& with = trial.state.units[u];
         static_cast<UnitMotion&>(to) = with;
-        for (const std::size_t block : trial.active[u])
-            to.trusses.block[block] = with.trusses.block[block];
+        // The trusses change places, once the blocks that this step did not make are brought up to date.
+        for (const std::size_t block : trial.stale[u].blocks())
+            if (!trial.active[u].contains(block)) with.trusses.block[block] = to.trusses.block[block];
+        std::swap(to.trusses, with.trusses);
+        trial.stale[u] = trial.active[u];
     }
     static_cast<Progress&>(state) = trial.state;
     StepStatistics& statistics = state.statistics;

@@ -48,14 +48,15 @@ TEST("the order of the trusses is a permutation of the caller's") {
         CHECK(order[i] == i);
 }
 
-TEST("balls and reach hold every node and anchor") {
+TEST("boxes and reach hold every node and anchor") {
     const TrussMesh mesh(input);
     double farthest = 0.0;
     for (std::size_t i = 0; i < mesh.count; ++i) {
-        const Ball& nodes = mesh.node_ball[i / lanes];
-        const Ball& anchors = mesh.anchor_ball[i / lanes];
-        CHECK((mesh.node(i) - nodes.center).norm() <= nodes.radius);
-        CHECK((mesh.anchor(i) - anchors.center).norm() <= anchors.radius);
+        for (const auto& [point, box] :
+             {std::pair{mesh.node(i), mesh.node_box[i / lanes]},
+              std::pair{mesh.anchor(i), mesh.anchor_box[i / lanes]}, std::pair{mesh.anchor(i), mesh.anchors}})
+            CHECK(((point - box.center).cwiseAbs() - box.half).maxCoeff() <=
+                  1e-15);  // rounding of the middle
         farthest = std::max({farthest, mesh.node(i).norm(), mesh.anchor(i).norm()});
     }
     CHECK_CLOSE(mesh.reach, farthest, 0.0, "exact");
@@ -63,8 +64,8 @@ TEST("balls and reach hold every node and anchor") {
 
 TEST("neighbours in order are neighbours in space") {
     const TrussMesh mesh(laboratory::front_face(laboratory::w2_curve(), 64, 64));
-    for (const Ball& ball : mesh.node_ball)
-        CHECK(ball.radius < 0.5);  // of a face 2.4 m by 1.6 m
+    for (const Box& box : mesh.node_box)
+        CHECK(box.half.norm() < 0.5);  // of a face 2.4 m by 1.6 m
 }
 
 TEST("what is no skin is refused") {

@@ -7,9 +7,9 @@
 #include <array>
 #include <cstddef>
 
-namespace birm3d {
+#include "birm3d/base/lane_count.hpp"
 
-inline constexpr std::size_t lanes = 64;
+namespace birm3d {
 
 using Lanes = std::array<double, lanes>;
 
@@ -38,13 +38,18 @@ using Lanes = std::array<double, lanes>;
 #define BIRM3D_IN_LANE_LOOP inline
 #endif
 
-// Eight running sums, then pairs.
-BIRM3D_IN_LANE_LOOP double lane_sum(const Lanes& values) {
-    std::array<double, 8> sum{};
-    for (std::size_t row = 0; row < lanes; row += 8)
-        for (std::size_t i = 0; i < 8; ++i)
-            sum[i] += values[row + i];
-    return ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
+BIRM3D_IN_LANE_LOOP double row_sum(const double* v) {
+    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
+
+// Sum by halves, in place: a fixed order that every instruction set can follow.
+BIRM3D_IN_LANE_LOOP double lane_sum(Lanes& values) {
+    for (std::size_t half = lanes / 2; half >= 8; half /= 2) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < half; ++i)
+            values[i] += values[half + i];
+    }
+    return row_sum(values.data());
 }
 
 }  // namespace birm3d

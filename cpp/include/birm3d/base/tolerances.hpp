@@ -25,6 +25,10 @@ inline constexpr double critical_phase = 1.7320508;
 // Share of the critical step that adaptive stepping uses at the most. 1: the edge of stability.
 inline constexpr double stable_fraction = 0.5;
 
+// Share of the critical step that is advised for fixed steps. Larger: stable, but peaks and turns are passed
+// unseen.
+inline constexpr double advised_fraction = 0.25;
+
 // Longest and shortest adaptive step (s). Longest: bounds how late a first touch is seen. Shortest:
 // a scene that asks for less is refused rather than run for ever.
 inline constexpr double longest_step = 5e-3;
@@ -40,6 +44,10 @@ inline constexpr double first_contact_step = 2e-4;
 // Local velocity error allowed in one step, relative to the reference speed and per unit of
 // Settings::tolerance. Larger: the asked and the achieved error of the metrics part.
 inline constexpr double step_error_per_tolerance = 0.01;
+
+// A bend of the load lasts through a step if it changes by less than this share of itself; then the scheme
+// follows it. Zero: third order throughout. Large: corners of the load are extrapolated.
+inline constexpr double lasting_bend = 0.6;
 
 // Speed scale of a scene that starts at rest (m/s): errors are judged against it.
 inline constexpr double slowest_reference_speed = 0.1;

@@ -1,7 +1,7 @@
 // The flat wall: all points with normal . p <= offset are inside (paper Eq. 8 with a unit normal).
 #pragma once
 
-#include "birm3d/base/types.hpp"
+#include "birm3d/geometry/box.hpp"
 
 namespace birm3d {
 
@@ -12,9 +12,9 @@ struct HalfSpace {
     // Signed distance of a point along the outward normal; negative = inside (m).
     double gap(const Vec3& p) const { return normal.dot(p) - offset; }
 
-    // Can any point of the ball be nearer to the surface than `margin` (m)?
-    bool within_reach(const Vec3& center, double radius, double margin) const {
-        return gap(center) - radius < margin;
+    // Can any point of the box be nearer to the surface than `margin` (m)?
+    bool within_reach(const Box& box, double margin) const {
+        return gap(box.center) - normal.cwiseAbs().dot(box.half) < margin;
     }
 
     // The same surface seen from axes that stand at `position` and are turned by `rotation` (axes to world).

@@ -14,7 +14,8 @@
 // is released at the instant at which its truss reaches zero force.
 #pragma once
 
-#include "birm3d/model/settings.hpp"
+#include "birm3d/base/node_sums.hpp"
+#include "birm3d/geometry/half_space.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 #include "birm3d/model/vehicle.hpp"
 #include "birm3d/state/contacts.hpp"
@@ -22,8 +23,32 @@
 
 namespace birm3d {
 
-// Takes block `b` from `before` to `now`; fills in `contact` and returns the sums (body axes).
-SkinForces crush(const RigidBody& body, const TrussMesh& mesh, ContactModel model, std::size_t b,
-                 const TrussBlockState& before, TrussBlockState& now, BlockContact& contact);
+// The inverse effective mass of a node along n (the denominator of Eq. 1), 1/m + (r x n) . I^-1 (r x n), as a
+// quadratic form in its place r, body axes. A node slides along n, which leaves r x n alone: uncrushed places
+// will do.
+struct InverseMass {
+    InverseMass(const RigidBody& body, const Vec3& normal);
+
+    double constant;  // 1/kg
+    Mat3 form;        // 1/(kg m^2)
+};
+
+// What the blocks of a unit add up to.
+struct CrushSums {
+    NodeSums nodes;
+    double released_work = 0.0;  // work on trusses whose nodes were let go on the way, in addition (J)
+    double stiffness = 0.0;      // see SkinForces (1/s^2)
+};
+
+// Takes block `b` from `before` to `now` beside a flat surface (body axes), fills in `contact` and adds to the
+// sums.
+void crush(const InverseMass& inverse_mass, const TrussMesh& mesh, std::size_t b, const HalfSpace& face,
+           const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums);
+
+// The forces of all blocks, projected (body axes).
+SkinForces total(const CrushSums& sums, const Vec3& normal);
+
+// The force of a block by the paper's rule: each truss pushes along itself (body axes).
+Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const Vec3& normal);
 
 }  // namespace birm3d

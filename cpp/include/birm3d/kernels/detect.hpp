@@ -1,12 +1,12 @@
-// Which nodes are at a surface (paper 5.1): signed distance and normal, block by block.
+// How far nodes are from a surface (paper 5.1).
 #pragma once
 
+#include "birm3d/base/lanes.hpp"
 #include "birm3d/geometry/half_space.hpp"
-#include "birm3d/state/contacts.hpp"
 
 namespace birm3d {
 
-// Gap and normal of the nodes x, y, z; face and nodes in the same axes.
-void detect(const HalfSpace& face, const Lanes& x, const Lanes& y, const Lanes& z, BlockContact& contact);
+// Signed distances of the nodes x, y, z; face and nodes in the same axes (m).
+Lanes gaps(const HalfSpace& face, const Lanes& x, const Lanes& y, const Lanes& z);
 
 }  // namespace birm3d

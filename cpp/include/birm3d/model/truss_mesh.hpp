@@ -13,6 +13,7 @@
 
 #include "birm3d/base/lanes.hpp"
 #include "birm3d/base/types.hpp"
+#include "birm3d/geometry/box.hpp"
 #include "birm3d/model/truss_law.hpp"
 
 namespace birm3d {
@@ -26,9 +27,10 @@ struct TrussInput {
     std::vector<double> scale;          // (n) tributary area (m^2), or 1 for curves per truss
 };
 
-struct Ball {
-    Vec3 center = Vec3::Zero();
-    double radius = 0.0;
+// Unloading stiffness of some trusses and its second moments about the mass centre, body axes.
+struct StiffnessMoments {
+    double total = 0.0;          // sum of k (N/m)
+    Mat3 second = Mat3::Zero();  // sum of k r r^T (N m)
 };
 
 struct alignas(64) TrussBlock {
@@ -55,9 +57,12 @@ struct TrussMesh {
     std::vector<TrussBlock> block;  // (blocks)
     std::vector<Hinge> hinge;       // (blocks * hinges), a block's hinges together
 
-    std::vector<Ball> node_ball;           // (blocks) around the uncrushed nodes
-    std::vector<Ball> anchor_ball;         // (blocks)
-    std::vector<std::size_t> input_index;  // (count) the caller's number of each truss
+    std::vector<double> pushable;           // (blocks) trusses that have a stiffness
+    std::vector<StiffnessMoments> moments;  // (blocks) of all of them
+    std::vector<Box> node_box;              // (blocks) around the uncrushed nodes
+    std::vector<Box> anchor_box;            // (blocks)
+    Box anchors;                            // around all of them
+    std::vector<std::size_t> input_index;   // (count) the caller's number of each truss
 
     Vec3 node(std::size_t truss) const {
         const TrussBlock& b = block[truss / lanes];
@@ -73,6 +78,7 @@ struct TrussMesh {
     double reach = 0.0;  // greatest distance of a node or anchor from the mass centre (m)
 
   private:
+    void add_stiffness(const TrussBlock& trusses);
     void fill_lane(const TrussInput& input, std::size_t source, bool padding, std::size_t b, std::size_t i);
 };
 

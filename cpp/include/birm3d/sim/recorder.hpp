@@ -1,7 +1,7 @@
 // The history of a run. One row is kept for each accepted step; evenly spaced output is made from the rows
 // afterwards, so that the output interval costs nothing while stepping and does not bound the step.
 //
-// Within a step the scheme's forces run along the parabola that its third order integrates, the impulses of
+// Within a step the scheme's forces run along the parabola that carries the impulse of its higher order, the impulses of
 // lasting rigid contacts are spread evenly, and rigid impacts stand at the instant at which they happen:
 // velocities at output instants follow from that, and forces are means over the output interval, so that
 // m * (change of velocity) equals the sum of forces times the interval to rounding.
@@ -47,7 +47,7 @@ class Recorder {
   private:
     void add_row(const Scene& scene, double time, const Energies& energies,
                  const std::vector<BodyState>& bodies, const std::vector<UnitState>& forces,
-                 const std::vector<ContactImpulses>& impulses, const std::vector<ThirdOrder>& third_order);
+                 const std::vector<ContactImpulses>& impulses, const std::vector<HigherOrder>& higher_order);
 
     std::size_t width_;  // numbers in a row
     Column values_;      // (rows * width), flat: adding a row allocates only when the buffer grows

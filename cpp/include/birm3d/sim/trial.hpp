@@ -28,11 +28,33 @@ struct Impact {
     std::vector<ContactImpulses> impulses;  // (units)
 };
 
-// What the scheme adds to half kicks by the trapezoid rule (see step.hpp), N s and N m s.
-struct ThirdOrder {
-    Wrench lead;        // lent to the drift, taken back after it
-    Wrench correction;  // of the whole step
-    double normal_correction = 0.0;
+// What the scheme adds to half kicks by the trapezoid rule (see step.hpp), impulses.
+struct HigherOrder {
+    Load lead;        // lent to the drift, taken back after it
+    Load correction;  // of the whole step
+};
+
+// Some of the blocks of a mesh.
+class BlockSet {
+  public:
+    explicit BlockSet(std::size_t blocks) : has_(blocks, char{0}) {}
+
+    bool contains(std::size_t block) const { return has_[block] != 0; }
+    void add(std::size_t block) {
+        if (contains(block)) return;
+        has_[block] = 1;
+        blocks_.push_back(block);
+    }
+    void clear() {
+        for (const std::size_t block : blocks_)
+            has_[block] = 0;
+        blocks_.clear();
+    }
+    const std::vector<std::size_t>& blocks() const { return blocks_; }
+
+  private:
+    std::vector<std::size_t> blocks_;
+    std::vector<char> has_;
 };
 
 // The step that was tried, beside the state it started from.
@@ -40,14 +62,15 @@ struct Trial {
     explicit Trial(const Vehicle& vehicle);
 
     double dt = 0.0;
-    State state;                                   // at t + dt; trusses only where active
-    std::vector<std::vector<std::size_t>> active;  // (units) blocks near the barrier
-    std::vector<ContactImpulses> impulses;         // (units) of lasting contacts, even over the step
+    State state;                            // at t + dt; trusses only where active
+    std::vector<BlockSet> active;           // (units) blocks near the barrier
+    std::vector<BlockSet> stale;            // (units) blocks that may differ from the state's
+    std::vector<ContactImpulses> impulses;  // (units) of lasting contacts, even over the step
     Impact at_start, at_end;
-    std::vector<ThirdOrder> third_order;  // (units)
-    double error = 0.0;                   // estimated velocity error of this step (m/s)
-    double critical_step;                 // sqrt(3)/omega of the trusses in contact (s)
-    double impact_after;                  // a rigid impact begins this long after t (s)
+    std::vector<HigherOrder> higher_order;  // (units)
+    double error = 0.0;                     // estimated velocity error of this step (m/s)
+    double critical_step;                   // sqrt(3)/omega of the trusses in contact (s)
+    double impact_after;                    // a rigid impact begins this long after t (s)
 
     bool body_held() const;  // did the rigid body meet the barrier?
 };

@@ -12,10 +12,8 @@ namespace birm3d {
 
 // One block of nodes beside a surface, body axes.
 struct alignas(64) BlockContact {
-    Lanes gap;                   // before the nodes are moved (m)
-    Vec3 normal = Vec3::Zero();  // outward, of the flat surface beside all of them
     Lanes pressure;              // normal force of each node (N)
-    Lanes work, stored;          // of each truss (J): see SkinForces
+    Vec3 normal = Vec3::Zero();  // outward, of the flat surface beside all of them
 };
 
 // All that a unit's skin feels at one instant; wrenches in body axes until the step turns them to the world.
@@ -38,6 +36,36 @@ struct SkinForces {
         friction_rate += o.friction_rate;
         return *this;
     }
+};
+
+// All that the skin does to its body, world axes, with the sum of its normal forces beside it.
+struct Load {
+    Wrench wrench;
+    double normal_force = 0.0;
+
+    Load& operator+=(const Load& o) {
+        wrench += o.wrench;
+        normal_force += o.normal_force;
+        return *this;
+    }
+};
+
+inline Load scaled(const Load& load, double factor) {
+    return {scaled(load.wrench, factor), factor * load.normal_force};
+}
+
+inline Load difference(const Load& a, const Load& b) {
+    return {difference(a.wrench, b.wrench), a.normal_force - b.normal_force};
+}
+
+// The course of the load over the last steps, in Newton's divided differences.
+struct LoadCourse {
+    Load now;
+    Load rate;                 // of the last step, per second
+    Load bend;                 // half the second derivative, of the last two steps, per second^2
+    double step = 0.0;         // length of the last step, zero where no rate is known (s)
+    double step_before = 0.0;  // and of the one before
+    bool bend_lasts = false;   // did the bend go on through the last step?
 };
 
 enum class ContactSource { tire, member };

@@ -16,11 +16,8 @@ namespace birm3d {
 // What a unit has besides its trusses: small, copied whole with every step that is tried.
 struct UnitMotion {
     BodyState body;
-    SkinForces skin;           // at this instant, world axes
-    Wrench load;               // all of the skin: contact and friction, world axes
-    Wrench load_rate;          // its change over the last step, per second
-    double normal_rate = 0.0;  // the same of skin.normal_force (N/s)
-    double rate_step = 0.0;    // length of that step (s)
+    SkinForces skin;    // at this instant, world axes
+    LoadCourse course;  // of contact and friction together
 };
 
 struct UnitState : UnitMotion {

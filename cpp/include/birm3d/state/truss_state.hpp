@@ -14,7 +14,7 @@ struct alignas(64) TrussBlockState {
     Lanes deflection, force;            // of the truss, now (m, N)
     Lanes peak_deflection, peak_force;  // where the loading envelope was left (m, N)
     Vec3 normal = Vec3::Zero();         // of the surface when last seen, body axes
-    double ball_radius;                 // of the node ball, grown over displaced nodes (m)
+    Box box;                            // around the nodes where they were last let go, body axes
     bool touching;                      // does any node push?
 };
 
@@ -25,7 +25,7 @@ struct TrussState {
             block[b].x = mesh.block[b].node_x;
             block[b].y = mesh.block[b].node_y;
             block[b].z = mesh.block[b].node_z;
-            block[b].ball_radius = mesh.node_ball[b].radius;
+            block[b].box = mesh.node_box[b];
         }
     }
 

@@ -1,0 +1,93 @@
+// Eight numbers side by side, in registers of whatever width the file is compiled for. Plain arithmetic in a
+// fixed order and without contraction: every width gives the same bits.
+//
+// For files that are compiled once for each instruction set: nothing here, and nothing such a file includes,
+// may leave a symbol that another file could share, for the linker would keep one of them for all processors.
+#pragma once
+
+#include <cstddef>
+
+#if !defined(__GNUC__)
+#error "BIRM3D's kernels need the vector types of GCC or Clang"
+#endif
+
+#if defined(__AVX512F__)
+#define BIRM3D_INSTRUCTION_SET avx512
+#define BIRM3D_REGISTER_LENGTH 8
+#elif defined(__AVX2__)
+#define BIRM3D_INSTRUCTION_SET avx2
+#define BIRM3D_REGISTER_LENGTH 4
+#else
+#define BIRM3D_INSTRUCTION_SET baseline
+#define BIRM3D_REGISTER_LENGTH 2
+#endif
+
+namespace birm3d::BIRM3D_INSTRUCTION_SET {
+
+#define BIRM3D_INLINE inline __attribute__((always_inline))
+
+inline constexpr std::size_t row_length = 8;
+inline constexpr std::size_t parts = row_length / BIRM3D_REGISTER_LENGTH;
+
+struct Row {
+    using Register = double __attribute__((vector_size(8 * BIRM3D_REGISTER_LENGTH)));
+    Register part[parts];
+
+    BIRM3D_INLINE static Row of(double value) {
+        Row row;
+        for (std::size_t p = 0; p < parts; ++p)
+            row.part[p] = Register{} + value;
+        return row;
+    }
+    BIRM3D_INLINE static Row load(const double* from) {
+        Row row;
+        for (std::size_t p = 0; p < parts; ++p)
+            row.part[p] = *reinterpret_cast<const Register*>(from + p * BIRM3D_REGISTER_LENGTH);
+        return row;
+    }
+    BIRM3D_INLINE void store(double* to) const {
+        for (std::size_t p = 0; p < parts; ++p)
+            *reinterpret_cast<Register*>(to + p * BIRM3D_REGISTER_LENGTH) = part[p];
+    }
+};
+
+#define BIRM3D_ROW_OPERATOR(op)                                 \
+    BIRM3D_INLINE Row operator op(const Row& a, const Row& b) { \
+        Row row;                                                \
+        for (std::size_t p = 0; p < parts; ++p)                 \
+            row.part[p] = a.part[p] op b.part[p];               \
+        return row;                                             \
+    }
+BIRM3D_ROW_OPERATOR(+)
+BIRM3D_ROW_OPERATOR(-)
+BIRM3D_ROW_OPERATOR(*)
+BIRM3D_ROW_OPERATOR(/)
+#undef BIRM3D_ROW_OPERATOR
+
+// a > b ? yes : no
+BIRM3D_INLINE Row where_above(const Row& a, const Row& b, const Row& yes, const Row& no) {
+    Row row;
+    for (std::size_t p = 0; p < parts; ++p)
+        row.part[p] = a.part[p] > b.part[p] ? yes.part[p] : no.part[p];
+    return row;
+}
+
+BIRM3D_INLINE Row greater(const Row& a, const Row& b) {
+    return where_above(a, b, a, b);
+}
+
+BIRM3D_INLINE Row square_root(const Row& a) {
+    Row row;
+    for (std::size_t p = 0; p < parts; ++p)
+        for (std::size_t k = 0; k < BIRM3D_REGISTER_LENGTH; ++k)
+            row.part[p][k] = __builtin_sqrt(a.part[p][k]);
+    return row;
+}
+
+BIRM3D_INLINE double sum_of(const Row& row) {
+    alignas(64) double v[row_length];
+    row.store(v);
+    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
+
+}  // namespace birm3d::BIRM3D_INSTRUCTION_SET

@@ -1,0 +1,43 @@
+// The arithmetic of kernels/crush on one block, compiled once for each instruction set (see base/row.hpp):
+// columns as plain pointers, `lanes` numbers each.
+#pragma once
+
+#include <cstddef>
+
+#include "birm3d/base/node_sums.hpp"
+
+namespace birm3d {
+
+// What does not change while the surface presses.
+struct PressColumns {
+    const double *anchor_x, *anchor_y, *anchor_z, *length;  // m
+    const double *k_unloading, *compliance;                 // N/m, m/N
+    const double* hinge;  // (hinges)(2)(lanes) deflection (m) and change of slope (N/m), one after the other
+    std::size_t hinges;
+};
+
+// The columns that a step changes.
+template <class Number>
+struct PressState {
+    Number *x, *y, *z, *deflection, *force, *peak_deflection, *peak_force;
+};
+
+// A flat surface n . p = offset, and the direction h in which it takes along the nodes that it holds already.
+struct FlatSurface {
+    double nx, ny, nz, offset;
+    double hx, hy, hz;
+};
+
+// What a node whose truss ceased to push counts in the result of PressFlat; one that pushes counts 1.
+inline constexpr double left = 1024.0;
+
+// Moves the nodes of a block that are at the surface onto it, finds the forces of their trusses and adds to
+// the sums; also each node's gap before it was moved (m) and its normal force (N). Returns the count of nodes
+// that push, and of those that ceased to.
+using PressFlat = double (*)(const PressColumns&, const FlatSurface&, const PressState<const double>& before,
+                             const PressState<double>& now, double* gap, double* pressure, NodeSums& sums);
+
+// For the processor that runs.
+extern const PressFlat press_flat;
+
+}  // namespace birm3d
