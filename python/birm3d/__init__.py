@@ -11,6 +11,9 @@ from importlib.metadata import version as _version
 from . import scenes, units
 from ._core import UnstableError
 from .barrier import Barrier
+from .channel import Channel
+from .channel_checks import check_channel
+from .comparison import CurveComparison, compare_curves
 from .result import Result
 from .settings import Settings
 from .simulation import Scene, Simulation
@@ -18,6 +21,8 @@ from .vehicle import Vehicle, Zone
 
 __all__ = [
     "Barrier",
+    "Channel",
+    "CurveComparison",
     "Result",
     "Scene",
     "Settings",
@@ -25,6 +30,8 @@ __all__ = [
     "UnstableError",
     "Vehicle",
     "Zone",
+    "check_channel",
+    "compare_curves",
     "scenes",
     "units",
 ]
