@@ -17,6 +17,7 @@ from .comparison import CurveComparison, compare_curves
 from .result import Result
 from .settings import Settings
 from .simulation import Scene, Simulation
+from .test_data import read_csv_channels, read_iso_mme, read_nhtsa
 from .vehicle import Vehicle, Zone
 
 __all__ = [
@@ -32,6 +33,9 @@ __all__ = [
     "Zone",
     "check_channel",
     "compare_curves",
+    "read_csv_channels",
+    "read_iso_mme",
+    "read_nhtsa",
     "scenes",
     "units",
 ]
