@@ -11,13 +11,19 @@ from importlib.metadata import version as _version
 from . import scenes, units
 from ._core import UnstableError
 from .barrier import Barrier
+from .channel import Channel
+from .channel_checks import check_channel
+from .comparison import CurveComparison, compare_curves
 from .result import Result
 from .settings import Settings
 from .simulation import Scene, Simulation
+from .test_data import read_csv_channels, read_iso_mme, read_nhtsa
 from .vehicle import Vehicle, Zone
 
 __all__ = [
     "Barrier",
+    "Channel",
+    "CurveComparison",
     "Result",
     "Scene",
     "Settings",
@@ -25,6 +31,11 @@ __all__ = [
     "UnstableError",
     "Vehicle",
     "Zone",
+    "check_channel",
+    "compare_curves",
+    "read_csv_channels",
+    "read_iso_mme",
+    "read_nhtsa",
     "scenes",
     "units",
 ]
