@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from importlib.metadata import version as _version
 
-from . import scenes, units
+from . import calibration, scenes, units
 from ._core import UnstableError
 from .barrier import Barrier
+from .calibration import calibrate
 from .result import Result
 from .settings import Settings
 from .simulation import Scene, Simulation
@@ -25,6 +26,8 @@ __all__ = [
     "UnstableError",
     "Vehicle",
     "Zone",
+    "calibrate",
+    "calibration",
     "scenes",
     "units",
 ]
