@@ -77,7 +77,7 @@ def calibrate(
         s^2 = chi-square / dof (Student's t). ``"larger"``: the wider of the two, for models
         that do not follow the data as closely as these are measured.
     confidence
-        Of the intervals, between 0 and 1.
+        Of the intervals, between 0 and 1. They end at the bounds at the latest.
     tolerance
         Of the adaptive steps during the fit, where the simulations ask for less: finite differences need runs
         that are smooth in the parameters. The fitted simulations have their own settings again.
@@ -268,7 +268,8 @@ def _result(
 
 
 def _interval(parameter: Parameter, share: float, half: float) -> tuple[float, float]:
-    return parameter.from_unit(share - half), parameter.from_unit(share + half)
+    """Return the ends of an interval; it goes no farther than the bounds."""
+    return parameter.from_unit(max(0.0, share - half)), parameter.from_unit(min(1.0, share + half))
 
 
 def _targets(found: Search, values: Floats) -> tuple[FittedTarget, ...]:

@@ -128,8 +128,9 @@ def descend(channel: Channel, start: Floats, max_steps: int, fixed: int | None =
         jac=lambda x: channel.jacobian(whole(x))[:, free],
         bounds=(0.0, 1.0),
         x_scale="jac",
-        xtol=1e-7,
-        ftol=1e-9,
+        # Far below what an interval can show; far above the noise of step control.
+        xtol=1e-6,
+        ftol=1e-6,
         gtol=1e-12,
         max_nfev=max_steps,
     )

@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..scene_parameters import varied
-from .evaluator import RUN_FAILURES, Channel
 from .fit import Search
 from .problem import Problem
 
@@ -19,10 +17,10 @@ Floats = npt.NDArray[np.float64]
 
 # A parameter this near a bound, as a share of the way between the bounds, is held by it.
 _AT_BOUND = 1e-3
-# Derivatives below so many times their own error are none.
-_ABOVE_NOISE = 3.0
-# Least error of the solver assumed, of its tolerance; about half of what is found on a laboratory block.
-_LEAST_NOISE = 0.02
+# A derivative that changes by this share with the step of its differences is none.
+_ALL_ERROR = 0.5
+# Nor is one that is this small beside the greatest, where differences cancel to the last digits.
+_NIL = 1e-9
 # An interval this wide, as a share of the bounds, says no more than the bounds.
 _AS_WIDE_AS_BOUNDS = 1.0
 # Share of a direction that nothing resolves above which a parameter belongs to it.
@@ -90,9 +88,10 @@ def analyse(search: Search, *, confidence: float, uncertainty: str) -> Analysis:
     The covariance is s^2 (J^T J)^-1 (Seber and Wild, Nonlinear Regression, 1989, section 5.1) over the
     parameters that the data determine. Left out, each with its reason:
 
-    * insensitive: the column of J is within the error of its finite differences;
-    * rank-deficient: with columns scaled to length 1, a singular value is within that error; every parameter
-      with a share in its direction;
+    * insensitive: the column of J is nil, or within the error E of its finite differences, which is known
+      from a second J with twice the steps;
+    * rank-deficient: with columns scaled to length 1, a right singular vector v has |E v| >= |J v| / 2: what
+      it seems to change is error; every parameter with a share in v;
     * at a bound that holds it;
     * practically not identified: the interval is as wide as the bounds;
     * two optima of statistically equal cost with a higher cost between them, or one flat valley.
@@ -103,12 +102,13 @@ def analyse(search: Search, *, confidence: float, uncertainty: str) -> Analysis:
     labels = problem.parameters.labels
     jacobian = channel.jacobian(point)
     residual = channel.residuals(point)
-    error = _derivative_error(channel, point)
+    error = channel.jacobian_change(point)
     lengths = np.linalg.norm(jacobian, axis=0)
+    nil = _NIL * float(np.linalg.norm(channel.noise.weights * problem.measured))
     reasons: dict[int, str] = {}
 
     for k, label in enumerate(labels):
-        if lengths[k] <= error[k]:
+        if lengths[k] <= max(nil, float(np.linalg.norm(error[:, k])) / _ALL_ERROR):
             reasons[k] = f"insensitive: nothing that was measured changes with {label}"
     gradient = jacobian.T @ residual
     for k, parameter in enumerate(problem.parameters.parameters):
@@ -119,7 +119,7 @@ def analyse(search: Search, *, confidence: float, uncertainty: str) -> Analysis:
 
     free = np.array([k for k in range(len(labels)) if k not in reasons], int)
     spread = _spread(search, residual, len(free), confidence, uncertainty)
-    covariance, unresolved = _covariance(jacobian[:, free], error[free])
+    covariance, unresolved = _covariance(jacobian[:, free], error[:, free], nil)
     for direction in unresolved:
         reason = _combination(problem, point, free, direction)
         for k in free[np.abs(direction) > _PART_OF_DIRECTION * np.abs(direction).max()]:
@@ -144,36 +144,6 @@ def correlation(covariance: Floats) -> Floats:
     return np.asarray(covariance / np.outer(scale, scale))
 
 
-def _derivative_error(channel: Channel, point: Floats) -> Floats:
-    """Greatest length of a Jacobian column that the solver's noise alone can make, shape (p,).
-
-    The noise is the change of the weighted outcome when the step control's tolerance changes a little, found
-    by one more run; a central difference with step h passes on noise / (sqrt 2 h).
-    """
-    problem = channel.problem
-    weights = channel.noise.weights
-    computed = channel.computed([point])[0]
-    assert computed is not None  # the optimum has been run
-    size = float(np.linalg.norm(weights * computed))
-    noise = max(_LEAST_NOISE * problem.tolerance * size, _other_steps(problem, point, computed, weights))
-    return np.asarray(_ABOVE_NOISE * noise / (np.sqrt(2.0) * channel.steps(point)))
-
-
-def _other_steps(problem: Problem, point: Floats, computed: Floats, weights: Floats) -> float:
-    values = problem.parameters.from_unit(point)
-    rows: list[Floats] = []
-    for i, (simulation, own) in enumerate(zip(problem.simulations, problem.targets, strict=True)):
-        settings = simulation.scene.settings
-        changed = problem.parameters.changed(simulation, i, values)
-        if settings.time_step is None:
-            changed = varied(changed, {"settings.tolerance": min(0.1, 1.25 * settings.tolerance)})
-        try:
-            rows += [target.computed(changed.run()) for target in own]
-        except RUN_FAILURES:
-            return 0.0  # the floor above then stands alone
-    return float(np.linalg.norm(weights * (np.concatenate(rows) - computed)))
-
-
 def _side(share: float, gradient: float) -> str | None:
     if share < _AT_BOUND and gradient > 0.0:
         return "lower"
@@ -196,14 +166,14 @@ def _spread(search: Search, residual: Floats, free: int, confidence: float, unce
     return normal
 
 
-def _covariance(jacobian: Floats, error: Floats) -> tuple[Floats, list[Floats]]:
+def _covariance(jacobian: Floats, error: Floats, nil: float) -> tuple[Floats, list[Floats]]:
     """(J^T J)^-1 over the directions that are resolved, and the others (columns scaled to length 1)."""
     if jacobian.shape[1] == 0:
         return np.zeros((0, 0)), []
     lengths = np.linalg.norm(jacobian, axis=0)
     _, singular, directions = np.linalg.svd(jacobian / lengths, full_matrices=False)
-    least = float(np.linalg.norm(error / lengths))
-    resolved = singular > least
+    errors = np.linalg.norm((error / lengths) @ directions.T, axis=0)
+    resolved = singular > np.maximum(nil / lengths.max(), errors / _ALL_ERROR)
     kept = directions[resolved] / singular[resolved, None]
     return (kept.T @ kept) / np.outer(lengths, lengths), [
         direction / lengths for direction in directions[~resolved]

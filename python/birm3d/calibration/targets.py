@@ -215,18 +215,19 @@ class CurveTarget:
                     f"{end * 1e3:.1f} ms: what comes later is not seen"
                 )
         computed = self.computed(result)
+        ratio = _ratio(computed, self._y)
+        if not 1e-2 < ratio < 1e2:
+            notes.append(
+                f"{self.label}: measured values are {ratio:.2g} times the computed ones: check the unit"
+            )
+            return notes
         size = float(np.linalg.norm(computed) * np.linalg.norm(self._y))
-        if size > 0.0 and float(computed @ self._y) < _OPPOSITE * size:
+        if float(computed @ self._y) < _OPPOSITE * size:
             kind = QUANTITIES[self.quantity]
             raise ValueError(
                 f"{self.label}: y must be positive where it {_verb(kind.positive)}; the computed curve peaks "
                 f"at {_peak(computed):+.4g} {kind.unit}, the measured one at {_peak(self._y):+.4g}: "
                 "turn its sign"
-            )
-        ratio = _ratio(computed, self._y)
-        if not 1e-2 < ratio < 1e2:
-            notes.append(
-                f"{self.label}: measured values are {ratio:.2g} times the computed ones: check the unit"
             )
         return notes
 
