@@ -12,13 +12,19 @@ from . import calibration, scenes, units
 from ._core import UnstableError
 from .barrier import Barrier
 from .calibration import calibrate
+from .channel import Channel
+from .channel_checks import check_channel
+from .comparison import CurveComparison, compare_curves
 from .result import Result
 from .settings import Settings
 from .simulation import Scene, Simulation
+from .test_data import read_csv_channels, read_iso_mme, read_nhtsa
 from .vehicle import Vehicle, Zone
 
 __all__ = [
     "Barrier",
+    "Channel",
+    "CurveComparison",
     "Result",
     "Scene",
     "Settings",
@@ -28,6 +34,11 @@ __all__ = [
     "Zone",
     "calibrate",
     "calibration",
+    "check_channel",
+    "compare_curves",
+    "read_csv_channels",
+    "read_iso_mme",
+    "read_nhtsa",
     "scenes",
     "units",
 ]

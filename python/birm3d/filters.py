@@ -16,8 +16,8 @@ def cfc(signal: npt.ArrayLike, channel_class: float, interval: float) -> Floats:
     """Filter a signal by a channel frequency class of SAE J211-1.
 
     Two-pole Butterworth low-pass run forwards and backwards (four poles, no phase), with the corner
-    2.0775 CFC as J211-1 has it, pre-warped for the sampling rate. The signal is taken as constant before its
-    start and after its end.
+    2.0775 CFC as J211-1 has it (ISO 6487: 1.25 CFC / 0.6, 0.3 % higher), pre-warped for the sampling rate.
+    The signal is taken as constant before its start and after its end.
 
     Parameters
     ----------

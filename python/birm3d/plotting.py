@@ -12,9 +12,10 @@ from . import units
 from .filters import cfc
 
 if TYPE_CHECKING:
+    from .comparison import CurveComparison
     from .result import Result
 
-__all__ = ["plot_result"]
+__all__ = ["plot_comparison", "plot_result"]
 
 
 def plot_result(result: Result) -> Figure:
@@ -75,6 +76,38 @@ def plot_result(result: Result) -> Figure:
         f"{scene.vehicle.name}, {scene.vehicle.mass:,.0f} kg, {scene.impact_speed:.2f} m/s "
         f"({scene.impact_speed / units.mph:.1f} mph) at {scene.impact_angle:g}°"
     )
+    return figure
+
+
+def plot_comparison(comparison: CurveComparison) -> Figure:
+    """Return both curves above, and below the residuals over the measured peak with mean ± deviation."""
+    figure = Figure(figsize=(9.0, 6.0), layout="constrained")
+    curves, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    measured, computed = comparison.measured, comparison.computed
+    ms = measured.time * 1e3
+    peak = np.abs(measured.values).max()
+    curves.plot(ms, measured.values, color="0.2", label=f"measured: {measured.name}")
+    curves.plot(ms, computed.values, color="C0", ls="--", label=f"computed: {computed.name}")
+    class_ = f", CFC {measured.cfc:g}" if measured.cfc is not None else ""
+    curves.set_ylabel(f"{measured.quantity} [{measured.unit}]{class_}")
+    curves.legend(frameon=False)
+
+    mean, deviation = comparison.residuals
+    below.plot(ms, 100.0 * (measured.values - computed.values) / peak, color="C3", lw=1.0)
+    below.axhline(100.0 * mean, color="C3", ls=":")
+    below.axhspan(100.0 * (mean - deviation), 100.0 * (mean + deviation), color="C3", alpha=0.15)
+    below.axhline(0.0, color="0.5", lw=0.6)
+    below.set_ylabel("measured − computed\n[% of measured peak]")
+    below.set_xlabel("time [ms]")
+    magnitude, phase, _ = comparison.sprague_geers
+    rating = comparison.rating
+    figure.suptitle(
+        f"Sprague-Geers M {magnitude:+.1%}, P {phase:.1%}; residuals {mean:+.1%} ± {deviation:.1%}; "
+        f"ISO/TS 18571 {rating.overall:.2f} ({rating.grade})",
+        fontsize="medium",
+    )
+    for axes in (curves, below):
+        axes.grid(alpha=0.3)
     return figure
 
 

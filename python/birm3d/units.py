@@ -6,9 +6,12 @@ Each unit is a number, its size in SI, that can also be called: ``units.mph(50)`
 
 from __future__ import annotations
 
+import math
 import re
+from typing import NamedTuple
 
 __all__ = [
+    "Measure",
     "Unit",
     "ft",
     "g",
@@ -21,6 +24,7 @@ __all__ = [
     "lbf",
     "m",
     "m_s",
+    "measure",
     "mm",
     "mph",
     "parse",
@@ -76,6 +80,71 @@ _QUANTITIES = {
     "time": ("s", "ms"),
     "angle": ("deg",),
 }
+# What measured data come in: quantity -> its unit here, and the size of each unit in that one.
+_MEASURED: dict[str, tuple[str, dict[str, float]]] = {
+    "time": ("s", {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "sec": 1.0}),
+    "length": ("m", {"m": m, "mm": mm, "cm": 1e-2, "in": inch, "ft": ft}),
+    "speed": (
+        "m/s",
+        {"m/s": m_s, "mm/s": 1e-3, "km/h": km_h, "kmh": km_h, "kph": km_h, "mph": mph, "ft/s": ft},
+    ),
+    "acceleration": (
+        "m/s^2",
+        {**dict.fromkeys(("m/s^2", "m/s2", "m/s²"), 1.0), **dict.fromkeys(("g", "G"), g), "ft/s^2": ft},
+    ),
+    "mass": ("kg", {"kg": kg, "t": 1e3, "lb": lb}),
+    "force": ("N", {"N": N, "kN": kN, "MN": 1e6, "kgf": kgf, "lbf": lbf, "kip": 1e3 * lbf}),
+    "moment": ("N m", {"N m": 1.0, "Nm": 1.0, "N*m": 1.0, "kN m": 1e3, "kNm": 1e3}),
+    "impulse": ("N s", {"N s": 1.0, "Ns": 1.0, "N*s": 1.0, "kN s": 1e3, "kNs": 1e3}),
+    "angle": ("deg", {"deg": 1.0, "°": 1.0, "rad": math.degrees(1.0)}),
+    "angular velocity": (
+        "deg/s",
+        {"deg/s": 1.0, "°/s": 1.0, "rad/s": math.degrees(1.0)},
+    ),
+    "angular acceleration": (
+        "deg/s^2",
+        {
+            **dict.fromkeys(("deg/s^2", "deg/s2", "°/s²"), 1.0),
+            **dict.fromkeys(("rad/s^2", "rad/s2", "rad/s²"), math.degrees(1.0)),
+        },
+    ),
+    "energy": ("J", {"J": 1.0, "kJ": 1e3}),
+    "pressure": ("Pa", {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6}),
+    "voltage": ("V", {"V": 1.0, "mV": 1e-3}),
+    "ratio": ("1", {"1": 1.0, "-": 1.0, "%": 1e-2}),
+}
+
+
+class Measure(NamedTuple):
+    """What a unit measures: the quantity, the unit of it used here (SI; deg), and its size in that."""
+
+    quantity: str
+    si: str
+    size: float
+
+
+_SYMBOLS = {
+    symbol: Measure(quantity, si, float(size))
+    for quantity, (si, sizes) in _MEASURED.items()
+    for symbol, size in sizes.items()
+}
+
+
+def measure(symbol: str) -> Measure:
+    """Return what a unit of measured data measures, such as ``"kN"``, ``"g"`` or ``"deg/s"``.
+
+    Raises
+    ------
+    ValueError
+        If the unit is not known; the message lists those that are. Letter case counts: ``"mN"`` is no unit
+        of a crash test, and nothing is guessed.
+    """
+    found = _SYMBOLS.get(symbol.strip())
+    if found is None:
+        raise ValueError(f"unit must be one of {', '.join(_SYMBOLS)}; got {symbol!r}")
+    return found
+
+
 _VALUE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([A-Za-z/]*)\s*")
 
 

@@ -409,7 +409,7 @@ class TestVerdicts:
         """Before the knee F = v sqrt(k m) sin(sqrt(k / m) t): early on only k v shows."""
         parameters = [unknowns()[0], Parameter("impact_speed", 5.0, 80.0, log=True)]
         fits = []
-        for end, sigma in ((0.012, 0.02 * PEAK), (0.02, 0.001 * PEAK)):
+        for end, sigma in ((0.012, 0.02 * PEAK), (0.016, 0.001 * PEAK)):
             early = np.linspace(0.0, end, 90)
             target = CurveTarget(early, scenes.w2_force(early), sigma=sigma, independent_points="all")
             fits.append(calibrate(block(), target, parameters, starts=1))

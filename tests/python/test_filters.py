@@ -116,3 +116,23 @@ def test_moving_average() -> None:
 def test_moving_average_refuses(bad: dict[str, float]) -> None:
     with pytest.raises(ValueError, match=r"width|interval"):
         filters.moving_average(np.ones(5), **{"width": 0.05, "interval": 1e-4, **bad})
+
+
+@pytest.mark.parametrize("interval", [1e-3, 1e-4])
+@pytest.mark.parametrize("width", [0.010, 0.050])
+def test_windows_of_10_and_50_ms_on_a_half_sine(width: float, interval: float) -> None:
+    # The greatest mean of sin(pi t / T) over a width w is that about its peak: 2 T / (pi w) sin(pi w / 2 T).
+    # (Ridedown acceleration uses 10 ms, the peak force of roadside barriers 50 ms.)
+    duration = 0.1
+    t = np.arange(0.0, 0.2, interval) + interval / 2.0
+    pulse = np.where(t < duration, np.sin(math.pi * t / duration), 0.0)
+    greatest = filters.moving_average(pulse, width, interval)
+    exact = 2.0 * duration / (math.pi * width) * math.sin(math.pi * width / (2.0 * duration))
+    assert greatest.max() == pytest.approx(exact, rel=1e-3)
+    assert t[greatest.argmax()] == pytest.approx((duration + width) / 2.0, abs=1.5 * interval)
+
+
+def test_the_corner_is_that_of_sae_j211_and_not_of_iso_6487() -> None:
+    # J211-1: 2.0775 CFC; ISO 6487: 1.25 CFC / 0.6, 0.28 % higher. At the corner the two passes give 1/2.
+    assert gain(100_000, 60, 60 * 2.0775) == pytest.approx(0.5, rel=1e-5)
+    assert abs(gain(100_000, 60, 60 / 0.6 * 1.25) / 0.5 - 1.0) > 2e-3
