@@ -416,5 +416,5 @@ class TestVerdicts:
         assert fits[0].identified == ()
         assert "impact_speed" in fits[0]["truss.k_initial"].reason
         assert len(fits[1].identified) == 2
-        start = "truss.k_initial and impact_speed are told apart poorly (correlation -0.99"
+        start = "truss.k_initial and impact_speed are told apart poorly (correlation -1.000)"
         assert any(note.startswith(start) for note in fits[1].notes)

@@ -283,7 +283,6 @@ def _targets(found: Search, values: Floats) -> tuple[FittedTarget, ...]:
     for target, owner, own, points, sigma in zip(
         problem.flat, problem.owners, problem.slices, found.noise.points, found.noise.sigmas, strict=True
     ):
-        curve = isinstance(target, CurveTarget)
         rows.append(
             FittedTarget(
                 label=target.label,
@@ -294,7 +293,8 @@ def _targets(found: Search, values: Floats) -> tuple[FittedTarget, ...]:
                 measured=target.measured,
                 started=started[own],
                 computed=computed[own],
-                sigma=np.array(sigma) if curve else sigma,
+                sigma=np.array(sigma),
+                channel_class=target.cfc if isinstance(target, CurveTarget) else None,
                 independent_points=points,
             )
         )

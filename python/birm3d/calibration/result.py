@@ -21,6 +21,7 @@ from .profile import Profile, profile
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from ..comparison import CurveComparison
     from ..simulation import Simulation
     from ..vehicle import Vehicle
 
@@ -76,6 +77,8 @@ class FittedTarget:
         ``"time"`` or ``"displacement"``; ``None`` for a scalar.
     x, measured, started, computed, sigma : ndarray, shape (m,)
         ``started`` is computed at the start, ``computed`` at the fitted values. x of a scalar is 0.
+    channel_class : float or None
+        CFC of a curve.
     independent_points : float
         How many points count as independent, times the target's weight.
     """
@@ -89,6 +92,7 @@ class FittedTarget:
     started: Floats
     computed: Floats
     sigma: Floats
+    channel_class: float | None
     independent_points: float
 
     @property
@@ -211,6 +215,27 @@ class CalibrationResult:
         """
         stored = [{"label": p.label, "names": p.names, "factor": p.factor} for p in self.parameters]
         return applied(stored, self.values, simulation)
+
+    def comparisons(self) -> dict[str, CurveComparison]:
+        """Return measured against fitted for every curve against time: Sprague-Geers, W179, ISO 18571.
+
+        By the target's label, with the simulation's number where there are several.
+        """
+        from ..channel import Channel
+        from ..comparison import compare_curves
+
+        several = len({target.simulation for target in self.targets}) > 1
+        found = {}
+        for target in self.targets:
+            if target.against != "time":
+                continue
+            label = f"{target.label} [{target.simulation}]" if several else target.label
+            measured, computed = (
+                Channel(name, target.x, values, target.unit, target.channel_class)
+                for name, values in ((label, target.measured), ("fitted", target.computed))
+            )
+            found[label] = compare_curves(measured, computed)
+        return found
 
     # ---- profiles -----------------------------------------------------------------------------------------
 

@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from .. import units
 from ..filters import cfc
 from .quantities import QUANTITIES, computed_curve, touch_time
 
 if TYPE_CHECKING:
+    from ..channel import Channel
     from ..result import Result
 
 __all__ = ["CurveTarget", "ScalarTarget", "Target"]
@@ -156,6 +158,37 @@ class CurveTarget:
                 f"{steps.max():g} s"
             )
         return cfc(y, self.cfc, interval)
+
+    @classmethod
+    def from_channel(cls, channel: Channel, quantity: str = "normal_force", **options: Any) -> CurveTarget:
+        """Return a target from a measured channel, converted to SI.
+
+        A channel of a filter class is held against a computed curve of the same class; ``cfc`` among the
+        options filters an unfiltered one too.
+
+        Parameters
+        ----------
+        channel
+            Time zero at the first touch; see :meth:`birm3d.Channel.shifted`.
+        quantity, options
+            Of :class:`CurveTarget`.
+
+        Raises
+        ------
+        ValueError
+            If the channel's unit does not measure the quantity.
+        """
+        if quantity not in QUANTITIES:
+            raise ValueError(f"quantity must be one of {', '.join(QUANTITIES)}; got {quantity!r}")
+        wanted = units.measure(QUANTITIES[quantity].unit).quantity
+        if channel.quantity != wanted:
+            raise ValueError(
+                f"unit of {channel.name!r} must measure {wanted} for {quantity}, got {channel.unit!r}"
+            )
+        si = channel.to_si()
+        if si.cfc is not None:
+            options = {"cfc": si.cfc, "filtered": True, **options}
+        return cls(si.time, si.values, quantity, **{"name": channel.name, **options})
 
     @property
     def label(self) -> str:
