@@ -112,8 +112,9 @@ def calibrate(
         evaluator = Evaluator(problem, pool, progress)
         try:
             found = search(evaluator, method=method, starts=starts, seed=seed, max_steps=max_steps)
-            analysis = analyse(found, confidence=confidence, uncertainty=uncertainty)
-            profiles = _profiles(evaluator, found, analysis, max_steps) if intervals == "profile" else {}
+            profiled = intervals == "profile"
+            analysis = analyse(found, confidence=confidence, uncertainty=uncertainty, profiled=profiled)
+            profiles = _profiles(evaluator, found, analysis, max_steps) if profiled else {}
         except CalibrationError as error:
             evaluator.stop()
             error.history = evaluator.history

@@ -21,8 +21,10 @@ _AT_BOUND = 1e-3
 _ALL_ERROR = 0.5
 # Nor is one that is this small beside the greatest, where differences cancel to the last digits.
 _NIL = 1e-9
-# An interval this wide, as a share of the bounds, says no more than the bounds.
-_AS_WIDE_AS_BOUNDS = 1.0
+# An interval that covers so much of the way between the bounds says no more than the bounds.
+_AS_WIDE_AS_BOUNDS = 0.8
+# Correlation from which a parameter is named beside one that is not identified.
+_PARTNER = 0.8
 # Share of a direction that nothing resolves above which a parameter belongs to it.
 _PART_OF_DIRECTION = 0.1
 # Correlation above which two parameters are said to be told apart poorly.
@@ -82,7 +84,7 @@ class Analysis:
     notes: list[str] = field(default_factory=list)
 
 
-def analyse(search: Search, *, confidence: float, uncertainty: str) -> Analysis:
+def analyse(search: Search, *, confidence: float, uncertainty: str, profiled: bool) -> Analysis:
     """Return covariance and verdicts at the best optimum.
 
     The covariance is s^2 (J^T J)^-1 (Seber and Wild, Nonlinear Regression, 1989, section 5.1) over the
@@ -93,7 +95,8 @@ def analyse(search: Search, *, confidence: float, uncertainty: str) -> Analysis:
     * rank-deficient: with columns scaled to length 1, a right singular vector v has |E v| >= |J v| / 2: what
       it seems to change is error; every parameter with a share in v;
     * at a bound that holds it;
-    * practically not identified: the interval is as wide as the bounds;
+    * practically not identified: the interval covers most of the way between the bounds (Raue et al.,
+      Bioinformatics 25, 2009, call it so where a profile has no end);
     * two optima of statistically equal cost with a higher cost between them, or one flat valley.
     """
     best = search.best
@@ -131,7 +134,8 @@ def analyse(search: Search, *, confidence: float, uncertainty: str) -> Analysis:
     analysis = Analysis(
         jacobian, spread, whole, singular, float(singular[0] / singular[-1]) if sound else None, reasons
     )
-    _practical(analysis, problem, free)
+    if not profiled:  # else the profiles say it better
+        _practical(analysis, point, problem, free)
     _other_optima(analysis, search)
     _weak(analysis, problem)
     return analysis
@@ -197,17 +201,25 @@ def _combination(problem: Problem, point: Floats, free: npt.NDArray[np.int64], d
     return f"rank-deficient: {', '.join(parts)} together change nothing that was measured"
 
 
-def _practical(analysis: Analysis, problem: Problem, free: npt.NDArray[np.int64]) -> None:
+def _practical(analysis: Analysis, point: Floats, problem: Problem, free: npt.NDArray[np.int64]) -> None:
     half = analysis.spread.quantile * np.sqrt(np.diag(analysis.covariance))
     related = correlation(analysis.covariance)
     for k in free:
-        if k in analysis.reasons or 2.0 * half[k] < _AS_WIDE_AS_BOUNDS:
+        if k in analysis.reasons:
             continue
         label = problem.parameters.labels[k]
+        low, high = point[k] - half[k], point[k] + half[k]
+        if min(1.0, high) - max(0.0, low) < _AS_WIDE_AS_BOUNDS:
+            for side, beyond in (("lower", low < 0.0), ("upper", high > 1.0)):
+                if beyond:
+                    analysis.notes.append(
+                        f"the interval of {label} ends at its {side} bound, not by the data"
+                    )
+            continue
         partners = [
             f"{problem.parameters.labels[j]} ({related[k, j]:+.2f})"
             for j in free
-            if j != k and abs(related[k, j]) > 0.8
+            if j != k and abs(related[k, j]) > _PARTNER
         ]
         apart = f"; correlated with {', '.join(partners)}" if partners else ""
         analysis.reasons[int(k)] = (

@@ -20,7 +20,7 @@ Floats = npt.NDArray[np.float64]
 # Steps outwards: of the half-width expected, and how far and how often at most.
 _STEP = 0.5
 _MOST_STEPS = 16
-# Share of the bounds for a parameter without an expected half-width.
+# Share of the bounds for a parameter without an expected half-width, and at most.
 _BLIND_STEP = 1.0 / 12.0
 # A profile is followed to this multiple of the quantile, for the figure.
 _BEYOND = 1.3
@@ -81,7 +81,7 @@ def profile(
     label = parameters.labels[index]
     channel = evaluator.channel(f"profile of {label}", noise)
     least = channel.chi_square(best)
-    step = _BLIND_STEP if half_width is None else max(_STEP * half_width, 1e-6)
+    step = _BLIND_STEP if half_width is None else min(max(_STEP * half_width, 1e-6), _BLIND_STEP)
     sides = [_side(channel, best, index, sign * step, least, spread, max_steps) for sign in (-1.0, 1.0)]
     (down, low), (up, high) = sides
     points = [*reversed(down), (best, 0.0), *up]

@@ -22,8 +22,8 @@ __all__ = ["CurveTarget", "ScalarTarget", "Target"]
 
 Floats = npt.NDArray[np.float64]
 
-# Spacing of a measured curve counts as even within this share of its mean.
-_EVEN = 1e-3
+# Points count as evenly spaced when each is this close to its place, as a share of the interval.
+_EVEN = 0.05
 # Curves whose cosine is below this point in opposite directions.
 _OPPOSITE = -0.5
 
@@ -151,8 +151,8 @@ class CurveTarget:
                 "filtered must be True against displacement: a channel filter works in time; got False"
             )
         steps = np.diff(x)
-        interval = float(steps.mean())
-        if np.abs(steps - interval).max() > _EVEN * interval:
+        interval = float(x[-1] - x[0]) / (len(x) - 1)
+        if np.abs(x - np.linspace(x[0], x[-1], len(x))).max() > _EVEN * interval:
             raise ValueError(
                 f"x must be evenly spaced where a filter is asked for, got steps from {steps.min():g} to "
                 f"{steps.max():g} s"
