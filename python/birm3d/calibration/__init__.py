@@ -6,14 +6,17 @@ Start with :func:`calibrate`, :class:`Parameter`, :class:`CurveTarget` and :clas
 from __future__ import annotations
 
 from .calibrate import calibrate
+from .curve_target import CurveTarget
 from .errors import CalibrationError, CalibrationInterruptedError
 from .evaluator import Evaluation
+from .fitted import FittedParameter, FittedTarget
 from .parameters import Parameter
+from .problem import Target
 from .profile import Profile
 from .quantities import QUANTITIES
-from .result import CalibrationResult, FittedParameter, FittedTarget
+from .result import CalibrationResult
+from .scalar_target import ScalarTarget
 from .storage import load
-from .targets import CurveTarget, ScalarTarget, Target
 
 __all__ = [
     "QUANTITIES",

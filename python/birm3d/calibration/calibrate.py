@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any, Literal
@@ -10,17 +9,18 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from .curve_target import CurveTarget
 from .errors import CalibrationError, CalibrationInterruptedError
 from .evaluator import Evaluator, Progress
 from .fit import Search, search
-from .identifiability import Analysis, analyse, correlation, describe
+from .identifiability import Analysis, analyse
+from .outcome import outcome
 from .parameters import Parameter
 from .pool import threads_unless
-from .problem import Problem
+from .problem import Problem, Target
 from .profile import Profile, profile
-from .quantities import QUANTITIES
-from .result import CalibrationResult, FittedParameter, FittedTarget
-from .targets import CurveTarget, ScalarTarget, Target
+from .result import CalibrationResult
+from .scalar_target import ScalarTarget
 
 if TYPE_CHECKING:
     from ..simulation import Simulation
@@ -133,7 +133,7 @@ def calibrate(
         "tolerance": problem.tolerance,
         "max_steps": max_steps,
     }
-    return _result(evaluator, found, analysis, profiles, notes, confidence, settings)
+    return outcome(evaluator, found, analysis, profiles, notes, confidence, settings)
 
 
 def _paired(
@@ -205,98 +205,3 @@ def _profiles(evaluator: Evaluator, found: Search, analysis: Analysis, max_steps
         if flat:
             analysis.reasons[k] = f"flat profile: the data do not bound {label} from {' and '.join(flat)}"
     return profiles
-
-
-def _result(
-    evaluator: Evaluator,
-    found: Search,
-    analysis: Analysis,
-    profiles: dict[str, Profile],
-    notes: list[str],
-    confidence: float,
-    settings: dict[str, Any],
-) -> CalibrationResult:
-    problem = evaluator.problem
-    parameters = problem.parameters
-    values = parameters.from_unit(found.best.end)
-    slopes = np.array([p.slope(v) for p, v in zip(parameters.parameters, values.tolist(), strict=True)])
-    fitted = []
-    for k, (parameter, value) in enumerate(zip(parameters.parameters, values.tolist(), strict=True)):
-        error = interval = None
-        if k not in analysis.reasons:
-            share_error = math.sqrt(analysis.covariance[k, k])
-            error = share_error * float(slopes[k])
-            interval = _interval(parameter, float(found.best.end[k]), analysis.spread.quantile * share_error)
-            if parameter.label in profiles:
-                own = profiles[parameter.label]
-                assert own.lower is not None  # else there would be a reason
-                assert own.upper is not None
-                interval = (own.lower, own.upper)
-        fitted.append(
-            FittedParameter(
-                parameter.label,
-                tuple(parameter.names),
-                parameter.factor,
-                parameter.log,
-                parameter.lower,
-                parameter.upper,
-                float(parameters.start[k]),
-                value,
-                error,
-                interval,
-                analysis.reasons.get(k),
-            )
-        )
-    told = [k for k in range(len(parameters)) if k not in analysis.reasons]
-    covariance = (analysis.covariance * np.outer(slopes, slopes))[np.ix_(told, told)]
-    return CalibrationResult(
-        parameters=tuple(fitted),
-        targets=_targets(found, values),
-        chi_square=float(found.best.chi_square or 0.0),
-        spread=analysis.spread,
-        confidence=confidence,
-        covariance=covariance,
-        correlation=correlation(covariance),
-        condition_number=analysis.condition_number,
-        notes=(*notes, *analysis.notes),
-        starts=tuple(describe(found)),
-        history=evaluator.history,
-        settings=settings,
-        profiles=profiles,
-        _problem=problem,
-        _noise=found.noise,
-    )
-
-
-def _interval(parameter: Parameter, share: float, half: float) -> tuple[float, float]:
-    """Return the ends of an interval; it goes no farther than the bounds."""
-    return parameter.from_unit(max(0.0, share - half)), parameter.from_unit(min(1.0, share + half))
-
-
-def _targets(found: Search, values: Floats) -> tuple[FittedTarget, ...]:
-    """Measured beside computed, at the fitted values and at the parameters' own start."""
-    channel = found.best.channel
-    problem = channel.problem
-    computed = channel.computed([found.best.end])[0]
-    assert computed is not None  # the optimum has been run
-    started = problem.computed(problem.parameters.start)
-    rows = []
-    for target, owner, own, points, sigma in zip(
-        problem.flat, problem.owners, problem.slices, found.noise.points, found.noise.sigmas, strict=True
-    ):
-        rows.append(
-            FittedTarget(
-                label=target.label,
-                unit=QUANTITIES[target.quantity].unit if isinstance(target, CurveTarget) else "SI",
-                simulation=owner,
-                against=target.against if isinstance(target, CurveTarget) else None,
-                x=target.points if isinstance(target, CurveTarget) else np.zeros(1),
-                measured=target.measured,
-                started=started[own],
-                computed=computed[own],
-                sigma=np.array(sigma),
-                channel_class=target.cfc if isinstance(target, CurveTarget) else None,
-                independent_points=points,
-            )
-        )
-    return tuple(rows)

@@ -13,8 +13,10 @@ from pydantic import Field, model_validator
 from ..scene_file import read_scene_file
 from ..test_data import read_csv_channels
 from ..toml_document import Document, DocumentError, KeyPath, Strict, frozen, reject
+from .curve_target import CurveTarget
 from .parameters import Parameter
-from .targets import CurveTarget, ScalarTarget, Target
+from .problem import Target
+from .scalar_target import ScalarTarget
 
 if TYPE_CHECKING:
     from ..simulation import Simulation

@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 if TYPE_CHECKING:
-    from .result import CalibrationResult, FittedTarget
+    from .fitted import FittedTarget
+    from .result import CalibrationResult
 
 __all__ = ["plot_fit", "plot_profiles", "plot_residuals"]
 

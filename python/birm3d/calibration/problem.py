@@ -4,21 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from ..scene_parameters import varied
+from .curve_target import CurveTarget
 from .parameters import Parameter, ParameterSet
-from .targets import CurveTarget, ScalarTarget, Target
+from .scalar_target import ScalarTarget
 
 if TYPE_CHECKING:
     from ..simulation import Simulation
 
-__all__ = ["Noise", "Problem", "independent_share"]
+__all__ = ["Noise", "Problem", "Target", "independent_share"]
 
 Floats = npt.NDArray[np.float64]
+Target: TypeAlias = CurveTarget | ScalarTarget
 
 # Standard deviation that a curve without one starts with, of its peak.
 _FIRST_SIGMA = 0.05

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from .evaluator import Evaluation
+from .fitted import FittedParameter, FittedTarget
 from .identifiability import Spread
 from .profile import Profile
-from .result import CalibrationResult, FittedParameter, FittedTarget
+from .result import CalibrationResult
 
 __all__ = ["FORMAT_VERSION", "load", "save"]
 

@@ -1,11 +1,10 @@
-"""What a calibration is held against: measured curves and measured scalars."""
+"""A measured curve that a calibration is held against."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -13,12 +12,13 @@ import numpy.typing as npt
 from .. import units
 from ..filters import cfc
 from .quantities import QUANTITIES, computed_curve, touch_time
+from .scalar_target import check_positive
 
 if TYPE_CHECKING:
     from ..channel import Channel
     from ..result import Result
 
-__all__ = ["CurveTarget", "ScalarTarget", "Target"]
+__all__ = ["CurveTarget"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -122,9 +122,9 @@ class CurveTarget:
                 )
             if not (np.isfinite(sigma) & (sigma > 0.0)).all():
                 raise ValueError(f"sigma must be finite and > 0, got {_worst(sigma)}")
-        _positive("weight", self.weight)
+        check_positive("weight", self.weight)
         if self.cfc is not None:
-            _positive("cfc", self.cfc)
+            check_positive("cfc", self.cfc)
             y = y if self.filtered else self._filter(x, y)
         points = self.independent_points
         if points is not None and points != "all" and not 1.0 <= float(points) <= len(x):
@@ -265,70 +265,6 @@ class CurveTarget:
         return notes
 
 
-@dataclass(frozen=True)
-class ScalarTarget:
-    """A measured scalar.
-
-    Parameters
-    ----------
-    metric
-        One of ``Result.metrics``, as ``"max_displacement"``.
-    value
-        Measured, SI, degrees.
-    sigma
-        Standard deviation of the measurement, same unit.
-    weight
-        Counts the scalar as so many.
-    """
-
-    metric: str
-    value: float
-    sigma: float
-    weight: float = 1.0
-
-    def __post_init__(self) -> None:
-        if not math.isfinite(self.value):
-            raise ValueError(f"value of {self.metric} must be finite, got {self.value}")
-        _positive(f"sigma of {self.metric}", self.sigma)
-        _positive(f"weight of {self.metric}", self.weight)
-
-    @property
-    def label(self) -> str:
-        """Name for reports."""
-        return self.metric
-
-    @property
-    def measured(self) -> Floats:
-        """Shape (1,)."""
-        return np.array([self.value])
-
-    def computed(self, result: Result) -> Floats:
-        """Return the computed value, shape (1,)."""
-        metrics = result.metrics
-        if self.metric not in metrics:
-            near = get_close_matches(self.metric, metrics, n=3) or sorted(metrics)
-            raise ValueError(f"metric must be one the run has (near: {', '.join(near)}); got {self.metric!r}")
-        return np.array([metrics[self.metric]])
-
-    def check(self, result: Result) -> list[str]:
-        """Hold the scalar against a first run.
-
-        Raises
-        ------
-        ValueError
-            If the run has no such metric, or of the other sign.
-        """
-        computed = float(self.computed(result)[0])
-        if computed * self.value < 0.0 and abs(self.value) > 3.0 * self.sigma:
-            raise ValueError(
-                f"value of {self.metric} must have the sign of the computed {computed:g}, got {self.value}"
-            )
-        return []
-
-
-Target: TypeAlias = CurveTarget | ScalarTarget
-
-
 def _vector(name: str, values: npt.ArrayLike) -> Floats:
     array = np.array(values, float)
     if array.ndim != 1:
@@ -343,11 +279,6 @@ def _frozen(array: Floats) -> Floats:
     copy = np.array(array)
     copy.setflags(write=False)
     return copy
-
-
-def _positive(name: str, value: float) -> None:
-    if not (math.isfinite(value) and value > 0.0):
-        raise ValueError(f"{name} must be finite and > 0, got {value}")
 
 
 def _worst(sigma: Floats) -> float:
