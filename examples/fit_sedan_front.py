@@ -4,7 +4,9 @@
 
 The front zones share one envelope: rails, the engine meeting the fire wall, what is left behind them. Its
 three stress levels, the two depths at which they begin and the unloading slope are fitted to the CFC60 wall
-force and to four scalars that it implies for one body. birm3d.calibrate says which of them one test tells.
+force and to four scalars. These are no measurements of their own (for one body they follow from the force):
+they say what must not be missed, and make the intervals somewhat narrower than the curve alone would.
+birm3d.calibrate says which of the six one test can tell.
 """
 
 import argparse

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from birm3d import Result, reference, scenes
-from birm3d.calibration import load
-from birm3d.calibration.fit_file import read_fit_file
+from birm3d import Result, calibrate, reference, scenes
+from birm3d.calibration import Parameter, load
+from birm3d.calibration.fit_file import Fit, read_fit_file
 from birm3d.cli import main
 from birm3d.scene_parameters import varied
 
@@ -180,6 +180,45 @@ def test_the_example_is_read_and_is_the_measured_curve() -> None:
     assert len(scalars) == 3
     np.testing.assert_allclose(curve.measured, reference.nhtsa_10146()["wall_force"][:131])
     assert curve.filtered
+
+
+class TestNhtsa10146:
+    """The marks that the shipped front is held to, reached by the call, and what one test can not tell."""
+
+    @pytest.fixture(scope="class")
+    @classmethod
+    def fit(cls) -> Fit:
+        fit = read_fit_file(EXAMPLE)
+        fit.options["starts"] = 1
+        return fit
+
+    def test_four_numbers(self, fit: Fit) -> None:
+        result = calibrate(fit.simulations, fit.targets, fit.parameters, **fit.options)
+        metrics = result.simulation.run().metrics
+        assert metrics["peak_normal_force_cfc60"] == pytest.approx(678e3, rel=0.10)
+        assert metrics["max_displacement"] == pytest.approx(0.677, rel=0.05)
+        assert metrics["time_of_zero_velocity"] == pytest.approx(0.073, rel=0.05)
+        assert metrics["restitution"] == pytest.approx(0.20, abs=0.05)
+        assert result.verdict == "every parameter is identified"
+        comparison = result.comparisons()["wall force"]
+        assert comparison.passed
+        assert abs(comparison.sprague_geers.magnitude) < 0.02
+        assert comparison.sprague_geers.phase < 0.08
+        # 131 points every millisecond, but a CFC 60 record of that length holds some thirty.
+        assert result.targets[0].independent_points == pytest.approx(27.2, abs=0.1)
+
+    def test_stress_and_depth_of_the_rails_are_not_told_apart(self, fit: Fit) -> None:
+        depth = Parameter(
+            ("zone.bumper.deflection[1]", "zone.engine_bay.deflection[1]"), 0.05, 0.17, name="depth"
+        )
+        result = calibrate(fit.simulations, fit.targets, [*fit.parameters, depth], **fit.options)
+        assert result["depth"].reason.startswith("not identified")
+        assert "rails [Pa] (+0." in result["depth"].reason
+        assert result.intervals["depth"] is None
+        profile = result.profile("depth")
+        assert profile.rise.max() < profile.threshold
+        assert profile.lower is None
+        assert profile.upper is None
 
 
 def test_help_and_a_missing_file(monkeypatch, capsys, tmp_path):
