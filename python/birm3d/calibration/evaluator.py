@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from .._core import UnstableError
 from .errors import CalibrationError
+from .packed import PackedProblem
 from .problem import Noise, Problem
 
 __all__ = ["Channel", "Evaluation", "Evaluator", "NoRunError", "Progress"]
@@ -60,10 +61,10 @@ class _Outcome:
     fault: BaseException | None = None
 
 
-def run_problem(problem: Problem, values: Floats) -> _Outcome:
+def run_problem(packed: PackedProblem, values: Floats) -> _Outcome:
     """Run in a worker; raises nothing."""
     try:
-        computed = problem.computed(values)
+        computed = packed.problem.computed(values)
     except RUN_FAILURES as error:
         return _Outcome(failure=f"{type(error).__name__}: {error}")
     except Exception as error:  # handed to the caller, who raises it
@@ -88,6 +89,7 @@ class Evaluator:
 
     def __init__(self, problem: Problem, executor: Executor, progress: Progress | None = None) -> None:
         self.problem = problem
+        self._packed = PackedProblem(problem)
         self._executor = executor
         self._progress = progress
         self._lock = threading.Lock()
@@ -125,7 +127,7 @@ class Evaluator:
         try:
             for share in shares:
                 values = self.problem.parameters.from_unit(share)
-                futures.append(self._executor.submit(run_problem, self.problem, values))
+                futures.append(self._executor.submit(run_problem, self._packed, values))
             outcomes = [future.result() for future in futures]
         except Exception as error:
             for future in futures:
