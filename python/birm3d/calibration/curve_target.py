@@ -41,8 +41,8 @@ class CurveTarget:
       (its integrated correlation time is 1/(2 B)); a CFC, two-pole Butterworth run twice with the corner
       fc = 2.0775 CFC Hz, has B = 3 pi fc / (8 sqrt 2) = 1.73 CFC Hz;
     * the residuals' own: m = n / (1 + 2 sum rho_k), with the autocorrelation rho_k of what the fitted model
-      leaves, summed up to a window of five correlation times (Sokal). A model that can not follow the curve
-      leaves slow residuals; this is what widens the intervals then.
+      leaves, summed up to a window of five correlation times (Sokal) and corrected for what the parameters
+      took away. A model that can not follow the curve leaves slow residuals, and this widens the intervals.
 
     The second needs a fit, so that the fit is repeated until m settles.
 

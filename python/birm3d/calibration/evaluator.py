@@ -226,6 +226,18 @@ class Channel:
             ]
         )
 
+    def blocked(self, point: Floats) -> dict[int, tuple[float, str]]:
+        """Return the parameters beside whose value a run of :meth:`jacobian` failed: its step, and why."""
+        found = {}
+        for k, step in enumerate(self.steps(point)):
+            for signed in (-step, step):
+                probe = point.copy()
+                probe[k] += signed
+                outcome = self._computed.get(probe.tobytes())
+                if outcome is not None and outcome.failure is not None:
+                    found[k] = (float(signed), outcome.failure)
+        return found
+
     def jacobian_change(self, point: Floats) -> Floats:
         """Return how :meth:`jacobian` changes with twice the steps, shape (n + q, p).
 

@@ -17,6 +17,8 @@ Floats = npt.NDArray[np.float64]
 
 # A parameter this near a bound, as a share of the way between the bounds, is held by it.
 _AT_BOUND = 1e-3
+# Downhill slope of chi-square / 2 over a standard error that counts as pushing against runs that fail.
+_PUSH = 0.1
 # A derivative that changes by this share with the step of its differences is none.
 _ALL_ERROR = 0.5
 # Nor is one that is this small beside the greatest, where differences cancel to the last digits.
@@ -94,7 +96,7 @@ def analyse(search: Search, *, confidence: float, uncertainty: str, profiled: bo
       from a second J with twice the steps;
     * rank-deficient: with columns scaled to length 1, a right singular vector v has |E v| >= |J v| / 2: what
       it seems to change is error; every parameter with a share in v;
-    * at a bound that holds it;
+    * at a bound that holds it, or where runs fail that would have a lower cost;
     * practically not identified: the interval covers most of the way between the bounds (Raue et al.,
       Bioinformatics 25, 2009, call it so where a profile has no end);
     * two optima of statistically equal cost with a higher cost between them, or one flat valley.
@@ -109,6 +111,7 @@ def analyse(search: Search, *, confidence: float, uncertainty: str, profiled: bo
     lengths = np.linalg.norm(jacobian, axis=0)
     nil = _NIL * float(np.linalg.norm(channel.noise.weights * problem.measured))
     reasons: dict[int, str] = {}
+    notes: list[str] = []
 
     for k, label in enumerate(labels):
         if lengths[k] <= max(nil, float(np.linalg.norm(error[:, k])) / _ALL_ERROR):
@@ -119,6 +122,14 @@ def analyse(search: Search, *, confidence: float, uncertainty: str, profiled: bo
         if k not in reasons and side is not None:
             bound = parameter.lower if side == "lower" else parameter.upper
             reasons[k] = f"at its {side} bound {bound:g}: the data would go on beyond it"
+
+    for k, (step, failure) in channel.blocked(point).items():
+        # Downhill past the value, by a tenth of what its own standard error would bring.
+        way = "above" if step > 0.0 else "below"
+        if k not in reasons and -gradient[k] * np.sign(step) > _PUSH * lengths[k]:
+            reasons[k] = f"held where runs fail: the data would go on {way}, but {failure}"
+        elif k not in reasons:
+            notes.append(f"runs fail just {way} the value of {labels[k]}: {failure}")
 
     free = np.array([k for k in range(len(labels)) if k not in reasons], int)
     spread = _spread(search, residual, len(free), confidence, uncertainty)
@@ -132,7 +143,13 @@ def analyse(search: Search, *, confidence: float, uncertainty: str, profiled: bo
     singular: Floats = np.asarray(np.linalg.svd(jacobian, compute_uv=False), float)
     sound = lengths.min() > 0.0 and singular[-1] > 0.0
     analysis = Analysis(
-        jacobian, spread, whole, singular, float(singular[0] / singular[-1]) if sound else None, reasons
+        jacobian,
+        spread,
+        whole,
+        singular,
+        float(singular[0] / singular[-1]) if sound else None,
+        reasons,
+        notes,
     )
     if not profiled:  # else the profiles say it better
         _practical(analysis, point, problem, free)

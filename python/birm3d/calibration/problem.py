@@ -26,6 +26,8 @@ Target: TypeAlias = CurveTarget | ScalarTarget
 _FIRST_SIGMA = 0.05
 # Least standard deviation that residuals may leave, of the curve's peak: below it is the solver's own error.
 _LEAST_SIGMA = 1e-9
+# Greatest share of a correlation time that fitted parameters are taken to have hidden.
+_MOST_TAKEN = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +115,7 @@ class Problem:
         residual
             Differences of a fit, shape (n,); ``None`` before the first one.
         free
-            Number of fitted parameters, for unbiased estimates of sigma.
+            Number of fitted parameters, which hide correlations of what they leave.
         """
         weights, points, sigmas = [], [], []
         for target, rows in zip(self.flat, self.slices, strict=True):
@@ -122,8 +124,8 @@ class Problem:
                 sigma, m = np.array([target.sigma]), 1.0
             else:
                 own = None if residual is None else residual[rows]
-                m = _points(target, own)
-                sigma = _sigma(target, own, m, free)
+                m = _points(target, own, free)
+                sigma = _sigma(target, own)
             weights.append(np.sqrt(target.weight * m / n) / sigma)
             points.append(m * target.weight)
             sigmas.append(sigma)
@@ -149,11 +151,14 @@ class Problem:
         return np.array(rows), np.array(derivatives).reshape(len(rows), len(self.parameters))
 
 
-def independent_share(residual: Floats) -> float:
+def independent_share(residual: Floats, free: int = 0) -> float:
     """Return 1 / (1 + 2 sum rho_k): the share of independent points in an evenly spaced sequence.
 
     The sum of autocorrelations ends at the first lag of five correlation times, these being 1/2 + sum rho_k
-    (A. D. Sokal, Monte Carlo methods in statistical mechanics, 1997, section 3); never more than 1.
+    (A. D. Sokal, Monte Carlo methods in statistical mechanics, 1997, section 3); never more than 1. What
+    `free` fitted parameters took away is slow more often than not: each lowers the sum by (2 k + 1) / n for a
+    window of k lags, as subtracting the mean does (U. Wolff, Comput. Phys. Commun. 156, 2004, section 3.1);
+    this is put back.
     """
     n = len(residual)
     size = float(residual @ residual)
@@ -164,10 +169,11 @@ def independent_share(residual: Floats) -> float:
     time = 2.0 * np.cumsum(correlation) - 1.0
     window = np.flatnonzero(np.arange(n) >= 2.5 * time)
     last = int(window[0]) if len(window) else n - 1
-    return float(1.0 / max(1.0, time[last]))
+    taken = min(_MOST_TAKEN, free * (2 * last + 1) / n)
+    return float(1.0 / max(1.0, time[last] / (1.0 - taken)))
 
 
-def _points(target: CurveTarget, residual: Floats | None) -> float:
+def _points(target: CurveTarget, residual: Floats | None, free: int) -> float:
     n = len(target.points)
     if target.independent_points == "all":
         return float(n)
@@ -175,10 +181,10 @@ def _points(target: CurveTarget, residual: Floats | None) -> float:
         return float(target.independent_points)
     if residual is None:
         return target.filter_points
-    return min(target.filter_points, max(2.0, n * independent_share(residual)))
+    return min(target.filter_points, max(2.0, n * independent_share(residual, free)))
 
 
-def _sigma(target: CurveTarget, residual: Floats | None, points: float, free: int) -> Floats:
+def _sigma(target: CurveTarget, residual: Floats | None) -> Floats:
     if target.given_sigma is not None:
         return target.given_sigma
     peak = float(np.abs(target.measured).max())
@@ -188,9 +194,8 @@ def _sigma(target: CurveTarget, residual: Floats | None, points: float, free: in
         )
     if residual is None:
         return np.full(len(target.points), _FIRST_SIGMA * peak)
-    # Unbiased where this curve alone determines the parameters; never from less than one degree of freedom.
-    left = max(1.0, points - free) / points
-    sigma = float(np.sqrt(residual @ residual / (len(residual) * left)))
+    # Of greatest likelihood; the degrees of freedom come in once, with the scatter of all targets together.
+    sigma = float(np.sqrt(residual @ residual / len(residual)))
     return np.full(len(target.points), max(sigma, _LEAST_SIGMA * peak))
 
 
