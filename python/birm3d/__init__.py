@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from importlib.metadata import version as _version
 
-from . import scenes, units
+from . import calibration, scenes, units
 from ._core import UnstableError
 from .barrier import Barrier
+from .calibration import calibrate
 from .channel import Channel
 from .channel_checks import check_channel
 from .comparison import CurveComparison, compare_curves
@@ -31,6 +32,8 @@ __all__ = [
     "UnstableError",
     "Vehicle",
     "Zone",
+    "calibrate",
+    "calibration",
     "check_channel",
     "compare_curves",
     "read_csv_channels",

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from . import units
+from .cli_calibrate import calibrate_file
 
 if TYPE_CHECKING:
     from .result import Result
@@ -37,6 +38,9 @@ class _Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]
 @click.version_option(package_name="birm3d")
 def _cli() -> None:
     """Impact response of vehicles and security or roadside barriers."""
+
+
+_cli.add_command(calibrate_file)
 
 
 @_cli.command()
