@@ -10,6 +10,8 @@ name                           value
 ``vehicle.gvw``                mass [kg], see :meth:`birm3d.Vehicle.with_gvw`
 ``vehicle.mass_center_height`` above the ground at rest [m]
 ``vehicle.mesh_density``       relative number of shell elements
+``vehicle.rate_sensitivity``   [s/m], and ``vehicle.dent_coupling`` [N/m^3], see
+                               :meth:`birm3d.Vehicle.with_crush_physics`
 ``zone.<zone>.<number>``       ``k_initial``, ``knee``, ``k_hardening``, ``f_max`` or ``k_unloading`` of
                                :class:`birm3d.Zone`
 ``zone.<zone>.stress[i]``      stress of point i of the zone's envelope [N per m^2]
@@ -35,7 +37,7 @@ from .vehicle import TRUSS_LAW, Vehicle, Zone
 
 __all__ = ["parameter_names", "value_of", "varied"]
 
-_VEHICLE = ("gvw", "mass_center_height", "mesh_density")
+_VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity", "dent_coupling")
 _POINT = re.compile(r"(stress|deflection)\[(\d+)\]")
 
 
@@ -139,6 +141,9 @@ def _varied_vehicle(vehicle: Vehicle | str, groups: Mapping[str, Mapping[str, An
     numbers = groups.get("vehicle", {})
     if "mesh_density" in numbers:
         changed = changed.with_mesh_density(numbers["mesh_density"])
+    physics = {name: numbers[name] for name in ("rate_sensitivity", "dent_coupling") if name in numbers}
+    if physics:
+        changed = changed.with_crush_physics(**physics)
     if "gvw" in numbers:
         changed = changed.with_gvw(numbers["gvw"])
     if "mass_center_height" in numbers:
