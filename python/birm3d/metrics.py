@@ -8,6 +8,8 @@ exit angle of a vehicle that stands) is absent, never NaN.
 from __future__ import annotations
 
 import math
+from collections.abc import Collection, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +20,36 @@ from .filters import cfc, moving_average
 if TYPE_CHECKING:
     from .result import Result
 
-__all__ = ["compute_metrics"]
+__all__ = ["METRIC_UNITS", "compute_metrics"]
+
+METRIC_UNITS: Mapping[str, str] = MappingProxyType(
+    {
+        "peak_deceleration": "m/s^2",
+        "peak_deceleration_cfc60": "m/s^2",
+        "peak_normal_force": "N",
+        "peak_normal_force_cfc60": "N",
+        "peak_force_50ms": "N",
+        "dynamic_crush": "m",
+        "residual_crush": "m",
+        "max_displacement": "m",
+        "vehicle_penetration": "m",
+        "time_of_zero_velocity": "s",
+        "restitution": "",
+        "delta_v": "m/s",
+        "impact_severity": "J",
+        "exit_speed": "m/s",
+        "exit_angle": "deg",
+        "max_roll": "deg",
+        "max_pitch": "deg",
+        "max_yaw": "deg",
+        "energy_residual": "",
+        "momentum_residual": "",
+        "steps": "",
+        "run_time": "s",
+        "end_time": "s",
+    }
+)
+"""Every scalar that a run may have -> its unit; "" for a pure number."""
 
 # Below this speed a direction of travel means nothing, m/s.
 _SLOWEST = 1e-3
@@ -26,8 +57,8 @@ _SLOWEST = 1e-3
 _STANDSTILL = 0.1
 
 
-def compute_metrics(result: Result) -> dict[str, float]:
-    """Return the scalars of a run, SI units and degrees.
+def compute_metrics(result: Result, names: Collection[str] = tuple(METRIC_UNITS)) -> dict[str, float]:
+    """Return the scalars of a run, SI units and degrees; only those of `names`.
 
     Always: ``peak_deceleration`` (along r, unfiltered) [m/s^2], ``max_roll``, ``max_pitch``, ``max_yaw``
     (greatest magnitudes) [deg], ``exit_speed`` (of the mass centre along the ground, at the end) [m/s],
@@ -62,20 +93,20 @@ def compute_metrics(result: Result) -> dict[str, float]:
         "end_time": float(result.time[-1]),
     }
     filtered = interval * 60.0 <= 0.1 and len(result.time) > 1
-    if filtered:
+    if filtered and "peak_deceleration_cfc60" in names:
         metrics["peak_deceleration_cfc60"] = float(cfc(deceleration, 60, interval).max())
     if scene.barrier is None:
-        return metrics
+        return {name: value for name, value in metrics.items() if name in names}
 
     force = result.barrier_normal_force
     metrics["peak_normal_force"] = float(force.max())
-    if filtered:
+    if filtered and "peak_normal_force_cfc60" in names:
         metrics["peak_normal_force_cfc60"] = float(cfc(force, 60, interval).max())
     metrics["peak_force_50ms"] = float(moving_average(force, 0.05, interval).max())
     metrics["dynamic_crush"] = float(result.peak_deflection.max())
     metrics["residual_crush"] = float(max(0.0, result.deflection.max()))
     metrics.update(_motion(result, -np.asarray(scene.barrier.core.normal)))
-    return metrics
+    return {name: value for name, value in metrics.items() if name in names}
 
 
 def _motion(result: Result, inward: npt.NDArray[np.float64]) -> dict[str, float]:

@@ -178,6 +178,7 @@ class Vehicle:
     _mesh: ExteriorMesh | None = None
     _mesh_density: float = 1.0
     _raised: float = 0.0  # of the mass centre above that of the solids [m]
+    _draft: bool = False  # between two changes: the core is not built yet, see draft()
 
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):
@@ -185,7 +186,8 @@ class Vehicle:
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
         object.__setattr__(self, "zones", MappingProxyType(dict(self.zones)))
-        _ = self.core  # the core checks every number
+        if not self._draft:
+            _ = self.core  # the core checks every number
 
     # ---- making vehicles ----------------------------------------------------------------------------------
 
@@ -304,13 +306,15 @@ class Vehicle:
                 self, mass=gvw, inertia=self.inertia * (gvw / self.mass), wheels=self.wheels.copy()
             )
         assert self._mesh is not None  # made together with _file
-        return _assemble(self._file, self._mesh, gvw, self._mesh_density, self.zones, self._raised)
+        return _assemble(
+            self._file, self._mesh, gvw, self._mesh_density, self.zones, self._raised, self._draft
+        )
 
     def with_mesh_density(self, mesh_density: float) -> Vehicle:
         """Return the vehicle with another number of shell elements, relative to its file's choice."""
         if self._file is None:
             raise ValueError(f"mesh_density needs a vehicle that has a file, got {self.name!r} from arrays")
-        return _from_file(self._file, self.mass, mesh_density, self.zones, self._raised)
+        return _from_file(self._file, self.mass, mesh_density, self.zones, self._raised, self._draft)
 
     def with_mass_center_height(self, height: float) -> Vehicle:
         """Return the vehicle with its mass centre at another height above the ground [m].
@@ -382,6 +386,17 @@ class Vehicle:
             else:
                 column *= value / now[name]
         return dataclasses.replace(self, _truss_laws=laws)
+
+    def draft(self) -> Vehicle:
+        """Return the vehicle to be changed several times at the cost of one; end with :meth:`finished`.
+
+        Of a draft the numbers are not checked and nothing can be run.
+        """
+        return dataclasses.replace(self, _draft=True)
+
+    def finished(self) -> Vehicle:
+        """Return a draft as a vehicle, checked."""
+        return dataclasses.replace(self, _draft=False)
 
     # ---- what it is ---------------------------------------------------------------------------------------
 
@@ -499,11 +514,12 @@ def _from_file(
     mesh_density: float,
     zones: Mapping[str, Zone] | None,
     raised: float = 0.0,
+    draft: bool = False,
 ) -> Vehicle:
     from .mesher import build_mesh
 
     mass = file.gvw_kg if gvw is None else _positive("gvw", gvw)
-    return _assemble(file, build_mesh(file, mesh_density), mass, mesh_density, zones, raised)
+    return _assemble(file, build_mesh(file, mesh_density), mass, mesh_density, zones, raised, draft)
 
 
 def _assemble(
@@ -513,6 +529,7 @@ def _assemble(
     mesh_density: float,
     zones: Mapping[str, Zone] | None,
     raised: float,
+    draft: bool,
 ) -> Vehicle:
     corners = np.array([solid.corners for solid in file.solids], float)
     properties = _core.mass_properties(corners, _densities(file, mass))
@@ -537,4 +554,5 @@ def _assemble(
         _mesh=mesh,
         _mesh_density=mesh_density,
         _raised=raised,
+        _draft=draft,
     )
