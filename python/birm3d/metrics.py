@@ -74,9 +74,16 @@ def compute_metrics(result: Result, names: Collection[str] = tuple(METRIC_UNITS)
     its path from the barrier's line) [deg].
 
     At sampling rates that allow it: ``peak_deceleration_cfc60``, ``peak_normal_force_cfc60``.
+
+    Raises
+    ------
+    ValueError
+        If the run is shorter than the output interval.
     """
     scene, statistics = result.scene, result.statistics
     interval = scene.settings.output_interval
+    if len(result.time) < 2:
+        raise ValueError(f"output_interval must be shorter than the run for metrics, got {interval} s")
     deceleration = -result.acceleration[:, 0]
     energy = result.energy
     scale = max(float(energy["kinetic"][0]), 0.5 * scene.vehicle.mass * _STANDSTILL**2)
