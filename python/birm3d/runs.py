@@ -68,7 +68,8 @@ def run_study(
         Names of the metrics wanted; ``None``: all but ``run_time``, which is not the same twice.
     executor
         Any :class:`concurrent.futures.Executor`, or a ``dask.distributed.Client``; ``None``: a thread for
-        each core of the machine (the C++ core releases the interpreter's lock).
+        each core of the machine. The C++ core releases the interpreter's lock, making a vehicle and its
+        metrics does not: processes are faster where there are more than a few cores.
     store
         File for finished runs (SQLite), written as they finish. If it has runs of this study already, they
         are taken from there. More rows than it has are welcome: they are added.
