@@ -43,7 +43,9 @@ def main() -> None:
         print(f"no fitted curve: {curve.no_fit}")
     else:
         error, _ = curve.fit.standard_errors
-        print(f"one in two at {curve.fit.median / units.mph:.1f} +- {error / units.mph:.1f} mph (lognormal fit)")
+        print(
+            f"one in two at {curve.fit.median / units.mph:.1f} +- {error / units.mph:.1f} mph (lognormal fit)"
+        )
 
     study = birm3d.sweep(simulation, impact_speed=speeds[::2], impact_angle=[30.0, 45.0, 60.0, 75.0, 90.0])
     print("\ncrush [m] at   " + "".join(f"{angle:8.0f} deg" for angle in study.grid["impact_angle"]))

@@ -12,7 +12,14 @@ import pickle
 import threading
 import time
 from collections.abc import Callable, Mapping
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
 from functools import lru_cache, partial
 from typing import Any
 
@@ -29,6 +36,7 @@ _LONGEST_CHUNK = 64
 
 Chunk = list[tuple[int, tuple[Any, ...]]]
 Finished = list[tuple[int, Outcome]]
+Timed = tuple[Finished, float]  # and what it took to run them [s]
 
 
 class ExecutorError(Exception):
@@ -59,49 +67,51 @@ def run_all(
     stop = threading.Event()
     own = ThreadPoolExecutor(os.cpu_count() or 1) if executor is None else None
     pool, workers = _pool(own or executor)
-    work: Callable[[Chunk], Finished]
+    work: Callable[[Chunk], Timed]
     if isinstance(pool, ThreadPoolExecutor):
         work = partial(_run_chunk, simulation, names, metrics, stop=stop)
     else:
         work = partial(_run_packed, pickle.dumps((simulation, names, metrics), pickle.HIGHEST_PROTOCOL))
-    pending: set[Future[Finished]] = set()
-    at, done_runs, start = 0, 0, time.perf_counter()
+    pending: set[Future[Timed]] = set()
+    at, done_runs, seconds = 0, 0, 0.0
     try:
         while at < len(todo) or pending:
             while at < len(todo) and len(pending) < 2 * workers:
-                cost = workers * (time.perf_counter() - start) / done_runs if done_runs else _CHUNK_TIME
+                cost = max(seconds / done_runs, 1e-6) if done_runs else _CHUNK_TIME
                 share = math.ceil((len(todo) - at) / (2 * workers))  # no worker has all of the last ones
                 size = max(1, min(int(_CHUNK_TIME / cost), share, _LONGEST_CHUNK))
                 pending.add(_submit(pool, work, todo[at : at + size]))
                 at += size
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
-                finished = _result(future)
+                finished, spent = _result(future)
                 finish(finished)
-                done_runs += len(finished)
+                done_runs, seconds = done_runs + len(finished), seconds + spent
                 pending.discard(future)
     except BaseException:
         stop.set()
-        for future in pending:
-            future.cancel()
+        # dask logs an error for each future that is cancelled while it runs; its few chunks run out instead.
+        if isinstance(pool, (ThreadPoolExecutor, ProcessPoolExecutor)):
+            for future in pending:
+                future.cancel()
         if isinstance(pool, ThreadPoolExecutor):
             wait(pending)  # each thread ends with its present run
         for future in pending:
             if future.done() and not future.cancelled() and future.exception() is None:
-                finish(future.result())
+                finish(future.result()[0])
         raise
     finally:
         if own is not None:
             own.shutdown()
 
 
-def _submit(pool: Executor, work: Callable[[Chunk], Finished], chunk: Chunk) -> Future[Finished]:
+def _submit(pool: Executor, work: Callable[[Chunk], Timed], chunk: Chunk) -> Future[Timed]:
     try:
         return pool.submit(work, chunk)
     except Exception as error:
         raise ExecutorError from error
 
 
-def _result(future: Future[Finished]) -> Finished:
+def _result(future: Future[Timed]) -> Timed:
     # A run that fails is an outcome, so whatever is raised here is of the executor.
     try:
         return future.result()
@@ -121,7 +131,7 @@ def _pool(executor: Any) -> tuple[Executor, int]:
     return executor, getattr(executor, "_max_workers", None) or os.cpu_count() or 1
 
 
-def _run_packed(packed: bytes, chunk: Chunk) -> Finished:
+def _run_packed(packed: bytes, chunk: Chunk) -> Timed:
     simulation, names, metrics = _unpacked(packed)
     return _run_chunk(simulation, names, metrics, chunk)
 
@@ -135,13 +145,14 @@ def _run_chunk(
     metrics: tuple[str, ...],
     chunk: Chunk,
     stop: threading.Event | None = None,
-) -> Finished:
+) -> Timed:
+    start = time.perf_counter()
     finished: Finished = []
     for run, row in chunk:
         if stop is not None and stop.is_set():
             break
         finished.append((run, _outcome(simulation, dict(zip(names, row, strict=True)), metrics)))
-    return finished
+    return finished, time.perf_counter() - start
 
 
 def _outcome(simulation: Simulation, changes: Mapping[str, Any], metrics: tuple[str, ...]) -> Outcome:

@@ -9,18 +9,19 @@ from contextlib import contextmanager
 from functools import partial
 from numbers import Real
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ._version import __version__
-from .executors import ExecutorError, Finished, run_all
-from .fingerprint import fingerprint
 from .metrics import METRIC_UNITS
-from .run_store import Outcome, RunStore
 from .scene_parameters import value_of, varied
 from .simulation import Simulation
 from .study import Study
+
+if TYPE_CHECKING:
+    from .executors import Finished
+    from .run_store import Outcome, RunStore
 
 __all__ = ["StudyInterrupted", "StudyStoppedError", "run_study"]
 
@@ -95,6 +96,11 @@ def run_study(
     StudyInterrupted
         A KeyboardInterrupt, with the finished runs in its ``study`` and in the store.
     """
+    # What only a study needs, such as sqlite3 and multiprocessing, is loaded by the first one.
+    from .executors import ExecutorError, run_all
+    from .fingerprint import fingerprint
+    from .run_store import RunStore
+
     names = tuple(names)
     wanted = _checked_metrics(metrics)
     table = [tuple(_plain(value) for value in row) for row in rows]

@@ -14,13 +14,14 @@ import numpy as np
 import numpy.typing as npt
 
 from ._version import __version__
-from .run_store import Outcome
 from .scene_parameters import unit_of
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
     from matplotlib.figure import Figure
+
+    from .run_store import Outcome
 
 __all__ = ["Study", "Summary"]
 

@@ -3,7 +3,7 @@
 A pickup of 6,495 nodes at 30 mph into a rigid wall, about head-on; 1,024 base samples make 10,240 runs.
 
     python tests/bench/bench_monte_carlo.py            # some minutes
-    python tests/bench/bench_monte_carlo.py --quick    # a coarse pickup, 160 runs
+    python tests/bench/bench_monte_carlo.py --quick    # a coarse pickup, 640 runs
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def scene(quick: bool) -> Simulation:
 
 
 def study(quick: bool, **options: Any) -> SobolIndices:
-    return birm3d.sobol(scene(quick), INPUTS, n=16 if quick else 1024, seed=SEED, **options)
+    return birm3d.sobol(scene(quick), INPUTS, n=64 if quick else 1024, seed=SEED, **options)
 
 
 def digest(runs: Study) -> str:

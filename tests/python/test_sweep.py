@@ -290,6 +290,16 @@ def test_store_that_is_none(tmp_path: Path) -> None:
         birm3d.sweep(SEDAN, impact_speed=[8.0], store=tmp_path / "missing" / "runs.db")
 
 
+def test_store_that_another_process_writes(tmp_path: Path) -> None:
+    path = tmp_path / "runs.db"
+    other = sqlite3.connect(path)
+    other.execute("BEGIN EXCLUSIVE")
+    with pytest.raises(ValueError, match=r"store .*runs\.db' can not be opened or is in use"):
+        birm3d.sweep(SEDAN, impact_speed=[8.0], store=path)
+    other.close()
+    assert len(birm3d.sweep(SEDAN, impact_speed=[8.0], store=path)) == 1
+
+
 def test_fingerprints_are_those_of_content() -> None:
     again = scenes.nhtsa_10146(mesh_density=0.1)
     assert fingerprint(again.scene) == fingerprint(SEDAN.scene)
@@ -458,6 +468,13 @@ def test_bad_input_names_argument_and_value(arguments: dict[str, Any], words: st
 def test_an_executor_that_is_none() -> None:
     with pytest.raises(TypeError, match=r"executor must be a concurrent.futures.Executor.*got int"):
         birm3d.sweep(SEDAN, impact_speed=[8.0], executor=4)
+
+
+def test_what_studies_need_is_loaded_by_the_first_one() -> None:
+    heavy = "{'scipy', 'pandas', 'xarray', 'SALib', 'distributed', 'rich', 'sqlite3', 'multiprocessing'}"
+    code = f"import sys, birm3d; print(*sorted({heavy} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == ""
 
 
 @pytest.mark.parametrize(("package", "method"), [("pandas", "to_dataframe"), ("xarray", "to_xarray")])
