@@ -182,7 +182,7 @@ def fragility(
         Parameter -> frozen distribution of :mod:`scipy.stats`; not ``impact_speed``.
     n
         Runs for each speed, >= 1; drawn anew for every speed, so that counts are independent. A greater n
-        keeps the earlier runs' parameters.
+        keeps the earlier runs.
     seed
         Integer >= 0.
     exceeds
@@ -213,11 +213,9 @@ def fragility(
         raise ValueError("distributions must leave impact_speed to speeds, got it in both")
     check_distributions(simulation, distributions)
     metrics = _limits(exceeds)
-    rows = [
-        (speed, *row)
-        for speed in listed
-        for row in sample(distributions, n, seed, stream=f"@{speed!r}").tolist()
-    ]
+    drawn = [sample(distributions, n, seed, stream=f"@{speed!r}").tolist() for speed in listed]
+    # All speeds of the first draw, then of the second: with a greater n the earlier runs come first.
+    rows = [(speed, *drawn[j][i]) for i in range(n) for j, speed in enumerate(listed)]
     study = run_study(
         simulation,
         ("impact_speed", *distributions),
@@ -229,13 +227,13 @@ def fragility(
         title="fragility",
     )
     happened = _stopped(study) if exceeds is None else _exceeded(study, exceeds)
-    valid = np.array([not error for error in study.error]).reshape(len(listed), n)
-    runs = valid.sum(axis=1)
+    valid = np.array([not error for error in study.error]).reshape(n, len(listed))
+    runs = valid.sum(axis=0)
     if not runs.all():
         speed = listed[int(np.argmin(runs))]
         reason = next(iter(study.failed.values()))
         raise ValueError(f"speeds must have runs that succeed, but all {n} at {speed:g} m/s failed: {reason}")
-    events = (happened.reshape(len(listed), n) & valid).sum(axis=1)
+    events = (happened.reshape(n, len(listed)) & valid).sum(axis=0)
     low, high = _wilson(events, runs, confidence)
     fit, no_fit = _fit(np.array(listed), events, runs)
     if exceeds is None:
