@@ -174,7 +174,7 @@ class Solid(Block):
                 message = "corners must go counter-clockwise seen from above, upper four last, and be convex"
                 reject("corners_m", f"{message}; the part {i}, {j}, {k}, {m} has no positive volume")
 
-    @property
+    @cached_property
     def corners(self) -> tuple[Point, ...]:
         """Eight corners in m, file axes."""
         if self.corners_m is not None:
