@@ -210,17 +210,25 @@ def test_probability_of_exceeding_a_crush(block: Simulation) -> None:
 
 def test_fit_has_the_errors_it_says() -> None:
     """200 draws of binomial counts: 95 % intervals of the median cover it 95 % of the time, give or take."""
-    from birm3d.fragility import _fit
+    from birm3d.lognormal_fit import fit_lognormal
 
     speeds = np.array([8.0, 9.0, 10.0, 11.0, 12.0])
     p = norm.cdf(np.log(speeds / 10.0) / 0.15)
     source = np.random.default_rng(4)
     covered = 0
     for _ in range(200):
-        fit, why = _fit(speeds, source.binomial(60, p), np.full(5, 60))
+        fit, why = fit_lognormal(speeds, source.binomial(60, p), np.full(5, 60))
         assert fit is not None, why
         covered += abs(fit.median - 10.0) < 1.96 * fit.standard_errors[0]
     assert 180 <= covered <= 198
+
+
+def test_a_flat_curve_has_no_median() -> None:
+    from birm3d.lognormal_fit import fit_lognormal
+
+    fit, why = fit_lognormal(np.array([8.0, 10.0, 12.0]), np.array([30, 31, 30]), np.full(3, 60))
+    assert fit is None
+    assert why == "the probability changes with speed by no more than chance would"
 
 
 def test_wilson_interval_is_the_published_one() -> None:
