@@ -65,38 +65,19 @@ class RunStore:
         self.path = Path(path)
         self._rows = rows
         self._metrics = tuple(units)
-        columns = [*(f"{_quoted(name)}" for name in names), *(f"{_quoted(name)} REAL" for name in units)]
-        texts = ("inputs", "end_reason", "state_hash", "error")
-        self._insert = (
-            f"INSERT OR REPLACE INTO runs VALUES ({', '.join('?' * (1 + len(columns) + len(texts)))})"
+        columns = (
+            "run INTEGER PRIMARY KEY",
+            *(_quoted(name) for name in names),
+            *(f"{_quoted(name)} REAL" for name in units),
+            *(f"{text} TEXT" for text in ("inputs", "end_reason", "state_hash", "error")),
         )
+        self._insert = f"INSERT OR REPLACE INTO runs VALUES ({', '.join('?' * len(columns))})"
+        facts = {"format": _FORMAT, "study": study, "version": version, "units": json.dumps(dict(units))}
         if not self.path.parent.is_dir():
             raise ValueError(f"store must be in a folder that exists, got {str(self.path)!r}")
         self._connection = sqlite3.connect(self.path, timeout=1.0)
         try:
-            # One writer at a time; the lock ends with the process, however that ends.
-            self._connection.execute("PRAGMA locking_mode = EXCLUSIVE")
-            with self._connection:
-                self._connection.execute("BEGIN IMMEDIATE")
-                self._connection.execute(
-                    "CREATE TABLE IF NOT EXISTS study (key TEXT PRIMARY KEY, value TEXT)"
-                )
-                found = dict(self._connection.execute("SELECT key, value FROM study"))
-                if not found:
-                    facts = {
-                        "format": _FORMAT,
-                        "study": study,
-                        "version": version,
-                        "units": json.dumps(units),
-                    }
-                    self._connection.executemany("INSERT INTO study VALUES (?, ?)", facts.items())
-                    self._connection.execute(
-                        "CREATE TABLE runs (run INTEGER PRIMARY KEY, "
-                        + ", ".join([*columns, *(f"{text} TEXT" for text in texts)])
-                        + ")"
-                    )
-            if found:
-                self._refuse_another(found, study)
+            self._open(facts, columns)
         except sqlite3.OperationalError as error:
             self.close()
             raise ValueError(f"store {str(path)!r} can not be opened or is in use: {error}") from error
@@ -108,6 +89,21 @@ class RunStore:
         except BaseException:
             self.close()
             raise
+
+    def _open(self, facts: Mapping[str, str], columns: Sequence[str]) -> None:
+        """Make the tables of a new file, or see whether those of an old one are of this study."""
+        # One writer at a time; the lock ends with the process, however that ends.
+        self._connection.execute("PRAGMA locking_mode = EXCLUSIVE")
+        with self._connection:
+            self._connection.execute("BEGIN IMMEDIATE")
+            tables = {name for (name,) in self._connection.execute("SELECT name FROM sqlite_master")}
+            if not tables:
+                self._connection.execute("CREATE TABLE study (key TEXT PRIMARY KEY, value TEXT)")
+                self._connection.executemany("INSERT INTO study VALUES (?, ?)", facts.items())
+                self._connection.execute(f"CREATE TABLE runs ({', '.join(columns)})")
+            elif not tables >= {"study", "runs"}:
+                raise ValueError(f"store must be a file of runs or a new one, got a database of {tables}")
+        self._refuse_another(dict(self._connection.execute("SELECT key, value FROM study")), facts["study"])
 
     def _refuse_another(self, found: Mapping[str, str], study: str) -> None:
         if found.get("format") != _FORMAT:

@@ -286,6 +286,12 @@ def test_store_that_is_none(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"store must be a file of runs.*notes\.txt"):
         birm3d.sweep(SEDAN, impact_speed=[8.0], store=text)
     assert text.read_text().startswith("not a database")
+    database = tmp_path / "contacts.db"
+    sqlite3.connect(database).execute("CREATE TABLE contacts (name)").connection.close()
+    before = database.read_bytes()
+    with pytest.raises(ValueError, match=r"got a database of {'contacts'}"):
+        birm3d.sweep(SEDAN, impact_speed=[8.0], store=database)
+    assert database.read_bytes() == before
     with pytest.raises(ValueError, match="store must be in a folder that exists"):
         birm3d.sweep(SEDAN, impact_speed=[8.0], store=tmp_path / "missing" / "runs.db")
 
