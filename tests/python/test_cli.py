@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import signal
-import threading
 from pathlib import Path
 
 import numpy as np
@@ -231,10 +228,9 @@ def test_sweep_errors_say_what_is_wrong(monkeypatch, capsys, arguments, parts):
         assert part in err
 
 
-def test_a_stopped_sweep_says_what_is_kept(monkeypatch, capsys, tmp_path):
-    timer = threading.Timer(0.7, lambda: os.kill(os.getpid(), signal.SIGINT))
-    timer.start()
-    vary = ["--vary", "impact_speed=8:20:0.001", "--store", str(tmp_path / "runs.db")]
+def test_a_stopped_sweep_says_what_is_kept(monkeypatch, capsys, tmp_path, interrupt_once_stored):
+    store = tmp_path / "runs.db"
+    interrupt_once_stored(store)
+    vary = ["--vary", "impact_speed=8:20:0.001", "--store", str(store)]
     assert birm3d(monkeypatch, *SWEEP, *vary) == 130
-    timer.join()
     assert "of 12001 runs are finished and kept in" in capsys.readouterr().err

@@ -8,7 +8,6 @@ import signal
 import sqlite3
 import subprocess
 import sys
-import threading
 import time
 import warnings
 from collections.abc import Callable, Iterator
@@ -420,16 +419,17 @@ def test_an_executor_that_is_shut_down() -> None:
         birm3d.sweep(SEDAN, impact_speed=[8.0], executor=executor)
 
 
-def test_ctrl_c_keeps_what_is_finished() -> None:
-    speeds = [8.0 + 0.01 * i for i in range(2000)]
-    timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT))
-    timer.start()
+def test_ctrl_c_keeps_what_is_finished(tmp_path: Path, interrupt_once_stored: Callable[[Path], None]) -> None:
+    path = tmp_path / "runs.db"
+    speeds = [8.0 + 0.001 * i for i in range(9000)]
+    interrupt_once_stored(path)
     with pytest.raises(KeyboardInterrupt) as stopped:
-        birm3d.sweep(SEDAN, impact_speed=speeds)
-    timer.join()
+        birm3d.sweep(SEDAN, impact_speed=speeds, store=path)
     assert isinstance(stopped.value, birm3d.StudyInterrupted)
     part = stopped.value.study
-    assert 0 < len(part) < 2000
+    assert 0 < len(part) < 9000
+    with sqlite3.connect(path) as connection:
+        assert connection.execute("SELECT count(*) FROM runs").fetchone() == (len(part),)
     assert not part.failed
     assert part.state_hash[0] == birm3d.sweep(SEDAN, impact_speed=speeds[:1]).state_hash[0]
 
