@@ -160,8 +160,8 @@ def _outcome(simulation: Simulation, changes: Mapping[str, Any], metrics: tuple[
     try:
         result = varied(simulation, changes).run()
         found = compute_metrics(result, metrics)
-        for name, value in found.items():
-            if math.isnan(value):
+        for name in metrics:
+            if math.isnan(found.get(name, 0.0)):
                 raise ArithmeticError(f"{name} is not a number")
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"

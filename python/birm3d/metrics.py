@@ -57,8 +57,8 @@ _SLOWEST = 1e-3
 _STANDSTILL = 0.1
 
 
-def compute_metrics(result: Result, names: Collection[str] = tuple(METRIC_UNITS)) -> dict[str, float]:
-    """Return the scalars of a run, SI units and degrees; only those of `names`.
+def compute_metrics(result: Result, names: Collection[str] | None = None) -> dict[str, float]:
+    """Return the scalars of a run, SI units and degrees; without those that take long and are not in `names`.
 
     Always: ``peak_deceleration`` (along r, unfiltered) [m/s^2], ``max_roll``, ``max_pitch``, ``max_yaw``
     (greatest magnitudes) [deg], ``exit_speed`` (of the mass centre along the ground, at the end) [m/s],
@@ -99,21 +99,21 @@ def compute_metrics(result: Result, names: Collection[str] = tuple(METRIC_UNITS)
         "run_time": result.run_time,
         "end_time": float(result.time[-1]),
     }
-    filtered = interval * 60.0 <= 0.1 and len(result.time) > 1
-    if filtered and "peak_deceleration_cfc60" in names:
+    filtered = interval * 60.0 <= 0.1
+    if filtered and (names is None or "peak_deceleration_cfc60" in names):
         metrics["peak_deceleration_cfc60"] = float(cfc(deceleration, 60, interval).max())
     if scene.barrier is None:
-        return {name: value for name, value in metrics.items() if name in names}
+        return metrics
 
     force = result.barrier_normal_force
     metrics["peak_normal_force"] = float(force.max())
-    if filtered and "peak_normal_force_cfc60" in names:
+    if filtered and (names is None or "peak_normal_force_cfc60" in names):
         metrics["peak_normal_force_cfc60"] = float(cfc(force, 60, interval).max())
     metrics["peak_force_50ms"] = float(moving_average(force, 0.05, interval).max())
     metrics["dynamic_crush"] = float(result.peak_deflection.max())
     metrics["residual_crush"] = float(max(0.0, result.deflection.max()))
     metrics.update(_motion(result, -np.asarray(scene.barrier.core.normal)))
-    return {name: value for name, value in metrics.items() if name in names}
+    return metrics
 
 
 def _motion(result: Result, inward: npt.NDArray[np.float64]) -> dict[str, float]:
