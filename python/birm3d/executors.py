@@ -67,11 +67,12 @@ def run_all(
     stop = threading.Event()
     own = ThreadPoolExecutor(os.cpu_count() or 1) if executor is None else None
     pool, workers = _pool(own or executor)
-    work: Callable[[Chunk], Timed]
+    task: tuple[Any, ...]  # a function and its arguments before the chunk
     if isinstance(pool, ThreadPoolExecutor):
-        work = partial(_run_chunk, simulation, names, metrics, stop=stop)
+        task = (partial(_run_chunk, stop=stop), simulation, names, metrics)
     else:
-        work = partial(_run_packed, pickle.dumps((simulation, names, metrics), pickle.HIGHEST_PROTOCOL))
+        packed = pickle.dumps((simulation, names, metrics), pickle.HIGHEST_PROTOCOL)
+        task = (_run_packed, _shipped(executor, packed))
     pending: set[Future[Timed]] = set()
     at, done_runs, seconds = 0, 0, 0.0
     try:
@@ -80,7 +81,7 @@ def run_all(
                 cost = max(seconds / done_runs, 1e-6) if done_runs else _CHUNK_TIME
                 share = math.ceil((len(todo) - at) / (2 * workers))  # no worker has all of the last ones
                 size = max(1, min(int(_CHUNK_TIME / cost), share, _LONGEST_CHUNK))
-                pending.add(_submit(pool, work, todo[at : at + size]))
+                pending.add(_submit(pool, *task, todo[at : at + size]))
                 at += size
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
                 finished, spent = _result(future)
@@ -104,9 +105,19 @@ def run_all(
             own.shutdown()
 
 
-def _submit(pool: Executor, work: Callable[[Chunk], Timed], chunk: Chunk) -> Future[Timed]:
+def _shipped(executor: Any, packed: bytes) -> Any:
+    """Return the base scene as an argument of tasks: a client of dask has it sent to each worker once."""
+    if not hasattr(executor, "scatter"):
+        return packed
     try:
-        return pool.submit(work, chunk)
+        return executor.scatter(packed, broadcast=True)
+    except Exception as error:
+        raise ExecutorError from error
+
+
+def _submit(pool: Executor, *task: Any) -> Future[Timed]:
+    try:
+        return pool.submit(*task)
     except Exception as error:
         raise ExecutorError from error
 
