@@ -201,6 +201,8 @@ def save(rows: Sequence[Row], runs: int) -> Path:
             f"# cpu: {cpu_model()}\n# cores: {os.cpu_count()}\n# python: {platform.python_version()}\n"
         )
         file.write(f"# birm3d: {birm3d.__version__}\n")
+        # Above the number of cores: other work had its share, and the times are upper bounds.
+        file.write(f"# load average: {os.getloadavg()[1]:.1f}\n")
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(("case", "setting", "runs", "error", "time_ms", "time_ms_a_run", "digest"))
         for row in rows:
