@@ -256,7 +256,7 @@ class Counting(Serial):
     runs = 0
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        self.runs += len(args[0])
+        self.runs += len(args[-1])
         return super().submit(fn, *args, **kwargs)
 
 
