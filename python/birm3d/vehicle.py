@@ -188,6 +188,7 @@ class Vehicle:
     _mesh_density: float = 1.0
     _pairs: Floats | None = None  # of nodes in reach of a dent, see _near
     _raised: float = 0.0  # of the mass centre above that of the solids [m]
+    _draft: bool = False  # between two changes: the core is not built yet, see draft()
 
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):
@@ -195,7 +196,8 @@ class Vehicle:
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
         object.__setattr__(self, "zones", MappingProxyType(dict(self.zones)))
-        _ = self.core  # the core checks every number
+        if not self._draft:
+            _ = self.core  # the core checks every number
 
     # ---- making vehicles ----------------------------------------------------------------------------------
 
@@ -315,7 +317,7 @@ class Vehicle:
             )
         assert self._mesh is not None  # made together with _file
         return self._anew(
-            _assemble(self._file, self._mesh, gvw, self._mesh_density, self.zones, self._raised)
+            _assemble(self._file, self._mesh, gvw, self._mesh_density, self.zones, self._raised, self._draft)
         )
 
     def with_crush_physics(
@@ -345,7 +347,9 @@ class Vehicle:
         """Return the vehicle with another number of shell elements, relative to its file's choice."""
         if self._file is None:
             raise ValueError(f"mesh_density needs a vehicle that has a file, got {self.name!r} from arrays")
-        return self._anew(_from_file(self._file, self.mass, mesh_density, self.zones, self._raised))
+        return self._anew(
+            _from_file(self._file, self.mass, mesh_density, self.zones, self._raised, self._draft)
+        )
 
     def with_mass_center_height(self, height: float) -> Vehicle:
         """Return the vehicle with its mass centre at another height above the ground [m].
@@ -420,9 +424,22 @@ class Vehicle:
 
     def _anew(self, vehicle: Vehicle) -> Vehicle:
         """Return a vehicle made anew from the file with what the file does not hold."""
+        if self.rate_sensitivity == 0.0 and self.dent_coupling == 0.0:
+            return vehicle
         return vehicle.with_crush_physics(
             rate_sensitivity=self.rate_sensitivity, dent_coupling=self.dent_coupling
         )
+
+    def draft(self) -> Vehicle:
+        """Return the vehicle to be changed several times at the cost of one; end with :meth:`finished`.
+
+        Of a draft the numbers are not checked and nothing can be run.
+        """
+        return dataclasses.replace(self, _draft=True)
+
+    def finished(self) -> Vehicle:
+        """Return a draft as a vehicle, checked."""
+        return dataclasses.replace(self, _draft=False)
 
     # ---- what it is ---------------------------------------------------------------------------------------
 
@@ -483,7 +500,7 @@ class Vehicle:
             scale=self.area,
             wheels=self.wheels,
             mass_center_height=self.mass_center_height,
-            pairs=self._pairs if self.dent_coupling > 0.0 else np.empty((0, 3)),
+            pairs=self._pairs if self._pairs is not None and self.dent_coupling > 0.0 else np.empty((0, 3)),
             rate_sensitivity=self.rate_sensitivity,
             dent_coupling=self.dent_coupling,
         )
@@ -560,11 +577,12 @@ def _from_file(
     mesh_density: float,
     zones: Mapping[str, Zone] | None,
     raised: float = 0.0,
+    draft: bool = False,
 ) -> Vehicle:
     from .mesher import build_mesh
 
     mass = file.gvw_kg if gvw is None else _positive("gvw", gvw)
-    return _assemble(file, build_mesh(file, mesh_density), mass, mesh_density, zones, raised)
+    return _assemble(file, build_mesh(file, mesh_density), mass, mesh_density, zones, raised, draft)
 
 
 def _assemble(
@@ -574,6 +592,7 @@ def _assemble(
     mesh_density: float,
     zones: Mapping[str, Zone] | None,
     raised: float,
+    draft: bool,
 ) -> Vehicle:
     corners = np.array([solid.corners for solid in file.solids], float)
     properties = _core.mass_properties(corners, _densities(file, mass))
@@ -598,4 +617,5 @@ def _assemble(
         _mesh=mesh,
         _mesh_density=mesh_density,
         _raised=raised,
+        _draft=draft,
     )
