@@ -6,10 +6,11 @@ SI units, angles in degrees, arrays read-only. Start with :class:`Vehicle`, :cla
 
 from __future__ import annotations
 
-from . import scenes, units
+from . import calibration, scenes, units
 from ._core import UnstableError
 from ._version import __version__
 from .barrier import Barrier
+from .calibration import calibrate
 from .channel import Channel
 from .channel_checks import check_channel
 from .comparison import CurveComparison, compare_curves
@@ -41,6 +42,8 @@ __all__ = [
     "Vehicle",
     "Zone",
     "__version__",
+    "calibrate",
+    "calibration",
     "check_channel",
     "compare_curves",
     "critical_impact_point",

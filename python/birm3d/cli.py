@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from . import units
+from .cli_calibrate import calibrate_file
 from .cli_scene import scene_options, simulation_of
 from .cli_sweep import sweep
 from .cli_table import print_table
@@ -24,6 +25,9 @@ __all__ = ["main"]
 @click.version_option(package_name="birm3d")
 def _cli() -> None:
     """Impact response of vehicles and security or roadside barriers."""
+
+
+_cli.add_command(calibrate_file)
 
 
 @_cli.command()

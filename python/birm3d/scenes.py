@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 
 from . import units
 from .barrier import Barrier
@@ -26,6 +27,7 @@ __all__ = [
     "rolling",
     "w1",
     "w2",
+    "w2_force",
 ]
 
 TABLE_2 = {20: 51.2121, 30: 80.1521, 40: 100.9540, 50: 109.1120, 60: 110.9010}
@@ -84,6 +86,41 @@ def w2(n: int = 1000, settings: Settings | None = None) -> Simulation:
     """Crush with a knee at 50 mph. Exact: crush 0.9256 m, peak 4,353.8 kN, rebound -6.814 m/s."""
     block = laboratory_block(n, k_initial=3e6, knee=0.4, k_hardening=6e6, k_unloading=60e6)
     return _laboratory(block, settings)
+
+
+def w2_force(
+    time: npt.ArrayLike,
+    *,
+    k_initial: float = 3e6,
+    k_hardening: float = 6e6,
+    knee: float = 0.4,
+    k_unloading: float = 60e6,
+) -> npt.NDArray[np.float64]:
+    """Return the exact wall force of W2 [N] at times since the first touch [s], same shape.
+
+    One mass on one spring in each of three phases, w = sqrt(k / m): to the knee, to the turn, and off along
+    the unloading slope until the force is nil. Stiffnesses in N/m; the block must turn beyond the knee [m].
+    """
+    t = np.asarray(time, float)
+    mass, speed = 6804.0, 22.352
+    w1, w2, w3 = (math.sqrt(k / mass) for k in (k_initial, k_hardening, k_unloading))
+    if not knee * w1 < speed:
+        raise ValueError(f"knee must be < {speed / w1:g} m, where the block turns before it; got {knee}")
+    at_knee = math.asin(knee * w1 / speed) / w1
+    knee_force = k_initial * knee
+    rise = speed * math.cos(w1 * at_knee) * k_hardening / w2
+    turn = at_knee + math.atan2(rise, knee_force) / w2
+    crushing = knee_force * np.cos(w2 * (t - at_knee)) + rise * np.sin(w2 * (t - at_knee))
+    return np.select(
+        [t < 0.0, t < at_knee, t < turn, t < turn + 0.5 * math.pi / w3],
+        [
+            np.zeros_like(t),
+            k_initial * speed / w1 * np.sin(w1 * t),
+            crushing,
+            math.hypot(knee_force, rise) * np.cos(w3 * (t - turn)),
+        ],
+        0.0,
+    )
 
 
 def paper_table_2(speed_mph: float, settings: Settings | None = None) -> Simulation:

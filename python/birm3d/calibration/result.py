@@ -1,0 +1,240 @@
+"""The outcome of a calibration."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .evaluator import Evaluation, Evaluator
+from .fitted import FittedParameter, FittedTarget
+from .identifiability import Spread
+from .parameters import applied
+from .pool import threads_unless
+from .problem import Noise, Problem
+from .profile import Profile, profile
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..comparison import CurveComparison
+    from ..simulation import Simulation
+    from ..vehicle import Vehicle
+
+__all__ = ["CalibrationResult"]
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(eq=False)
+class CalibrationResult:
+    """Fitted values and how far they can be trusted.
+
+    Attributes
+    ----------
+    parameters : tuple of FittedParameter
+    targets : tuple of FittedTarget
+    chi_square : float
+        Sum of squared weighted residuals, priors among them.
+    spread : Spread
+        How residuals became intervals.
+    confidence : float
+        Of the intervals.
+    covariance : ndarray, shape (q, q)
+        Of the values of :attr:`identified`, to first order.
+    correlation : ndarray, shape (q, q)
+        Of the same.
+    condition_number : float or None
+        Of the Jacobian with the bounds as scale; ``None`` where a parameter moves nothing.
+    notes : tuple of str
+        What a reader should know beside the verdict.
+    starts : tuple of dict
+        Where every start began and ended.
+    history : tuple of Evaluation
+        Every run, in an order that does not depend on the executor.
+    profiles : dict of str to Profile
+        Those computed so far.
+    settings : dict
+        Arguments of the fit.
+    """
+
+    parameters: tuple[FittedParameter, ...]
+    targets: tuple[FittedTarget, ...]
+    chi_square: float
+    spread: Spread
+    confidence: float
+    covariance: Floats
+    correlation: Floats
+    condition_number: float | None
+    notes: tuple[str, ...]
+    starts: tuple[Mapping[str, Any], ...]
+    history: tuple[Evaluation, ...]
+    settings: Mapping[str, Any]
+    profiles: dict[str, Profile] = field(default_factory=dict)
+    _problem: Problem | None = None
+    _noise: Noise | None = None
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Fitted value of every parameter."""
+        return {parameter.label: parameter.value for parameter in self.parameters}
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float] | None]:
+        """Interval of every parameter; ``None`` where the data do not tell it."""
+        return {parameter.label: parameter.interval for parameter in self.parameters}
+
+    @property
+    def identified(self) -> tuple[str, ...]:
+        """Parameters that the data tell: those with an interval."""
+        return tuple(parameter.label for parameter in self.parameters if parameter.reason is None)
+
+    @property
+    def verdict(self) -> str:
+        """What the data can and can not tell, in plain words."""
+        missing = [f"{p.label}: {p.reason}" for p in self.parameters if p.reason is not None]
+        if not missing:
+            return "every parameter is identified"
+        return "NOT identified, no interval is given\n" + "\n".join(f"  {line}" for line in missing)
+
+    @property
+    def failed_runs(self) -> int:
+        """Runs that failed; their reasons are in the history."""
+        return sum(evaluation.cost is None for evaluation in self.history)
+
+    def __getitem__(self, label: str) -> FittedParameter:
+        for parameter in self.parameters:
+            if parameter.label == label:
+                return parameter
+        raise KeyError(f"parameter must be one of {', '.join(self.values)}; got {label!r}")
+
+    # ---- what was fitted ----------------------------------------------------------------------------------
+
+    @property
+    def simulations(self) -> tuple[Simulation, ...]:
+        """The simulations with the fitted values, at their own settings."""
+        problem = self._loaded("simulations")
+        values = np.array([parameter.value for parameter in self.parameters])
+        return tuple(
+            problem.parameters.changed(simulation, i, values)
+            for i, simulation in enumerate(problem.originals)
+        )
+
+    @property
+    def simulation(self) -> Simulation:
+        """The first of :attr:`simulations`."""
+        return self.simulations[0]
+
+    @property
+    def vehicle(self) -> Vehicle:
+        """The fitted vehicle, of the first simulation."""
+        return self.simulation.scene.vehicle
+
+    def applied_to(self, simulation: Simulation) -> Simulation:
+        """Return another simulation with the fitted values.
+
+        Raises
+        ------
+        ValueError
+            If a parameter is a function, or the scene has no number of its name.
+        """
+        stored = [{"label": p.label, "names": p.names, "factor": p.factor} for p in self.parameters]
+        return applied(stored, self.values, simulation)
+
+    def comparisons(self) -> dict[str, CurveComparison]:
+        """Return measured against fitted for every curve against time: Sprague-Geers, W179, ISO 18571.
+
+        By the target's label, with the simulation's number where there are several.
+        """
+        from ..channel import Channel
+        from ..comparison import compare_curves
+
+        several = len({target.simulation for target in self.targets}) > 1
+        found = {}
+        for target in self.targets:
+            if target.against != "time":
+                continue
+            label = f"{target.label} [{target.simulation}]" if several else target.label
+            measured, computed = (
+                Channel(name, target.x, values, target.unit, target.channel_class)
+                for name, values in ((label, target.measured), ("fitted", target.computed))
+            )
+            found[label] = compare_curves(measured, computed)
+        return found
+
+    # ---- profiles -----------------------------------------------------------------------------------------
+
+    def profile(self, label: str, *, executor: Executor | None = None) -> Profile:
+        """Return the profile of a parameter: the least cost at each of its values, the others fitted anew.
+
+        Kept in :attr:`profiles`. Also for a parameter without an interval: it shows why.
+        """
+        fitted = self[label]
+        if label not in self.profiles:
+            problem = self._loaded("profile()")
+            assert self._noise is not None  # comes with the problem
+            index = problem.parameters.labels.index(label)
+            share = problem.parameters.parameters[index].slope(fitted.value)
+            error = fitted.standard_error
+            with threads_unless(executor) as pool:
+                self.profiles[label] = profile(
+                    Evaluator(problem, pool),
+                    self._noise,
+                    problem.parameters.to_unit(list(self.values.values())),
+                    index,
+                    None if error is None else self.spread.quantile * error / share,
+                    self.spread,
+                    int(self.settings["max_steps"]),
+                )
+        return self.profiles[label]
+
+    # ---- showing and keeping ------------------------------------------------------------------------------
+
+    def summary(self) -> str:
+        """Return values, intervals and the verdict as text."""
+        from .summary import summary
+
+        return summary(self)
+
+    def plot_fit(self) -> Figure:
+        """Return a figure of measured and computed curves."""
+        from .plots import plot_fit
+
+        return plot_fit(self)
+
+    def plot_residuals(self) -> Figure:
+        """Return a figure of what the fit leaves, over the standard deviations."""
+        from .plots import plot_residuals
+
+        return plot_residuals(self)
+
+    def plot_profiles(self) -> Figure:
+        """Return a figure of the profiles of all parameters; computes those that are missing."""
+        from .plots import plot_profiles
+
+        for parameter in self.parameters:
+            self.profile(parameter.label)
+        return plot_profiles(self)
+
+    def save(self, path: str | Path) -> None:
+        """Write everything but the simulations to a JSON file; see :func:`birm3d.calibration.load`."""
+        from .storage import save
+
+        save(self, path)
+
+    def _loaded(self, what: str) -> Problem:
+        if self._problem is None:
+            raise ValueError(
+                f"{what} must be asked of the result of a calibration, got one read from a file: it has no "
+                "simulations; applied_to(simulation) gives a fitted one"
+            )
+        return self._problem
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{label}={value:.4g}" for label, value in self.values.items())
+        return f"CalibrationResult({told}; {len(self.identified)} of {len(self.parameters)} identified)"

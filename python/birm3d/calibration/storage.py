@@ -1,0 +1,115 @@
+"""Calibrations as files: JSON, with a format version."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .evaluator import Evaluation
+from .fitted import FittedParameter, FittedTarget
+from .identifiability import Spread
+from .profile import Profile
+from .result import CalibrationResult
+
+__all__ = ["FORMAT_VERSION", "load", "save"]
+
+FORMAT_VERSION = 1
+_FORMAT = "birm3d calibration"
+
+
+def save(result: CalibrationResult, path: str | Path) -> None:
+    """Write a result; floats keep all their digits. The file is complete or is not there."""
+    path = Path(path)
+    part = path.with_name(path.name + ".part")
+    part.write_text(json.dumps(as_plain(result), indent=1, allow_nan=False), encoding="utf-8")
+    part.replace(path)
+
+
+def as_plain(result: CalibrationResult) -> dict[str, Any]:
+    """Return a result as numbers, texts, lists and mappings."""
+    document: dict[str, Any] = {"format": _FORMAT, "format_version": FORMAT_VERSION}
+    for field in dataclasses.fields(CalibrationResult):
+        if not field.name.startswith("_"):
+            document[field.name] = _plain(getattr(result, field.name))
+    return document
+
+
+def load(path: str | Path) -> CalibrationResult:
+    """Read a result that :meth:`CalibrationResult.save` wrote; it has no simulations.
+
+    Raises
+    ------
+    ValueError
+        If the file is none of these, or of a version that this one does not know.
+    """
+    path = Path(path)
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ValueError(f"{path}: can not be read: {error.strerror}") from error
+    except ValueError as error:
+        raise ValueError(f"{path}: must be JSON: {error}") from error
+    if not isinstance(document, dict) or document.get("format") != _FORMAT:
+        raise ValueError(f"{path}: format must be {_FORMAT!r}, got {_received(document)}")
+    if document["format_version"] != FORMAT_VERSION:
+        raise ValueError(f"{path}: format_version must be {FORMAT_VERSION}, got {document['format_version']}")
+    return CalibrationResult(
+        parameters=tuple(_parameter(item) for item in document["parameters"]),
+        targets=tuple(FittedTarget(**_arrays(item, FittedTarget)) for item in document["targets"]),
+        chi_square=document["chi_square"],
+        spread=Spread(**document["spread"]),
+        confidence=document["confidence"],
+        covariance=_matrix(document["covariance"]),
+        correlation=_matrix(document["correlation"]),
+        condition_number=document["condition_number"],
+        notes=tuple(document["notes"]),
+        starts=tuple(document["starts"]),
+        history=tuple(
+            Evaluation(**{**item, "values": tuple(item["values"])}) for item in document["history"]
+        ),
+        settings=document["settings"],
+        profiles={name: Profile(**_arrays(item, Profile)) for name, item in document["profiles"].items()},
+    )
+
+
+def _received(document: object) -> str:
+    return repr(document.get("format")) if isinstance(document, dict) else type(document).__name__
+
+
+def _parameter(item: dict[str, Any]) -> FittedParameter:
+    interval = item["interval"]
+    return FittedParameter(
+        **{**item, "names": tuple(item["names"]), "interval": None if interval is None else tuple(interval)}
+    )
+
+
+def _arrays(item: dict[str, Any], kind: type[FittedTarget] | type[Profile]) -> dict[str, Any]:
+    """Turn the lists of a document back into arrays."""
+    names = {field.name for field in dataclasses.fields(kind)}
+    return {
+        name: np.array(value) if isinstance(value, list) else value
+        for name, value in item.items()
+        if name in names
+    }
+
+
+def _matrix(rows: list[list[float]]) -> Any:
+    return np.array(rows, float).reshape(len(rows), len(rows))
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return {field.name: _plain(getattr(value, field.name)) for field in dataclasses.fields(value)}
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    return value

@@ -1,0 +1,99 @@
+"""A calibration as text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .result import CalibrationResult
+
+__all__ = ["summary"]
+
+
+def summary(result: CalibrationResult) -> str:
+    """Return targets, values, intervals, verdict and notes; no interval where there is none."""
+    lines = [_head(result), ""]
+    lines += _targets(result)
+    lines += ["", *_parameters(result), ""]
+    condition = result.condition_number
+    lines.append(
+        f"Condition number: {'none: a parameter moves nothing' if condition is None else f'{condition:.3g}'}"
+    )
+    spread = result.spread
+    source = (
+        f"scatter of the fit, chi-square / dof = {spread.factor:.3g}"
+        if spread.from_scatter
+        else "given uncertainties"
+    )
+    lines.append(f"Intervals: {100 * result.confidence:g} %, {source}, quantile {spread.quantile:.3f}")
+    lines.append(_starts(result))
+    lines.append(f"Verdict: {result.verdict}")
+    lines += [f"Note: {note}" for note in result.notes]
+    return "\n".join(lines)
+
+
+def _head(result: CalibrationResult) -> str:
+    scenes = 1 + max(target.simulation for target in result.targets)
+    return (
+        f"Calibration of {_count(len(result.parameters), 'parameter')} on {_count(scenes, 'simulation')}, "
+        f"{_count(len(result.targets), 'target')}: chi-square {result.chi_square:.4g}, "
+        f"{result.spread.dof:.4g} degrees of freedom"
+    )
+
+
+def _targets(result: CalibrationResult) -> list[str]:
+    rows = [("target", "points", "independent", "sigma", "rms left", "unit")]
+    for target in result.targets:
+        low, high = target.sigma.min(), target.sigma.max()
+        sigma = f"{low:.4g}" if low == high else f"{low:.3g}..{high:.3g}"
+        label = target.label if target.simulation == 0 else f"{target.label} [{target.simulation}]"
+        rows.append(
+            (
+                label,
+                str(len(target.x)),
+                f"{target.independent_points:.4g}",
+                sigma,
+                f"{target.rms:.4g}",
+                target.unit,
+            )
+        )
+    return _table(rows)
+
+
+def _parameters(result: CalibrationResult) -> list[str]:
+    rows = [("parameter", "start", "value", f"{100 * result.confidence:g} % interval", "")]
+    for parameter in result.parameters:
+        interval = "none"
+        if parameter.interval is not None:
+            interval = f"{parameter.interval[0]:.5g} .. {parameter.interval[1]:.5g}"
+        remark = (parameter.reason or "").split(":")[0]
+        rows.append((parameter.label, f"{parameter.start:.5g}", f"{parameter.value:.5g}", interval, remark))
+    return _table(rows)
+
+
+def _starts(result: CalibrationResult) -> str:
+    best = result.chi_square
+    ends = [start["chi_square"] for start in result.starts]
+    near = sum(end is not None and end - best <= 1e-2 * max(best, 1.0) for end in ends)
+    failed = sum(end is None for end in ends)
+    text = f"Starts: {near} of {len(ends)} ended at the least cost"
+    if failed:
+        text += f", {failed} failed"
+    runs = f"{_count(len(result.history), 'run')}, {result.failed_runs} failed"
+    return f"{text}; {runs}; tolerance of the steps {result.settings['tolerance']:g}"
+
+
+def _table(rows: Sequence[tuple[str, ...]]) -> list[str]:
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return [
+        "  ".join(
+            cell.ljust(width) if i in (0, len(row) - 1) else cell.rjust(width)
+            for i, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    ]
+
+
+def _count(n: int, noun: str) -> str:
+    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
