@@ -6,18 +6,24 @@ SI units, angles in degrees, arrays read-only. Start with :class:`Vehicle`, :cla
 
 from __future__ import annotations
 
-from importlib.metadata import version as _version
-
 from . import calibration, scenes, units
 from ._core import UnstableError
+from ._version import __version__
 from .barrier import Barrier
 from .calibration import calibrate
 from .channel import Channel
 from .channel_checks import check_channel
 from .comparison import CurveComparison, compare_curves
+from .fragility import fragility
+from .impact_point import critical_impact_point
+from .monte_carlo import monte_carlo
 from .result import Result
+from .runs import StudyInterrupted, StudyStoppedError
 from .settings import Settings
 from .simulation import Scene, Simulation
+from .sobol import sobol
+from .study import Study
+from .sweep import sweep
 from .test_data import read_csv_channels, read_iso_mme, read_nhtsa
 from .vehicle import Vehicle, Zone
 
@@ -29,18 +35,25 @@ __all__ = [
     "Scene",
     "Settings",
     "Simulation",
+    "Study",
+    "StudyInterrupted",
+    "StudyStoppedError",
     "UnstableError",
     "Vehicle",
     "Zone",
+    "__version__",
     "calibrate",
     "calibration",
     "check_channel",
     "compare_curves",
+    "critical_impact_point",
+    "fragility",
+    "monte_carlo",
     "read_csv_channels",
     "read_iso_mme",
     "read_nhtsa",
     "scenes",
+    "sobol",
+    "sweep",
     "units",
 ]
-
-__version__ = _version("birm3d")

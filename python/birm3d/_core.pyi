@@ -9,8 +9,13 @@ import typing
 __all__: list[str] = ['Barrier', 'ContactModel', 'EndReason', 'History', 'MassProperties', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tumble']
 class Barrier:
     """
-    A flat rigid wall, fixed to the ground. Immutable.
+    A flat rigid wall or a pole, fixed to the ground. Immutable.
     """
+    @staticmethod
+    def pole(*, friction: typing.SupportsFloat | typing.SupportsIndex, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, radius: typing.SupportsFloat | typing.SupportsIndex) -> Barrier:
+        """
+        An upright cylinder; origin (3,) m at the foot of its axis, radius m.
+        """
     def __init__(self, *, friction: typing.SupportsFloat | typing.SupportsIndex, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, width: typing.SupportsFloat | typing.SupportsIndex, height: typing.SupportsFloat | typing.SupportsIndex) -> None:
         """
         friction: Coulomb coefficient; origin (3,) m on the face; heading of the barrier's line about z, rad.
@@ -18,7 +23,7 @@ class Barrier:
     @property
     def normal(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (3,) outward, world axes
+        (3,) of the barrier's line, towards the traffic, world axes
         """
 class ContactModel:
     """
@@ -345,10 +350,11 @@ class Unit:
     """
     A rigid body with its crushable skin and wheels; body axes r, s, t, origin at the mass centre.
     """
-    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, pairs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex = 0.0, dent_coupling: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> None:
         """
         mass kg; inertia (3, 3) kg m^2; nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,);
-        wheels (w, 4): centre and radius, m; mass_center_height m above the ground.
+        wheels (w, 4): centre and radius, m; mass_center_height m above the ground; edges: two nodes and a length, m;
+        rate_sensitivity s/m, dent_coupling N/m^2.
         """
     @property
     def input_index(self) -> list[int]:

@@ -16,7 +16,7 @@ __all__ = ["Barrier"]
 
 @dataclass(frozen=True)
 class Barrier:
-    """A barrier fixed to the ground. Make one with :meth:`rigid_wall`.
+    """A barrier fixed to the ground. Make one with :meth:`rigid_wall` or :meth:`pole`.
 
     Its line runs along +y at heading 0 and its traffic face looks to -x; the vehicle comes from there.
 
@@ -25,11 +25,13 @@ class Barrier:
     friction
         Coulomb coefficient between vehicle and barrier.
     origin
-        A point of the foot of the traffic face, world axes [m], shape (3,).
+        A point of the foot of the traffic face, of a pole the foot of its axis, world axes [m], shape (3,).
     heading
         Turn of the barrier's line about the vertical [deg].
     width, height
         Of the wall, its middle at the origin [m]; may be infinite.
+    diameter
+        Of a pole [m]; ``None``: a flat wall.
     """
 
     friction: float = 0.2
@@ -37,6 +39,7 @@ class Barrier:
     heading: float = 0.0
     width: float = math.inf
     height: float = math.inf
+    diameter: float | None = None
 
     def __post_init__(self) -> None:
         _ = self.core
@@ -80,9 +83,54 @@ class Barrier:
             height=math.inf if height is None else float(height),
         )
 
+    @staticmethod
+    def pole(
+        *,
+        diameter: float = 0.3,
+        friction: float = 0.2,
+        origin: Sequence[float] = (0.0, 0.0, 0.0),
+        heading: float = 0.0,
+    ) -> Barrier:
+        """Return one rigid, upright cylinder, taller than any vehicle.
+
+        Parameters
+        ----------
+        diameter
+            [m], > 0.
+        friction
+            Coulomb coefficient vehicle-pole.
+        origin
+            Foot of the axis, world axes [m], shape (3,); the barrier's line runs through it.
+        heading
+            Turn of the barrier's line about the vertical [deg], from which impact angles are counted.
+
+        Raises
+        ------
+        ValueError
+            If a number is not finite, friction is negative, or the diameter is not above 0.
+        """
+        if np.shape(origin) != (3,):
+            raise ValueError(f"origin must have shape (3,), got {np.shape(origin)}")
+        x, y, z = (float(value) for value in origin)
+        return Barrier(
+            friction=float(friction), origin=(x, y, z), heading=float(heading), diameter=float(diameter)
+        )
+
     @cached_property
     def core(self) -> _core.Barrier:
         """The same barrier for the core."""
+        if self.diameter is not None:
+            if not (math.isfinite(self.diameter) and self.diameter > 0.0):
+                raise ValueError(f"diameter must be finite and > 0, got {self.diameter}")
+            for name in ("width", "height"):
+                if getattr(self, name) != math.inf:
+                    raise ValueError(f"{name} must be inf for a pole, got {getattr(self, name)}")
+            return _core.Barrier.pole(
+                friction=self.friction,
+                origin=np.asarray(self.origin, float),
+                heading=math.radians(self.heading),
+                radius=0.5 * self.diameter,
+            )
         return _core.Barrier(
             friction=self.friction,
             origin=np.asarray(self.origin, float),

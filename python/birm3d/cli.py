@@ -11,27 +11,14 @@ import click
 
 from . import units
 from .cli_calibrate import calibrate_file
+from .cli_scene import scene_options, simulation_of
+from .cli_sweep import sweep
+from .cli_table import print_table
 
 if TYPE_CHECKING:
     from .result import Result
-    from .simulation import Simulation
 
 __all__ = ["main"]
-
-
-class _Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]
-    """A number with a unit, such as 50mph; without one SI, angles in degrees."""
-
-    def __init__(self, quantity: str) -> None:
-        self.name = quantity
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        if isinstance(value, float):
-            return value
-        try:
-            return units.parse(value, self.name)
-        except ValueError as error:
-            self.fail(str(error), param, ctx)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -44,24 +31,7 @@ _cli.add_command(calibrate_file)
 
 
 @_cli.command()
-@click.argument("scene", required=False, type=click.Path(exists=True, dir_okay=False, path_type=Path))
-@click.option("--vehicle", help="Preset (see `birm3d vehicles`) or vehicle file (.toml).")
-@click.option("--gvw", type=_Quantity("mass"), help="Gross vehicle weight, such as 4500lb or 1719kg.")
-@click.option(
-    "--mesh-density", type=float, default=1.0, show_default=True, help="Elements relative to the file's."
-)
-@click.option("--barrier", type=click.Choice(["rigid_wall", "none"]), default="rigid_wall", show_default=True)
-@click.option("--friction", type=float, default=0.2, show_default=True, help="Vehicle on barrier.")
-@click.option("--speed", type=_Quantity("speed"), help="Such as 50mph, 57.09km/h or 15.9 (m/s).")
-@click.option(
-    "--angle", type=_Quantity("angle"), default=90.0, show_default=True, help="Path to barrier line, deg."
-)
-@click.option(
-    "--offset", type=_Quantity("length"), default=0.0, show_default=True, help="Along the barrier, m."
-)
-@click.option("--duration", type=_Quantity("time"), help="Default: until the outcome is decided.")
-@click.option("--tolerance", type=float, help="Wanted relative error.  [default: 0.001]")
-@click.option("--time-step", type=_Quantity("time"), help="Fixed step.  [default: adaptive]")
+@scene_options
 @click.option("--json", "as_json", is_flag=True, help="Metrics as JSON on stdout.")
 @click.option("--report", "with_report", is_flag=True, help="Also what was computed and what was left out.")
 @click.option(
@@ -81,7 +51,7 @@ def run(
     **options: Any,
 ) -> None:
     """Run one crash: a SCENE file, or the options --vehicle and --speed."""
-    simulation = _simulation(scene, options)
+    simulation = simulation_of(scene, options)
     result = simulation.run()
     if as_json:
         click.echo(json.dumps(_as_json(result), indent=2))
@@ -128,43 +98,7 @@ def vehicles(as_json: bool) -> None:
         inertia = ", ".join(f"{value:,.0f}" for value in v.inertia.diagonal())
         height = f"{v.mass_center_height:.3f}"
         table.add_row(name, f"{v.mass:,.1f}", height, inertia, f"{v.n_elements:,}", ", ".join(v.zones))
-    _print(table)
-
-
-def _simulation(scene: Path | None, options: dict[str, Any]) -> Simulation:
-    from .barrier import Barrier
-    from .settings import Settings
-    from .simulation import Simulation
-    from .vehicle import Vehicle
-
-    context = click.get_current_context()
-    given = [
-        f"--{name.replace('_', '-')}"
-        for name in options
-        if context.get_parameter_source(name) is not click.core.ParameterSource.DEFAULT
-    ]
-    if scene is not None:
-        if given:
-            raise click.UsageError(f"{', '.join(given)}: a scene file states everything itself")
-        from .scene_file import read_scene_file
-
-        return read_scene_file(scene)
-    for name in ("vehicle", "speed"):
-        if options[name] is None:
-            raise click.UsageError(f"give a scene file, or --vehicle and --speed: --{name} is missing")
-    make = Vehicle.from_file if options["vehicle"].endswith(".toml") else Vehicle.preset
-    vehicle = make(options["vehicle"], gvw=options["gvw"], mesh_density=options["mesh_density"])
-    barrier = Barrier.rigid_wall(friction=options["friction"]) if options["barrier"] == "rigid_wall" else None
-    settings = {name: options[name] for name in ("tolerance", "time_step") if options[name] is not None}
-    return Simulation(
-        vehicle,
-        barrier,
-        options["speed"],
-        options["angle"],
-        options["offset"],
-        duration=options["duration"],
-        settings=Settings(**settings),
-    )
+    print_table(table)
 
 
 def _as_json(result: Result) -> dict[str, Any]:
@@ -178,6 +112,9 @@ def _as_json(result: Result) -> dict[str, Any]:
         "state_hash": f"{result.state_hash:016x}",
         "metrics": dict(result.metrics),
     }
+
+
+_cli.add_command(sweep)
 
 
 _ROWS = (
@@ -217,30 +154,26 @@ def _print_outcome(result: Result) -> None:
     for name, label, unit, size, form in _ROWS:
         if name in result.metrics:
             table.add_row(label, format(result.metrics[name] / size, form), unit)
-    _print(table)
-
-
-def _print(table: object) -> None:
-    from rich.console import Console
-
-    Console(width=None if sys.stdout.isatty() else 120).print(table)
+    print_table(table)
 
 
 def main() -> None:
     """Entry point: errors that users can mend end with one line on stderr and exit code 2."""
     from ._core import UnstableError
+    from .runs import StudyStoppedError
 
     try:
         _cli(standalone_mode=False)
     except click.ClickException as error:
         error.show()
         sys.exit(error.exit_code)
-    except click.Abort:
-        click.echo("stopped", err=True)
+    except (click.Abort, KeyboardInterrupt) as error:
+        # click turns Ctrl-C into Abort; a study says in it what is finished.
+        click.echo(str(error.__cause__ or error) or "stopped", err=True)
         sys.exit(130)
-    except KeyboardInterrupt:
-        click.echo("stopped", err=True)
-        sys.exit(130)
+    except StudyStoppedError as error:
+        click.echo(f"birm3d: {error}", err=True)
+        sys.exit(1)
     except (ValueError, UnstableError) as error:
         click.echo(f"birm3d: {error}", err=True)
         sys.exit(2)

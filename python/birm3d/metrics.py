@@ -8,6 +8,8 @@ exit angle of a vehicle that stands) is absent, never NaN.
 from __future__ import annotations
 
 import math
+from collections.abc import Collection, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +20,36 @@ from .filters import cfc, moving_average
 if TYPE_CHECKING:
     from .result import Result
 
-__all__ = ["compute_metrics"]
+__all__ = ["METRIC_UNITS", "compute_metrics"]
+
+METRIC_UNITS: Mapping[str, str] = MappingProxyType(
+    {
+        "peak_deceleration": "m/s^2",
+        "peak_deceleration_cfc60": "m/s^2",
+        "peak_normal_force": "N",
+        "peak_normal_force_cfc60": "N",
+        "peak_force_50ms": "N",
+        "dynamic_crush": "m",
+        "residual_crush": "m",
+        "max_displacement": "m",
+        "vehicle_penetration": "m",
+        "time_of_zero_velocity": "s",
+        "restitution": "",
+        "delta_v": "m/s",
+        "impact_severity": "J",
+        "exit_speed": "m/s",
+        "exit_angle": "deg",
+        "max_roll": "deg",
+        "max_pitch": "deg",
+        "max_yaw": "deg",
+        "energy_residual": "",
+        "momentum_residual": "",
+        "steps": "",
+        "run_time": "s",
+        "end_time": "s",
+    }
+)
+"""Every scalar that a run may have -> its unit; "" for a pure number."""
 
 # Below this speed a direction of travel means nothing, m/s.
 _SLOWEST = 1e-3
@@ -26,8 +57,8 @@ _SLOWEST = 1e-3
 _STANDSTILL = 0.1
 
 
-def compute_metrics(result: Result) -> dict[str, float]:
-    """Return the scalars of a run, SI units and degrees.
+def compute_metrics(result: Result, names: Collection[str] | None = None) -> dict[str, float]:
+    """Return the scalars of a run, SI units and degrees; without those that take long and are not in `names`.
 
     Always: ``peak_deceleration`` (along r, unfiltered) [m/s^2], ``max_roll``, ``max_pitch``, ``max_yaw``
     (greatest magnitudes) [deg], ``exit_speed`` (of the mass centre along the ground, at the end) [m/s],
@@ -43,9 +74,16 @@ def compute_metrics(result: Result) -> dict[str, float]:
     its path from the barrier's line) [deg].
 
     At sampling rates that allow it: ``peak_deceleration_cfc60``, ``peak_normal_force_cfc60``.
+
+    Raises
+    ------
+    ValueError
+        If the run is shorter than the output interval.
     """
     scene, statistics = result.scene, result.statistics
     interval = scene.settings.output_interval
+    if len(result.time) < 2:
+        raise ValueError(f"output_interval must be shorter than the run for metrics, got {interval} s")
     deceleration = -result.acceleration[:, 0]
     energy = result.energy
     scale = max(float(energy["kinetic"][0]), 0.5 * scene.vehicle.mass * _STANDSTILL**2)
@@ -61,15 +99,15 @@ def compute_metrics(result: Result) -> dict[str, float]:
         "run_time": result.run_time,
         "end_time": float(result.time[-1]),
     }
-    filtered = interval * 60.0 <= 0.1 and len(result.time) > 1
-    if filtered:
+    filtered = interval * 60.0 <= 0.1
+    if filtered and (names is None or "peak_deceleration_cfc60" in names):
         metrics["peak_deceleration_cfc60"] = float(cfc(deceleration, 60, interval).max())
     if scene.barrier is None:
         return metrics
 
     force = result.barrier_normal_force
     metrics["peak_normal_force"] = float(force.max())
-    if filtered:
+    if filtered and (names is None or "peak_normal_force_cfc60" in names):
         metrics["peak_normal_force_cfc60"] = float(cfc(force, 60, interval).max())
     metrics["peak_force_50ms"] = float(moving_average(force, 0.05, interval).max())
     metrics["dynamic_crush"] = float(result.peak_deflection.max())

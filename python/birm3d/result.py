@@ -178,9 +178,6 @@ class Result:
     @cached_property
     def metrics(self) -> Mapping[str, float]:
         """Scalars in SI, angles in degrees; see :mod:`birm3d.metrics`. Only those that the scene has."""
-        if len(self.time) < 2:
-            interval = self.scene.settings.output_interval
-            raise ValueError(f"output_interval must be shorter than the run for metrics, got {interval} s")
         return MappingProxyType(compute_metrics(self))
 
     def report(self) -> str:

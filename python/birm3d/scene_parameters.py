@@ -10,6 +10,8 @@ name                           value
 ``vehicle.gvw``                mass [kg], see :meth:`birm3d.Vehicle.with_gvw`
 ``vehicle.mass_center_height`` above the ground at rest [m]
 ``vehicle.mesh_density``       relative number of shell elements
+``vehicle.rate_sensitivity``   [s/m], and ``vehicle.dent_coupling`` [N/m^3], see
+                               :meth:`birm3d.Vehicle.with_crush_physics`
 ``zone.<zone>.<number>``       ``k_initial``, ``knee``, ``k_hardening``, ``f_max`` or ``k_unloading`` of
                                :class:`birm3d.Zone`
 ``zone.<zone>.stress[i]``      stress of point i of the zone's envelope [N per m^2]
@@ -26,6 +28,7 @@ import dataclasses
 import re
 from collections.abc import Mapping
 from difflib import get_close_matches
+from functools import lru_cache
 from typing import Any
 
 from .barrier import Barrier
@@ -33,18 +36,61 @@ from .settings import Settings
 from .simulation import Scene, Simulation
 from .vehicle import TRUSS_LAW, Vehicle, Zone
 
-__all__ = ["parameter_names", "value_of", "varied"]
+__all__ = ["parameter_names", "unit_of", "value_of", "varied"]
 
-_VEHICLE = ("gvw", "mass_center_height", "mesh_density")
+_VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity", "dent_coupling")
+_UNITS = {
+    "impact_speed": "m/s",
+    "impact_angle": "deg",
+    "impact_offset": "m",
+    "standoff": "m",
+    "duration": "s",
+    "barrier.origin": "m",
+    "barrier.heading": "deg",
+    "barrier.width": "m",
+    "barrier.height": "m",
+    "barrier.diameter": "m",
+    "settings.time_step": "s",
+    "settings.output_interval": "s",
+    "settings.gravity": "m/s^2",
+    "settings.cornering_stiffness": "1/rad",
+    "vehicle.gvw": "kg",
+    "vehicle.mass_center_height": "m",
+    "vehicle.rate_sensitivity": "s/m",
+    "vehicle.dent_coupling": "N/m^3",
+}
+_ZONE_UNITS = {
+    "k_initial": "N/m",
+    "knee": "m",
+    "k_hardening": "N/m",
+    "f_max": "N",
+    "k_unloading": "N/m",
+    "stress": "N",
+    "deflection": "m",
+}
 _POINT = re.compile(r"(stress|deflection)\[(\d+)\]")
 
 
 def parameter_names(simulation: Simulation) -> tuple[str, ...]:
     """Return the names of all numbers that the scene has; see the table above."""
-    scene = simulation.scene
+    return _names(simulation.scene)
+
+
+def unit_of(name: str) -> str:
+    """Return the unit of a parameter, ``""`` for one that is a pure number or none."""
+    if name.startswith("zone.") or name.startswith("truss."):
+        per_area = " per m^2" if name.startswith("zone.") else ""
+        number = name.rsplit(".", 1)[1].split("[")[0]
+        unit = _ZONE_UNITS.get(number, "")
+        return unit if unit in ("m", "") else unit + per_area
+    return _UNITS.get(name, "")
+
+
+def _names(scene: Scene) -> tuple[str, ...]:
     names = [f.name for f in dataclasses.fields(Scene) if f.name not in ("vehicle", "barrier", "settings")]
     if scene.barrier is not None:
-        names += [f"barrier.{f.name}" for f in dataclasses.fields(Barrier)]
+        other = ("diameter",) if scene.barrier.diameter is None else ("width", "height")
+        names += [f"barrier.{f.name}" for f in dataclasses.fields(Barrier) if f.name not in other]
     names += [f"settings.{f.name}" for f in dataclasses.fields(Settings)]
     vehicle = scene.vehicle
     names += [f"vehicle.{name}" for name in _VEHICLE if name != "mesh_density" or vehicle.has_file]
@@ -68,7 +114,7 @@ def value_of(simulation: Simulation, name: str) -> Any:
     if not rest and name in (field.name for field in dataclasses.fields(Scene)):
         return getattr(scene, name)
     if name not in parameter_names(simulation):
-        raise _unknown(simulation, name)
+        raise _unknown(scene, name)
     if group == "barrier":
         return getattr(scene.barrier, rest)
     if group == "settings":
@@ -92,17 +138,22 @@ def varied(simulation: Simulation, changes: Mapping[str, Any]) -> Simulation:
     given = {field.name: getattr(simulation.scene, field.name) for field in dataclasses.fields(Scene)}
     whole = {name: value for name, value in changes.items() if name in given}
     given.update(whole)
-    base = _build(given) if whole else simulation
+    if isinstance(given["vehicle"], str):
+        given["vehicle"] = _preset(given["vehicle"])
+    if len(whole) == len(changes):
+        return _build(given)
+    if not whole.keys().isdisjoint(("vehicle", "barrier", "settings")):
+        _build(given)  # refuses what is none, before its parts are looked at
+    scene = Scene(**given)
+    known = set(_names(scene))
     groups: dict[str, dict[str, Any]] = {}
     for name, value in changes.items():
         if name in whole:
             continue
-        if name not in parameter_names(base):
-            raise _unknown(base, name)
+        if name not in known:
+            raise _unknown(scene, name)
         group, rest = name.split(".", 1)
         groups.setdefault(group, {})[rest] = value
-    if not groups:
-        return _build(given)
     if "barrier" in groups:
         given["barrier"] = dataclasses.replace(given["barrier"], **groups["barrier"])
     if "settings" in groups:
@@ -111,13 +162,14 @@ def varied(simulation: Simulation, changes: Mapping[str, Any]) -> Simulation:
     return _build(given)
 
 
+# Reading and meshing a file takes longer than many a run; vehicles are immutable.
+_preset = lru_cache(maxsize=16)(Vehicle.preset)
+
+
 def _build(given: Mapping[str, Any]) -> Simulation:
-    vehicle = given["vehicle"]
-    if isinstance(vehicle, str):
-        vehicle = Vehicle.preset(vehicle)
     keywords = {name: given[name] for name in ("standoff", "duration", "settings")}
     return Simulation(
-        vehicle,
+        given["vehicle"],
         given["barrier"],
         given["impact_speed"],
         given["impact_angle"],
@@ -126,8 +178,10 @@ def _build(given: Mapping[str, Any]) -> Simulation:
     )
 
 
-def _varied_vehicle(vehicle: Vehicle | str, groups: Mapping[str, Mapping[str, Any]]) -> Vehicle:
-    changed = Vehicle.preset(vehicle) if isinstance(vehicle, str) else vehicle
+def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -> Vehicle:
+    if groups.keys().isdisjoint(("zone", "truss", "vehicle")):
+        return vehicle
+    changed = vehicle.draft()
     zones: dict[str, dict[str, Any]] = {}
     for rest, value in groups.get("zone", {}).items():
         zone, number = rest.rsplit(".", 1)
@@ -139,11 +193,14 @@ def _varied_vehicle(vehicle: Vehicle | str, groups: Mapping[str, Mapping[str, An
     numbers = groups.get("vehicle", {})
     if "mesh_density" in numbers:
         changed = changed.with_mesh_density(numbers["mesh_density"])
+    physics = {name: numbers[name] for name in ("rate_sensitivity", "dent_coupling") if name in numbers}
+    if physics:
+        changed = changed.with_crush_physics(**physics)
     if "gvw" in numbers:
         changed = changed.with_gvw(numbers["gvw"])
     if "mass_center_height" in numbers:
         changed = changed.with_mass_center_height(numbers["mass_center_height"])
-    return changed
+    return changed.finished()
 
 
 def _zone_numbers(zone: Zone) -> tuple[str, ...]:
@@ -181,8 +238,8 @@ def _zone(zone: Zone, numbers: Mapping[str, float]) -> Zone:
     return dataclasses.replace(zone, **changes).scaled(float(numbers.get("scale", 1.0)))
 
 
-def _unknown(simulation: Simulation, name: str) -> ValueError:
-    known = parameter_names(simulation)
+def _unknown(scene: Scene, name: str) -> ValueError:
+    known = _names(scene)
     near = get_close_matches(name, known, n=5) or [
         known_ for known_ in known if not known_.startswith("zone.")
     ]

@@ -21,13 +21,16 @@ if TYPE_CHECKING:
     from .vehicle_file import VehicleFile
     from .vehicle_file import Zone as FileZone
 
-__all__ = ["TRUSS_LAW", "Vehicle", "Zone"]
+__all__ = ["DENT_REACH", "TRUSS_LAW", "Vehicle", "Zone"]
 
 Floats = npt.NDArray[np.float64]
 FloatsLike = npt.ArrayLike
 
 
 _KNEE = ("k_initial", "knee", "k_hardening", "f_max")
+
+DENT_REACH = 0.3
+"""How far a dent drags its surroundings with it, if it does [m]; see :meth:`Vehicle.with_crush_physics`."""
 
 TRUSS_LAW = ("k_initial", "knee", "k_hardening", "f_max", "k_unloading")
 """The numbers of the paper's law (Fig. 3)."""
@@ -158,6 +161,10 @@ class Vehicle:
     mass_center_height : float
         Above the ground at rest [m].
     zones : mapping of str to Zone
+    rate_sensitivity : float
+        Optional physics, see :meth:`with_crush_physics` [s/m].
+    dent_coupling : float
+        The same [N/m^3].
     """
 
     name: str
@@ -172,12 +179,16 @@ class Vehicle:
     wheels: Floats
     mass_center_height: float
     zones: Mapping[str, Zone]
+    rate_sensitivity: float = 0.0
+    dent_coupling: float = 0.0
     # What made the vehicle: laws per truss (m, N, N/m), or a file with its mesh density.
     _truss_laws: Floats | None = None
     _file: VehicleFile | None = None
     _mesh: ExteriorMesh | None = None
     _mesh_density: float = 1.0
+    _pairs: Floats | None = None  # of nodes in reach of a dent, see _near
     _raised: float = 0.0  # of the mass centre above that of the solids [m]
+    _draft: bool = False  # between two changes: the core is not built yet, see draft()
 
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):
@@ -185,7 +196,8 @@ class Vehicle:
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
         object.__setattr__(self, "zones", MappingProxyType(dict(self.zones)))
-        _ = self.core  # the core checks every number
+        if not self._draft:
+            _ = self.core  # the core checks every number
 
     # ---- making vehicles ----------------------------------------------------------------------------------
 
@@ -304,13 +316,40 @@ class Vehicle:
                 self, mass=gvw, inertia=self.inertia * (gvw / self.mass), wheels=self.wheels.copy()
             )
         assert self._mesh is not None  # made together with _file
-        return _assemble(self._file, self._mesh, gvw, self._mesh_density, self.zones, self._raised)
+        return self._anew(
+            _assemble(self._file, self._mesh, gvw, self._mesh_density, self.zones, self._raised, self._draft)
+        )
+
+    def with_crush_physics(
+        self, *, rate_sensitivity: float | None = None, dent_coupling: float | None = None
+    ) -> Vehicle:
+        """Return the vehicle with crush physics beside the paper's law; at 0 each is left out.
+
+        Parameters
+        ----------
+        rate_sensitivity
+            What is crushed has inertia and rate strength: a truss's loading envelope grows by
+            1 + (rate_sensitivity * rate of deflection)^2 [s/m], >= 0.
+        dent_coupling
+            A dent drags its surroundings: a node resists being deeper than the mean of the nodes within
+            :data:`DENT_REACH` of it by dent_coupling * difference, a stress [N/m^3], >= 0. Pairs of nodes push
+            each other equally, so that an even crush is not changed.
+        """
+        rate = self.rate_sensitivity if rate_sensitivity is None else float(rate_sensitivity)
+        coupling = self.dent_coupling if dent_coupling is None else float(dent_coupling)
+        changed = dataclasses.replace(self, rate_sensitivity=rate, dent_coupling=0.0)
+        if coupling == 0.0:
+            return changed
+        pairs = self._near() if self._pairs is None else self._pairs
+        return dataclasses.replace(changed, dent_coupling=coupling, _pairs=pairs)
 
     def with_mesh_density(self, mesh_density: float) -> Vehicle:
         """Return the vehicle with another number of shell elements, relative to its file's choice."""
         if self._file is None:
             raise ValueError(f"mesh_density needs a vehicle that has a file, got {self.name!r} from arrays")
-        return _from_file(self._file, self.mass, mesh_density, self.zones, self._raised)
+        return self._anew(
+            _from_file(self._file, self.mass, mesh_density, self.zones, self._raised, self._draft)
+        )
 
     def with_mass_center_height(self, height: float) -> Vehicle:
         """Return the vehicle with its mass centre at another height above the ground [m].
@@ -383,6 +422,25 @@ class Vehicle:
                 column *= value / now[name]
         return dataclasses.replace(self, _truss_laws=laws)
 
+    def _anew(self, vehicle: Vehicle) -> Vehicle:
+        """Return a vehicle made anew from the file with what the file does not hold."""
+        if self.rate_sensitivity == 0.0 and self.dent_coupling == 0.0:
+            return vehicle
+        return vehicle.with_crush_physics(
+            rate_sensitivity=self.rate_sensitivity, dent_coupling=self.dent_coupling
+        )
+
+    def draft(self) -> Vehicle:
+        """Return the vehicle to be changed several times at the cost of one; end with :meth:`finished`.
+
+        Of a draft the numbers are not checked and nothing can be run.
+        """
+        return dataclasses.replace(self, _draft=True)
+
+    def finished(self) -> Vehicle:
+        """Return a draft as a vehicle, checked."""
+        return dataclasses.replace(self, _draft=False)
+
     # ---- what it is ---------------------------------------------------------------------------------------
 
     @property
@@ -442,15 +500,35 @@ class Vehicle:
             scale=self.area,
             wheels=self.wheels,
             mass_center_height=self.mass_center_height,
+            pairs=self._pairs if self._pairs is not None and self.dent_coupling > 0.0 else np.empty((0, 3)),
+            rate_sensitivity=self.rate_sensitivity,
+            dent_coupling=self.dent_coupling,
         )
         return _core.Vehicle([unit])
+
+    def _near(self) -> Floats:
+        """Pairs of nodes of one side within the reach of a dent, and their weights, shape (p, 3).
+
+        The weight is the product of the two areas over that of the dent's surroundings [m^2]: sums over
+        pairs are integrals, whatever the mesh.
+        """
+        from scipy.spatial import cKDTree
+
+        pairs = cKDTree(self.nodes).query_pairs(DENT_REACH, output_type="ndarray")
+        along = self.anchors - self.nodes
+        along /= np.linalg.norm(along, axis=1)[:, None]
+        a, b = pairs.T
+        same_side = (along[a] * along[b]).sum(axis=1) > 0.5
+        a, b = a[same_side], b[same_side]
+        weight = self.area[a] * self.area[b] / (math.pi * DENT_REACH**2)
+        return np.column_stack([a, b, weight])
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Vehicle):
             return NotImplemented
         mine, theirs = self._arguments(), other._arguments()
-        # The mesh follows from file and density.
-        return all(np.array_equal(mine[key], theirs[key]) for key in mine if key != "_mesh")
+        # Mesh and pairs follow from the rest.
+        return all(np.array_equal(mine[key], theirs[key]) for key in mine if key not in ("_mesh", "_pairs"))
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -499,11 +577,12 @@ def _from_file(
     mesh_density: float,
     zones: Mapping[str, Zone] | None,
     raised: float = 0.0,
+    draft: bool = False,
 ) -> Vehicle:
     from .mesher import build_mesh
 
     mass = file.gvw_kg if gvw is None else _positive("gvw", gvw)
-    return _assemble(file, build_mesh(file, mesh_density), mass, mesh_density, zones, raised)
+    return _assemble(file, build_mesh(file, mesh_density), mass, mesh_density, zones, raised, draft)
 
 
 def _assemble(
@@ -513,6 +592,7 @@ def _assemble(
     mesh_density: float,
     zones: Mapping[str, Zone] | None,
     raised: float,
+    draft: bool,
 ) -> Vehicle:
     corners = np.array([solid.corners for solid in file.solids], float)
     properties = _core.mass_properties(corners, _densities(file, mass))
@@ -537,4 +617,5 @@ def _assemble(
         _mesh=mesh,
         _mesh_density=mesh_density,
         _raised=raised,
+        _draft=draft,
     )

@@ -11,6 +11,7 @@ silently: unknown keys, NaN and text where a number belongs are errors.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
 from importlib import resources
 from itertools import pairwise
 from pathlib import Path
@@ -173,7 +174,7 @@ class Solid(Block):
                 message = "corners must go counter-clockwise seen from above, upper four last, and be convex"
                 reject("corners_m", f"{message}; the part {i}, {j}, {k}, {m} has no positive volume")
 
-    @property
+    @cached_property
     def corners(self) -> tuple[Point, ...]:
         """Eight corners in m, file axes."""
         if self.corners_m is not None:
@@ -183,7 +184,7 @@ class Solid(Block):
         base = ((x0, y0), (x1, y0), (x1, y1), (x0, y1))
         return tuple((x, y, z) for z in (z0, z1) for x, y in base)
 
-    @property
+    @cached_property
     def volume(self) -> float:
         """Volume in m^3 (Eq. 3, six tetrahedra)."""
         total = 0.0

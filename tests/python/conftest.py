@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
+from pathlib import Path
 from types import MappingProxyType
 
 import matplotlib as mpl
@@ -75,6 +80,25 @@ def body_to_world() -> Callable[[Result], Rotation]:
         return Rotation.from_euler("ZYX", np.column_stack([yaw, result.pitch, result.roll]), degrees=True)
 
     return orientation
+
+
+@pytest.fixture
+def interrupt_once_stored() -> Iterator[Callable[[Path], None]]:
+    """Ctrl-C for this process, a moment after a study has made its store."""
+    threads = []
+
+    def interrupt(store: Path) -> None:
+        while not (store.exists() and store.stat().st_size > 0):
+            time.sleep(0.01)
+        time.sleep(0.3)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    def start(store: Path) -> None:
+        threads.append(threading.Thread(target=interrupt, args=(store,), daemon=True))
+        threads[0].start()
+
+    yield start
+    threads[0].join(timeout=60.0)
 
 
 @pytest.fixture(scope="session")

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
+from birm3d import Study, units
 from birm3d.cli import main
 
 SEDAN = [
@@ -145,3 +147,90 @@ def test_scene_file_errors(monkeypatch, capsys, tmp_path, wrong, line, parts):
 def test_options_beside_a_scene_file_are_refused(monkeypatch, capsys, tmp_path):
     assert birm3d(monkeypatch, "run", scene_file(tmp_path, SCENE), "--speed", "5") == 2
     assert "--speed" in capsys.readouterr().err
+
+
+SWEEP = ["sweep", "--vehicle", "passenger_car", "--mesh-density", "0.1"]
+
+
+def test_sweep_prints_a_table(monkeypatch, capsys, tmp_path):
+    table = tmp_path / "runs.csv"
+    vary = ["--vary", "impact_speed=20mph,30mph", "--vary", "impact_angle=20:40:10deg"]
+    files = ["--csv", str(table), "--store", str(tmp_path / "runs.db"), "--jobs", "2"]
+    assert birm3d(monkeypatch, *SWEEP, *vary, *files) == 0
+    out, err = capsys.readouterr()
+    assert "6 runs" in out
+    assert "crush" in out
+    assert err == f"runs: {table}\n"
+    study = Study.load(table)
+    assert study["impact_speed"] == pytest.approx(np.repeat([8.9408, 13.4112], 3))
+    assert study["impact_angle"].tolist() == [20.0, 30.0, 40.0] * 2
+    assert study.grid is not None
+    # The same command once more takes all runs from the store.
+    assert birm3d(monkeypatch, *SWEEP, *vary, *files) == 0
+    assert capsys.readouterr().out == out
+
+
+def test_sweep_of_a_scene_file_as_json(monkeypatch, capsys, tmp_path):
+    path = scene_file(tmp_path, SCENE)
+    vary = ["--vary", "barrier.friction=0, 0.2", "--vary", "settings.contact_model=projected"]
+    assert birm3d(monkeypatch, "sweep", path, *vary, "--metrics", "dynamic_crush,exit_angle", "--json") == 0
+    outcome = json.loads(capsys.readouterr().out)
+    assert outcome["units"]["exit_angle"] == "deg"
+    assert outcome["runs"]["barrier.friction"] == [0.0, 0.2]
+    assert birm3d(monkeypatch, "run", path, "--json") == 0
+    by_hand = json.loads(capsys.readouterr().out)
+    assert outcome["runs"]["dynamic_crush"][0] == by_hand["metrics"]["dynamic_crush"]
+    assert outcome["runs"]["state_hash"][0] == by_hand["state_hash"]
+
+
+def test_random_sweep(monkeypatch, capsys):
+    vary = ["--vary", "impact_speed=normal(20mph, 1mph)", "--vary", "vehicle.gvw=lognormal(4000lb, 0.1)"]
+    command = [*SWEEP, "--speed", "20mph", *vary, "--vary", "impact_angle=uniform(60, 90)", "--random", "40"]
+    assert birm3d(monkeypatch, *command, "--seed", "3", "--json") == 0
+    outcome = json.loads(capsys.readouterr().out)
+    speeds = np.array(outcome["runs"]["impact_speed"])
+    assert len(speeds) == outcome["summary"]["dynamic_crush"]["n"] == 40
+    assert abs(speeds.mean() - 20 * units.mph) < 3.5 * units.mph / np.sqrt(40)
+    assert 60.0 < min(outcome["runs"]["impact_angle"]) < max(outcome["runs"]["impact_angle"]) < 90.0
+    assert np.median(outcome["runs"]["vehicle.gvw"]) == pytest.approx(4000 * units.lb, rel=0.1)
+    assert birm3d(monkeypatch, *command) == 0
+    assert "standard deviation" in capsys.readouterr().out
+
+
+def test_failed_runs_of_a_sweep_are_told(monkeypatch, capsys):
+    assert birm3d(monkeypatch, *SWEEP, "--vary", "impact_speed=9,-3", "--metrics", "delta_v") == 0
+    out, err = capsys.readouterr()
+    assert "failed" in out
+    assert "1 of 2 runs failed; run 1: ValueError: impact_speed must be" in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parts"),
+    [
+        ([], ["--vary"]),
+        (["--vary", "impact_speed"], ["--vary", "NAME=VALUES", "impact_speed"]),
+        (["--vary", "impact_speed="], ["impact_speed", "empty"]),
+        (["--vary", "impact_sped=5"], ["--speed is missing"]),
+        (["--speed", "5", "--vary", "impact_sped=5"], ["impact_speed", "'impact_sped'"]),
+        (["--vary", "impact_speed=5kg"], ["speed", "mph", "5kg"]),
+        (["--vary", "impact_speed=5:1:1"], ["impact_speed", "step", "5:1:1"]),
+        (["--vary", "impact_speed=1:5"], ["impact_speed", "FIRST:LAST:STEP", "1:5"]),
+        (["--vary", "impact_speed=5", "--metrics", "crush"], ["metrics", "dynamic_crush", "'crush'"]),
+        (["--vary", "impact_speed=5", "--random", "3", "--speed", "5"], ["impact_speed", "normal(", "'5'"]),
+        (["--vary", "impact_speed=normal(5, 1)", "--random", "0", "--speed", "5"], ["n must be", "0"]),
+    ],
+)
+def test_sweep_errors_say_what_is_wrong(monkeypatch, capsys, arguments, parts):
+    assert birm3d(monkeypatch, *SWEEP, *arguments) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    for part in parts:
+        assert part in err
+
+
+def test_a_stopped_sweep_says_what_is_kept(monkeypatch, capsys, tmp_path, interrupt_once_stored):
+    store = tmp_path / "runs.db"
+    interrupt_once_stored(store)
+    vary = ["--vary", "impact_speed=8:20:0.001", "--store", str(store)]
+    assert birm3d(monkeypatch, *SWEEP, *vary) == 130
+    assert "of 12001 runs are finished and kept in" in capsys.readouterr().err

@@ -9,7 +9,8 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import scenes
-from birm3d.scene_parameters import parameter_names, value_of, varied
+from birm3d.metrics import METRIC_UNITS
+from birm3d.scene_parameters import parameter_names, unit_of, value_of, varied
 
 SEDAN = scenes.nhtsa_10146(mesh_density=0.1)
 BLOCK = scenes.w2(24)
@@ -30,6 +31,8 @@ SPECIAL: dict[str, Any] = {
     "settings.contact_model": "along_truss",
     "settings.tire_model": "skid",
     "truss.f_max": 3e6,
+    "vehicle.rate_sensitivity": 0.01,
+    "vehicle.dent_coupling": 1e5,
 }
 
 
@@ -141,3 +144,26 @@ def test_bad_changes_name_the_argument(
 ) -> None:
     with pytest.raises(ValueError, match=words):
         varied(simulation, changes)
+
+
+def test_several_changes_of_a_vehicle_are_those_in_turn() -> None:
+    """One build for all of them: the same vehicle, bit for bit."""
+    changes = {"zone.bumper.scale": 1.2, "vehicle.gvw": 1900.0, "vehicle.mass_center_height": 0.6}
+    vehicle = SEDAN.scene.vehicle
+    in_turn = (
+        vehicle.with_zones({"bumper": vehicle.zones["bumper"].scaled(1.2)})
+        .with_gvw(1900.0)
+        .with_mass_center_height(0.6)
+    )
+    assert varied(SEDAN, changes).scene.vehicle == in_turn
+
+
+def test_units_are_those_of_the_scene() -> None:
+    units = {name: unit_of(name) for name in parameter_names(SEDAN)}
+    assert units["impact_speed"] == "m/s"
+    assert units["vehicle.gvw"] == "kg"
+    assert units["barrier.friction"] == units["zone.bumper.scale"] == ""
+    assert units["zone.bumper.stress[1]"] == "N per m^2"
+    assert units["zone.bumper.deflection[1]"] == "m"
+    assert unit_of("truss.k_initial") == "N/m"
+    assert set(SEDAN.run().metrics) <= set(METRIC_UNITS)

@@ -6,29 +6,29 @@
 
 namespace birm3d {
 
-void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyState& state,
-                         const HalfSpace& face, const Twist& motion, double dt,
-                         std::vector<RigidContact>& contacts) {
+void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyState& state, const Surface& face,
+                         const Twist& motion, double dt, std::vector<RigidContact>& contacts) {
     const double spin = motion.angular_velocity.norm();
     const double fastest = motion.velocity.norm() + spin * mesh.reach;
     // What a turn within the step adds to a point's straight way: its centripetal part.
     const double bend = tolerance::touching_gap + 0.5 * spin * spin * mesh.reach * dt * dt;
     const double margin = bend + dt * fastest;
-    if (!face.within_reach(mesh.anchors, margin)) return;
+    if (!within_reach(face, mesh.anchors, margin)) return;
     for (std::size_t b = 0; b < mesh.blocks; ++b) {
-        if (!face.within_reach(mesh.anchor_box[b], margin)) continue;
+        if (!within_reach(face, mesh.anchor_box[b], margin)) continue;
         for (std::size_t i = b * lanes; i < (b + 1) * lanes && i < mesh.count; ++i) {
             const Vec3 anchor = mesh.anchor(i);
-            const double gap = face.gap(anchor);
-            const double approach = -face.normal.dot(motion.velocity + motion.angular_velocity.cross(anchor));
-            if (gap >= bend + dt * std::max(0.0, approach)) continue;
+            const double distance = gap(face, anchor);
+            const Vec3 normal = normal_at(face, anchor);
+            const double approach = -normal.dot(motion.velocity + motion.angular_velocity.cross(anchor));
+            if (distance >= bend + dt * std::max(0.0, approach)) continue;
             RigidContact contact;
             contact.source = ContactSource::member;
             contact.index = i;
             contact.body = body;
             contact.arm = state.orientation * anchor;
-            contact.normal = state.orientation * face.normal;
-            contact.gap = gap;
+            contact.normal = state.orientation * normal;
+            contact.gap = distance;
             contact.compliance = tolerance::body_compliance;
             contacts.push_back(contact);
         }

@@ -10,7 +10,7 @@ namespace birm3d {
 
 namespace {
 
-PressColumns columns_of(const TrussMesh& mesh, std::size_t b) {
+PressColumns columns_of(const TrussMesh& mesh, std::size_t b, const EnvelopeChange* change) {
     const TrussBlock& truss = mesh.block[b];
     return {truss.anchor_x.data(),
             truss.anchor_y.data(),
@@ -19,44 +19,49 @@ PressColumns columns_of(const TrussMesh& mesh, std::size_t b) {
             truss.k_unloading.data(),
             truss.compliance.data(),
             mesh.hinge[b * mesh.hinges].deflection.data(),
-            mesh.hinges};
+            mesh.hinges,
+            change ? change->extra.data() : nullptr,
+            change ? change->factor.data() : nullptr};
 }
 
 template <class Number, class State>
 PressState<Number> columns_of(State& state) {
     return {state.x.data(),          state.y.data(),     state.z.data(),
             state.deflection.data(), state.force.data(), state.peak_deflection.data(),
-            state.peak_force.data()};
+            state.residual.data()};
 }
 
-// Held nodes move along n + m, m the normal of the step before, so that a path is followed to second order
+// Held nodes move along n + m, m the normal of the instant before, so that a path is followed to second order
 // while the body turns.
-FlatSurface surface_of(const HalfSpace& face, const Vec3& before) {
-    const Vec3& n = face.normal;
-    const Vec3 h = (n + before) / (1.0 + n.dot(before));
-    return {n.x(), n.y(), n.z(), face.offset, h.x(), h.y(), h.z()};
+Vec3 holding_direction(const Vec3& n, const Vec3& m) {
+    return (n + m) / (1.0 + n.dot(m));
 }
 
-// A node that follows a receding surface stops where its truss reaches zero force. Few nodes a step do.
-// Returns what that takes from the work on the trusses (J).
+// Nodes whose truss ceased to push. One that follows a receding surface stops where its truss reaches zero
+// force; one that the truss pushes off the surface springs to that length at once, and what the truss had
+// stored is lost. Few nodes a step do. Returns what the first kind takes from the work on the trusses (J).
 double release(const TrussBlock& truss, const TrussBlockState& before, const Lanes& gap,
-               TrussBlockState& now) {
+               const BlockContact& contact, TrussBlockState& now) {
     double spared = 0.0;
     for (std::size_t i = 0; i < lanes; ++i) {
-        if (!(gap[i] > 0.0 && before.force[i] > 0.0 && now.force[i] == 0.0)) continue;
-        const double d0 = before.deflection[i], d1 = now.deflection[i];
-        const double residual = before.peak_deflection[i] - before.peak_force[i] * truss.compliance[i];
-        const double way = d0 - d1;
-        const double share = way > 0.0 ? std::clamp((d0 - residual) / way, 0.0, 1.0) : 0.0;
+        if (!(before.force[i] > 0.0 && now.force[i] == 0.0)) continue;
         const Vec3 anchor(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
         const Vec3 from(before.x[i], before.y[i], before.z[i]), to(now.x[i], now.y[i], now.z[i]);
-        const Vec3 b = from + share * (to - from) - anchor;
-        // On the way, and as far from its anchor as its residual deflection says.
-        now.deflection[i] = d0 - share * way;
-        const double length = truss.length[i] - now.deflection[i];
+        const double d0 = before.deflection[i], d1 = now.deflection[i];
+        Vec3 b = to - anchor;
+        double d = before.residual[i];
+        if (b.dot(contact.normal(i)) < 0.0) {
+            if (!(gap[i] > 0.0)) continue;
+            const double way = d0 - d1;
+            const double share = way > 0.0 ? std::clamp((d0 - d) / way, 0.0, 1.0) : 0.0;
+            b = from + share * (to - from) - anchor;
+            d = d0 - share * way;
+            spared += 0.5 * before.force[i] * (d - d1);
+        }
+        const double length = truss.length[i] - d;
         const Vec3 place = anchor + (length > tolerance::truss_length ? length / b.norm() : 1.0) * b;
         now.x[i] = place.x(), now.y[i] = place.y(), now.z[i] = place.z();
-        spared += 0.5 * before.force[i] * (now.deflection[i] - d1);
+        now.deflection[i] = d;
     }
     return spared;
 }
@@ -76,13 +81,79 @@ BIRM3D_LANE_LOOP double stiffness_of_pushing(const TrussBlock& truss, const Lane
 }
 
 // Sum of k_unloading times inverse effective mass over the nodes that push (1/s^2).
-double contact_stiffness(const InverseMass& inverse_mass, const TrussMesh& mesh, std::size_t b,
-                         const Lanes& force, double pushing) {
+double contact_stiffness(const FlatContact& surface, const TrussMesh& mesh, std::size_t b,
+                         const TrussBlockState& now, const BlockContact&, double pushing) {
+    const InverseMass& inverse_mass = surface.inverse_mass;
     const Mat3& q = inverse_mass.form;
     if (pushing == mesh.pushable[b])
         return mesh.moments[b].total * inverse_mass.constant + mesh.moments[b].second.cwiseProduct(q).sum();
-    return stiffness_of_pushing(mesh.block[b], force, inverse_mass.constant, q(0, 0), q(1, 1), q(2, 2),
+    return stiffness_of_pushing(mesh.block[b], now.force, inverse_mass.constant, q(0, 0), q(1, 1), q(2, 2),
                                 2.0 * q(0, 1), 2.0 * q(0, 2), 2.0 * q(1, 2));
+}
+
+double contact_stiffness(const CurvedContact& surface, const TrussMesh& mesh, std::size_t b,
+                         const TrussBlockState& now, const BlockContact& contact, double) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!(now.force[i] > 0.0)) continue;
+        const Vec3 c = Vec3(now.x[i], now.y[i], now.z[i]).cross(contact.normal(i));
+        sum += mesh.block[b].k_unloading[i] *
+               (surface.body.inverse_mass + c.dot(surface.body.inverse_inertia * c));
+    }
+    return sum;
+}
+
+double press(const FlatContact& surface, const PressColumns& truss, const TrussBlockState& before,
+             TrussBlockState& now, Lanes& gap, BlockContact& contact, NodeSums& sums) {
+    const Vec3& n = surface.face.normal;
+    const Vec3 h = holding_direction(n, surface.normal_before);
+    return press_flat(truss, {n.x(), n.y(), n.z(), surface.face.offset, h.x(), h.y(), h.z()},
+                      columns_of<const double>(before), columns_of<double>(now), gap.data(),
+                      contact.pressure.data(), sums);
+}
+
+double press(const CurvedContact& surface, const PressColumns& truss, const TrussBlockState& before,
+             TrussBlockState& now, Lanes& gap, BlockContact& contact, NodeSums& sums) {
+    alignas(64) Lanes gap_before, hx, hy, hz;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const Vec3 node(before.x[i], before.y[i], before.z[i]);
+        const Vec3 n = surface.face.normal_at(node);
+        const Vec3 h = holding_direction(n, surface.before.normal_at(node));
+        gap_before[i] = surface.face.gap(node);
+        contact.nx[i] = n.x(), contact.ny[i] = n.y(), contact.nz[i] = n.z();
+        hx[i] = h.x(), hy[i] = h.y(), hz[i] = h.z();
+    }
+    return press_curved(truss,
+                        {gap_before.data(), contact.nx.data(), contact.ny.data(), contact.nz.data(),
+                         hx.data(), hy.data(), hz.data()},
+                        columns_of<const double>(before), columns_of<double>(now), gap.data(),
+                        contact.pressure.data(), sums);
+}
+
+template <class Contact>
+void crush_block(const Contact& surface, const TrussMesh& mesh, std::size_t b, const EnvelopeChange* change,
+                 const TrussBlockState& before, TrussBlockState& now, BlockContact& contact,
+                 CrushSums& sums) {
+    alignas(64) Lanes gap;
+    const double nodes = press(surface, columns_of(mesh, b, change), before, now, gap, contact, sums.nodes);
+    if (nodes >= left) sums.released_work += release(mesh.block[b], before, gap, contact, now);
+    const double pushing = std::fmod(nodes, left);
+    now.touching = pushing > 0.0;
+    if (now.touching) {
+        sums.stiffness += contact_stiffness(surface, mesh, b, now, contact, pushing);
+        now.box = before.box;  // the block is looked at in any case while it touches
+    } else {
+        now.box = Box::around(lanes, [&now](std::size_t i) { return Vec3(now.x[i], now.y[i], now.z[i]); });
+    }
+}
+
+SkinForces without_wrench(const CrushSums& sums) {
+    SkinForces skin;
+    skin.normal_force = row_sum(sums.nodes.force);
+    skin.work = 0.5 * row_sum(sums.nodes.twice_work) + sums.released_work;
+    skin.stored = 0.5 * row_sum(sums.nodes.twice_stored);
+    skin.stiffness = sums.stiffness;
+    return skin;
 }
 
 }  // namespace
@@ -93,48 +164,77 @@ InverseMass::InverseMass(const RigidBody& body, const Vec3& n) : constant(body.i
     form = cross.transpose() * body.inverse_inertia * cross;
 }
 
-Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const Vec3& normal) {
+void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const EnvelopeChange* change,
+           const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums) {
+    crush_block(surface, mesh, b, change, before, now, contact, sums);
+}
+
+void crush(const CurvedContact& surface, const TrussMesh& mesh, std::size_t b, const EnvelopeChange* change,
+           const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums) {
+    crush_block(surface, mesh, b, change, before, now, contact, sums);
+}
+
+SkinForces total(const FlatContact& surface, const CrushSums& sums) {
+    SkinForces skin = without_wrench(sums);
+    const NodeSums& nodes = sums.nodes;
+    const Vec3 moment(row_sum(nodes.moment_x), row_sum(nodes.moment_y), row_sum(nodes.moment_z));
+    skin.contact = {skin.normal_force * surface.face.normal, moment.cross(surface.face.normal)};
+    return skin;
+}
+
+SkinForces total(const CurvedContact&, const CrushSums& sums) {
+    SkinForces skin = without_wrench(sums);
+    const NodeSums& nodes = sums.nodes;
+    skin.contact = {Vec3(row_sum(nodes.push_x), row_sum(nodes.push_y), row_sum(nodes.push_z)),
+                    Vec3(row_sum(nodes.moment_x), row_sum(nodes.moment_y), row_sum(nodes.moment_z))};
+    return skin;
+}
+
+Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const BlockContact& contact) {
     Wrench sum;
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!(now.force[i] > 0.0)) continue;
         const Vec3 node(now.x[i], now.y[i], now.z[i]);
         const Vec3 b = node - Vec3(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
         const double length = b.norm();
-        const Vec3 force = now.force[i] * (length > tolerance::truss_length ? Vec3(-b / length) : normal);
+        const Vec3 force =
+            now.force[i] * (length > tolerance::truss_length ? Vec3(-b / length) : contact.normal(i));
         sum += {force, node.cross(force)};
     }
     return sum;
 }
 
-void crush(const InverseMass& inverse_mass, const TrussMesh& mesh, std::size_t b, const HalfSpace& face,
-           const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums) {
+EnvelopeChange envelope_change(const TrussMesh& mesh, std::size_t b,
+                               const std::vector<const TrussBlockState*>& now, const Twist& motion,
+                               const BlockContact& contact) {
     const TrussBlock& truss = mesh.block[b];
-    now.normal = contact.normal = face.normal;
-    alignas(64) Lanes gap;
-    const double nodes =
-        press_flat(columns_of(mesh, b), surface_of(face, before.normal), columns_of<const double>(before),
-                   columns_of<double>(now), gap.data(), contact.pressure.data(), sums.nodes);
-    if (nodes >= left) sums.released_work += release(truss, before, gap, now);
-    const double pushing = std::fmod(nodes, left);
-    now.touching = pushing > 0.0;
-    if (now.touching) {
-        sums.stiffness += contact_stiffness(inverse_mass, mesh, b, now.force, pushing);
-        now.box = before.box;  // the block is looked at in any case while it touches
-    } else {
-        now.box = Box::around(lanes, [&now](std::size_t i) { return Vec3(now.x[i], now.y[i], now.z[i]); });
+    const TrussBlockState& block = *now[b];
+    EnvelopeChange change;
+    change.extra.fill(0.0);
+    change.factor.fill(1.0);
+    for (std::size_t i = 0; i < lanes && b * lanes + i < mesh.count; ++i) {
+        if (mesh.options.rate_sensitivity > 0.0) {
+            const Vec3 node(block.x[i], block.y[i], block.z[i]);
+            const Vec3 to_anchor = Vec3(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]) - node;
+            const Vec3 n = contact.normal(i);
+            // The node slides along the surface: the truss shortens by the approach along n times b . n.
+            const double approach = -n.dot(motion.velocity + motion.angular_velocity.cross(node));
+            const double share = to_anchor.dot(n) / std::max(to_anchor.norm(), tolerance::truss_length);
+            const double rate = mesh.options.rate_sensitivity * std::max(0.0, approach * share);
+            change.factor[i] = 1.0 + rate * rate;
+        }
+        if (mesh.options.dent_coupling > 0.0) {
+            const std::size_t truss_index = b * lanes + i;
+            for (std::size_t k = mesh.neighbor_begin[truss_index]; k < mesh.neighbor_begin[truss_index + 1];
+                 ++k) {
+                const TrussMesh::Neighbor& other = mesh.neighbor[k];
+                const double deflection = now[other.truss / lanes]->deflection[other.truss % lanes];
+                change.extra[i] +=
+                    mesh.options.dent_coupling * other.weight * (block.deflection[i] - deflection);
+            }
+        }
     }
-}
-
-SkinForces total(const CrushSums& sums, const Vec3& normal) {
-    const NodeSums& nodes = sums.nodes;
-    SkinForces skin;
-    skin.normal_force = row_sum(nodes.force);
-    const Vec3 moment(row_sum(nodes.force_x), row_sum(nodes.force_y), row_sum(nodes.force_z));
-    skin.contact = {skin.normal_force * normal, moment.cross(normal)};
-    skin.work = 0.5 * row_sum(nodes.twice_work) + sums.released_work;
-    skin.stored = 0.5 * row_sum(nodes.twice_stored);
-    skin.stiffness = sums.stiffness;
-    return skin;
+    return change;
 }
 
 }  // namespace birm3d

@@ -1,5 +1,6 @@
 // Compiled once for each instruction set; see base/row.hpp for what that forbids.
 #include "kernels/crush_rows.hpp"
+
 #include "base/row.hpp"
 #include "birm3d/base/lane_count.hpp"
 #include "birm3d/base/tolerances.hpp"
@@ -12,77 +13,136 @@ BIRM3D_INLINE void add_to(double* sum, const Row& row) {
     (Row::load(sum) + row).store(sum);
 }
 
-}  // namespace
+struct Vector {
+    Row x, y, z;
+};
 
-double press_flat(const PressColumns& truss, const FlatSurface& surface,
-                  const PressState<const double>& before, const PressState<double>& now, double* gaps,
-                  double* pressures, NodeSums& sums);
+BIRM3D_INLINE Row dot(const Vector& a, const Vector& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 
-double press_flat(const PressColumns& truss, const FlatSurface& surface,
-                  const PressState<const double>& before, const PressState<double>& now, double* gaps,
-                  double* pressures, NodeSums& sums) {
+struct Place {
+    Row gap;
+    Vector n, h;
+};
+
+// Both surfaces give gap, normal and direction of the eight nodes from i on.
+struct Flat {
+    BIRM3D_INLINE explicit Flat(const FlatPress& s)
+        : n{Row::of(s.nx), Row::of(s.ny), Row::of(s.nz)},
+          h{Row::of(s.hx), Row::of(s.hy), Row::of(s.hz)},
+          offset(Row::of(s.offset)) {}
+    BIRM3D_INLINE Place at(std::size_t, const Vector& node) const { return {dot(n, node) - offset, n, h}; }
+    Vector n, h;
+    Row offset;
+};
+
+struct Curved {
+    BIRM3D_INLINE explicit Curved(const CurvedPress& press) : s(press) {}
+    BIRM3D_INLINE Place at(std::size_t i, const Vector&) const {
+        return {Row::load(s.gap + i),
+                {Row::load(s.nx + i), Row::load(s.ny + i), Row::load(s.nz + i)},
+                {Row::load(s.hx + i), Row::load(s.hy + i), Row::load(s.hz + i)}};
+    }
+    const CurvedPress& s;
+};
+
+template <bool flat, class Surface>
+BIRM3D_INLINE double press(const PressColumns& truss, const Surface& surface,
+                           const PressState<const double>& before, const PressState<double>& now,
+                           double* gaps, double* pressures, NodeSums& sums) {
     const Row zero = Row::of(0.0), one = Row::of(1.0), least = Row::of(tolerance::truss_length);
-    const Row nx = Row::of(surface.nx), ny = Row::of(surface.ny), nz = Row::of(surface.nz);
-    const Row hx = Row::of(surface.hx), hy = Row::of(surface.hy), hz = Row::of(surface.hz);
-    const Row offset = Row::of(surface.offset), node_left = Row::of(left);
-    Row force = zero, force_x = zero, force_y = zero, force_z = zero, work = zero, stored = zero,
-        nodes = zero;
+    const Row node_left = Row::of(left);
+    Row force = zero, work = zero, stored = zero, nodes = zero;
+    Vector moment{zero, zero, zero}, push{zero, zero, zero};
     for (std::size_t i = 0; i < lanes; i += row_length) {
-        const Row x0 = Row::load(before.x + i), y0 = Row::load(before.y + i), z0 = Row::load(before.z + i);
-        const Row F0 = Row::load(before.force + i), dp = Row::load(before.peak_deflection + i);
+        const Vector from{Row::load(before.x + i), Row::load(before.y + i), Row::load(before.z + i)};
+        const Row F0 = Row::load(before.force + i);
+        const Place place = surface.at(i, from);
 
         // Nodes at the surface go onto it: along n where they arrive, along h where it held them already.
-        const Row gap = nx * x0 + ny * y0 + nz * z0 - offset;
-        const Row way = where_above(zero, gap, gap, where_above(F0, zero, gap, zero));
-        const Row x = x0 - way * where_above(F0, zero, hx, nx);
-        const Row y = y0 - way * where_above(F0, zero, hy, ny);
-        const Row z = z0 - way * where_above(F0, zero, hz, nz);
+        const Row way = where_above(zero, place.gap, place.gap, where_above(F0, zero, place.gap, zero));
+        const Vector node{from.x - way * where_above(F0, zero, place.h.x, place.n.x),
+                          from.y - way * where_above(F0, zero, place.h.y, place.n.y),
+                          from.z - way * where_above(F0, zero, place.h.z, place.n.z)};
 
-        // B = node - anchor. A closed truss has no direction of its own any more: it presses along n.
-        const Row bx = Row::load(truss.anchor_x + i) - x, by = Row::load(truss.anchor_y + i) - y,
-                  bz = Row::load(truss.anchor_z + i) - z;
-        const Row length = square_root(bx * bx + by * by + bz * bz);
-        const Row facing = bx * nx + by * ny + bz * nz;
-        const Row share = where_above(length, least, greater(facing, zero) / length, one);
+        // From the node to its anchor. A closed truss has no direction of its own any more: it presses along n.
+        const Vector b{Row::load(truss.anchor_x + i) - node.x, Row::load(truss.anchor_y + i) - node.y,
+                       Row::load(truss.anchor_z + i) - node.z};
+        const Row length = square_root(dot(b, b));
+        const Row share = where_above(length, least, greater(dot(b, place.n), zero) / length, one);
         const Row d = Row::load(truss.length + i) - length;
 
-        // Fig. 3: the loading envelope by the changes of slope at its hinges, or the unloading line.
+        // Fig. 3: the loading envelope by the changes of slope at its hinges, and the unloading line below it.
         Row envelope = zero;
         for (std::size_t j = 0; j < truss.hinges; ++j) {
             const double* hinge = truss.hinge + j * 2 * lanes + i;
             envelope = envelope + Row::load(hinge + lanes) * greater(d - Row::load(hinge), zero);
         }
-        const Row Fp = Row::load(before.peak_force + i);
-        const Row line = greater(Fp - Row::load(truss.k_unloading + i) * (dp - d), zero);
-        const Row law = where_above(d, dp, envelope, line);
-        const Row F = where_above(zero, gap, law, where_above(F0, zero, law, zero));
+        if (truss.extra != nullptr) envelope = greater(envelope + Row::load(truss.extra + i), zero);
+        if (truss.factor != nullptr) envelope = envelope * Row::load(truss.factor + i);
+        const Row residual = Row::load(before.residual + i), compliance = Row::load(truss.compliance + i);
+        const Row line = greater(Row::load(truss.k_unloading + i) * (d - residual), zero);
+        // A truss that would push its node off the surface does not push at all.
+        const Row law = where_above(share, zero, where_above(line, envelope, envelope, line), zero);
+        const Row F = where_above(zero, place.gap, law, where_above(F0, zero, law, zero));
         const Row pressure = F * share;
 
-        x.store(now.x + i);
-        y.store(now.y + i);
-        z.store(now.z + i);
+        node.x.store(now.x + i);
+        node.y.store(now.y + i);
+        node.z.store(now.z + i);
         d.store(now.deflection + i);
         F.store(now.force + i);
-        greater(d, dp).store(now.peak_deflection + i);
-        where_above(d, dp, envelope, Fp).store(now.peak_force + i);
-        gap.store(gaps + i);
+        greater(d, Row::load(before.peak_deflection + i)).store(now.peak_deflection + i);
+        where_above(line, envelope, d - envelope * compliance, residual).store(now.residual + i);
+        place.gap.store(gaps + i);
         pressure.store(pressures + i);
 
         force = force + pressure;
-        force_x = force_x + pressure * x;
-        force_y = force_y + pressure * y;
-        force_z = force_z + pressure * z;
+        if constexpr (flat) {
+            moment = {moment.x + pressure * node.x, moment.y + pressure * node.y,
+                      moment.z + pressure * node.z};
+        } else {
+            const Vector f{pressure * place.n.x, pressure * place.n.y, pressure * place.n.z};
+            push = {push.x + f.x, push.y + f.y, push.z + f.z};
+            moment = {moment.x + (node.y * f.z - node.z * f.y), moment.y + (node.z * f.x - node.x * f.z),
+                      moment.z + (node.x * f.y - node.y * f.x)};
+        }
         work = work + (F0 + F) * (d - Row::load(before.deflection + i));
-        stored = stored + F * F * Row::load(truss.compliance + i);
+        stored = stored + F * F * compliance;
         nodes = nodes + where_above(F, zero, one, where_above(F0, zero, node_left, zero));
     }
     add_to(sums.force, force);
-    add_to(sums.force_x, force_x);
-    add_to(sums.force_y, force_y);
-    add_to(sums.force_z, force_z);
+    add_to(sums.moment_x, moment.x);
+    add_to(sums.moment_y, moment.y);
+    add_to(sums.moment_z, moment.z);
+    if constexpr (!flat) {
+        add_to(sums.push_x, push.x);
+        add_to(sums.push_y, push.y);
+        add_to(sums.push_z, push.z);
+    }
     add_to(sums.twice_work, work);
     add_to(sums.twice_stored, stored);
     return sum_of(nodes);
+}
+
+}  // namespace
+
+double press_flat(const PressColumns& truss, const FlatPress& surface, const PressState<const double>& before,
+                  const PressState<double>& now, double* gaps, double* pressures, NodeSums& sums);
+double press_curved(const PressColumns& truss, const CurvedPress& surface,
+                    const PressState<const double>& before, const PressState<double>& now, double* gaps,
+                    double* pressures, NodeSums& sums);
+
+double press_flat(const PressColumns& truss, const FlatPress& surface, const PressState<const double>& before,
+                  const PressState<double>& now, double* gaps, double* pressures, NodeSums& sums) {
+    return press<true>(truss, Flat(surface), before, now, gaps, pressures, sums);
+}
+
+double press_curved(const PressColumns& truss, const CurvedPress& surface,
+                    const PressState<const double>& before, const PressState<double>& now, double* gaps,
+                    double* pressures, NodeSums& sums) {
+    return press<false>(truss, Curved(surface), before, now, gaps, pressures, sums);
 }
 
 }  // namespace birm3d::BIRM3D_INSTRUCTION_SET

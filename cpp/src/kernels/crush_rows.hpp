@@ -14,30 +14,41 @@ struct PressColumns {
     const double *k_unloading, *compliance;                 // N/m, m/N
     const double* hinge;  // (hinges)(2)(lanes) deflection (m) and change of slope (N/m), one after the other
     std::size_t hinges;
+    // Of scenes that have them, else null: what is added to the loading envelope (N), and a factor on the sum.
+    const double *extra, *factor;
 };
 
 // The columns that a step changes.
 template <class Number>
 struct PressState {
-    Number *x, *y, *z, *deflection, *force, *peak_deflection, *peak_force;
+    Number *x, *y, *z, *deflection, *force, *peak_deflection, *residual;
 };
 
 // A flat surface n . p = offset, and the direction h in which it takes along the nodes that it holds already.
-struct FlatSurface {
+struct FlatPress {
     double nx, ny, nz, offset;
     double hx, hy, hz;
 };
 
-// What a node whose truss ceased to push counts in the result of PressFlat; one that pushes counts 1.
+// The same for a curved surface, node by node.
+struct CurvedPress {
+    const double* gap;
+    const double *nx, *ny, *nz;
+    const double *hx, *hy, *hz;
+};
+
+// What a node whose truss ceased to push counts in the result of Press; one that pushes counts 1.
 inline constexpr double left = 1024.0;
 
 // Moves the nodes of a block that are at the surface onto it, finds the forces of their trusses and adds to
 // the sums; also each node's gap before it was moved (m) and its normal force (N). Returns the count of nodes
 // that push, and of those that ceased to.
-using PressFlat = double (*)(const PressColumns&, const FlatSurface&, const PressState<const double>& before,
-                             const PressState<double>& now, double* gap, double* pressure, NodeSums& sums);
+template <class Surface>
+using Press = double (*)(const PressColumns&, const Surface&, const PressState<const double>& before,
+                         const PressState<double>& now, double* gap, double* pressure, NodeSums& sums);
 
 // For the processor that runs.
-extern const PressFlat press_flat;
+extern const Press<FlatPress> press_flat;
+extern const Press<CurvedPress> press_curved;
 
 }  // namespace birm3d

@@ -19,11 +19,11 @@ struct Sum {
 
 BIRM3D_LANE_LOOP Sum friction_of_block(const Sliding& s, const TrussBlockState& now,
                                        const BlockContact& contact) {
-    const double nx = contact.normal.x(), ny = contact.normal.y(), nz = contact.normal.z();
     alignas(64) Lanes fx, fy, fz, tx, ty, tz, rate;
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
         const double x = now.x[i], y = now.y[i], z = now.z[i];
+        const double nx = contact.nx[i], ny = contact.ny[i], nz = contact.nz[i];
         // Sliding velocity u = v + w x r, without its normal part.
         const double ux = s.vx + s.wy * z - s.wz * y, uy = s.vy + s.wz * x - s.wx * z,
                      uz = s.vz + s.wx * y - s.wy * x;

@@ -22,8 +22,18 @@ Barrier::Barrier(double friction_, const Vec3& origin_, double heading_, double 
       width(positive("width", width_)),
       height(positive("height", height_)) {
     if (!origin.allFinite()) refuse("origin", "finite", "a coordinate that is not");
-    face.normal = Vec3(-std::cos(heading), -std::sin(heading), 0.0);
-    face.offset = face.normal.dot(origin);
+    face = HalfSpace{normal(), normal().dot(origin)};
+}
+
+Barrier Barrier::pole(double friction, const Vec3& origin, double heading, double radius) {
+    require_positive("radius", radius);
+    Barrier pole(friction, origin, heading);
+    pole.face = Cylinder{origin, Vec3::UnitZ(), radius};
+    return pole;
+}
+
+Vec3 Barrier::normal() const {
+    return {-std::cos(heading), -std::sin(heading), 0.0};
 }
 
 bool Barrier::finite() const {

@@ -41,6 +41,98 @@ Wrench turned(const Wrench& w, const Mat3& R) {
     return {R * w.force, R * w.torque};
 }
 
+FlatContact contact_of(const RigidBody& body, const HalfSpace& now, const HalfSpace& before) {
+    return {body, now, before};
+}
+
+CurvedContact contact_of(const RigidBody& body, const Cylinder& now, const Cylinder& before) {
+    return {body, now, before};
+}
+
+void set_normals(const FlatContact& surface, BlockContact& contact) {
+    contact.set_normal(surface.face.normal);
+}
+
+void set_normals(const CurvedContact&, BlockContact&) {}  // crush sets them, node by node
+
+// Motion at the end of the step, body axes: what the drift has made of it, and what the load so far will add
+// in the second half of the step.
+Twist predicted_motion(const Unit& unit, const LoadCourse& course, double dt, const BodyState& drifted,
+                       const Mat3& R) {
+    BodyState body = drifted;
+    Load coming = scaled(course.now, 0.5 * dt);
+    coming += scaled(course.rate, dt * dt / 3.0);
+    kick(unit.body, coming.wrench, body);
+    return {R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
+}
+
+// Of the active blocks; none where the vehicle has no such options. They need all deflections of this instant
+// beforehand, so the trusses are crushed once without them.
+template <class Contact>
+std::vector<EnvelopeChange> envelope_changes(const TrussMesh& mesh, const Contact& surface,
+                                             const Twist& motion, const UnitState& before,
+                                             const BlockSet& active, BlockContact& contact, UnitState& now) {
+    std::vector<EnvelopeChange> changes;
+    if (!mesh.options.any()) return changes;
+    CrushSums thrown_away;
+    std::vector<BlockContact> contacts;
+    for (const std::size_t b : active.blocks()) {
+        crush(surface, mesh, b, nullptr, before.trusses.block[b], now.trusses.block[b], contact, thrown_away);
+        contacts.push_back(contact);
+    }
+    // Of blocks out of reach the trial may hold any state.
+    std::vector<const TrussBlockState*> blocks;
+    for (std::size_t b = 0; b < mesh.blocks; ++b)
+        blocks.push_back(active.contains(b) ? &now.trusses.block[b] : &before.trusses.block[b]);
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+        changes.push_back(envelope_change(mesh, active.blocks()[k], blocks, motion, contacts[k]));
+    return changes;
+}
+
+// The forces of one surface on one unit, body axes.
+template <class Contact>
+SkinForces press_blocks(const Scene& scene, std::size_t u, const State& from, const Contact& surface,
+                        const Twist& motion, const Mat3& R, Trial& trial) {
+    const Unit& unit = scene.vehicle->units[u];
+    const TrussMesh& mesh = unit.trusses;
+    const UnitState& before = from.units[u];
+    UnitState& now = trial.state.units[u];
+    const double mu = scene.barrier->friction;
+    const double full_speed = std::max(tolerance::full_friction_speed * scene.reference_speed(),
+                                       trial.dt * before.skin.friction_rate);
+    const bool along = scene.settings.contact_model == ContactModel::along_truss;
+
+    BlockSet& active = trial.active[u];
+    active.clear();
+    for (std::size_t b = 0; b < mesh.blocks; ++b) {
+        const TrussBlockState& block = before.trusses.block[b];
+        if (!block.touching && !surface.face.within_reach(block.box, 0.0)) continue;
+        active.add(b);
+        trial.stale[u].add(b);
+    }
+    BlockContact contact;
+    set_normals(surface, contact);
+    const std::vector<EnvelopeChange> change =
+        envelope_changes(mesh, surface, motion, before, active, contact, now);
+    CrushSums sums;
+    Wrench by_trusses;
+    SkinForces friction;
+    for (std::size_t k = 0; k < active.blocks().size(); ++k) {
+        const std::size_t b = active.blocks()[k];
+        TrussBlockState& next = now.trusses.block[b];
+        crush(surface, mesh, b, change.empty() ? nullptr : &change[k], before.trusses.block[b], next, contact,
+              sums);
+        if (!next.touching) continue;
+        if (along) by_trusses += along_trusses(mesh.block[b], next, contact);
+        if (mu > 0.0) add_friction(unit.body, mu, full_speed, motion, next, contact, friction);
+        if (scene.barrier->finite()) require_on_wall(*scene.barrier, now.body, R, next);
+    }
+    SkinForces sum = total(surface, sums);
+    if (along) sum.contact = by_trusses;
+    sum += friction;
+    return sum;
+}
+
 }  // namespace
 
 void barrier_forces(const Scene& scene, std::size_t u, const State& from, Trial& trial) {
@@ -48,39 +140,17 @@ void barrier_forces(const Scene& scene, std::size_t u, const State& from, Trial&
     const UnitState& before = from.units[u];
     UnitState& now = trial.state.units[u];
     const Mat3 R = now.body.orientation.toRotationMatrix();
-    const HalfSpace face = scene.barrier->face.seen_from(now.body.position, R);
-    const double mu = scene.barrier->friction;
-    const double full_speed = std::max(tolerance::full_friction_speed * scene.reference_speed(),
-                                       trial.dt * before.skin.friction_rate);
-    const Vec3 spin = R.transpose() * angular_velocity(unit.body, now.body);
-    const Twist motion{R.transpose() * now.body.velocity, spin};
-
-    const InverseMass inverse_mass(unit.body, face.normal);
-    const bool along = scene.settings.contact_model == ContactModel::along_truss;
-    CrushSums sums;
-    Wrench by_trusses;
-    SkinForces friction;
-    BlockContact contact;
-    trial.active[u].clear();
-    for (std::size_t b = 0; b < unit.trusses.blocks; ++b) {
-        const TrussBlockState& block = before.trusses.block[b];
-        if (!block.touching && !face.within_reach(block.box, 0.0)) continue;
-        TrussBlockState& next = now.trusses.block[b];
-        crush(inverse_mass, unit.trusses, b, face, block, next, contact, sums);
-        if (next.touching) {
-            if (along) by_trusses += along_trusses(unit.trusses.block[b], next, face.normal);
-            if (mu > 0.0) add_friction(unit.body, mu, full_speed, motion, next, contact, friction);
-            if (scene.barrier->finite()) require_on_wall(*scene.barrier, now.body, R, next);
-        }
-        trial.active[u].add(b);
-        trial.stale[u].add(b);
-    }
-    SkinForces sum = total(sums, face.normal);
-    if (along) sum.contact = by_trusses;
-    sum += friction;
-    now.skin = sum;
-    now.skin.contact = turned(sum.contact, R);
-    now.skin.friction = turned(sum.friction, R);
+    const Mat3 R_before = before.body.orientation.toRotationMatrix();
+    const Twist motion = predicted_motion(unit, before.course, trial.dt, now.body, R);
+    now.skin = std::visit(
+        [&](const auto& face) {
+            const auto surface = contact_of(unit.body, face.seen_from(now.body.position, R),
+                                            face.seen_from(before.body.position, R_before));
+            return press_blocks(scene, u, from, surface, motion, R, trial);
+        },
+        scene.barrier->face);
+    now.skin.contact = turned(now.skin.contact, R);
+    now.skin.friction = turned(now.skin.friction, R);
     trial.state.statistics.node_evaluations += trial.active[u].blocks().size() * lanes;
 }
 
@@ -89,12 +159,13 @@ double nearest_gap(const Scene& scene, const State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const UnitState& unit = state.units[u];
         const Mat3 R = unit.body.orientation.toRotationMatrix();
-        const HalfSpace face = scene.barrier->face.seen_from(unit.body.position, R);
+        const Surface face = seen_from(scene.barrier->face, unit.body.position, R);
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         for (std::size_t b = 0; b < mesh.blocks; ++b) {
             const TrussBlockState& block = unit.trusses.block[b];
-            if (!face.within_reach(block.box, nearest)) continue;
-            const Lanes gap = gaps(face, block.x, block.y, block.z);
+            if (!within_reach(face, block.box, nearest)) continue;
+            const Lanes gap =
+                std::visit([&](const auto& shape) { return gaps(shape, block.x, block.y, block.z); }, face);
             nearest = std::min(nearest, *std::min_element(gap.begin(), gap.end()));
         }
     }

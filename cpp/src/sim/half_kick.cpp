@@ -34,7 +34,7 @@ std::vector<RigidContact> find_rigid_contacts(const Scene& scene, const State& s
         if (scene.settings.ground) find_tire_contacts(unit, u, body, contacts);
         if (!scene.barrier || !options.hold_members) continue;
         const Mat3 R = body.orientation.toRotationMatrix();
-        const HalfSpace face = scene.barrier->face.seen_from(body.position, R);
+        const Surface face = seen_from(scene.barrier->face, body.position, R);
         const Twist motion{R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
         find_closed_members(unit.trusses, u, body, face, motion, dt, contacts);
     }

@@ -15,13 +15,44 @@ namespace birm3d {
 
 namespace {
 
-double nearest_gap(const Unit& unit, const BodyState& body, const HalfSpace& face) {
-    const HalfSpace seen = face.seen_from(body.position, body.orientation.toRotationMatrix());
+double nearest_gap(const Unit& unit, const BodyState& body, const Surface& face) {
+    const Surface seen = seen_from(face, body.position, body.orientation.toRotationMatrix());
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < unit.trusses.count; ++i) {
-        least = std::min({least, seen.gap(unit.trusses.node(i)), seen.gap(unit.trusses.anchor(i))});
+        least = std::min({least, gap(seen, unit.trusses.node(i)), gap(seen, unit.trusses.anchor(i))});
     }
     return least;
+}
+
+// How far along its path the vehicle of `state` has to go, forward or back, until its nearest point stands
+// `standoff` before the face (m).
+double way_to(const Barrier& barrier, const Vehicle& vehicle, State state, const Vec3& heading,
+              double standoff) {
+    const auto nearest = [&](const Surface& face) {
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t u = 0; u < vehicle.units.size(); ++u)
+            least = std::min(least, nearest_gap(vehicle.units[u], state.units[u].body, face));
+        return least;
+    };
+    // To the plane that touches the barrier from the traffic's side.
+    HalfSpace plane{barrier.normal(), barrier.normal().dot(barrier.origin)};
+    if (const auto* pole = std::get_if<Cylinder>(&barrier.face)) plane.offset += pole->radius;
+    const double to_plane = (nearest(plane) - standoff) / -heading.dot(plane.normal);
+    if (std::holds_alternative<HalfSpace>(barrier.face)) return to_plane;
+
+    // From there step by step by the distance that is certainly free. A path that leads past it starts at the plane.
+    double way = to_plane;
+    for (UnitState& unit : state.units)
+        unit.body.position += to_plane * heading;
+    constexpr int most_steps = 200;
+    for (int i = 0; i < most_steps; ++i) {
+        const double free = nearest(barrier.face) - standoff;
+        way += free;
+        for (UnitState& unit : state.units)
+            unit.body.position += free * heading;
+        if (std::abs(free) < tolerance::initial_overlap * 1e-3) return way;
+    }
+    return to_plane;
 }
 
 }  // namespace
@@ -67,6 +98,12 @@ std::uint64_t Scene::fingerprint() const {
             hash.add(hinge.deflection);
             hash.add(hinge.slope_change);
         }
+        hash.add(unit.trusses.options.rate_sensitivity);
+        hash.add(unit.trusses.options.dent_coupling);
+        for (const TrussMesh::Neighbor& neighbor : unit.trusses.neighbor) {
+            hash.add(static_cast<double>(neighbor.truss));
+            hash.add(neighbor.weight);
+        }
         for (const Wheel& wheel : unit.wheels) {
             hash.add(wheel.center);
             hash.add(wheel.radius);
@@ -74,9 +111,10 @@ std::uint64_t Scene::fingerprint() const {
     }
     if (barrier) {
         hash.add(barrier->friction);
-        hash.add(barrier->face.normal);
-        hash.add(barrier->face.offset);
         hash.add(barrier->origin);
+        hash.add(barrier->heading);
+        hash.add(static_cast<double>(barrier->face.index()));
+        if (const auto* pole = std::get_if<Cylinder>(&barrier->face)) hash.add(pole->radius);
         hash.add(barrier->width);
         hash.add(barrier->height);
     }
@@ -92,7 +130,6 @@ State Scene::initial_state() const {
     const Vec3 heading(std::cos(yaw), std::sin(yaw), 0.0);
     const Vec3 line(-std::sin(barrier_heading), std::cos(barrier_heading), 0.0);
 
-    double least_gap = std::numeric_limits<double>::infinity();
     for (std::size_t u = 0; u < vehicle->units.size(); ++u) {
         BodyState& body = state.units[u].body;
         const Unit& unit = vehicle->units[u];
@@ -100,18 +137,15 @@ State Scene::initial_state() const {
                         unit.mass_center_height * Vec3::UnitZ();
         body.orientation = from_roll_pitch_yaw({0.0, 0.0, yaw});
         body.velocity = approach.speed * heading;
-        if (barrier) least_gap = std::min(least_gap, nearest_gap(unit, body, barrier->face));
         state.energies.kinetic += kinetic_energy(unit.body, body);
     }
     if (barrier) {
-        // Back along the path until the nearest point stands `standoff` before the face.
-        const double closing = -heading.dot(barrier->face.normal);
-        const Vec3 shift = (least_gap - approach.standoff) / closing * heading;
+        const double shift = way_to(*barrier, *vehicle, state, heading, approach.standoff);
         for (std::size_t u = 0; u < vehicle->units.size(); ++u) {
-            state.units[u].body.position += shift;
-            const double gap = nearest_gap(vehicle->units[u], state.units[u].body, barrier->face);
-            const double rounding = 1e-15 * shift.norm() + tolerance::initial_overlap;
-            if (gap < -rounding) refuse("initial gap of the vehicle to the barrier", ">= 0 m", gap);
+            state.units[u].body.position += shift * heading;
+            const double nearest = nearest_gap(vehicle->units[u], state.units[u].body, barrier->face);
+            const double rounding = 1e-15 * std::abs(shift) + tolerance::initial_overlap;
+            if (nearest < -rounding) refuse("initial gap of the vehicle to the barrier", ">= 0 m", nearest);
         }
     }
     state.next_step = tolerance::first_contact_step;

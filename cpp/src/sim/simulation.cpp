@@ -31,10 +31,10 @@ bool has_left(const Scene& scene, const State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Unit& unit = scene.vehicle->units[u];
         const BodyState& body = state.units[u].body;
-        const HalfSpace& face = scene.barrier->face;
-        const double away = body.velocity.dot(face.normal);
+        const Surface& face = scene.barrier->face;
+        const double away = body.velocity.dot(normal_at(face, body.position));
         const double turning = angular_velocity(unit.body, body).norm() * unit.trusses.reach;
-        if (!(away > 0.0 && (away >= turning || face.gap(body.position) > unit.trusses.reach))) return false;
+        if (!(away > 0.0 && (away >= turning || gap(face, body.position) > unit.trusses.reach))) return false;
     }
     return true;
 }

@@ -17,11 +17,13 @@ const TrussCurve curve = knee_curve(1e6, 0.1, 2e6, laboratory::infinity, 10e6);
 // The forces of a mesh of one block.
 SkinForces press(const TrussMesh& mesh, ContactModel model, const HalfSpace& face,
                  const TrussBlockState& before, TrussBlockState& now) {
+    const FlatContact surface(laboratory::body(), face, face);
     CrushSums sums;
     BlockContact contact;
-    crush({laboratory::body(), face.normal}, mesh, 0, face, before, now, contact, sums);
-    SkinForces forces = total(sums, face.normal);
-    if (model == ContactModel::along_truss) forces.contact = along_trusses(mesh.block[0], now, face.normal);
+    contact.set_normal(face.normal);
+    crush(surface, mesh, 0, nullptr, before, now, contact, sums);
+    SkinForces forces = total(surface, sums);
+    if (model == ContactModel::along_truss) forces.contact = along_trusses(mesh.block[0], now, contact);
     return forces;
 }
 
@@ -171,4 +173,49 @@ TEST("the block sums what its trusses do") {
     for (const Vec3& r : input.node)
         stiffness += 60e6 / 64.0 * (1.0 / 6804.0 + r.z() * r.z() / 40000.0 + r.y() * r.y() / 42000.0);
     CHECK_CLOSE(f.stiffness, stiffness, 1e-9 * stiffness, "rounding of 64 terms");
+}
+
+TEST("a pole of great radius presses like a wall") {
+    const TrussMesh mesh(laboratory::front_face(laboratory::w2_curve(), 8, 8));
+    TrussState flat(mesh), curved(mesh);
+    const double radius = 1e7;
+    const RigidBody body = laboratory::body();
+    for (const double place : {2.8, 2.5, 2.3, 2.4}) {
+        const TrussBlockState flat_before = flat.block[0], curved_before = curved.block[0];
+        const HalfSpace face{-Vec3::UnitX(), -place};
+        const SkinForces wall = press(mesh, ContactModel::projected, face, flat_before, flat.block[0]);
+        const Cylinder pole{Vec3(place + radius, 0.0, 0.0), Vec3::UnitZ(), radius};
+        const CurvedContact surface(body, pole, pole);
+        CrushSums sums;
+        BlockContact contact;
+        crush(surface, mesh, 0, nullptr, curved_before, curved.block[0], contact, sums);
+        const SkinForces by_pole = total(surface, sums);
+        // Nodes stand up to 1.2 m from the middle: 1.2^2 / 2e7 m less deep, on 60 MN/m.
+        CHECK_CLOSE((by_pole.contact.force - wall.contact.force).norm(), 0.0, 10.0, "the pole's curvature");
+        CHECK_CLOSE((by_pole.contact.torque - wall.contact.torque).norm(), 0.0, 10.0, "the same");
+        CHECK_CLOSE(by_pole.work, wall.work, 3.0, "the same");
+        CHECK_CLOSE(by_pole.stiffness, wall.stiffness, 1e-5 * wall.stiffness, "the same");
+    }
+}
+
+TEST("a node beside a pole goes to its surface along the radius") {
+    const Vec3 node(1.0, 0.1, 0.0), anchor(0.0, 0.1, 0.0);
+    const TrussMesh mesh({{node}, {anchor}, {curve}, {0}, {1.0}});
+    TrussState state(mesh);
+    const TrussBlockState before = state.block[0];
+    const Cylinder pole{Vec3(1.05, 0.0, 0.0), Vec3::UnitZ(), 0.2};
+    const RigidBody body = laboratory::body();
+    const CurvedContact surface(body, pole, pole);
+    CrushSums sums;
+    BlockContact contact;
+    crush(surface, mesh, 0, nullptr, before, state.block[0], contact, sums);
+    const Vec3 n = (node - pole.point).normalized();
+    const Vec3 place = pole.point + 0.2 * n;
+    CHECK_CLOSE((Vec3(state.block[0].x[0], state.block[0].y[0], state.block[0].z[0]) - place).norm(), 0.0,
+                1e-15, "rounding");
+    const Vec3 b = anchor - place;
+    const double force = envelope_force(curve, 1.0 - b.norm()) * b.normalized().dot(n);
+    const SkinForces f = total(surface, sums);
+    CHECK_CLOSE((f.contact.force - force * n).norm(), 0.0, 1e-8, "rounding of 1e5 N");
+    CHECK_CLOSE((f.contact.torque - place.cross(force * n)).norm(), 0.0, 1e-8, "the same");
 }

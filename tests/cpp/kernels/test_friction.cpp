@@ -11,7 +11,7 @@ namespace {
 struct Pressed {
     explicit Pressed(double pressure)
         : mesh(laboratory::front_face(laboratory::w2_curve(), 8, 8)), state(mesh) {
-        contact.normal = -Vec3::UnitX();
+        contact.set_normal(-Vec3::UnitX());
         contact.pressure.fill(pressure);
     }
     SkinForces friction(double mu, double full_speed, const Twist& motion) const {

@@ -19,7 +19,7 @@ TEST("the nearest gap is that of the nearest node, crushed or not") {
             for (const TrussBlockState& block : unit.trusses.block)
                 for (std::size_t i = 0; i < lanes; ++i) {
                     const Vec3 place = unit.body.position + R * Vec3(block.x[i], block.y[i], block.z[i]);
-                    nearest = std::min(nearest, simulation.scene().barrier->face.gap(place));
+                    nearest = std::min(nearest, gap(simulation.scene().barrier->face, place));
                 }
             CHECK_CLOSE(nearest_gap(simulation.scene(), state), nearest, 1e-13, "rounding of places");
         }

@@ -17,7 +17,7 @@ double nearest_gap(const Scene& scene) {
     const TrussMesh& mesh = scene.vehicle->units[0].trusses;
     double least = 1e9;
     for (std::size_t i = 0; i < mesh.count; ++i)
-        least = std::min(least, scene.barrier->face.gap(body.position + body.orientation * mesh.node(i)));
+        least = std::min(least, gap(scene.barrier->face, body.position + body.orientation * mesh.node(i)));
     return least;
 }
 
@@ -43,7 +43,7 @@ TEST("speed and angle are those asked for, and the nose is ahead") {
                       Approach{20.0, angle, 0.0, 0.0}, laboratory::weightless(), {});
     const BodyState body = scene.initial_state().units[0].body;
     CHECK_CLOSE(body.velocity.norm(), 20.0, 1e-14, "rounding");
-    CHECK_CLOSE(-body.velocity.dot(scene.barrier->face.normal), 20.0 * std::sin(angle), 1e-14, "rounding");
+    CHECK_CLOSE(-body.velocity.dot(scene.barrier->normal()), 20.0 * std::sin(angle), 1e-14, "rounding");
     CHECK_CLOSE((body.orientation * Vec3::UnitX() - body.velocity / 20.0).norm(), 0.0, 1e-15, "rounding");
     CHECK_CLOSE(scene.initial_state().energies.kinetic, 0.5 * 6804.0 * 400.0, 1e-6, "rounding");
 }
@@ -54,7 +54,7 @@ TEST("the path of the mass centre meets the wall's line at the offset") {
     const Scene scene(laboratory::block(laboratory::w2_curve()), laboratory::wall(0.0, heading, origin),
                       Approach{20.0, angle, 1.25, 0.0}, laboratory::weightless(), {});
     const BodyState body = scene.initial_state().units[0].body;
-    const HalfSpace& face = scene.barrier->face;
+    const HalfSpace& face = std::get<HalfSpace>(scene.barrier->face);
     const double t = face.gap(body.position) / -face.normal.dot(body.velocity);
     const Vec3 line(-std::sin(heading), std::cos(heading), 0.0);
     CHECK_CLOSE((body.position + t * body.velocity - origin - 1.25 * line).norm(), 0.0, 1e-13, "rounding");

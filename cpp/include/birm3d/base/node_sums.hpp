@@ -5,9 +5,11 @@
 namespace birm3d {
 
 struct alignas(64) NodeSums {
-    double force[8] = {};                                      // normal force (N)
-    double force_x[8] = {}, force_y[8] = {}, force_z[8] = {};  // its first moments (N m)
-    double twice_work[8] = {}, twice_stored[8] = {};           // J
+    double force[8] = {};                                         // normal force (N)
+    double moment_x[8] = {}, moment_y[8] = {}, moment_z[8] = {};  // flat surface: first moments of it (N m);
+                                                                  // curved: torque (N m)
+    double push_x[8] = {}, push_y[8] = {}, push_z[8] = {};        // curved surface: force (N)
+    double twice_work[8] = {}, twice_stored[8] = {};              // J
 };
 
 }  // namespace birm3d

@@ -12,6 +12,8 @@ struct HalfSpace {
     // Signed distance of a point along the outward normal; negative = inside (m).
     double gap(const Vec3& p) const { return normal.dot(p) - offset; }
 
+    const Vec3& normal_at(const Vec3&) const { return normal; }
+
     // Can any point of the box be nearer to the surface than `margin` (m)?
     bool within_reach(const Box& box, double margin) const {
         return gap(box.center) - normal.cwiseAbs().dot(box.half) < margin;

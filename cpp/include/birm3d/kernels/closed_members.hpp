@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "birm3d/geometry/half_space.hpp"
+#include "birm3d/geometry/surface.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 #include "birm3d/model/vehicle.hpp"
 #include "birm3d/state/body_state.hpp"
@@ -13,9 +13,8 @@ namespace birm3d {
 
 // Adds a contact for each anchor that is at the surface or, as it now moves, will be within dt; `face` and
 // `motion` in body axes, contacts in world axes.
-void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyState& state,
-                         const HalfSpace& face, const Twist& motion, double dt,
-                         std::vector<RigidContact>& contacts);
+void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyState& state, const Surface& face,
+                         const Twist& motion, double dt, std::vector<RigidContact>& contacts);
 
 // Coulomb friction (paper 5.4) that goes with the normal impulses of closed members: linear and angular
 // impulse about the mass centre, world axes (N s, N m s). `full_speed`: sliding speed of full friction.

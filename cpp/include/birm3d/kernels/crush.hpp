@@ -15,7 +15,7 @@
 #pragma once
 
 #include "birm3d/base/node_sums.hpp"
-#include "birm3d/geometry/half_space.hpp"
+#include "birm3d/geometry/surface.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 #include "birm3d/model/vehicle.hpp"
 #include "birm3d/state/contacts.hpp"
@@ -33,6 +33,30 @@ struct InverseMass {
     Mat3 form;        // 1/(kg m^2)
 };
 
+// A surface that presses a unit, now and at the instant before (body axes).
+struct FlatContact {
+    FlatContact(const RigidBody& body, const HalfSpace& face_, const HalfSpace& face_before)
+        : face(face_), normal_before(face_before.normal), inverse_mass(body, face_.normal) {}
+
+    HalfSpace face;
+    Vec3 normal_before;
+    InverseMass inverse_mass;
+};
+
+struct CurvedContact {
+    CurvedContact(const RigidBody& body_, const Cylinder& face_, const Cylinder& face_before)
+        : face(face_), before(face_before), body(body_) {}
+
+    Cylinder face, before;
+    const RigidBody& body;
+};
+
+// Changes of the loading envelopes of a block (EnvelopeOptions): F = (F(d) + extra) * factor.
+struct alignas(64) EnvelopeChange {
+    Lanes extra;   // N
+    Lanes factor;  // 1
+};
+
 // What the blocks of a unit add up to.
 struct CrushSums {
     NodeSums nodes;
@@ -40,15 +64,24 @@ struct CrushSums {
     double stiffness = 0.0;      // see SkinForces (1/s^2)
 };
 
-// Takes block `b` from `before` to `now` beside a flat surface (body axes), fills in `contact` and adds to the
-// sums.
-void crush(const InverseMass& inverse_mass, const TrussMesh& mesh, std::size_t b, const HalfSpace& face,
+// Takes block `b` from `before` to `now`, fills in `contact` and adds to the sums; `change` may be null. The
+// normals of a flat contact are the caller's to set, once for all blocks.
+void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const EnvelopeChange* change,
+           const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums);
+void crush(const CurvedContact& surface, const TrussMesh& mesh, std::size_t b, const EnvelopeChange* change,
            const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums);
 
 // The forces of all blocks, projected (body axes).
-SkinForces total(const CrushSums& sums, const Vec3& normal);
+SkinForces total(const FlatContact& surface, const CrushSums& sums);
+SkinForces total(const CurvedContact& surface, const CrushSums& sums);
 
 // The force of a block by the paper's rule: each truss pushes along itself (body axes).
-Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const Vec3& normal);
+Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const BlockContact& contact);
+
+// The change of block `b`'s envelopes by EnvelopeOptions, from deflections `now` and the motion of the body
+// at that instant (body axes).
+EnvelopeChange envelope_change(const TrussMesh& mesh, std::size_t b,
+                               const std::vector<const TrussBlockState*>& now, const Twist& motion,
+                               const BlockContact& contact);
 
 }  // namespace birm3d

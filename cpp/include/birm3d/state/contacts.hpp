@@ -12,8 +12,11 @@ namespace birm3d {
 
 // One block of nodes beside a surface, body axes.
 struct alignas(64) BlockContact {
-    Lanes pressure;              // normal force of each node (N)
-    Vec3 normal = Vec3::Zero();  // outward, of the flat surface beside all of them
+    Lanes pressure;    // normal force of each node (N)
+    Lanes nx, ny, nz;  // outward normal at each
+
+    Vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
+    void set_normal(const Vec3& n) { nx.fill(n.x()), ny.fill(n.y()), nz.fill(n.z()); }
 };
 
 // All that a unit's skin feels at one instant; wrenches in body axes until the step turns them to the world.

@@ -10,12 +10,11 @@
 namespace birm3d {
 
 struct alignas(64) TrussBlockState {
-    Lanes x, y, z;                      // shell nodes in body axes (m)
-    Lanes deflection, force;            // of the truss, now (m, N)
-    Lanes peak_deflection, peak_force;  // where the loading envelope was left (m, N)
-    Vec3 normal = Vec3::Zero();         // of the surface when last seen, body axes
-    Box box;                            // around the nodes where they were last let go, body axes
-    bool touching;                      // does any node push?
+    Lanes x, y, z;                    // shell nodes in body axes (m)
+    Lanes deflection, force;          // of the truss, now (m, N)
+    Lanes peak_deflection, residual;  // greatest so far; where the unloading line meets zero force (m)
+    Box box;                          // around the nodes where they were last let go, body axes
+    bool touching;                    // does any node push?
 };
 
 struct TrussState {
@@ -34,7 +33,7 @@ struct TrussState {
     void add_to(Hash& hash) const {
         for (const TrussBlockState& b : block)
             for (const Lanes* column :
-                 {&b.x, &b.y, &b.z, &b.deflection, &b.force, &b.peak_deflection, &b.peak_force})
+                 {&b.x, &b.y, &b.z, &b.deflection, &b.force, &b.peak_deflection, &b.residual})
                 hash.add(*column);
     }
 };

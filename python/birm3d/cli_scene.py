@@ -1,0 +1,102 @@
+"""Command line: the options that say what is run, shared by all commands that run something."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from . import units
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+__all__ = ["Quantity", "scene_options", "simulation_of"]
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]
+    """A number with a unit, such as 50mph; without one SI, angles in degrees."""
+
+    def __init__(self, quantity: str) -> None:
+        self.name = quantity
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Return the value in SI; degrees for angles."""
+        if isinstance(value, float):
+            return value
+        try:
+            return units.parse(value, self.name)
+        except ValueError as error:
+            self.fail(str(error), param, ctx)
+
+
+_OPTIONS = (
+    click.argument("scene", required=False, type=click.Path(exists=True, dir_okay=False, path_type=Path)),
+    click.option("--vehicle", help="Preset (see `birm3d vehicles`) or vehicle file (.toml)."),
+    click.option("--gvw", type=Quantity("mass"), help="Gross vehicle weight, such as 4500lb or 1719kg."),
+    click.option(
+        "--mesh-density", type=float, default=1.0, show_default=True, help="Elements relative to the file's."
+    ),
+    click.option(
+        "--barrier", type=click.Choice(["rigid_wall", "none"]), default="rigid_wall", show_default=True
+    ),
+    click.option("--friction", type=float, default=0.2, show_default=True, help="Vehicle on barrier."),
+    click.option("--speed", type=Quantity("speed"), help="Such as 50mph, 57.09km/h or 15.9 (m/s)."),
+    click.option(
+        "--angle", type=Quantity("angle"), default=90.0, show_default=True, help="Path to barrier line, deg."
+    ),
+    click.option(
+        "--offset", type=Quantity("length"), default=0.0, show_default=True, help="Along the barrier, m."
+    ),
+    click.option("--duration", type=Quantity("time"), help="Default: until the outcome is decided."),
+    click.option("--tolerance", type=float, help="Wanted relative error.  [default: 0.001]"),
+    click.option("--time-step", type=Quantity("time"), help="Fixed step.  [default: adaptive]"),
+)
+
+
+def scene_options(command: Command) -> Command:
+    """Give a command the argument SCENE and the options that can take its place."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
+    """Return the simulation of a scene file, or of the options of :func:`scene_options`."""
+    from .barrier import Barrier
+    from .settings import Settings
+    from .simulation import Simulation
+    from .vehicle import Vehicle
+
+    context = click.get_current_context()
+    given = [
+        f"--{name.replace('_', '-')}"
+        for name in options
+        if context.get_parameter_source(name) is not click.core.ParameterSource.DEFAULT
+    ]
+    if scene is not None:
+        if given:
+            raise click.UsageError(f"{', '.join(given)}: a scene file states everything itself")
+        from .scene_file import read_scene_file
+
+        return read_scene_file(scene)
+    for name in ("vehicle", "speed"):
+        if options[name] is None:
+            raise click.UsageError(f"give a scene file, or --vehicle and --speed: --{name} is missing")
+    make = Vehicle.from_file if options["vehicle"].endswith(".toml") else Vehicle.preset
+    vehicle = make(options["vehicle"], gvw=options["gvw"], mesh_density=options["mesh_density"])
+    barrier = Barrier.rigid_wall(friction=options["friction"]) if options["barrier"] == "rigid_wall" else None
+    settings = {name: options[name] for name in ("tolerance", "time_step") if options[name] is not None}
+    return Simulation(
+        vehicle,
+        barrier,
+        options["speed"],
+        options["angle"],
+        options["offset"],
+        duration=options["duration"],
+        settings=Settings(**settings),
+    )

@@ -1,0 +1,14 @@
+"""Command line: tables on stdout."""
+
+from __future__ import annotations
+
+import sys
+
+__all__ = ["print_table"]
+
+
+def print_table(table: object) -> None:
+    """Print a table of rich, 120 columns wide where stdout is no terminal."""
+    from rich.console import Console
+
+    Console(width=None if sys.stdout.isatty() else 120).print(table)

@@ -1,0 +1,198 @@
+"""Many runs of varied scenes: checked, run on any executor, kept on disk, put in a table."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import partial
+from numbers import Real
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._version import __version__
+from .metrics import METRIC_UNITS
+from .scene_parameters import value_of, varied
+from .simulation import Simulation
+from .study import Study
+
+if TYPE_CHECKING:
+    from .executors import Finished
+    from .run_store import Outcome, RunStore
+
+__all__ = ["StudyInterrupted", "StudyStoppedError", "run_study"]
+
+# The wall time of a run is no property of the scene: it would make every study differ from every other.
+_STUDY_METRICS = tuple(name for name in METRIC_UNITS if name != "run_time")
+
+
+class StudyStoppedError(RuntimeError):
+    """The executor died; ``study`` has the finished runs, which a store has too."""
+
+    def __init__(self, message: str, study: Study) -> None:
+        super().__init__(message)
+        self.study = study
+
+
+class StudyInterrupted(KeyboardInterrupt):
+    """Ctrl-C; ``study`` has the finished runs, which a store has too."""
+
+    def __init__(self, message: str, study: Study) -> None:
+        super().__init__(message)
+        self.study = study
+
+
+def run_study(
+    simulation: Simulation,
+    names: Sequence[str],
+    rows: Sequence[Sequence[Any]],
+    *,
+    metrics: Sequence[str] | None = None,
+    executor: Any = None,
+    store: str | Path | None = None,
+    progress: bool | None = None,
+    grid: Mapping[str, Sequence[Any]] | None = None,
+    title: str = "runs",
+) -> Study:
+    """Run a scene with many sets of parameters.
+
+    Parameters
+    ----------
+    simulation
+        The scene to vary.
+    names, rows
+        Parameters (see :mod:`birm3d.scene_parameters`) and their values, one row a run; SI, degrees.
+    metrics
+        Names of the metrics wanted; ``None``: all but ``run_time``, which is not the same twice.
+    executor
+        Any :class:`concurrent.futures.Executor`, or a ``dask.distributed.Client``; ``None``: a thread for
+        each core of the machine. The C++ core releases the interpreter's lock, making a vehicle and its
+        metrics does not: processes are faster where there are more than a few cores.
+    store
+        File for finished runs (SQLite), written as they finish. If it has runs of this study already, they
+        are taken from there. More rows than it has are welcome: they are added.
+    progress
+        Bar on stderr; ``None``: if that is a terminal.
+    grid
+        Parameter -> values when the rows are the grid of them, last one fastest.
+    title
+        Of the progress bar.
+
+    Returns
+    -------
+    Study
+        In the order of the rows. A run that fails is a row with its reason in ``error`` and NaN as metrics.
+
+    Raises
+    ------
+    ValueError
+        If there are no rows, a parameter or metric is unknown, a value is NaN, or the store is of another
+        study.
+    StudyStoppedError
+        If the executor dies. Finished runs are in its ``study`` and in the store.
+    StudyInterrupted
+        A KeyboardInterrupt, with the finished runs in its ``study`` and in the store.
+    """
+    # What only a study needs, such as sqlite3 and multiprocessing, is loaded by the first one.
+    from .executors import ExecutorError, run_all
+    from .fingerprint import fingerprint
+    from .run_store import RunStore
+
+    names = tuple(names)
+    wanted = _checked_metrics(metrics)
+    table = [tuple(_plain(value) for value in row) for row in rows]
+    _check_rows(simulation, names, table)
+    units = {name: METRIC_UNITS[name] for name in wanted}
+    study = partial(Study._of, simulation.scene.vehicle.name, names, table, units)
+    kept: RunStore | None = None
+    if store is not None:
+        key = fingerprint(simulation.scene, names, wanted, __version__)
+        kept = RunStore(store, study=key, version=__version__, names=names, rows=table, units=units)
+    outcomes: dict[int, Outcome] = {}
+    where = f"kept in {str(store)!r}" if store is not None else "kept in the error's 'study'"
+    try:
+        if kept is not None:
+            outcomes.update(kept.finished())
+        with _progress(progress, title, len(table), len(outcomes)) as advance:
+
+            def finish(finished: Finished) -> None:
+                new = dict(finished)
+                outcomes.update(new)
+                if kept is not None:
+                    kept.add(new)
+                advance(len(new))
+
+            todo = [(run, row) for run, row in enumerate(table) if run not in outcomes]
+            run_all(simulation, names, wanted, todo, executor, finish)
+    except KeyboardInterrupt:
+        message = f"stopped: {len(outcomes)} of {len(table)} runs are finished and {where}"
+        raise StudyInterrupted(message, study(outcomes)) from None
+    except ExecutorError as died:
+        cause = died.__cause__
+        message = (
+            f"the executor died ({type(cause).__name__}: {cause}); {len(outcomes)} of {len(table)} runs are "
+            f"finished and {where}"
+        )
+        raise StudyStoppedError(message, study(outcomes)) from cause
+    finally:
+        if kept is not None:
+            kept.close()
+    if grid is not None:
+        grid = {name: [_plain(value) for value in values] for name, values in grid.items()}
+    return study(outcomes, grid=grid)
+
+
+def _checked_metrics(metrics: Sequence[str] | None) -> tuple[str, ...]:
+    wanted = _STUDY_METRICS if metrics is None else tuple(dict.fromkeys(metrics))
+    if not wanted:
+        raise ValueError("metrics must name at least one, got none")
+    for name in wanted:
+        if name not in METRIC_UNITS:
+            raise ValueError(f"metrics must be among {', '.join(METRIC_UNITS)}; got {name!r}")
+    return wanted
+
+
+def _plain(value: Any) -> Any:
+    """Numbers as float, so that 20 and 20.0 and numpy's are the same run."""
+    number = isinstance(value, Real) and not isinstance(value, (bool, np.bool_))
+    return float(value) if number else value
+
+
+def _check_rows(simulation: Simulation, names: tuple[str, ...], rows: Sequence[tuple[Any, ...]]) -> None:
+    if not rows:
+        raise ValueError("a study must have at least one run, got none")
+    base = simulation
+    parts = [name for name in ("vehicle", "barrier", "settings") if name in names]
+    if parts:  # the first row tells what names the varied scenes have
+        base = varied(simulation, {name: rows[0][names.index(name)] for name in parts})
+    for name in names:
+        value_of(base, name)
+    for run, row in enumerate(rows):
+        for name, value in zip(names, row, strict=True):
+            if isinstance(value, float) and math.isnan(value):
+                raise ValueError(f"{name} must be a number, got nan in run {run}")
+
+
+@contextmanager
+def _progress(wanted: bool | None, title: str, total: int, done: int) -> Iterator[Callable[[int], None]]:
+    """Show a bar on stderr; yields what moves it on."""
+    if wanted is None:
+        wanted = sys.stderr.isatty()
+    if not wanted:
+        yield lambda runs: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    # No refreshing thread: a process pool may fork while it holds a lock.
+    with Progress(*columns, console=Console(stderr=True), auto_refresh=False) as bar:
+        task = bar.add_task(title, total=total, completed=done)
+
+        def advance(runs: int) -> None:
+            bar.update(task, advance=runs, refresh=True)
+
+        yield advance

@@ -1,0 +1,287 @@
+"""The outcome of many runs: a labelled table."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ._version import __version__
+from .scene_parameters import unit_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from .run_store import Outcome
+
+__all__ = ["Study", "Summary"]
+
+_FORMAT = "birm3d study 1"
+_TEXTS = ("end_reason", "state_hash", "error")
+
+
+class Summary(NamedTuple):
+    """Of a metric over n runs, in its unit. ``standard_deviation`` and ``standard_error`` need n >= 2."""
+
+    n: int
+    mean: float
+    standard_deviation: float | None
+    standard_error: float | None
+    p05: float
+    median: float
+    p95: float
+
+
+class Study:
+    """Parameters, metrics and the end of n runs; immutable, in the order in which the runs were asked for.
+
+    Attributes
+    ----------
+    vehicle : str
+        Name of the vehicle that was varied.
+    run : ndarray of int, shape (n,)
+        Numbers of the runs; not all of them when the study was stopped.
+    parameters : mapping of str to ndarray, shape (n,)
+        Numbers are float, SI and degrees; other values are shown as text.
+    metrics : mapping of str to ndarray, shape (n,)
+        SI and degrees. NaN: the run failed (then ``error`` says why) or does not have this metric, as an exit
+        angle of a vehicle that stands.
+    end_reason, state_hash, error : tuple of str
+        ``error`` is empty for a run that did not fail, else the type and message of the exception.
+    units : mapping of str to str
+        Of parameters and metrics; ``""`` for pure numbers.
+    grid : mapping of str to tuple, or None
+        The values of each parameter, if the runs are a grid; the last parameter changes fastest.
+    version : str
+        Of the package that made the runs.
+    """
+
+    def __init__(
+        self,
+        *,
+        vehicle: str,
+        run: npt.ArrayLike,
+        parameters: Mapping[str, npt.ArrayLike],
+        metrics: Mapping[str, npt.ArrayLike],
+        end_reason: Sequence[str],
+        state_hash: Sequence[str],
+        error: Sequence[str],
+        units: Mapping[str, str],
+        grid: Mapping[str, Sequence[Any]] | None = None,
+        version: str = __version__,
+    ) -> None:
+        self.vehicle = vehicle
+        self.run = _read_only(run, np.int64)
+        self.parameters = MappingProxyType({name: _read_only(v) for name, v in parameters.items()})
+        self.metrics = MappingProxyType({name: _read_only(v, float) for name, v in metrics.items()})
+        self.end_reason = tuple(end_reason)
+        self.state_hash = tuple(state_hash)
+        self.error = tuple(error)
+        self.units = MappingProxyType(dict(units))
+        self.grid = None if grid is None else MappingProxyType({k: tuple(v) for k, v in grid.items()})
+        self.version = version
+
+    @classmethod
+    def _of(
+        cls,
+        vehicle: str,
+        names: Sequence[str],
+        rows: Sequence[Sequence[Any]],
+        metric_units: Mapping[str, str],
+        outcomes: Mapping[int, Outcome],
+        grid: Mapping[str, Sequence[Any]] | None = None,
+    ) -> Study:
+        runs = sorted(outcomes)
+        table = np.array([outcomes[run].metrics for run in runs]).reshape(len(runs), len(metric_units))
+        values = {name: _column([rows[run][i] for run in runs]) for i, name in enumerate(names)}
+        return cls(
+            vehicle=vehicle,
+            run=runs,
+            parameters=values,
+            metrics=dict(zip(metric_units, table.T, strict=True)),
+            end_reason=[outcomes[run].end_reason for run in runs],
+            state_hash=[outcomes[run].state_hash for run in runs],
+            error=[outcomes[run].error for run in runs],
+            units={**{name: unit_of(name) for name in names}, **metric_units},
+            grid=None if grid is None else {name: _column(values).tolist() for name, values in grid.items()},
+        )
+
+    @staticmethod
+    def joined(studies: Sequence[Study]) -> Study:
+        """Return the runs of several studies of the same columns, one after the other, numbered anew."""
+        first = studies[0]
+
+        def column(name: str) -> npt.NDArray[Any]:
+            return np.concatenate([study[name] for study in studies])
+
+        return Study(
+            vehicle=first.vehicle,
+            run=np.arange(sum(len(study) for study in studies)),
+            parameters={name: column(name) for name in first.parameters},
+            metrics={name: column(name) for name in first.metrics},
+            end_reason=[text for study in studies for text in study.end_reason],
+            state_hash=[text for study in studies for text in study.state_hash],
+            error=[text for study in studies for text in study.error],
+            units=first.units,
+            version=first.version,
+        )
+
+    def __len__(self) -> int:
+        return len(self.run)
+
+    def __getitem__(self, name: str) -> npt.NDArray[Any]:
+        """Return a column: a parameter or a metric, shape (n,)."""
+        for columns in (self.parameters, self.metrics):
+            if name in columns:
+                return columns[name]
+        raise KeyError(f"column must be one of {', '.join((*self.parameters, *self.metrics))}; got {name!r}")
+
+    @property
+    def failed(self) -> Mapping[int, str]:
+        """Number of each run that failed -> its reason."""
+        return {int(run): error for run, error in zip(self.run, self.error, strict=True) if error}
+
+    def summary(self) -> dict[str, Summary]:
+        """Return mean, spread and quantiles of each metric that a run has, over the runs that have it."""
+        rows = {name: values[np.isfinite(values)] for name, values in self.metrics.items()}
+        return {name: _summary(values) for name, values in rows.items() if len(values)}
+
+    def columns(self) -> dict[str, npt.NDArray[Any]]:
+        """Return all columns: parameters, metrics, end_reason, state_hash, error."""
+        texts = {name: np.array(getattr(self, name), dtype=object) for name in _TEXTS}
+        return {**self.parameters, **self.metrics, **texts}
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return a table, one row a run, indexed by its number; units are in ``attrs["units"]``."""
+        try:
+            import pandas as pd
+        except ImportError as error:
+            raise ImportError("to_dataframe() needs pandas: pip install 'birm3d[table]'") from error
+        table = pd.DataFrame(self.columns(), index=pd.Index(self.run, name="run"))
+        table.attrs["units"] = dict(self.units)
+        return table
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return a labelled data set: over the parameters of the grid, or over ``run`` if there is none."""
+        try:
+            import xarray as xr
+        except ImportError as error:
+            raise ImportError("to_xarray() needs xarray: pip install 'birm3d[studies]'") from error
+        grid = {"run": tuple(self.run)} if self.grid is None else dict(self.grid)
+        dims = tuple(grid)
+        shape = tuple(len(values) for values in grid.values())
+        data = xr.Dataset(coords={name: (name, list(values)) for name, values in grid.items()})
+        for name, values in self.columns().items():
+            if name not in grid:
+                data[name] = (dims, values.reshape(shape))
+        for name, unit in self.units.items():
+            data[name].attrs["units"] = unit
+        data.attrs.update(vehicle=self.vehicle, birm3d_version=self.version)
+        return data
+
+    def save(self, path: str | Path) -> None:
+        """Write a CSV file whose first line is a comment with units and the rest, as JSON; see :meth:`load`.
+
+        Numbers are written with all their digits; a metric that a run does not have is an empty cell.
+        """
+        columns = self.columns()
+        head = {
+            "format": _FORMAT,
+            "version": self.version,
+            "vehicle": self.vehicle,
+            "units": dict(self.units),
+            "parameters": {name: values.dtype.kind for name, values in self.parameters.items()},
+            "grid": None if self.grid is None else dict(self.grid),
+        }
+        with Path(path).open("w", encoding="utf-8", newline="") as file:
+            file.write("# " + json.dumps(head) + "\n")
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(["run", *columns])
+            for i, run in enumerate(self.run):
+                writer.writerow([int(run), *(_text(column[i]) for column in columns.values())])
+
+    @staticmethod
+    def load(path: str | Path) -> Study:
+        """Read a file of :meth:`save`: the same study, bit for bit.
+
+        Raises
+        ------
+        ValueError
+            If the file is no study.
+        """
+        with Path(path).open(encoding="utf-8", newline="") as file:
+            first = file.readline()
+            try:
+                head = json.loads(first.removeprefix("# "))
+                found = head["format"]
+            except (ValueError, TypeError, KeyError):
+                found = first[:40]
+            if found != _FORMAT:
+                raise ValueError(f"path must be a study with format {_FORMAT!r}, got {found!r} in {path}")
+            names, *lines = csv.reader(file)
+        cells = {name: [line[i] for line in lines] for i, name in enumerate(names)}
+        kinds = head["parameters"]
+        metrics = [name for name in names if name not in ("run", *kinds, *_TEXTS)]
+        return Study(
+            vehicle=head["vehicle"],
+            run=[int(run) for run in cells["run"]],
+            parameters={
+                name: np.array(cells[name], float if kind == "f" else object) for name, kind in kinds.items()
+            },
+            metrics={name: [float(cell) if cell else math.nan for cell in cells[name]] for name in metrics},
+            end_reason=cells["end_reason"],
+            state_hash=cells["state_hash"],
+            error=cells["error"],
+            units=head["units"],
+            grid=head["grid"],
+            version=head["version"],
+        )
+
+    def plot(self, x: str, y: str, by: str | None = None) -> Figure:
+        """Return a figure of column `y` against `x`, a line for each value of `by`, without failed runs."""
+        from .study_plots import plot_study
+
+        return plot_study(self, x, y, by)
+
+    def __repr__(self) -> str:
+        failed = len(self.failed)
+        return (
+            f"Study({self.vehicle}, {len(self)} runs over {', '.join(self.parameters)}"
+            f"{f', {failed} failed' if failed else ''}; metrics: {', '.join(self.metrics)})"
+        )
+
+
+def _summary(values: npt.NDArray[np.float64]) -> Summary:
+    n = len(values)
+    deviation = float(np.std(values, ddof=1)) if n > 1 else None
+    error = None if deviation is None else deviation / math.sqrt(n)
+    p05, median, p95 = np.quantile(values, [0.05, 0.5, 0.95]).tolist()
+    return Summary(n, float(np.mean(values)), deviation, error, p05, median, p95)
+
+
+def _column(values: Sequence[Any]) -> npt.NDArray[Any]:
+    """Numbers as float; anything else as text, a vehicle by its name."""
+    if all(isinstance(value, float) for value in values):
+        return np.array(values, float)
+    return np.array([str(getattr(value, "name", value)) for value in values], dtype=object)
+
+
+def _read_only(values: npt.ArrayLike, kind: Any = None) -> npt.NDArray[Any]:
+    array = np.array(values, kind)
+    array.setflags(write=False)
+    return array
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, float):
+        return "" if math.isnan(value) else repr(float(value))
+    return str(value)
