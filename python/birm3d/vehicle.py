@@ -332,8 +332,8 @@ class Vehicle:
             1 + (rate_sensitivity * rate of deflection)^2 [s/m], >= 0.
         dent_coupling
             A dent drags its surroundings: a node resists being deeper than the mean of the nodes within
-            :data:`DENT_REACH` of it by dent_coupling * difference, a stress [N/m^3], >= 0. Pairs of nodes push
-            each other equally, so that an even crush is not changed.
+            :data:`DENT_REACH` of it by dent_coupling * difference, a stress [N/m^3], >= 0. Pairs of nodes
+            push each other equally, so that an even crush is not changed.
         """
         rate = self.rate_sensitivity if rate_sensitivity is None else float(rate_sensitivity)
         coupling = self.dent_coupling if dent_coupling is None else float(dent_coupling)

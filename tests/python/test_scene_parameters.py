@@ -13,7 +13,7 @@ from birm3d.metrics import METRIC_UNITS
 from birm3d.scene_parameters import parameter_names, unit_of, value_of, varied
 
 SEDAN = scenes.nhtsa_10146(mesh_density=0.1)
-BLOCK = scenes.w2(24)
+BLOCK = scenes.w2(100)
 
 # Fields that no factor of 1.01 can change.
 SPECIAL: dict[str, Any] = {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "birm3d/base/tolerances.hpp"
-#include "kernels/crush_rows.hpp"
+#include "kernels/crush_dispatch.hpp"
 
 namespace birm3d {
 
@@ -107,9 +107,9 @@ double press(const FlatContact& surface, const PressColumns& truss, const TrussB
              TrussBlockState& now, Lanes& gap, BlockContact& contact, NodeSums& sums) {
     const Vec3& n = surface.face.normal;
     const Vec3 h = holding_direction(n, surface.normal_before);
-    return press_flat(truss, {n.x(), n.y(), n.z(), surface.face.offset, h.x(), h.y(), h.z()},
-                      columns_of<const double>(before), columns_of<double>(now), gap.data(),
-                      contact.pressure.data(), sums);
+    return press_rows.flat(truss, {n.x(), n.y(), n.z(), surface.face.offset, h.x(), h.y(), h.z()},
+                           columns_of<const double>(before), columns_of<double>(now), gap.data(),
+                           contact.pressure.data(), sums);
 }
 
 double press(const CurvedContact& surface, const PressColumns& truss, const TrussBlockState& before,
@@ -123,11 +123,11 @@ double press(const CurvedContact& surface, const PressColumns& truss, const Trus
         contact.nx[i] = n.x(), contact.ny[i] = n.y(), contact.nz[i] = n.z();
         hx[i] = h.x(), hy[i] = h.y(), hz[i] = h.z();
     }
-    return press_curved(truss,
-                        {gap_before.data(), contact.nx.data(), contact.ny.data(), contact.nz.data(),
-                         hx.data(), hy.data(), hz.data()},
-                        columns_of<const double>(before), columns_of<double>(now), gap.data(),
-                        contact.pressure.data(), sums);
+    return press_rows.curved(truss,
+                             {gap_before.data(), contact.nx.data(), contact.ny.data(), contact.nz.data(),
+                              hx.data(), hy.data(), hz.data()},
+                             columns_of<const double>(before), columns_of<double>(now), gap.data(),
+                             contact.pressure.data(), sums);
 }
 
 template <class Contact>

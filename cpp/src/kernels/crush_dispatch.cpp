@@ -1,4 +1,4 @@
-#include "kernels/crush_rows.hpp"
+#include "kernels/crush_dispatch.hpp"
 
 namespace birm3d {
 
@@ -17,27 +17,17 @@ BIRM3D_DECLARE(avx512)
 #endif
 #undef BIRM3D_DECLARE
 
-namespace {
-
-struct Functions {
-    Press<FlatPress> flat;
-    Press<CurvedPress> curved;
-};
-
-Functions best() {
+std::vector<PressFunctions> press_functions() {
+    std::vector<PressFunctions> can{{"baseline", baseline::press_flat, baseline::press_curved}};
 #if defined(BIRM3D_X86_PATHS)
     __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx512f")) return {avx512::press_flat, avx512::press_curved};
-    if (__builtin_cpu_supports("avx2")) return {avx2::press_flat, avx2::press_curved};
+    if (__builtin_cpu_supports("avx2")) can.push_back({"avx2", avx2::press_flat, avx2::press_curved});
+    if (__builtin_cpu_supports("avx512f"))
+        can.push_back({"avx512f", avx512::press_flat, avx512::press_curved});
 #endif
-    return {baseline::press_flat, baseline::press_curved};
+    return can;
 }
 
-const Functions functions = best();
-
-}  // namespace
-
-const Press<FlatPress> press_flat = functions.flat;
-const Press<CurvedPress> press_curved = functions.curved;
+const PressFunctions press_rows = press_functions().back();
 
 }  // namespace birm3d

@@ -47,8 +47,4 @@ template <class Surface>
 using Press = double (*)(const PressColumns&, const Surface&, const PressState<const double>& before,
                          const PressState<double>& now, double* gap, double* pressure, NodeSums& sums);
 
-// For the processor that runs.
-extern const Press<FlatPress> press_flat;
-extern const Press<CurvedPress> press_curved;
-
 }  // namespace birm3d

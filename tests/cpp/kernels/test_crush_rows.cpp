@@ -1,0 +1,98 @@
+#include <cstring>
+#include <random>
+
+#include "check.hpp"
+#include "kernels/crush_dispatch.hpp"
+#include "laboratory.hpp"
+
+using namespace birm3d;
+
+namespace {
+
+struct Outcome {
+    TrussBlockState now;
+    BlockContact contact;
+    NodeSums sums;
+    double nodes = 0.0;
+};
+
+template <class Number, class State>
+PressState<Number> columns_of(State& s) {
+    return {s.x.data(),          s.y.data(),     s.z.data(),
+            s.deflection.data(), s.force.data(), s.peak_deflection.data(),
+            s.residual.data()};
+}
+
+bool same_bits(const Outcome& a, const Outcome& b) {
+    const auto same = [](const Lanes& x, const Lanes& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
+    return same(a.now.x, b.now.x) && same(a.now.y, b.now.y) && same(a.now.z, b.now.z) &&
+           same(a.now.deflection, b.now.deflection) && same(a.now.force, b.now.force) &&
+           same(a.now.peak_deflection, b.now.peak_deflection) && same(a.now.residual, b.now.residual) &&
+           same(a.contact.pressure, b.contact.pressure) &&
+           std::memcmp(&a.sums, &b.sums, sizeof a.sums) == 0 && a.nodes == b.nodes;
+}
+
+}  // namespace
+
+TEST("every instruction set gives the same bits") {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    const auto fill = [&](Lanes& lanes_, double middle, double spread) {
+        for (double& value : lanes_)
+            value = middle + spread * uniform(random);
+    };
+    const TrussMesh mesh(laboratory::front_face(laboratory::w2_curve(), 8, 8));
+    const TrussBlock& truss = mesh.block[0];
+    const std::vector<PressFunctions> functions = press_functions();
+    for (int round = 0; round < 50; ++round) {
+        // Nodes all about a slanted surface, some pressed already, on their envelopes or below.
+        TrussBlockState before = TrussState(mesh).block[0];
+        alignas(64) Lanes extra, factor, gap, nx, ny, nz;
+        fill(before.x, 2.7, 0.3);
+        fill(before.deflection, 0.3, 0.3);
+        fill(before.force, 0.0, 1e4);
+        for (double& force : before.force)
+            force = std::max(force, 0.0);
+        fill(before.residual, 0.25, 0.3);
+        fill(before.peak_deflection, 0.6, 0.3);
+        fill(extra, 0.0, 1e4);
+        fill(factor, 1.2, 0.2);
+        fill(gap, 0.0, 0.05);
+        fill(nx, -0.9, 0.1);
+        fill(ny, 0.0, 0.4);
+        fill(nz, 0.0, 0.4);
+        const bool changed = round % 2 == 1;
+        const PressColumns columns{truss.anchor_x.data(),
+                                   truss.anchor_y.data(),
+                                   truss.anchor_z.data(),
+                                   truss.length.data(),
+                                   truss.k_unloading.data(),
+                                   truss.compliance.data(),
+                                   mesh.hinge[0].deflection.data(),
+                                   mesh.hinges,
+                                   changed ? extra.data() : nullptr,
+                                   changed ? factor.data() : nullptr};
+        const FlatPress flat{-0.96, 0.28, 0.0, -2.6, -0.95, 0.3, 0.01};
+        const CurvedPress curved{gap.data(), nx.data(), ny.data(), nz.data(),
+                                 nx.data(),  ny.data(), nz.data()};
+        Outcome first_flat, first_curved;
+        for (std::size_t k = 0; k < functions.size(); ++k) {
+            alignas(64) Lanes gaps;
+            Outcome by_flat, by_curved;
+            by_flat.nodes = functions[k].flat(columns, flat, columns_of<const double>(before),
+                                              columns_of<double>(by_flat.now), gaps.data(),
+                                              by_flat.contact.pressure.data(), by_flat.sums);
+            by_curved.nodes = functions[k].curved(columns, curved, columns_of<const double>(before),
+                                                  columns_of<double>(by_curved.now), gaps.data(),
+                                                  by_curved.contact.pressure.data(), by_curved.sums);
+            if (k == 0) {
+                first_flat = by_flat;
+                first_curved = by_curved;
+                CHECK(by_flat.nodes > 1.0);  // some push, some cease to
+                CHECK(by_curved.nodes > 1.0);
+            }
+            CHECK(same_bits(by_flat, first_flat));
+            CHECK(same_bits(by_curved, first_curved));
+        }
+    }
+}
