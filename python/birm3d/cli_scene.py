@@ -42,7 +42,13 @@ _OPTIONS = (
         "--mesh-density", type=float, default=1.0, show_default=True, help="Elements relative to the file's."
     ),
     click.option(
-        "--barrier", type=click.Choice(["rigid_wall", "none"]), default="rigid_wall", show_default=True
+        "--barrier",
+        type=click.Choice(["rigid_wall", "pole", "none"]),
+        default="rigid_wall",
+        show_default=True,
+    ),
+    click.option(
+        "--diameter", type=Quantity("length"), default=0.3, show_default=True, help="Of the pole, m."
     ),
     click.option("--friction", type=float, default=0.2, show_default=True, help="Vehicle on barrier."),
     click.option("--speed", type=Quantity("speed"), help="Such as 50mph, 57.09km/h or 15.9 (m/s)."),
@@ -89,7 +95,14 @@ def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
             raise click.UsageError(f"give a scene file, or --vehicle and --speed: --{name} is missing")
     make = Vehicle.from_file if options["vehicle"].endswith(".toml") else Vehicle.preset
     vehicle = make(options["vehicle"], gvw=options["gvw"], mesh_density=options["mesh_density"])
-    barrier = Barrier.rigid_wall(friction=options["friction"]) if options["barrier"] == "rigid_wall" else None
+    if options["barrier"] != "pole" and "--diameter" in given:
+        raise click.UsageError(f"--diameter: only a pole has one, not {options['barrier']}")
+    friction = options["friction"]
+    barrier = None
+    if options["barrier"] == "rigid_wall":
+        barrier = Barrier.rigid_wall(friction=friction)
+    elif options["barrier"] == "pole":
+        barrier = Barrier.pole(diameter=options["diameter"], friction=friction)
     settings = {name: options[name] for name in ("tolerance", "time_step") if options[name] is not None}
     return Simulation(
         vehicle,

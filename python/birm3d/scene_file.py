@@ -37,9 +37,16 @@ class _Vehicle(Strict):
 
 
 class _Barrier(Strict):
-    kind: Literal["rigid_wall"]
+    kind: Literal["rigid_wall", "pole"]
     friction: Annotated[float, Field(ge=0.0)] = 0.2
     heading_deg: float = 0.0
+    diameter_m: Annotated[float, Field(gt=0.0)] | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> _Barrier:
+        if (self.diameter_m is not None) != (self.kind == "pole"):
+            reject("diameter_m", "must be given for a pole and for nothing else")
+        return self
 
 
 class _Impact(Strict):
@@ -111,7 +118,11 @@ def read_scene_file(path: str | Path) -> Simulation:
         )
     barrier = None
     if scene.barrier is not None:
-        barrier = Barrier.rigid_wall(friction=scene.barrier.friction, heading=scene.barrier.heading_deg)
+        friction, heading = scene.barrier.friction, scene.barrier.heading_deg
+        if scene.barrier.diameter_m is None:
+            barrier = Barrier.rigid_wall(friction=friction, heading=heading)
+        else:
+            barrier = Barrier.pole(diameter=scene.barrier.diameter_m, friction=friction, heading=heading)
     impact = scene.impact
     return Simulation(
         vehicle,

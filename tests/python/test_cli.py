@@ -118,6 +118,27 @@ def test_scene_file(monkeypatch, capsys, tmp_path):
     assert outcome["mass"] == pytest.approx(4500 * 0.45359237)
 
 
+def test_a_pole_from_file_and_from_options(monkeypatch, capsys, tmp_path):
+    text = SCENE.replace('"rigid_wall"', '"pole"\ndiameter_m = 0.4').replace("45 deg", "90 deg")
+    assert birm3d(monkeypatch, "run", scene_file(tmp_path, text), "--json") == 0
+    by_file = json.loads(capsys.readouterr().out)
+    arguments = (
+        "--vehicle",
+        "passenger_car",
+        "--gvw",
+        "4500lb",
+        "--mesh-density",
+        "0.3",
+        "--barrier",
+        "pole",
+    )
+    options = ("--diameter", "0.4m", "--friction", "0", "--speed", "30mph")
+    assert birm3d(monkeypatch, "run", *arguments, *options, "--json") == 0
+    by_options = json.loads(capsys.readouterr().out)
+    assert by_file["state_hash"] == by_options["state_hash"]
+    assert by_file["metrics"]["dynamic_crush"] > 0.3
+
+
 def test_the_example_scene_is_read(monkeypatch, capsys):
     example = Path(__file__).parents[2] / "examples" / "scene.toml"
     assert birm3d(monkeypatch, "run", str(example), "--json") == 0
@@ -133,6 +154,7 @@ def test_the_example_scene_is_read(monkeypatch, capsys):
         (('"45 deg"', '"45 m"'), 13, ["angle", "deg", "45 m"]),
         (('preset = "passenger_car"', ""), 2, ["preset or file"]),
         (("[barrier]", "[barrier"), 7, ["TOML"]),
+        (('"rigid_wall"', '"pole"'), 7, ["diameter_m", "pole"]),
     ],
 )
 def test_scene_file_errors(monkeypatch, capsys, tmp_path, wrong, line, parts):

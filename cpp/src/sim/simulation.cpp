@@ -184,6 +184,8 @@ void Simulation::adaptive_step() {
     const double allowed =
         tolerance::step_error_per_tolerance * scene_.settings.tolerance * scene_.reference_speed();
     double dt = std::min({state_.next_step, tolerance::longest_step, remaining()});
+    if (touches(state_))
+        dt = std::min(dt, std::max(time_to_release(state_, infinity), tolerance::release_resolution));
     for (;;) {
         if (dt < tolerance::shortest_step)
             throw UnstableError(dt, tolerance::shortest_step, state_.time,
