@@ -58,7 +58,6 @@ VARIANTS = (
     Variant("rate", (RATE,), WALLS),
     Variant("base, pole fitted", (), (*WALLS, POLE)),
     Variant("coupling", (COUPLING,), (*WALLS, POLE)),
-    Variant("rate, pole fitted", (RATE,), (*WALLS, POLE)),
     Variant("rate and coupling", (RATE, COUPLING), (*WALLS, POLE)),
 )
 
