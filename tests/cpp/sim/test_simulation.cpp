@@ -81,8 +81,9 @@ TEST("energy is kept, and the ledger's terms only grow") {
     while (simulation.step()) {
         const Energies& e = simulation.state().energies;
         worst = std::max(worst, std::abs(e.total() - start));
-        CHECK(e.barrier_friction >= last.barrier_friction - 1e-6);
-        CHECK(e.tire_friction >= last.tire_friction - 1e-6);
+        // Where nodes stick, friction is found for the motion predicted at the end of the step.
+        CHECK(e.barrier_friction >= last.barrier_friction - 1e-11 * start);
+        CHECK(e.tire_friction >= last.tire_friction - 1e-11 * start);
         last = e;
     }
     CHECK_CLOSE(worst / start, 0.0, 1e-3, "the tolerance asked for");
