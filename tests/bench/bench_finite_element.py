@@ -84,6 +84,10 @@ def runs_of(vehicle: CheckVehicle) -> list[Run]:
 
 def fit(vehicle: CheckVehicle, variant: Variant, options: argparse.Namespace) -> CalibrationResult:
     start = check_vehicle(vehicle.key, options.mesh_density)
+    if options.skin is not None:
+        knee = start.zones["skin"].knee
+        assert knee is not None  # the file has one
+        start = start.with_zone("skin", k_initial=options.skin / knee, f_max=options.skin)
     envelope = start.zones["front"].envelope
     assert envelope is not None
     unknowns = [
@@ -178,6 +182,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--variants", help="which, by their names, with semicolons between")
     parser.add_argument("--starts", type=int, default=2)
     parser.add_argument("--mesh-density", type=float, default=0.36, help="relative to the vehicle files'")
+    parser.add_argument("--skin", type=float, help="another stress of the panels beside the front [Pa]")
     parser.add_argument("--tolerance", type=float, default=1e-4, help="of the steps while fitting")
     parser.add_argument("--jobs", type=int, help="threads; one a processor unless given")
     parser.add_argument("--csv", type=Path, help="also write the table there")
