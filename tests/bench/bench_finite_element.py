@@ -193,9 +193,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     variants = VARIANTS[:2] if options.quick else VARIANTS
     if options.variants:
         variants = tuple(variant for variant in VARIANTS if variant.name in options.variants.split(";"))
+    if not variants:
+        known = "; ".join(variant.name for variant in VARIANTS)
+        parser.error(f"--variants must be some of {known}; got {options.variants!r}")
+    keys = options.vehicles.split(",")
+    if not set(keys) <= set(VEHICLES):
+        parser.error(f"--vehicles must be some of {','.join(VEHICLES)}; got {options.vehicles!r}")
 
     table = []
-    for key in options.vehicles.split(","):
+    for key in keys:
         vehicle = VEHICLES[key]
         print_mass(vehicle)
         for variant in variants:
