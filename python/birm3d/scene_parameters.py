@@ -10,8 +10,7 @@ name                           value
 ``vehicle.gvw``                mass [kg], see :meth:`birm3d.Vehicle.with_gvw`
 ``vehicle.mass_center_height`` above the ground at rest [m]
 ``vehicle.mesh_density``       relative number of shell elements
-``vehicle.rate_sensitivity``   [s/m], and ``vehicle.dent_coupling`` [N/m^3], see
-                               :meth:`birm3d.Vehicle.with_crush_physics`
+``vehicle.rate_sensitivity``   [s/m], see :meth:`birm3d.Vehicle.with_rate_sensitivity`
 ``zone.<zone>.<number>``       ``k_initial``, ``knee``, ``k_hardening``, ``f_max`` or ``k_unloading`` of
                                :class:`birm3d.Zone`
 ``zone.<zone>.stress[i]``      stress of point i of the zone's envelope [N per m^2]
@@ -38,7 +37,7 @@ from .vehicle import TRUSS_LAW, Vehicle, Zone
 
 __all__ = ["parameter_names", "unit_of", "value_of", "varied"]
 
-_VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity", "dent_coupling")
+_VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity")
 _UNITS = {
     "impact_speed": "m/s",
     "impact_angle": "deg",
@@ -57,7 +56,6 @@ _UNITS = {
     "vehicle.gvw": "kg",
     "vehicle.mass_center_height": "m",
     "vehicle.rate_sensitivity": "s/m",
-    "vehicle.dent_coupling": "N/m^3",
 }
 _ZONE_UNITS = {
     "k_initial": "N/m",
@@ -193,9 +191,8 @@ def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -
     numbers = groups.get("vehicle", {})
     if "mesh_density" in numbers:
         changed = changed.with_mesh_density(numbers["mesh_density"])
-    physics = {name: numbers[name] for name in ("rate_sensitivity", "dent_coupling") if name in numbers}
-    if physics:
-        changed = changed.with_crush_physics(**physics)
+    if "rate_sensitivity" in numbers:
+        changed = changed.with_rate_sensitivity(numbers["rate_sensitivity"])
     if "gvw" in numbers:
         changed = changed.with_gvw(numbers["gvw"])
     if "mass_center_height" in numbers:

@@ -21,16 +21,13 @@ if TYPE_CHECKING:
     from .vehicle_file import VehicleFile
     from .vehicle_file import Zone as FileZone
 
-__all__ = ["DENT_REACH", "TRUSS_LAW", "Vehicle", "Zone"]
+__all__ = ["TRUSS_LAW", "Vehicle", "Zone"]
 
 Floats = npt.NDArray[np.float64]
 FloatsLike = npt.ArrayLike
 
 
 _KNEE = ("k_initial", "knee", "k_hardening", "f_max")
-
-DENT_REACH = 0.3
-"""How far a dent drags its surroundings with it, if it does [m]; see :meth:`Vehicle.with_crush_physics`."""
 
 TRUSS_LAW = ("k_initial", "knee", "k_hardening", "f_max", "k_unloading")
 """The numbers of the paper's law (Fig. 3)."""
@@ -162,9 +159,7 @@ class Vehicle:
         Above the ground at rest [m].
     zones : mapping of str to Zone
     rate_sensitivity : float
-        Optional physics, see :meth:`with_crush_physics` [s/m].
-    dent_coupling : float
-        The same [N/m^3].
+        Optional physics, see :meth:`with_rate_sensitivity` [s/m].
     """
 
     name: str
@@ -180,13 +175,11 @@ class Vehicle:
     mass_center_height: float
     zones: Mapping[str, Zone]
     rate_sensitivity: float = 0.0
-    dent_coupling: float = 0.0
     # What made the vehicle: laws per truss (m, N, N/m), or a file with its mesh density.
     _truss_laws: Floats | None = None
     _file: VehicleFile | None = None
     _mesh: ExteriorMesh | None = None
     _mesh_density: float = 1.0
-    _pairs: Floats | None = None  # of nodes in reach of a dent, see _near
     _raised: float = 0.0  # of the mass centre above that of the solids [m]
     _draft: bool = False  # between two changes: the core is not built yet, see draft()
 
@@ -320,28 +313,14 @@ class Vehicle:
             _assemble(self._file, self._mesh, gvw, self._mesh_density, self.zones, self._raised, self._draft)
         )
 
-    def with_crush_physics(
-        self, *, rate_sensitivity: float | None = None, dent_coupling: float | None = None
-    ) -> Vehicle:
-        """Return the vehicle with crush physics beside the paper's law; at 0 each is left out.
+    def with_rate_sensitivity(self, rate_sensitivity: float) -> Vehicle:
+        """Return the vehicle with loading envelopes that grow with speed; at 0 that is left out.
 
-        Parameters
-        ----------
-        rate_sensitivity
-            What is crushed has inertia and rate strength: a truss's loading envelope grows by
-            1 + (rate_sensitivity * rate of deflection)^2 [s/m], >= 0.
-        dent_coupling
-            A dent drags its surroundings: a node resists being deeper than the mean of the nodes within
-            :data:`DENT_REACH` of it by dent_coupling * difference, a stress [N/m^3], >= 0. Pairs of nodes
-            push each other equally, so that an even crush is not changed.
+        What is crushed has inertia and rate strength, which the paper's massless trusses lack: an envelope
+        grows by 1 + (rate_sensitivity * rate of deflection)^2 while it is loaded [s/m], >= 0. Finite-element
+        vehicles were met with 0.05 to 0.07 s/m (``tests/bench/README.md``).
         """
-        rate = self.rate_sensitivity if rate_sensitivity is None else float(rate_sensitivity)
-        coupling = self.dent_coupling if dent_coupling is None else float(dent_coupling)
-        changed = dataclasses.replace(self, rate_sensitivity=rate, dent_coupling=0.0)
-        if coupling == 0.0:
-            return changed
-        pairs = self._near() if self._pairs is None else self._pairs
-        return dataclasses.replace(changed, dent_coupling=coupling, _pairs=pairs)
+        return dataclasses.replace(self, rate_sensitivity=float(rate_sensitivity))
 
     def with_mesh_density(self, mesh_density: float) -> Vehicle:
         """Return the vehicle with another number of shell elements, relative to its file's choice."""
@@ -424,11 +403,9 @@ class Vehicle:
 
     def _anew(self, vehicle: Vehicle) -> Vehicle:
         """Return a vehicle made anew from the file with what the file does not hold."""
-        if self.rate_sensitivity == 0.0 and self.dent_coupling == 0.0:
+        if self.rate_sensitivity == 0.0:
             return vehicle
-        return vehicle.with_crush_physics(
-            rate_sensitivity=self.rate_sensitivity, dent_coupling=self.dent_coupling
-        )
+        return vehicle.with_rate_sensitivity(self.rate_sensitivity)
 
     def draft(self) -> Vehicle:
         """Return the vehicle to be changed several times at the cost of one; end with :meth:`finished`.
@@ -500,35 +477,16 @@ class Vehicle:
             scale=self.area,
             wheels=self.wheels,
             mass_center_height=self.mass_center_height,
-            pairs=self._pairs if self._pairs is not None and self.dent_coupling > 0.0 else np.empty((0, 3)),
             rate_sensitivity=self.rate_sensitivity,
-            dent_coupling=self.dent_coupling,
         )
         return _core.Vehicle([unit])
-
-    def _near(self) -> Floats:
-        """Pairs of nodes of one side within the reach of a dent, and their weights, shape (p, 3).
-
-        The weight is the product of the two areas over that of the dent's surroundings [m^2]: sums over
-        pairs are integrals, whatever the mesh.
-        """
-        from scipy.spatial import cKDTree
-
-        pairs = cKDTree(self.nodes).query_pairs(DENT_REACH, output_type="ndarray")
-        along = self.anchors - self.nodes
-        along /= np.linalg.norm(along, axis=1)[:, None]
-        a, b = pairs.T
-        same_side = (along[a] * along[b]).sum(axis=1) > 0.5
-        a, b = a[same_side], b[same_side]
-        weight = self.area[a] * self.area[b] / (math.pi * DENT_REACH**2)
-        return np.column_stack([a, b, weight])
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Vehicle):
             return NotImplemented
         mine, theirs = self._arguments(), other._arguments()
-        # Mesh and pairs follow from the rest.
-        return all(np.array_equal(mine[key], theirs[key]) for key in mine if key not in ("_mesh", "_pairs"))
+        # The mesh follows from file and density.
+        return all(np.array_equal(mine[key], theirs[key]) for key in mine if key != "_mesh")
 
     __hash__ = None  # type: ignore[assignment]
 

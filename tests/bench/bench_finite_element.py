@@ -37,7 +37,6 @@ from finite_element import (
 RESULTS = Path(__file__).parent / "results/predictions/finite_element.csv"
 STRESS = (0.02e6, 4e6)  # Pa
 RATE = Parameter("vehicle.rate_sensitivity", 0.0, 0.2, start=0.03)
-COUPLING = Parameter("vehicle.dent_coupling", 1e5, 1e9, start=1e7, log=True)
 WALLS = ("wall00_20", "wall00_40")
 POLE = "pole000_30"
 FINER = 4.0
@@ -57,8 +56,6 @@ VARIANTS = (
     Variant("base", (), WALLS),
     Variant("rate", (RATE,), WALLS),
     Variant("base, pole fitted", (), (*WALLS, POLE)),
-    Variant("coupling", (COUPLING,), (*WALLS, POLE)),
-    Variant("rate and coupling", (RATE, COUPLING), (*WALLS, POLE)),
 )
 
 
@@ -176,7 +173,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument(
-        "--quick", action="store_true", help="without poles and coupling; one start, coarse mesh"
+        "--quick", action="store_true", help="without poles; one start, coarse mesh"
     )
     parser.add_argument("--vehicles", default="n,s", help="which, by their letters")
     parser.add_argument("--variants", help="which, by their names, with semicolons between")

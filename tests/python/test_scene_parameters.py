@@ -32,7 +32,6 @@ SPECIAL: dict[str, Any] = {
     "settings.tire_model": "skid",
     "truss.f_max": 3e6,
     "vehicle.rate_sensitivity": 0.01,
-    "vehicle.dent_coupling": 1e5,
 }
 
 

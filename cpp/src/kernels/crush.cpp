@@ -10,7 +10,7 @@ namespace birm3d {
 
 namespace {
 
-PressColumns columns_of(const TrussMesh& mesh, std::size_t b, const EnvelopeChange* change) {
+PressColumns columns_of(const TrussMesh& mesh, std::size_t b, const Lanes* factor) {
     const TrussBlock& truss = mesh.block[b];
     return {truss.anchor_x.data(),
             truss.anchor_y.data(),
@@ -20,8 +20,7 @@ PressColumns columns_of(const TrussMesh& mesh, std::size_t b, const EnvelopeChan
             truss.compliance.data(),
             mesh.hinge[b * mesh.hinges].deflection.data(),
             mesh.hinges,
-            change ? change->extra.data() : nullptr,
-            change ? change->factor.data() : nullptr};
+            factor ? factor->data() : nullptr};
 }
 
 template <class Number, class State>
@@ -131,11 +130,11 @@ double press(const CurvedContact& surface, const PressColumns& truss, const Trus
 }
 
 template <class Contact>
-void crush_block(const Contact& surface, const TrussMesh& mesh, std::size_t b, const EnvelopeChange* change,
+void crush_block(const Contact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
                  const TrussBlockState& before, TrussBlockState& now, BlockContact& contact,
                  CrushSums& sums) {
     alignas(64) Lanes gap;
-    const double nodes = press(surface, columns_of(mesh, b, change), before, now, gap, contact, sums.nodes);
+    const double nodes = press(surface, columns_of(mesh, b, factor), before, now, gap, contact, sums.nodes);
     if (nodes >= left) sums.released_work += release(mesh.block[b], before, gap, contact, now);
     const double pushing = std::fmod(nodes, left);
     now.touching = pushing > 0.0;
@@ -164,14 +163,14 @@ InverseMass::InverseMass(const RigidBody& body, const Vec3& n) : constant(body.i
     form = cross.transpose() * body.inverse_inertia * cross;
 }
 
-void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const EnvelopeChange* change,
+void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
            const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums) {
-    crush_block(surface, mesh, b, change, before, now, contact, sums);
+    crush_block(surface, mesh, b, factor, before, now, contact, sums);
 }
 
-void crush(const CurvedContact& surface, const TrussMesh& mesh, std::size_t b, const EnvelopeChange* change,
+void crush(const CurvedContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
            const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums) {
-    crush_block(surface, mesh, b, change, before, now, contact, sums);
+    crush_block(surface, mesh, b, factor, before, now, contact, sums);
 }
 
 SkinForces total(const FlatContact& surface, const CrushSums& sums) {
@@ -204,37 +203,21 @@ Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const 
     return sum;
 }
 
-EnvelopeChange envelope_change(const TrussMesh& mesh, std::size_t b,
-                               const std::vector<const TrussBlockState*>& now, const Twist& motion,
-                               const BlockContact& contact) {
+Lanes rate_factor(const TrussMesh& mesh, std::size_t b, const TrussBlockState& now, const Twist& motion,
+                  const BlockContact& contact) {
     const TrussBlock& truss = mesh.block[b];
-    const TrussBlockState& block = *now[b];
-    EnvelopeChange change;
-    change.extra.fill(0.0);
-    change.factor.fill(1.0);
-    for (std::size_t i = 0; i < lanes && b * lanes + i < mesh.count; ++i) {
-        if (mesh.options.rate_sensitivity > 0.0) {
-            const Vec3 node(block.x[i], block.y[i], block.z[i]);
-            const Vec3 to_anchor = Vec3(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]) - node;
-            const Vec3 n = contact.normal(i);
-            // The node slides along the surface: the truss shortens by the approach along n times b . n.
-            const double approach = -n.dot(motion.velocity + motion.angular_velocity.cross(node));
-            const double share = to_anchor.dot(n) / std::max(to_anchor.norm(), tolerance::truss_length);
-            const double rate = mesh.options.rate_sensitivity * std::max(0.0, approach * share);
-            change.factor[i] = 1.0 + rate * rate;
-        }
-        if (mesh.options.dent_coupling > 0.0) {
-            const std::size_t truss_index = b * lanes + i;
-            for (std::size_t k = mesh.neighbor_begin[truss_index]; k < mesh.neighbor_begin[truss_index + 1];
-                 ++k) {
-                const TrussMesh::Neighbor& other = mesh.neighbor[k];
-                const double deflection = now[other.truss / lanes]->deflection[other.truss % lanes];
-                change.extra[i] +=
-                    mesh.options.dent_coupling * other.weight * (block.deflection[i] - deflection);
-            }
-        }
+    Lanes factor;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const Vec3 node(now.x[i], now.y[i], now.z[i]);
+        const Vec3 to_anchor = Vec3(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]) - node;
+        const Vec3 n = contact.normal(i);
+        // The node slides along the surface: the truss shortens by the approach along n times b . n.
+        const double approach = -n.dot(motion.velocity + motion.angular_velocity.cross(node));
+        const double share = to_anchor.dot(n) / std::max(to_anchor.norm(), tolerance::truss_length);
+        const double rate = mesh.rate_sensitivity * std::max(0.0, approach * share);
+        factor[i] = 1.0 + rate * rate;
     }
-    return change;
+    return factor;
 }
 
 }  // namespace birm3d

@@ -79,7 +79,6 @@ BIRM3D_INLINE double press(const PressColumns& truss, const Surface& surface,
             const double* hinge = truss.hinge + j * 2 * lanes + i;
             envelope = envelope + Row::load(hinge + lanes) * greater(d - Row::load(hinge), zero);
         }
-        if (truss.extra != nullptr) envelope = greater(envelope + Row::load(truss.extra + i), zero);
         if (truss.factor != nullptr) envelope = envelope * Row::load(truss.factor + i);
         const Row residual = Row::load(before.residual + i), compliance = Row::load(truss.compliance + i);
         const Row line = greater(Row::load(truss.k_unloading + i) * (d - residual), zero);

@@ -14,8 +14,7 @@ struct PressColumns {
     const double *k_unloading, *compliance;                 // N/m, m/N
     const double* hinge;  // (hinges)(2)(lanes) deflection (m) and change of slope (N/m), one after the other
     std::size_t hinges;
-    // Of scenes that have them, else null: what is added to the loading envelope (N), and a factor on the sum.
-    const double *extra, *factor;
+    const double* factor;  // on the loading envelope; null where there is none
 };
 
 // The columns that a step changes.

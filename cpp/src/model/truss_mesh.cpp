@@ -14,18 +14,7 @@ namespace {
 
 void require_valid(const TrussInput& input) {
     const std::size_t n = input.node.size();
-    require_not_negative("rate_sensitivity", input.options.rate_sensitivity);
-    require_not_negative("dent_coupling", input.options.dent_coupling);
-    if (input.options.dent_coupling > 0.0 && input.pair.empty())
-        refuse("dent_coupling", "0 where no pairs of nodes are given", input.options.dent_coupling);
-    for (std::size_t p = 0; p < input.pair.size(); ++p) {
-        const NodePair& pair = input.pair[p];
-        const std::string at = "[" + std::to_string(p) + "]";
-        if (pair.a >= n || pair.b >= n || pair.a == pair.b)
-            refuse("pairs" + at, "two different nodes below " + std::to_string(n),
-                   std::to_string(pair.a) + " and " + std::to_string(pair.b));
-        require_not_negative(("pairs" + at + " weight").c_str(), pair.weight);
-    }
+    require_not_negative("rate_sensitivity", input.rate_sensitivity);
     if (n == 0) refuse("nodes", "at least 1", 0.0);
     const auto same_size = [n](const char* name, std::size_t size) {
         if (size != n)
@@ -91,7 +80,7 @@ Box box_around(const Lanes& x, const Lanes& y, const Lanes& z) {
 
 TrussMesh::TrussMesh(const TrussInput& input) {
     require_valid(input);
-    options = input.options;
+    rate_sensitivity = input.rate_sensitivity;
     count = input.node.size();
     blocks = (count + lanes - 1) / lanes;
     for (const TrussCurve& curve : input.curve)
@@ -99,7 +88,6 @@ TrussMesh::TrussMesh(const TrussInput& input) {
 
     anchors = box_around(input.anchor);
     input_index = spatial_order(input.node);
-    add_neighbors(input.pair);
     block.resize(blocks);
     hinge.resize(blocks * hinges);
     for (std::size_t b = 0; b < blocks; ++b) {
@@ -111,23 +99,6 @@ TrussMesh::TrussMesh(const TrussInput& input) {
         node_box.push_back(box_around(block[b].node_x, block[b].node_y, block[b].node_z));
         anchor_box.push_back(box_around(block[b].anchor_x, block[b].anchor_y, block[b].anchor_z));
     }
-}
-
-void TrussMesh::add_neighbors(const std::vector<NodePair>& pairs) {
-    if (pairs.empty()) return;
-    std::vector<std::size_t> place(count);  // in mesh order, of the caller's number
-    for (std::size_t i = 0; i < count; ++i)
-        place[input_index[i]] = i;
-    std::vector<std::vector<Neighbor>> of(count);
-    for (const NodePair& pair : pairs) {
-        of[place[pair.a]].push_back({place[pair.b], pair.weight});
-        of[place[pair.b]].push_back({place[pair.a], pair.weight});
-    }
-    for (const std::vector<Neighbor>& neighbors : of) {
-        neighbor_begin.push_back(neighbor.size());
-        neighbor.insert(neighbor.end(), neighbors.begin(), neighbors.end());
-    }
-    neighbor_begin.push_back(neighbor.size());
 }
 
 void TrussMesh::add_stiffness(const TrussBlock& trusses) {

@@ -66,27 +66,20 @@ Twist predicted_motion(const Unit& unit, const LoadCourse& course, double dt, co
     return {R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
 }
 
-// Of the active blocks; none where the vehicle has no such options. They need all deflections of this instant
-// beforehand, so the trusses are crushed once without them.
+// Crushes one block. The rate of deflection is taken where the nodes will be, so that a rate-sensitive block is
+// first crushed without it.
 template <class Contact>
-std::vector<EnvelopeChange> envelope_changes(const TrussMesh& mesh, const Contact& surface,
-                                             const Twist& motion, const UnitState& before,
-                                             const BlockSet& active, BlockContact& contact, UnitState& now) {
-    std::vector<EnvelopeChange> changes;
-    if (!mesh.options.any()) return changes;
-    CrushSums thrown_away;
-    std::vector<BlockContact> contacts;
-    for (const std::size_t b : active.blocks()) {
-        crush(surface, mesh, b, nullptr, before.trusses.block[b], now.trusses.block[b], contact, thrown_away);
-        contacts.push_back(contact);
+void crush_with_rate(const Contact& surface, const TrussMesh& mesh, std::size_t b, const Twist& motion,
+                     const TrussBlockState& before, TrussBlockState& now, BlockContact& contact,
+                     CrushSums& sums) {
+    if (mesh.rate_sensitivity == 0.0) {
+        crush(surface, mesh, b, nullptr, before, now, contact, sums);
+        return;
     }
-    // Of blocks out of reach the trial may hold any state.
-    std::vector<const TrussBlockState*> blocks;
-    for (std::size_t b = 0; b < mesh.blocks; ++b)
-        blocks.push_back(active.contains(b) ? &now.trusses.block[b] : &before.trusses.block[b]);
-    for (std::size_t k = 0; k < contacts.size(); ++k)
-        changes.push_back(envelope_change(mesh, active.blocks()[k], blocks, motion, contacts[k]));
-    return changes;
+    CrushSums without;
+    crush(surface, mesh, b, nullptr, before, now, contact, without);
+    alignas(64) const Lanes factor = rate_factor(mesh, b, now, motion, contact);
+    crush(surface, mesh, b, &factor, before, now, contact, sums);
 }
 
 // The forces of one surface on one unit, body axes.
@@ -104,24 +97,18 @@ SkinForces press_blocks(const Scene& scene, std::size_t u, const State& from, co
 
     BlockSet& active = trial.active[u];
     active.clear();
+    BlockContact contact;
+    set_normals(surface, contact);
+    CrushSums sums;
+    Wrench by_trusses;
+    SkinForces friction;
     for (std::size_t b = 0; b < mesh.blocks; ++b) {
         const TrussBlockState& block = before.trusses.block[b];
         if (!block.touching && !surface.face.within_reach(block.box, 0.0)) continue;
         active.add(b);
         trial.stale[u].add(b);
-    }
-    BlockContact contact;
-    set_normals(surface, contact);
-    const std::vector<EnvelopeChange> change =
-        envelope_changes(mesh, surface, motion, before, active, contact, now);
-    CrushSums sums;
-    Wrench by_trusses;
-    SkinForces friction;
-    for (std::size_t k = 0; k < active.blocks().size(); ++k) {
-        const std::size_t b = active.blocks()[k];
         TrussBlockState& next = now.trusses.block[b];
-        crush(surface, mesh, b, change.empty() ? nullptr : &change[k], before.trusses.block[b], next, contact,
-              sums);
+        crush_with_rate(surface, mesh, b, motion, block, next, contact, sums);
         if (!next.touching) continue;
         if (along) by_trusses += along_trusses(mesh.block[b], next, contact);
         if (mu > 0.0) add_friction(unit.body, mu, full_speed, motion, next, contact, friction);

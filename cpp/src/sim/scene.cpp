@@ -98,12 +98,7 @@ std::uint64_t Scene::fingerprint() const {
             hash.add(hinge.deflection);
             hash.add(hinge.slope_change);
         }
-        hash.add(unit.trusses.options.rate_sensitivity);
-        hash.add(unit.trusses.options.dent_coupling);
-        for (const TrussMesh::Neighbor& neighbor : unit.trusses.neighbor) {
-            hash.add(static_cast<double>(neighbor.truss));
-            hash.add(neighbor.weight);
-        }
+        hash.add(unit.trusses.rate_sensitivity);
         for (const Wheel& wheel : unit.wheels) {
             hash.add(wheel.center);
             hash.add(wheel.radius);

@@ -51,12 +51,6 @@ struct CurvedContact {
     const RigidBody& body;
 };
 
-// Changes of the loading envelopes of a block (EnvelopeOptions): F = (F(d) + extra) * factor.
-struct alignas(64) EnvelopeChange {
-    Lanes extra;   // N
-    Lanes factor;  // 1
-};
-
 // What the blocks of a unit add up to.
 struct CrushSums {
     NodeSums nodes;
@@ -64,11 +58,12 @@ struct CrushSums {
     double stiffness = 0.0;      // see SkinForces (1/s^2)
 };
 
-// Takes block `b` from `before` to `now`, fills in `contact` and adds to the sums; `change` may be null. The
+// Takes block `b` from `before` to `now`, fills in `contact` and adds to the sums; `factor` on the loading envelopes
+// may be null. The
 // normals of a flat contact are the caller's to set, once for all blocks.
-void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const EnvelopeChange* change,
+void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
            const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums);
-void crush(const CurvedContact& surface, const TrussMesh& mesh, std::size_t b, const EnvelopeChange* change,
+void crush(const CurvedContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
            const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums);
 
 // The forces of all blocks, projected (body axes).
@@ -78,10 +73,9 @@ SkinForces total(const CurvedContact& surface, const CrushSums& sums);
 // The force of a block by the paper's rule: each truss pushes along itself (body axes).
 Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const BlockContact& contact);
 
-// The change of block `b`'s envelopes by EnvelopeOptions, from deflections `now` and the motion of the body
-// at that instant (body axes).
-EnvelopeChange envelope_change(const TrussMesh& mesh, std::size_t b,
-                               const std::vector<const TrussBlockState*>& now, const Twist& motion,
-                               const BlockContact& contact);
+// The factor on the loading envelopes of block `b` by its rate of deflection (TrussInput), from the motion of the
+// body at that instant and the normals at its nodes (body axes).
+Lanes rate_factor(const TrussMesh& mesh, std::size_t b, const TrussBlockState& now, const Twist& motion,
+                  const BlockContact& contact);
 
 }  // namespace birm3d

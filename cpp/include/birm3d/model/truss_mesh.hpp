@@ -18,24 +18,6 @@
 
 namespace birm3d {
 
-// Two nodes near each other in the shell; weight: product of their areas over that of the surroundings (m^2).
-struct NodePair {
-    std::size_t a = 0, b = 0;
-    double weight = 0.0;
-};
-
-// Physics beside the law of Fig. 3, left out where zero.
-struct EnvelopeOptions {
-    // What is crushed has inertia and rate strength: the loading envelope grows by 1 + (this times the rate of
-    // deflection)^2 (s/m).
-    double rate_sensitivity = 0.0;
-    // A dent drags its surroundings: each pair of nodes resists a difference of deflections by this much times
-    // the pair's weight (N/m^3).
-    double dent_coupling = 0.0;
-
-    bool any() const { return rate_sensitivity > 0.0 || dent_coupling > 0.0; }
-};
-
 // What a caller gives: one curve for many trusses, scaled by each truss's tributary area (or by 1).
 struct TrussInput {
     std::vector<Vec3> node;             // (n) body axes, origin at the mass centre (m)
@@ -43,8 +25,9 @@ struct TrussInput {
     std::vector<TrussCurve> curve;      // (c)
     std::vector<std::size_t> curve_of;  // (n) index into curve
     std::vector<double> scale;          // (n) tributary area (m^2), or 1 for curves per truss
-    std::vector<NodePair> pair = {};    // (p) may be empty
-    EnvelopeOptions options = {};
+    // What is crushed has inertia and rate strength, which the law of Fig. 3 leaves out: the loading envelope
+    // grows by 1 + (this times the rate of deflection)^2 (s/m).
+    double rate_sensitivity = 0.0;
 };
 
 // Unloading stiffness of some trusses and its second moments about the mass centre, body axes.
@@ -84,14 +67,6 @@ struct TrussMesh {
     Box anchors;                            // around all of them
     std::vector<std::size_t> input_index;   // (count) the caller's number of each truss
 
-    // Neighbours in the shell: those of truss i stand at neighbor_begin[i] to neighbor_begin[i + 1].
-    struct Neighbor {
-        std::size_t truss;
-        double weight;  // of the pair (m^2)
-    };
-    std::vector<std::size_t> neighbor_begin;  // (count + 1), empty without pairs
-    std::vector<Neighbor> neighbor;           // (2 pairs)
-
     Vec3 node(std::size_t truss) const {
         const TrussBlock& b = block[truss / lanes];
         const std::size_t i = truss % lanes;
@@ -103,12 +78,11 @@ struct TrussMesh {
         return {b.anchor_x[i], b.anchor_y[i], b.anchor_z[i]};
     }
 
-    EnvelopeOptions options;
+    double rate_sensitivity = 0.0;  // see TrussInput (s/m)
 
     double reach = 0.0;  // greatest distance of a node or anchor from the mass centre (m)
 
   private:
-    void add_neighbors(const std::vector<NodePair>& pairs);
     void add_stiffness(const TrussBlock& trusses);
     void fill_lane(const TrussInput& input, std::size_t source, bool padding, std::size_t b, std::size_t i);
 };
