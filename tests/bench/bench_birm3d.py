@@ -36,6 +36,8 @@ SPEED = 22.352  # m/s
 MASS = 6804.0  # kg
 LAW = {"k_initial": 3e6, "knee": 0.4, "k_hardening": 6e6, "k_unloading": 60e6}  # all trusses, N/m and m
 DEFAULT = "tolerance 1e-3 (default)"
+STRICT = "tolerance 1e-4"
+OURS = "BIRM3D"
 COMPARED = ("dynamic_crush", "peak_normal_force", "exit_speed")
 
 # The first marks.
@@ -133,7 +135,7 @@ def bench_w2(n: int, repeats: int) -> list[Row]:
     rows = []
     for label, changes in {
         DEFAULT: {},
-        "tolerance 1e-4": {"tolerance": 1e-4},
+        STRICT: {"tolerance": 1e-4},
         "fixed 1 ms": {"time_step": 1e-3},
         "fixed 0.1 ms": {"time_step": 1e-4},
     }.items():
@@ -149,7 +151,7 @@ def bench_w2(n: int, repeats: int) -> list[Row]:
         lines = [
             Row(
                 case=f"W2, N = {n:,}",
-                solver="BIRM3D",
+                solver=OURS,
                 setting=label,
                 steps=result.statistics.steps,
                 error=error,
@@ -186,7 +188,7 @@ def bench_sedan(repeats: int, mesh_density: float) -> list[Row]:
     reference = {name: value for name, value in fine.metrics.items() if name not in BOOKKEEPING}
     simulations = {
         DEFAULT: scenes.nhtsa_10146(None, mesh_density),
-        "tolerance 1e-4": scenes.nhtsa_10146(Settings(tolerance=1e-4), mesh_density),
+        STRICT: scenes.nhtsa_10146(Settings(tolerance=1e-4), mesh_density),
     }
     times = take_turns([simulation.run for simulation in simulations.values()], repeats)
     rows = []
@@ -197,7 +199,7 @@ def bench_sedan(repeats: int, mesh_density: float) -> list[Row]:
         rows.append(
             Row(
                 case=f"NHTSA 10146, {vehicle.n_elements:,} elements",
-                solver="BIRM3D",
+                solver=OURS,
                 setting=label,
                 steps=result.statistics.steps,
                 error=error,
@@ -244,19 +246,24 @@ def marks(rows: Sequence[Row]) -> list[tuple[str, bool]]:
     """The first marks, and whether each holds in these rows; a mark whose case was not run is left out."""
     checks = []
     for i, row in enumerate(rows):
-        if row.setting != DEFAULT:
+        if row.solver != OURS:
             continue
-        if row.case.startswith("NHTSA"):
+        if row.setting == DEFAULT and row.case.startswith("NHTSA"):
             text = f"sedan in less than {SEDAN_TIME * 1e3:g} ms on one core: {row.time * 1e3:.2f} ms"
             checks.append((text, row.time < SEDAN_TIME))
             text = f"sedan, every metric within {SEDAN_ERROR:.0%} of its fine-step answer: "
             checks.append((f"{text}{row.error:.1e} ({row.worst})", row.error <= SEDAN_ERROR))
-        elif row.case.endswith("= 1,000"):
+        elif row.setting == STRICT and row.case.endswith("= 1,000"):
+            # The gap hangs on the error: a coarse answer takes NumPy few steps, too.
             rival, lean = rows[i + 1].times_slower, rows[i + 2].times_slower
+            default = next(k for k, r in enumerate(rows) if (r.case, r.setting) == (row.case, DEFAULT))
             text = (
-                f"W2, N = 1,000, at least {FASTER_THAN_NUMPY:g} times faster than NumPy at the same error: "
+                f"W2, N = 1,000, at least {FASTER_THAN_NUMPY:g} times faster than NumPy at an error of "
+                f"{row.error:.1e}: {rival:.1f} times (lean: {lean:.1f}); at the default's "
+                f"{rows[default].error:.1e}: {rows[default + 1].times_slower:.1f} times "
+                f"(lean: {rows[default + 2].times_slower:.1f})"
             )
-            checks.append((f"{text}{rival:.1f} times (lean: {lean:.1f})", rival >= FASTER_THAN_NUMPY))
+            checks.append((text, rival >= FASTER_THAN_NUMPY))
     return checks
 
 

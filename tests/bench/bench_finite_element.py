@@ -172,9 +172,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument(
-        "--quick", action="store_true", help="without poles; one start, coarse mesh"
-    )
+    parser.add_argument("--quick", action="store_true", help="without poles; one start, coarse mesh")
     parser.add_argument("--vehicles", default="n,s", help="which, by their letters")
     parser.add_argument("--variants", help="which, by their names, with semicolons between")
     parser.add_argument("--starts", type=int, default=2)
