@@ -72,12 +72,9 @@ class Barrier:
         ValueError
             If a number is not finite, friction is negative, or width or height is not above 0.
         """
-        if np.shape(origin) != (3,):
-            raise ValueError(f"origin must have shape (3,), got {np.shape(origin)}")
-        x, y, z = (float(value) for value in origin)
         return Barrier(
             friction=float(friction),
-            origin=(x, y, z),
+            origin=_point(origin),
             heading=float(heading),
             width=math.inf if width is None else float(width),
             height=math.inf if height is None else float(height),
@@ -109,11 +106,8 @@ class Barrier:
         ValueError
             If a number is not finite, friction is negative, or the diameter is not above 0.
         """
-        if np.shape(origin) != (3,):
-            raise ValueError(f"origin must have shape (3,), got {np.shape(origin)}")
-        x, y, z = (float(value) for value in origin)
         return Barrier(
-            friction=float(friction), origin=(x, y, z), heading=float(heading), diameter=float(diameter)
+            friction=float(friction), origin=_point(origin), heading=float(heading), diameter=float(diameter)
         )
 
     @cached_property
@@ -141,3 +135,10 @@ class Barrier:
 
     def __getstate__(self) -> dict[str, object]:
         return {name: value for name, value in self.__dict__.items() if name != "core"}
+
+
+def _point(origin: Sequence[float]) -> tuple[float, float, float]:
+    if np.shape(origin) != (3,):
+        raise ValueError(f"origin must have shape (3,), got {np.shape(origin)}")
+    x, y, z = (float(value) for value in origin)
+    return x, y, z

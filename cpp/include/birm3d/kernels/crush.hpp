@@ -7,6 +7,8 @@
 //   deflection d = B_0 - |B|,  truss force F(d) by the law of Fig. 3,  b = B/|B|
 //   force on the vehicle:  projected   F * (-b . n) * n      (default)
 //                          along_truss F * (-b)              (the paper's rule)
+// A truss that has turned so far that it would push its node off the surface (b . n > 0) does not push: the node
+// springs to its residual length.
 //
 // Deviations from the paper: its Eq. 14 (left side P2) as printed moves away from the plane; the push-back
 // is p - gap*n. The force is projected on the normal, because the node is free to slide: along the truss it
@@ -58,9 +60,8 @@ struct CrushSums {
     double stiffness = 0.0;      // see SkinForces (1/s^2)
 };
 
-// Takes block `b` from `before` to `now`, fills in `contact` and adds to the sums; `factor` on the loading envelopes
-// may be null. The
-// normals of a flat contact are the caller's to set, once for all blocks.
+// Takes block `b` from `before` to `now`, fills in `contact` and adds to the sums. `factor`: on the loading
+// envelopes, may be null. The normals of a flat contact are the caller's to set, once for all blocks.
 void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
            const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums);
 void crush(const CurvedContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
@@ -73,8 +74,8 @@ SkinForces total(const CurvedContact& surface, const CrushSums& sums);
 // The force of a block by the paper's rule: each truss pushes along itself (body axes).
 Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const BlockContact& contact);
 
-// The factor on the loading envelopes of block `b` by its rate of deflection (TrussInput), from the motion of the
-// body at that instant and the normals at its nodes (body axes).
+// The factor on the loading envelopes of block `b` by its rate of deflection (TrussInput), from the motion of
+// the body at that instant and the normals at its nodes (body axes).
 Lanes rate_factor(const TrussMesh& mesh, std::size_t b, const TrussBlockState& now, const Twist& motion,
                   const BlockContact& contact);
 
