@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "arrays.hpp"
@@ -40,9 +41,9 @@ void register_vehicle(py::module_& m) {
             "input_index", [](const Unit& unit) { return unit.trusses.input_index; },
             "The caller's number of each truss in the order of the state's columns.");
     py::class_<Vehicle, std::shared_ptr<Vehicle>>(m, "Vehicle", "One or more units. Immutable.")
-        .def(py::init([](const std::vector<Unit>& units) {
+        .def(py::init([](std::vector<Unit> units) {
                  auto vehicle = std::make_shared<Vehicle>();
-                 vehicle->units = units;
+                 vehicle->units = std::move(units);
                  return vehicle;
              }),
              py::arg("units"));
