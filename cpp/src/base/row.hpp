@@ -7,6 +7,8 @@
 
 #include <cstddef>
 
+#include "birm3d/base/node_sums.hpp"
+
 #if !defined(__GNUC__)
 #error "BIRM3D's kernels need the vector types of GCC or Clang"
 #endif
@@ -24,8 +26,6 @@
 
 namespace birm3d::BIRM3D_INSTRUCTION_SET {
 
-#define BIRM3D_INLINE inline __attribute__((always_inline))
-
 inline constexpr std::size_t row_length = 8;
 inline constexpr std::size_t parts = row_length / BIRM3D_REGISTER_LENGTH;
 
@@ -33,30 +33,30 @@ struct Row {
     using Register = double __attribute__((vector_size(8 * BIRM3D_REGISTER_LENGTH)));
     Register part[parts];
 
-    BIRM3D_INLINE static Row of(double value) {
+    BIRM3D_IN_LANE_LOOP static Row of(double value) {
         Row row;
         for (std::size_t p = 0; p < parts; ++p)
             row.part[p] = Register{} + value;
         return row;
     }
-    BIRM3D_INLINE static Row load(const double* from) {
+    BIRM3D_IN_LANE_LOOP static Row load(const double* from) {
         Row row;
         for (std::size_t p = 0; p < parts; ++p)
             row.part[p] = *reinterpret_cast<const Register*>(from + p * BIRM3D_REGISTER_LENGTH);
         return row;
     }
-    BIRM3D_INLINE void store(double* to) const {
+    BIRM3D_IN_LANE_LOOP void store(double* to) const {
         for (std::size_t p = 0; p < parts; ++p)
             *reinterpret_cast<Register*>(to + p * BIRM3D_REGISTER_LENGTH) = part[p];
     }
 };
 
-#define BIRM3D_ROW_OPERATOR(op)                                 \
-    BIRM3D_INLINE Row operator op(const Row& a, const Row& b) { \
-        Row row;                                                \
-        for (std::size_t p = 0; p < parts; ++p)                 \
-            row.part[p] = a.part[p] op b.part[p];               \
-        return row;                                             \
+#define BIRM3D_ROW_OPERATOR(op)                                       \
+    BIRM3D_IN_LANE_LOOP Row operator op(const Row& a, const Row& b) { \
+        Row row;                                                      \
+        for (std::size_t p = 0; p < parts; ++p)                       \
+            row.part[p] = a.part[p] op b.part[p];                     \
+        return row;                                                   \
     }
 BIRM3D_ROW_OPERATOR(+)
 BIRM3D_ROW_OPERATOR(-)
@@ -65,18 +65,18 @@ BIRM3D_ROW_OPERATOR(/)
 #undef BIRM3D_ROW_OPERATOR
 
 // a > b ? yes : no
-BIRM3D_INLINE Row where_above(const Row& a, const Row& b, const Row& yes, const Row& no) {
+BIRM3D_IN_LANE_LOOP Row where_above(const Row& a, const Row& b, const Row& yes, const Row& no) {
     Row row;
     for (std::size_t p = 0; p < parts; ++p)
         row.part[p] = a.part[p] > b.part[p] ? yes.part[p] : no.part[p];
     return row;
 }
 
-BIRM3D_INLINE Row greater(const Row& a, const Row& b) {
+BIRM3D_IN_LANE_LOOP Row greater(const Row& a, const Row& b) {
     return where_above(a, b, a, b);
 }
 
-BIRM3D_INLINE Row square_root(const Row& a) {
+BIRM3D_IN_LANE_LOOP Row square_root(const Row& a) {
     Row row;
     for (std::size_t p = 0; p < parts; ++p)
         for (std::size_t k = 0; k < BIRM3D_REGISTER_LENGTH; ++k)
@@ -84,10 +84,10 @@ BIRM3D_INLINE Row square_root(const Row& a) {
     return row;
 }
 
-BIRM3D_INLINE double sum_of(const Row& row) {
+BIRM3D_IN_LANE_LOOP double sum_of(const Row& row) {
     alignas(64) double v[row_length];
     row.store(v);
-    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+    return row_sum(v);
 }
 
 }  // namespace birm3d::BIRM3D_INSTRUCTION_SET

@@ -10,26 +10,6 @@ namespace birm3d {
 
 namespace {
 
-PressColumns columns_of(const TrussMesh& mesh, std::size_t b, const Lanes* factor) {
-    const TrussBlock& truss = mesh.block[b];
-    return {truss.anchor_x.data(),
-            truss.anchor_y.data(),
-            truss.anchor_z.data(),
-            truss.length.data(),
-            truss.k_unloading.data(),
-            truss.compliance.data(),
-            mesh.hinge[b * mesh.hinges].deflection.data(),
-            mesh.hinges,
-            factor ? factor->data() : nullptr};
-}
-
-template <class Number, class State>
-PressState<Number> columns_of(State& state) {
-    return {state.x.data(),          state.y.data(),     state.z.data(),
-            state.deflection.data(), state.force.data(), state.peak_deflection.data(),
-            state.residual.data()};
-}
-
 // Held nodes move along n + m, m the normal of the instant before, so that a path is followed to second order
 // while the body turns.
 Vec3 holding_direction(const Vec3& n, const Vec3& m) {
@@ -113,18 +93,18 @@ double press(const FlatContact& surface, const PressColumns& truss, const TrussB
 
 double press(const CurvedContact& surface, const PressColumns& truss, const TrussBlockState& before,
              TrussBlockState& now, Lanes& gap, BlockContact& contact, NodeSums& sums) {
-    alignas(64) Lanes gap_before, hx, hy, hz;
+    alignas(64) Lanes hx, hy, hz;
     for (std::size_t i = 0; i < lanes; ++i) {
         const Vec3 node(before.x[i], before.y[i], before.z[i]);
         const Vec3 n = surface.face.normal_at(node);
         const Vec3 h = holding_direction(n, surface.before.normal_at(node));
-        gap_before[i] = surface.face.gap(node);
+        gap[i] = surface.face.gap(node);
         contact.nx[i] = n.x(), contact.ny[i] = n.y(), contact.nz[i] = n.z();
         hx[i] = h.x(), hy[i] = h.y(), hz[i] = h.z();
     }
     return press_rows.curved(truss,
-                             {gap_before.data(), contact.nx.data(), contact.ny.data(), contact.nz.data(),
-                              hx.data(), hy.data(), hz.data()},
+                             {gap.data(), contact.nx.data(), contact.ny.data(), contact.nz.data(), hx.data(),
+                              hy.data(), hz.data()},
                              columns_of<const double>(before), columns_of<double>(now), gap.data(),
                              contact.pressure.data(), sums);
 }

@@ -2,14 +2,13 @@
 #include "kernels/crush_rows.hpp"
 
 #include "base/row.hpp"
-#include "birm3d/base/lane_count.hpp"
 #include "birm3d/base/tolerances.hpp"
 
 namespace birm3d::BIRM3D_INSTRUCTION_SET {
 
 namespace {
 
-BIRM3D_INLINE void add_to(double* sum, const Row& row) {
+BIRM3D_IN_LANE_LOOP void add_to(double* sum, const Row& row) {
     (Row::load(sum) + row).store(sum);
 }
 
@@ -17,7 +16,7 @@ struct Vector {
     Row x, y, z;
 };
 
-BIRM3D_INLINE Row dot(const Vector& a, const Vector& b) {
+BIRM3D_IN_LANE_LOOP Row dot(const Vector& a, const Vector& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
@@ -28,18 +27,20 @@ struct Place {
 
 // Both surfaces give gap, normal and direction of the eight nodes from i on.
 struct Flat {
-    BIRM3D_INLINE explicit Flat(const FlatPress& s)
+    BIRM3D_IN_LANE_LOOP explicit Flat(const FlatPress& s)
         : n{Row::of(s.nx), Row::of(s.ny), Row::of(s.nz)},
           h{Row::of(s.hx), Row::of(s.hy), Row::of(s.hz)},
           offset(Row::of(s.offset)) {}
-    BIRM3D_INLINE Place at(std::size_t, const Vector& node) const { return {dot(n, node) - offset, n, h}; }
+    BIRM3D_IN_LANE_LOOP Place at(std::size_t, const Vector& node) const {
+        return {dot(n, node) - offset, n, h};
+    }
     Vector n, h;
     Row offset;
 };
 
 struct Curved {
-    BIRM3D_INLINE explicit Curved(const CurvedPress& press) : s(press) {}
-    BIRM3D_INLINE Place at(std::size_t i, const Vector&) const {
+    BIRM3D_IN_LANE_LOOP explicit Curved(const CurvedPress& press) : s(press) {}
+    BIRM3D_IN_LANE_LOOP Place at(std::size_t i, const Vector&) const {
         return {Row::load(s.gap + i),
                 {Row::load(s.nx + i), Row::load(s.ny + i), Row::load(s.nz + i)},
                 {Row::load(s.hx + i), Row::load(s.hy + i), Row::load(s.hz + i)}};
@@ -48,9 +49,9 @@ struct Curved {
 };
 
 template <bool flat, class Surface>
-BIRM3D_INLINE double press(const PressColumns& truss, const Surface& surface,
-                           const PressState<const double>& before, const PressState<double>& now,
-                           double* gaps, double* pressures, NodeSums& sums) {
+BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surface,
+                                 const PressState<const double>& before, const PressState<double>& now,
+                                 double* gaps, double* pressures, NodeSums& sums) {
     const Row zero = Row::of(0.0), one = Row::of(1.0), least = Row::of(tolerance::truss_length);
     const Row node_left = Row::of(left);
     Row force = zero, work = zero, stored = zero, nodes = zero;

@@ -128,7 +128,10 @@ void barrier_forces(const Scene& scene, std::size_t u, const State& from, Trial&
     UnitState& now = trial.state.units[u];
     const Mat3 R = now.body.orientation.toRotationMatrix();
     const Mat3 R_before = before.body.orientation.toRotationMatrix();
-    const Twist motion = predicted_motion(unit, before.course, trial.dt, now.body, R);
+    // Only friction and the rate of deflection ask for the motion.
+    Twist motion;
+    if (scene.barrier->friction > 0.0 || unit.trusses.rate_sensitivity > 0.0)
+        motion = predicted_motion(unit, before.course, trial.dt, now.body, R);
     now.skin = std::visit(
         [&](const auto& face) {
             const auto surface = contact_of(unit.body, face.seen_from(now.body.position, R),

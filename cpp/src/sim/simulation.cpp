@@ -70,8 +70,8 @@ Turn find_turn(const Scene& scene, const State& before, const Trial& trial) {
     return {approach / (approach - separation), 0.25 * trial.dt * trial.dt * stiffness * separation};
 }
 
-// When the last load is gone, by the course of the loads so far (s); half of `dt` where that does not tell.
-double time_to_release(const State& state, double dt) {
+// When the last load is gone, by the course of the loads so far (s); infinite where that does not tell.
+double time_to_release(const State& state) {
     double latest = 0.0;
     for (const UnitState& unit : state.units) {
         const double force = unit.course.now.normal_force, rate = unit.course.rate.normal_force,
@@ -80,9 +80,8 @@ double time_to_release(const State& state, double dt) {
         // Root of force + rate s + bend s (s + step), written for small bends.
         const double slope = rate + bend * step;
         const double square = slope * slope - 4.0 * bend * force;
-        const double root =
-            square > 0.0 && slope < 0.0 ? 2.0 * force / (std::sqrt(square) - slope) : infinity;
-        latest = std::max(latest, root < dt ? root : 0.5 * dt);
+        const bool ends = square > 0.0 && slope < 0.0;
+        latest = std::max(latest, ends ? 2.0 * force / (std::sqrt(square) - slope) : infinity);
     }
     return latest;
 }
@@ -184,8 +183,7 @@ void Simulation::adaptive_step() {
     const double allowed =
         tolerance::step_error_per_tolerance * scene_.settings.tolerance * scene_.reference_speed();
     double dt = std::min({state_.next_step, tolerance::longest_step, remaining()});
-    if (touches(state_))
-        dt = std::min(dt, std::max(time_to_release(state_, infinity), tolerance::release_resolution));
+    if (touches(state_)) dt = std::min(dt, std::max(time_to_release(state_), tolerance::release_resolution));
     for (;;) {
         if (dt < tolerance::shortest_step)
             throw UnstableError(dt, tolerance::shortest_step, state_.time,
@@ -202,7 +200,7 @@ void Simulation::adaptive_step() {
         if (trial_.impact_after < dt)
             shorter = std::min(shorter, std::max(trial_.impact_after, 2.0 * tolerance::shortest_step));
         if (dt > tolerance::release_resolution && touches(state_) && !touches(trial_.state))
-            shorter = std::min(shorter, std::max(time_to_release(state_, dt), tolerance::release_resolution));
+            shorter = std::min(shorter, std::max(0.5 * dt, tolerance::release_resolution));
         if (!(shorter < dt)) break;
         dt = shorter;
         ++state_.statistics.rejected;

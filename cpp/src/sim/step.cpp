@@ -21,10 +21,16 @@ double error_of(const Unit& unit, const BodyState& body, const Load& departure, 
     return dt / 8.0 * (unit.body.inverse_mass * departure.wrench.force.norm() + gyration * turning.norm());
 }
 
+// What a bend of one adds over a step of dt that follows one of h: to the lead, and with the new bend's change to
+// the kick (s^3).
+double cubic_weight(double dt, double h) {
+    return dt * dt * (dt / 12.0 + h / 6.0);
+}
+
 // Before the new load is known: the integral of (1 - s/dt) times the load's course, less that of a constant.
 Load lead(const LoadCourse& before, double dt) {
     Load sum = scaled(before.rate, dt * dt / 6.0);
-    if (before.bend_lasts) sum += scaled(before.bend, dt * dt * (dt / 12.0 + before.step / 6.0));
+    if (before.bend_lasts) sum += scaled(before.bend, cubic_weight(dt, before.step));
     return sum;
 }
 
@@ -62,7 +68,7 @@ double load_and_correct(const Unit& unit, const LoadCourse& before, double dt, U
     const Load change = scaled(difference(now.bend, before.bend), dt * span);
     if (before.bend_lasts)
         extra.correction +=
-            scaled(change, -dt * dt * (dt / 12.0 + before.step / 6.0) / (span * (span + before.step_before)));
+            scaled(change, -cubic_weight(dt, before.step) / (span * (span + before.step_before)));
     extra.correction = within_push(extra.correction, before, now, dt);
 
     const double by_departure = error_of(unit, moved.body, departure, dt);
@@ -118,9 +124,8 @@ void book_motion(const Scene& scene, State& now) {
 }  // namespace
 
 Trial::Trial(const Vehicle& vehicle) : state(vehicle) {
-    for (const Unit& unit : vehicle.units)
-        impulses.emplace_back(unit.wheels.size());
     for (const Unit& unit : vehicle.units) {
+        impulses.emplace_back(unit.wheels.size());
         active.emplace_back(unit.trusses.blocks);
         stale.emplace_back(unit.trusses.blocks);
         for (std::size_t block = 0; block < unit.trusses.blocks; ++block)

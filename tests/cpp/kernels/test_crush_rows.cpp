@@ -16,13 +16,6 @@ struct Outcome {
     double nodes = 0.0;
 };
 
-template <class Number, class State>
-PressState<Number> columns_of(State& s) {
-    return {s.x.data(),          s.y.data(),     s.z.data(),
-            s.deflection.data(), s.force.data(), s.peak_deflection.data(),
-            s.residual.data()};
-}
-
 bool same_bits(const Outcome& a, const Outcome& b) {
     const auto same = [](const Lanes& x, const Lanes& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
     return same(a.now.x, b.now.x) && same(a.now.y, b.now.y) && same(a.now.z, b.now.z) &&
@@ -42,7 +35,6 @@ TEST("every instruction set gives the same bits") {
             value = middle + spread * uniform(random);
     };
     const TrussMesh mesh(laboratory::front_face(laboratory::w2_curve(), 8, 8));
-    const TrussBlock& truss = mesh.block[0];
     const std::vector<PressFunctions> functions = press_functions();
     for (int round = 0; round < 50; ++round) {
         // Nodes all about a slanted surface, some pressed already, on their envelopes or below.
@@ -61,15 +53,7 @@ TEST("every instruction set gives the same bits") {
         fill(ny, 0.0, 0.4);
         fill(nz, 0.0, 0.4);
         const bool changed = round % 2 == 1;
-        const PressColumns columns{truss.anchor_x.data(),
-                                   truss.anchor_y.data(),
-                                   truss.anchor_z.data(),
-                                   truss.length.data(),
-                                   truss.k_unloading.data(),
-                                   truss.compliance.data(),
-                                   mesh.hinge[0].deflection.data(),
-                                   mesh.hinges,
-                                   changed ? factor.data() : nullptr};
+        const PressColumns columns = columns_of(mesh, 0, changed ? &factor : nullptr);
         const FlatPress flat{-0.96, 0.28, 0.0, -2.6, -0.95, 0.3, 0.01};
         const CurvedPress curved{gap.data(), nx.data(), ny.data(), nz.data(),
                                  nx.data(),  ny.data(), nz.data()};

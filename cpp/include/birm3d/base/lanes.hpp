@@ -7,7 +7,7 @@
 #include <array>
 #include <cstddef>
 
-#include "birm3d/base/lane_count.hpp"
+#include "birm3d/base/node_sums.hpp"
 
 namespace birm3d {
 
@@ -30,17 +30,6 @@ using Lanes = std::array<double, lanes>;
 #else
 #define BIRM3D_INDEPENDENT
 #endif
-
-// Helpers of lane loops must be compiled with the loop they stand in.
-#if defined(__GNUC__)
-#define BIRM3D_IN_LANE_LOOP inline __attribute__((always_inline))
-#else
-#define BIRM3D_IN_LANE_LOOP inline
-#endif
-
-BIRM3D_IN_LANE_LOOP double row_sum(const double* v) {
-    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
-}
 
 // Sum by halves, in place: a fixed order that every instruction set can follow.
 BIRM3D_IN_LANE_LOOP double lane_sum(Lanes& values) {

@@ -2,7 +2,14 @@
 // Plain, because files that are compiled for several instruction sets include it (see src/base/row.hpp).
 #pragma once
 
+#include "birm3d/base/lane_count.hpp"
+
 namespace birm3d {
+
+// Of eight columns.
+BIRM3D_IN_LANE_LOOP double row_sum(const double* v) {
+    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
 
 struct alignas(64) NodeSums {
     double force[8] = {};                                         // normal force (N)
