@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 import signal
+import sqlite3
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
@@ -82,15 +84,35 @@ def body_to_world() -> Callable[[Result], Rotation]:
     return orientation
 
 
+def count_finished_runs(path: Path) -> int:
+    """Committed runs of a study that may still be running, read from a copy as a crash would leave it."""
+    copy = path.with_name("copy.db")
+    for suffix in ("", "-journal"):
+        with suppress(FileNotFoundError):  # a journal goes when its change is done
+            Path(f"{copy}{suffix}").write_bytes(Path(f"{path}{suffix}").read_bytes())
+    try:
+        with sqlite3.connect(copy) as connection:
+            return int(connection.execute("SELECT count(*) FROM runs").fetchone()[0])
+    except sqlite3.DatabaseError:
+        return 0  # copied in the midst of a change
+    finally:
+        for suffix in ("", "-journal"):
+            Path(f"{copy}{suffix}").unlink(missing_ok=True)
+
+
+@pytest.fixture
+def finished_runs() -> Callable[[Path], int]:
+    return count_finished_runs
+
+
 @pytest.fixture
 def interrupt_once_stored() -> Iterator[Callable[[Path], None]]:
-    """Ctrl-C for this process, a moment after a study has made its store."""
+    """Ctrl-C for this process, once a study has stored its first runs."""
     threads = []
 
     def interrupt(store: Path) -> None:
-        while not (store.exists() and store.stat().st_size > 0):
+        while count_finished_runs(store) == 0:
             time.sleep(0.01)
-        time.sleep(0.3)
         os.kill(os.getpid(), signal.SIGINT)
 
     def start(store: Path) -> None:

@@ -323,25 +323,10 @@ birm3d.sweep(scenes.nhtsa_10146(mesh_density=0.1), impact_speed=speeds, store=sy
 """
 
 
-def finished_runs(path: Path) -> int:
-    """Committed runs of a study that may still be running, read from a copy as a crash would leave it."""
-    copy = path.with_name("copy.db")
-    for suffix in ("", "-journal"):
-        part = Path(f"{path}{suffix}")
-        if part.exists():
-            Path(f"{copy}{suffix}").write_bytes(part.read_bytes())
-    try:
-        with sqlite3.connect(copy) as connection:
-            return int(connection.execute("SELECT count(*) FROM runs").fetchone()[0])
-    except sqlite3.DatabaseError:
-        return 0  # copied in the midst of a change
-    finally:
-        for suffix in ("", "-journal"):
-            Path(f"{copy}{suffix}").unlink(missing_ok=True)
-
-
 @pytest.mark.parametrize("signal_number", [signal.SIGKILL, signal.SIGINT], ids=["kill -9", "Ctrl-C"])
-def test_a_study_that_was_stopped_goes_on(tmp_path: Path, signal_number: signal.Signals) -> None:
+def test_a_study_that_was_stopped_goes_on(
+    tmp_path: Path, finished_runs: Callable[[Path], int], signal_number: signal.Signals
+) -> None:
     path = tmp_path / "runs.db"
     process = subprocess.Popen(
         [sys.executable, "-c", ENDLESS, path], stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True
