@@ -5,9 +5,9 @@
 Vehicles N (4.8 t, soft) and S (1.2 t, stiff) are finite-element models, run for this project;
 finite_element.py says how far their runs can be believed. The front's envelope, five stresses at set depths,
 is fitted to the wall at 20 and 40 mph together; wall 30, the wall at 25 degrees from head-on and the pole are
-predicted. Then the same with the rate of deflection in the envelope, with nodes coupled to their
-surroundings, and with both. Rows that were fitted are marked. Errors are of the mass centre's travel along
-the barrier's normal, of the CFC60 peak force, and of the mean force up to the greatest travel.
+predicted. Then the same with the rate of deflection in the envelope; and without it, but with the pole fitted
+too. Rows that were fitted are marked. Errors are of the mass centre's travel along the barrier's normal, of
+the CFC60 peak force, and of the mean force up to the greatest travel.
 """
 
 from __future__ import annotations
