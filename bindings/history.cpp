@@ -26,6 +26,8 @@ void register_history(py::module_& m) {
     add_view(unit, "angular_velocity", &UnitHistory::angular_velocity, "(n, 3) rad/s, body axes");
     add_view(unit, "acceleration", &UnitHistory::acceleration, "(n, 3) m/s^2, interval means, body axes");
     add_view(unit, "barrier_force", &UnitHistory::barrier_force, "(n, 3) N, interval means, world");
+    add_view(unit, "ground_force", &UnitHistory::ground_force,
+             "(n, 3) N, of the ground on the skin, interval means, world");
     add_view(unit, "tire_friction_force", &UnitHistory::tire_friction_force,
              "(n, 3) N, interval means, world");
     add_view(unit, "barrier_normal_force", &UnitHistory::barrier_normal_force, "(n,) N, interval means");
@@ -60,6 +62,12 @@ void register_history(py::module_& m) {
         },
         "(n, wheels) N, interval means");
 
+    py::class_<ObstacleHistory> obstacle(m, "ObstacleHistory", "What an element of the barrier feels.");
+    obstacle.def_readonly("element", &ObstacleHistory::obstacle, "place among the barrier's elements");
+    add_view(obstacle, "force", &ObstacleHistory::force, "(n, 3) N, interval means, world");
+    add_view(obstacle, "moment", &ObstacleHistory::moment,
+             "(n, 3) N m about the element's foot, interval means, world");
+
     py::class_<History> history(m, "History", "Evenly spaced output of a run; read-only views.");
     add_view(history, "time", &History::time, "(n,) s");
     add_view(history, "kinetic", &History::kinetic, "(n,) J");
@@ -68,9 +76,19 @@ void register_history(py::module_& m) {
     add_view(history, "crushed", &History::crushed, "(n,) J");
     add_view(history, "barrier_friction", &History::barrier_friction, "(n,) J");
     add_view(history, "tire_friction", &History::tire_friction, "(n,) J");
+    add_view(history, "ground_friction", &History::ground_friction, "(n,) J");
     add_view(history, "impacts", &History::impacts, "(n,) J");
     history.def_readonly("momentum_residual", &History::momentum_residual,
                          "max |m a - sum of forces| / max |force|");
+    history.def_property_readonly(
+        "elements",
+        [](const py::object& self) {
+            py::list list;
+            for (const ObstacleHistory& of : self.cast<const History&>().obstacles)
+                list.append(py::cast(of, py::return_value_policy::reference_internal, self));
+            return list;
+        },
+        "Of the elements of the barrier that were touched, in their order.");
     history.def(
         "unit",
         [](const History& self, std::size_t index) -> const UnitHistory& { return self.units.at(index); },

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from . import units
 
 if TYPE_CHECKING:
+    from .barrier import Barrier
     from .result import Result
 
 __all__ = ["report"]
@@ -28,7 +29,7 @@ def report(result: Result) -> str:
         f"{vehicle.name}, {vehicle.mass:.1f} kg, {vehicle.n_nodes} shell nodes, {len(vehicle.wheels)} wheels",
         f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph) "
         f"at {scene.impact_angle:g} deg "
-        + (f"to a rigid wall, friction {scene.barrier.friction:g}" if scene.barrier else "without a barrier"),
+        + (_barrier(scene.barrier) if scene.barrier else "without a barrier"),
         f"ended at {result.time[-1]:.4f} s: {_ENDS[result.end_reason]}",
         "",
         "computed",
@@ -51,6 +52,12 @@ def report(result: Result) -> str:
         *(f"  {line}" for line in _left_out(result)),
     ]
     return "\n".join(lines)
+
+
+def _barrier(barrier: Barrier) -> str:
+    names = barrier.element_names
+    count = f"{len(names)} elements" if len(names) > 1 else names[0]
+    return f"to the line of a {type(barrier).__name__} ({count}), friction {barrier.friction:g}"
 
 
 def _left_out(result: Result) -> list[str]:
@@ -81,5 +88,5 @@ def _left_out(result: Result) -> list[str]:
         lines.append("gravity: it is 0")
     if result.end_reason == "separated":
         lines.append("everything after the vehicle had left the barrier, but for a short tail")
-    lines.append("suspension, occupants, ground contact of the body: not part of the model")
+    lines.append("suspension, occupants: not part of the model")
     return lines

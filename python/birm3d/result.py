@@ -24,7 +24,7 @@ __all__ = ["Result"]
 
 Floats = npt.NDArray[np.float64]
 
-_ENERGIES = ("kinetic", "potential", "stored", "crushed", "barrier_friction", "tire_friction", "impacts")
+_ENERGIES = ("kinetic", "potential", "stored", "crushed", "barrier_friction", "tire_friction", "ground_friction", "impacts")
 
 
 class Result:
@@ -152,6 +152,11 @@ class Result:
         return self._unit.tire_reaction
 
     @property
+    def ground_force(self) -> Floats:
+        """Of the ground on the body, not the tyres, world axes, shape (n, 3) [N]; interval means."""
+        return self._unit.ground_force
+
+    @property
     def tire_friction_force(self) -> Floats:
         """Of the ground on the vehicle, tangential, world axes, shape (n, 3) [N]; interval means."""
         return self._unit.tire_friction_force
@@ -161,8 +166,9 @@ class Result:
         """Energy ledger, name -> shape (n,) [J].
 
         ``kinetic`` and ``potential`` of the body, ``stored`` (elastic) and ``crushed`` (plastic) in trusses,
-        ``barrier_friction``, ``tire_friction`` and ``impacts`` (lost in rigid contacts); their ``total``; and
-        ``residual``, total now less total at the start: no work enters from outside.
+        ``barrier_friction``, ``tire_friction``, ``ground_friction`` (of the body on the ground) and ``impacts``
+        (lost in rigid contacts); their ``total``; and ``residual``, total now less total at the start: no work
+        enters from outside.
         """
         terms = {name: getattr(self._history, name) for name in _ENERGIES}
         total = np.sum(list(terms.values()), axis=0)

@@ -5,7 +5,7 @@ name                           value
 =============================  ========================================================================
 ``impact_speed`` ...           an argument of :class:`birm3d.Simulation` (``impact_angle``, ``impact_offset``,
                                ``standoff``, ``duration``, ``vehicle``, ``barrier``, ``settings``)
-``barrier.<field>``            a field of :class:`birm3d.Barrier`, as ``barrier.friction``
+``barrier.<field>``            a field of the barrier, as ``barrier.friction`` or ``barrier.spacing``
 ``settings.<field>``           a field of :class:`birm3d.Settings`, as ``settings.tolerance``
 ``vehicle.gvw``                mass [kg], see :meth:`birm3d.Vehicle.with_gvw`
 ``vehicle.mass_center_height`` above the ground at rest [m]
@@ -30,7 +30,6 @@ from difflib import get_close_matches
 from functools import lru_cache
 from typing import Any
 
-from .barrier import Barrier
 from .settings import Settings
 from .simulation import Scene, Simulation
 from .vehicle import TRUSS_LAW, Vehicle, Zone
@@ -49,6 +48,11 @@ _UNITS = {
     "barrier.width": "m",
     "barrier.height": "m",
     "barrier.diameter": "m",
+    "barrier.thickness": "m",
+    "barrier.spacing": "m",
+    "barrier.row_spacing": "m",
+    "barrier.row_offset": "m",
+    "barrier.length": "m",
     "settings.time_step": "s",
     "settings.output_interval": "s",
     "settings.gravity": "m/s^2",
@@ -87,8 +91,7 @@ def unit_of(name: str) -> str:
 def _names(scene: Scene) -> tuple[str, ...]:
     names = [f.name for f in dataclasses.fields(Scene) if f.name not in ("vehicle", "barrier", "settings")]
     if scene.barrier is not None:
-        other = ("diameter",) if scene.barrier.diameter is None else ("width", "height")
-        names += [f"barrier.{f.name}" for f in dataclasses.fields(Barrier) if f.name not in other]
+        names += [f"barrier.{f.name}" for f in dataclasses.fields(scene.barrier)]
     names += [f"settings.{f.name}" for f in dataclasses.fields(Settings)]
     vehicle = scene.vehicle
     names += [f"vehicle.{name}" for name in _VEHICLE if name != "mesh_density" or vehicle.has_file]
@@ -165,7 +168,7 @@ _preset = lru_cache(maxsize=16)(Vehicle.preset)
 
 
 def _build(given: Mapping[str, Any]) -> Simulation:
-    keywords = {name: given[name] for name in ("standoff", "duration", "settings")}
+    keywords = {name: given[name] for name in ("standoff", "impact_yaw", "impact_roll", "duration", "settings")}
     return Simulation(
         given["vehicle"],
         given["barrier"],

@@ -25,6 +25,8 @@ class Scene:
     impact_angle: float
     impact_offset: float
     standoff: float
+    impact_yaw: float
+    impact_roll: float
     duration: float | None
     settings: Settings
 
@@ -32,7 +34,7 @@ class Scene:
 class Simulation:
     """A vehicle that runs into a barrier.
 
-    The vehicle comes along a straight path with its nose ahead and stands before the barrier at t = 0.
+    The vehicle comes along a straight path, its nose ahead unless stated, and stands before the barrier at t = 0.
 
     Parameters
     ----------
@@ -43,11 +45,16 @@ class Simulation:
     impact_speed
         [m/s], >= 0.
     impact_angle
-        Between the vehicle's path and the barrier's line [deg], above 0 and below 180; 90 is head-on.
+        Between the vehicle's path and the barrier's line [deg], 0 to 180; 90 is head-on. At 0 and 180 the barrier
+        must have an end to meet.
     impact_offset
         Where the path of the mass centre meets the barrier's line, from its origin [m].
     standoff
         Distance of the nearest node from the barrier at t = 0 [m], >= 0.
+    impact_yaw
+        By which the nose points to the left of the path at t = 0 [deg]; at 90 the right side goes ahead.
+    impact_roll
+        At t = 0 [deg], positive to the right.
     duration
         [s]; ``None``: until the outcome is decided.
     settings
@@ -68,6 +75,8 @@ class Simulation:
         impact_offset: float = 0.0,
         *,
         standoff: float = 0.0,
+        impact_yaw: float = 0.0,
+        impact_roll: float = 0.0,
         duration: float | None = None,
         settings: Settings | None = None,
     ) -> None:
@@ -82,6 +91,8 @@ class Simulation:
             float(impact_angle),
             float(impact_offset),
             float(standoff),
+            float(impact_yaw),
+            float(impact_roll),
             duration,
             settings if settings is not None else Settings(),
         )
@@ -92,6 +103,8 @@ class Simulation:
             angle=math.radians(self._scene.impact_angle),
             offset=self._scene.impact_offset,
             standoff=self._scene.standoff,
+            yaw=math.radians(self._scene.impact_yaw),
+            roll=math.radians(self._scene.impact_roll),
             settings=self._scene.settings.core,
             duration=duration,
         )
@@ -169,6 +182,8 @@ def _rebuild(scene: Scene) -> Simulation:
         scene.impact_angle,
         scene.impact_offset,
         standoff=scene.standoff,
+        impact_yaw=scene.impact_yaw,
+        impact_roll=scene.impact_roll,
         duration=scene.duration,
         settings=scene.settings,
     )

@@ -10,6 +10,11 @@ namespace birm3d {
 
 namespace {
 
+// Cosine above which the normals of two instants are one surface's, and cosine c0 below which a truss that stands
+// across the normal is held in line less and less (see crush.hpp).
+constexpr double sharp_turn = 0.5;
+constexpr double held_cosine = 0.5;
+
 // Held nodes move along n + m, m the normal of the instant before, so that a path is followed to second order
 // while the body turns.
 Vec3 holding_direction(const Vec3& n, const Vec3& m) {
@@ -61,7 +66,7 @@ BIRM3D_LANE_LOOP double stiffness_of_pushing(const TrussBlock& truss, const Lane
 
 // Sum of k_unloading times inverse effective mass over the nodes that push (1/s^2).
 double contact_stiffness(const FlatContact& surface, const TrussMesh& mesh, std::size_t b,
-                         const TrussBlockState& now, const BlockContact&, double pushing) {
+                         const TrussBlockState& now, double pushing) {
     const InverseMass& inverse_mass = surface.inverse_mass;
     const Mat3& q = inverse_mass.form;
     if (pushing == mesh.pushable[b])
@@ -70,69 +75,61 @@ double contact_stiffness(const FlatContact& surface, const TrussMesh& mesh, std:
                                 2.0 * q(0, 1), 2.0 * q(0, 2), 2.0 * q(1, 2));
 }
 
-double contact_stiffness(const CurvedContact& surface, const TrussMesh& mesh, std::size_t b,
-                         const TrussBlockState& now, const BlockContact& contact, double) {
+double contact_stiffness(const RigidBody& body, const TrussBlock& truss, const TrussBlockState& now,
+                         const BlockContact& contact) {
     double sum = 0.0;
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!(now.force[i] > 0.0)) continue;
         const Vec3 c = Vec3(now.x[i], now.y[i], now.z[i]).cross(contact.normal(i));
-        sum += mesh.block[b].k_unloading[i] *
-               (surface.body.inverse_mass + c.dot(surface.body.inverse_inertia * c));
+        const double share = contact.pressure[i] / now.force[i];
+        sum += std::max(1.0, share * share) * truss.k_unloading[i] *
+               (body.inverse_mass + c.dot(body.inverse_inertia * c));
     }
     return sum;
 }
 
-double press(const FlatContact& surface, const PressColumns& truss, const TrussBlockState& before,
-             TrussBlockState& now, Lanes& gap, BlockContact& contact, NodeSums& sums) {
-    const Vec3& n = surface.face.normal;
-    const Vec3 h = holding_direction(n, surface.normal_before);
-    return press_rows.flat(truss, {n.x(), n.y(), n.z(), surface.face.offset, h.x(), h.y(), h.z()},
-                           columns_of<const double>(before), columns_of<double>(now), gap.data(),
-                           contact.pressure.data(), sums);
-}
+// Ways and shares of CurvedPress. Where normals part sharply, at an edge, the one before says nothing of the path.
+struct alignas(64) Ways {
+    Lanes hx, hy, hz, sx, sy, sz;
+};
 
-double press(const CurvedContact& surface, const PressColumns& truss, const TrussBlockState& before,
-             TrussBlockState& now, Lanes& gap, BlockContact& contact, NodeSums& sums) {
-    alignas(64) Lanes hx, hy, hz;
+BIRM3D_LANE_LOOP void find_ways(const NodeFaces& faces, const BlockContact& contact, const TrussBlock& truss,
+                                const TrussBlockState& before, Ways& ways) {
+    BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
-        const Vec3 node(before.x[i], before.y[i], before.z[i]);
-        const Vec3 n = surface.face.normal_at(node);
-        const Vec3 h = holding_direction(n, surface.before.normal_at(node));
-        gap[i] = surface.face.gap(node);
-        contact.nx[i] = n.x(), contact.ny[i] = n.y(), contact.nz[i] = n.z();
-        hx[i] = h.x(), hy[i] = h.y(), hz[i] = h.z();
+        const double nx = contact.nx[i], ny = contact.ny[i], nz = contact.nz[i];
+        const double cosine = nx * faces.bx[i] + ny * faces.by[i] + nz * faces.bz[i];
+        const bool follow = before.force[i] > 0.0 && cosine > sharp_turn;
+        const double mean = follow ? 1.0 / (1.0 + cosine) : 1.0;
+        const double part = follow ? mean : 0.0;
+
+        const double x = truss.anchor_x[i] - before.x[i], y = truss.anchor_y[i] - before.y[i],
+                     z = truss.anchor_z[i] - before.z[i];
+        const double size = std::sqrt(x * x + y * y + z * z);
+        const double per_size = size > tolerance::truss_length ? 1.0 / size : 0.0;
+        const double c = (x * nx + y * ny + z * nz) * per_size;
+        // Share of the way that goes along the truss, over its cosine.
+        const double aligned = c > 0.0 ? c : 0.0;
+        const double in_line =
+            faces.held[i] * (aligned < held_cosine ? aligned / (held_cosine * held_cosine) : 1.0 / aligned);
+        const double free = 1.0 - in_line * aligned;
+        const double along = in_line * per_size;
+        ways.hx[i] = free * (mean * nx + part * faces.bx[i]) + along * x;
+        ways.hy[i] = free * (mean * ny + part * faces.by[i]) + along * y;
+        ways.hz[i] = free * (mean * nz + part * faces.bz[i]) + along * z;
+        ways.sx[i] = free * nx + along * x;
+        ways.sy[i] = free * ny + along * y;
+        ways.sz[i] = free * nz + along * z;
     }
-    return press_rows.curved(truss,
-                             {gap.data(), contact.nx.data(), contact.ny.data(), contact.nz.data(), hx.data(),
-                              hy.data(), hz.data()},
-                             columns_of<const double>(before), columns_of<double>(now), gap.data(),
-                             contact.pressure.data(), sums);
 }
 
-template <class Contact>
-void crush_block(const Contact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
-                 const TrussBlockState& before, TrussBlockState& now, BlockContact& contact,
-                 CrushSums& sums) {
-    alignas(64) Lanes gap;
-    const double nodes = press(surface, columns_of(mesh, b, factor), before, now, gap, contact, sums.nodes);
+void finish(const TrussMesh& mesh, std::size_t b, double nodes, const TrussBlockState& before,
+            const Lanes& gap, const BlockContact& contact, TrussBlockState& now, CrushSums& sums) {
     if (nodes >= left) sums.released_work += release(mesh.block[b], before, gap, contact, now);
-    const double pushing = std::fmod(nodes, left);
-    now.touching = pushing > 0.0;
-    if (now.touching) {
-        sums.stiffness += contact_stiffness(surface, mesh, b, now, contact, pushing);
-        now.box = before.box;  // the block is looked at in any case while it touches
-    } else {
-        now.box = Box::around(lanes, [&now](std::size_t i) { return Vec3(now.x[i], now.y[i], now.z[i]); });
-    }
-}
-
-SkinForces without_wrench(const CrushSums& sums) {
-    SkinForces skin;
-    skin.normal_force = row_sum(sums.nodes.force);
-    skin.work = 0.5 * row_sum(sums.nodes.twice_work) + sums.released_work;
-    skin.stored = 0.5 * row_sum(sums.nodes.twice_stored);
-    skin.stiffness = sums.stiffness;
-    return skin;
+    now.touching = std::fmod(nodes, left) > 0.0;
+    now.box = now.touching
+                  ? before.box  // the block is looked at in any case while it touches
+                  : Box::around(lanes, [&now](std::size_t i) { return Vec3(now.x[i], now.y[i], now.z[i]); });
 }
 
 }  // namespace
@@ -145,28 +142,43 @@ InverseMass::InverseMass(const RigidBody& body, const Vec3& n) : constant(body.i
 
 void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
            const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums) {
-    crush_block(surface, mesh, b, factor, before, now, contact, sums);
+    alignas(64) Lanes gap;
+    const Vec3& n = surface.face.normal;
+    const Vec3 h = holding_direction(n, surface.normal_before);
+    const double nodes = press_rows.flat(columns_of(mesh, b, factor),
+                                         {n.x(), n.y(), n.z(), surface.face.offset, h.x(), h.y(), h.z()},
+                                         columns_of<const double>(before), columns_of<double>(now),
+                                         gap.data(), contact.pressure.data(), sums.nodes);
+    finish(mesh, b, nodes, before, gap, contact, now, sums);
+    if (now.touching) sums.stiffness += contact_stiffness(surface, mesh, b, now, std::fmod(nodes, left));
 }
 
-void crush(const CurvedContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
-           const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums) {
-    crush_block(surface, mesh, b, factor, before, now, contact, sums);
+void crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh, std::size_t b,
+           const Lanes* factor, const TrussBlockState& before, TrussBlockState& now, BlockContact& contact,
+           CrushSums& sums) {
+    alignas(64) Ways ways;
+    find_ways(faces, contact, mesh.block[b], before, ways);
+    alignas(64) Lanes gap;
+    const double nodes = press_rows.curved(
+        columns_of(mesh, b, factor),
+        {faces.gap.data(), contact.nx.data(), contact.ny.data(), contact.nz.data(), ways.hx.data(),
+         ways.hy.data(), ways.hz.data(), ways.sx.data(), ways.sy.data(), ways.sz.data()},
+        columns_of<const double>(before), columns_of<double>(now), gap.data(), contact.pressure.data(),
+        sums.nodes);
+    finish(mesh, b, nodes, before, gap, contact, now, sums);
+    if (now.touching) sums.stiffness += contact_stiffness(body, mesh.block[b], now, contact);
 }
 
-SkinForces total(const FlatContact& surface, const CrushSums& sums) {
-    SkinForces skin = without_wrench(sums);
+Wrench total_wrench(const FlatContact& surface, const CrushSums& sums) {
     const NodeSums& nodes = sums.nodes;
     const Vec3 moment(row_sum(nodes.moment_x), row_sum(nodes.moment_y), row_sum(nodes.moment_z));
-    skin.contact = {skin.normal_force * surface.face.normal, moment.cross(surface.face.normal)};
-    return skin;
+    return {row_sum(nodes.force) * surface.face.normal, moment.cross(surface.face.normal)};
 }
 
-SkinForces total(const CurvedContact&, const CrushSums& sums) {
-    SkinForces skin = without_wrench(sums);
+Wrench total_wrench(const CrushSums& sums) {
     const NodeSums& nodes = sums.nodes;
-    skin.contact = {Vec3(row_sum(nodes.push_x), row_sum(nodes.push_y), row_sum(nodes.push_z)),
-                    Vec3(row_sum(nodes.moment_x), row_sum(nodes.moment_y), row_sum(nodes.moment_z))};
-    return skin;
+    return {Vec3(row_sum(nodes.push_x), row_sum(nodes.push_y), row_sum(nodes.push_z)),
+            Vec3(row_sum(nodes.moment_x), row_sum(nodes.moment_y), row_sum(nodes.moment_z))};
 }
 
 Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const BlockContact& contact) {
@@ -183,21 +195,19 @@ Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const 
     return sum;
 }
 
-Lanes rate_factor(const TrussMesh& mesh, std::size_t b, const TrussBlockState& now, const Twist& motion,
-                  const BlockContact& contact) {
-    const TrussBlock& truss = mesh.block[b];
-    Lanes factor;
+void set_rate_factor(double rate_sensitivity, const TrussBlockState& now, const Twist& motion,
+                     const BlockContact& contact, Lanes& factor) {
     for (std::size_t i = 0; i < lanes; ++i) {
+        if (!(contact.pressure[i] > 0.0)) {
+            factor[i] = 1.0;
+            continue;
+        }
         const Vec3 node(now.x[i], now.y[i], now.z[i]);
-        const Vec3 to_anchor = Vec3(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]) - node;
-        const Vec3 n = contact.normal(i);
-        // The node slides along the surface: the truss shortens by the approach along n times b . n.
-        const double approach = -n.dot(motion.velocity + motion.angular_velocity.cross(node));
-        const double share = to_anchor.dot(n) / std::max(to_anchor.norm(), tolerance::truss_length);
-        const double rate = mesh.rate_sensitivity * std::max(0.0, approach * share);
+        // The truss shortens by the approach along n times -b . h, which is what pressure and truss force differ by.
+        const double approach = -contact.normal(i).dot(motion.velocity + motion.angular_velocity.cross(node));
+        const double rate = rate_sensitivity * std::max(0.0, approach * contact.pressure[i] / now.force[i]);
         factor[i] = 1.0 + rate * rate;
     }
-    return factor;
 }
 
 }  // namespace birm3d

@@ -29,11 +29,13 @@ struct FlatPress {
     double hx, hy, hz;
 };
 
-// The same for a curved surface, node by node.
+// The same for surfaces of any shape, node by node: way h of a node at the surface for each unit of gap, and the
+// direction s by which the truss force becomes a normal force (see crush.hpp).
 struct CurvedPress {
     const double* gap;
     const double *nx, *ny, *nz;
     const double *hx, *hy, *hz;
+    const double *sx, *sy, *sz;
 };
 
 // What a node whose truss ceased to push counts in the result of Press; one that pushes counts 1.

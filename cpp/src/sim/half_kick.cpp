@@ -7,9 +7,11 @@
 
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/closed_members.hpp"
+#include "birm3d/kernels/detect.hpp"
 #include "birm3d/kernels/impulse.hpp"
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/kernels/tires.hpp"
+#include "birm3d/sim/obstacles.hpp"
 
 namespace birm3d {
 
@@ -28,15 +30,24 @@ Twist mean(const Twist& a, const Twist& b) {
 std::vector<RigidContact> find_rigid_contacts(const Scene& scene, const State& state, double dt,
                                               const StepOptions& options) {
     std::vector<RigidContact> contacts;
+    std::vector<PlacedShape> placed;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Unit& unit = scene.vehicle->units[u];
         const BodyState& body = state.units[u].body;
         if (scene.settings.ground) find_tire_contacts(unit, u, body, contacts);
-        if (!scene.barrier || !options.hold_members) continue;
+        if (scene.obstacles.empty() || !options.hold_members) continue;
         const Mat3 R = body.orientation.toRotationMatrix();
-        const Surface face = seen_from(scene.barrier->face, body.position, R);
         const Twist motion{R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
-        find_closed_members(unit.trusses, u, body, face, motion, dt, contacts);
+        placed.clear();
+        const Box& anchors = unit.trusses.anchors;
+        for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+            if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
+            const Obstacle& obstacle = scene.obstacles[i];
+            const Placement seen = placement(obstacle, body);
+            if (within_reach(obstacle.shape, seen, anchors, member_margin(unit.trusses, motion, dt)))
+                placed.push_back({&obstacle.shape, seen, i, obstacle.friction});
+        }
+        if (!placed.empty()) find_closed_members(unit.trusses, u, body, placed, motion, dt, contacts);
     }
     return contacts;
 }
@@ -123,32 +134,53 @@ void kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial) 
     for (std::size_t u = 0; u < trial.state.units.size(); ++u) {
         const RigidBody& body = scene.vehicle->units[u].body;
         UnitState& unit = trial.state.units[u];
-        const HigherOrder& extra = trial.higher_order[u];
-        Load load = scaled(unit.course.now, half);
-        load += stage == Stage::before_drift ? extra.lead : difference(extra.correction, extra.lead);
-        Wrench impulse = load.wrench;
+        Wrench impulse;
+        for (const Touch& touch : unit.touches) {
+            Load load = scaled(touch.course.now, half);
+            load += stage == Stage::before_drift ? touch.extra.lead
+                                                 : difference(touch.extra.correction, touch.extra.lead);
+            impulse += load.wrench;
+        }
         impulse.force.z() -= half * body.mass * scene.settings.gravity;
         kick(body, impulse, unit.body);
     }
 }
 
-void book_forces(const std::vector<Twist>& before, const std::vector<Twist>& after, double half,
+// Where what is lost to friction on an obstacle is booked.
+double& friction_of(const Scene& scene, std::size_t obstacle, Energies& energies) {
+    return obstacle == scene.ground ? energies.ground_friction : energies.barrier_friction;
+}
+
+void book_forces(const Scene& scene, const std::vector<Twist>& before, const std::vector<Twist>& after, double half,
                  State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u)
-        state.energies.barrier_friction -=
-            half * power(state.units[u].skin.friction, mean(before[u], after[u]));
+        for (const Touch& touch : state.units[u].touches)
+            friction_of(scene, touch.obstacle, state.energies) -=
+                half * power(touch.friction, mean(before[u], after[u]));
 }
 
 // What contacts do at one end of the drift, with their friction.
 struct ContactKick {
     std::vector<RigidContact> contacts;
-    std::vector<Wrench> on_ground, on_barrier;  // (units) friction impulses
+    std::vector<Wrench> on_ground, on_members;  // (units) friction impulses of tyres and of closed trusses
 };
 
 bool slides(const ContactKick& kicked) {
     const auto is_there = [](const Wrench& friction) { return !friction.force.isZero(0.0); };
     return std::any_of(kicked.on_ground.begin(), kicked.on_ground.end(), is_there) ||
-           std::any_of(kicked.on_barrier.begin(), kicked.on_barrier.end(), is_there);
+           std::any_of(kicked.on_members.begin(), kicked.on_members.end(), is_there);
+}
+
+// `impulse` on the unit, friction included.
+void add_to_obstacle(const Scene& scene, const State& state, const RigidContact& contact, const Vec3& impulse,
+                     std::vector<ObstacleImpulse>& sums) {
+    auto sum = std::find_if(sums.begin(), sums.end(), [&](const ObstacleImpulse& known) {
+        return known.obstacle == contact.obstacle;
+    });
+    if (sum == sums.end()) sum = sums.insert(sums.end(), {contact.obstacle, Vec3::Zero(), Vec3::Zero()});
+    const Vec3 place = state.units[contact.body].body.position + contact.arm;
+    sum->impulse += impulse;
+    sum->torque -= (place - scene.obstacles[contact.obstacle].position).cross(impulse);
 }
 
 double normal_impulse(const std::vector<RigidContact>& contacts) {
@@ -178,22 +210,19 @@ ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> conta
             const Unit& unit = scene.vehicle->units[u];
             BodyState& body = state.units[u].body;
             const Wrench on_ground = tire_friction(unit, scene.settings, body, motion[u], tire[u]);
-            Wrench on_barrier;
-            if (scene.barrier && scene.barrier->friction > 0.0)
-                on_barrier =
-                    member_friction(result.contacts, u, unit.body, scene.barrier->friction,
-                                    tolerance::full_friction_speed * scene.reference_speed(), motion[u]);
+            const Wrench on_members =
+                member_friction(result.contacts, u, unit.body,
+                                tolerance::full_friction_speed * scene.reference_speed(), motion[u]);
             kick(unit.body, difference(on_ground, result.on_ground[u]), body);
-            kick(unit.body, difference(on_barrier, result.on_barrier[u]), body);
+            kick(unit.body, difference(on_members, result.on_members[u]), body);
             result.on_ground[u] = on_ground;
-            result.on_barrier[u] = on_barrier;
+            result.on_members[u] = on_members;
         }
         if (!slides(result)) break;
         solve_contacts(scene, state, result.contacts, tire);
     }
     for (std::size_t u = 0; u < units; ++u) {
         sums[u].tire_friction += result.on_ground[u].force;
-        sums[u].barrier += result.on_barrier[u].force;
     }
 
     for (const RigidContact& contact : result.contacts) {
@@ -204,25 +233,27 @@ ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> conta
         if (contact.source == ContactSource::tire) {
             sum.tire[contact.index] += contact.impulse;
         } else {
-            sum.barrier += impulse;
-            sum.barrier_normal += contact.impulse;
+            add_to_obstacle(scene, state, contact, impulse + contact.rubbing, sum.obstacles);
+            if (contact.obstacle != scene.ground) sum.barrier_normal += contact.impulse;
             if (contact.impulse > 0.0) ++sum.member_contacts;
         }
     }
     return result;
 }
 
-void book_contacts(const ContactKick& kicked, const std::vector<Twist>& before,
+void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vector<Twist>& before,
                    const std::vector<Twist>& after, State& state) {
     if (kicked.contacts.empty()) return;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Twist motion = mean(before[u], after[u]);
-        state.energies.barrier_friction -= power(kicked.on_barrier[u], motion);
         state.energies.tire_friction -= power(kicked.on_ground[u], motion);
         for (const RigidContact& contact : kicked.contacts) {
             if (contact.body != u) continue;
             const Vec3 impulse = contact.impulse * contact.normal;
             state.energies.impacts -= power({impulse, contact.arm.cross(impulse)}, motion);
+            if (contact.source != ContactSource::member) continue;
+            friction_of(scene, contact.obstacle, state.energies) -=
+                power({contact.rubbing, contact.arm.cross(contact.rubbing)}, motion);
         }
     }
 }
@@ -251,7 +282,7 @@ void impact_at_once(const Scene& scene, Stage stage, double reach, std::vector<R
     if (!start) keep(scene, state, impact);
     const std::vector<Twist> before = motions(scene, state);
     const ContactKick kicked = kick_by_contacts(scene, std::move(contacts), state, impact.impulses);
-    book_contacts(kicked, before, motions(scene, state), state);
+    book_contacts(scene, kicked, before, motions(scene, state), state);
     if (start) keep(scene, state, impact);
 }
 
@@ -277,7 +308,7 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     const std::vector<Twist> before = motions(scene, state);
     kick_by_forces(scene, stage, half, trial);
     if (contacts.empty()) {
-        book_forces(before, motions(scene, state), half, state);
+        book_forces(scene, before, motions(scene, state), half, state);
         return;
     }
     std::vector<RigidContact> lasting = contacts;
@@ -287,8 +318,8 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     set_lasting_targets(stage, trial.dt, trial.impulses, bodies, lasting);
     const ContactKick kicked = kick_by_contacts(scene, std::move(lasting), state, trial.impulses);
     const std::vector<Twist> after = motions(scene, state);
-    book_forces(before, after, half, state);
-    book_contacts(kicked, before, after, state);
+    book_forces(scene, before, after, half, state);
+    book_contacts(scene, kicked, before, after, state);
 
     if (stage == Stage::after_drift) impact_at_once(scene, stage, 0.0, contacts, trial);
 }

@@ -8,7 +8,7 @@
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
-#include "birm3d/sim/barrier_forces.hpp"
+#include "birm3d/sim/obstacles.hpp"
 
 namespace birm3d {
 
@@ -16,25 +16,35 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Fastest any point of the unit moves (m/s).
-double fastest_point(const Unit& unit, const BodyState& body) {
-    return body.velocity.norm() + angular_velocity(unit.body, body).norm() * unit.trusses.reach;
-}
-
 bool touches(const State& state) {
     return std::any_of(state.units.begin(), state.units.end(),
                        [](const UnitState& unit) { return unit.skin.normal_force > 0.0; });
 }
 
-// Moving away, and either faster than any turning could bring a point back or already out of its reach.
+// From the nearest point of a convex body around the shape to `p`, own axes.
+Vec3 from_hull(const Shape& shape, const Vec3& p) {
+    if (const auto* plane = std::get_if<HalfSpace>(&shape)) return std::max(0.0, plane->gap(p)) * plane->normal;
+    const Box box = bounds(shape);
+    const Vec3 from = p - box.center;
+    return from - from.cwiseMax(-box.half).cwiseMin(box.half);
+}
+
+// Moving away from every element, and either faster than any turning could bring a point back or already out of its
+// reach. On a straight path what recedes goes on receding.
 bool has_left(const Scene& scene, const State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Unit& unit = scene.vehicle->units[u];
         const BodyState& body = state.units[u].body;
-        const Surface& face = scene.barrier->face;
-        const double away = body.velocity.dot(normal_at(face, body.position));
         const double turning = angular_velocity(unit.body, body).norm() * unit.trusses.reach;
-        if (!(away > 0.0 && (away >= turning || gap(face, body.position) > unit.trusses.reach))) return false;
+        for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
+            const Obstacle& element = scene.obstacles[i];
+            const Placement seen = placement(element, body);
+            const Vec3 from = from_hull(element.shape, seen.position);
+            const double distance = from.norm();
+            if (!(distance > 0.0)) return false;
+            const double away = (element.rotation.transpose() * body.velocity).dot(from) / distance;
+            if (!(away > 0.0 && (away >= turning || distance > unit.trusses.reach))) return false;
+        }
     }
     return true;
 }
@@ -70,19 +80,24 @@ Turn find_turn(const Scene& scene, const State& before, const Trial& trial) {
     return {approach / (approach - separation), 0.25 * trial.dt * trial.dt * stiffness * separation};
 }
 
-// When the last load is gone, by the course of the loads so far (s); infinite where that does not tell.
+// When a load is gone, by its course so far (s); infinite where that does not tell.
+double time_to_release(const LoadCourse& course) {
+    const double force = course.now.normal_force, rate = course.rate.normal_force,
+                 bend = course.bend.normal_force, step = course.step;
+    if (!(force > 0.0)) return 0.0;
+    // Root of force + rate s + bend s (s + step), written for small bends.
+    const double slope = rate + bend * step;
+    const double square = slope * slope - 4.0 * bend * force;
+    const bool ends = square > 0.0 && slope < 0.0;
+    return ends ? 2.0 * force / (std::sqrt(square) - slope) : infinity;
+}
+
+// Of the last load.
 double time_to_release(const State& state) {
     double latest = 0.0;
-    for (const UnitState& unit : state.units) {
-        const double force = unit.course.now.normal_force, rate = unit.course.rate.normal_force,
-                     bend = unit.course.bend.normal_force, step = unit.course.step;
-        if (!(force > 0.0)) continue;
-        // Root of force + rate s + bend s (s + step), written for small bends.
-        const double slope = rate + bend * step;
-        const double square = slope * slope - 4.0 * bend * force;
-        const bool ends = square > 0.0 && slope < 0.0;
-        latest = std::max(latest, ends ? 2.0 * force / (std::sqrt(square) - slope) : infinity);
-    }
+    for (const UnitState& unit : state.units)
+        for (const Touch& touch : unit.touches)
+            latest = std::max(latest, time_to_release(touch.course));
     return latest;
 }
 
@@ -182,7 +197,8 @@ void Simulation::refuse_step(double dt, double critical) const {
 void Simulation::adaptive_step() {
     const double allowed =
         tolerance::step_error_per_tolerance * scene_.settings.tolerance * scene_.reference_speed();
-    double dt = std::min({state_.next_step, tolerance::longest_step, remaining()});
+    double dt = std::min(
+        {state_.next_step, tolerance::longest_step, remaining(), passing_step(scene_, state_)});
     if (touches(state_)) dt = std::min(dt, std::max(time_to_release(state_), tolerance::release_resolution));
     for (;;) {
         if (dt < tolerance::shortest_step)
@@ -218,7 +234,7 @@ void Simulation::adaptive_step() {
         for (std::size_t u = 0; u < state_.units.size(); ++u)
             fastest = std::max(fastest, fastest_point(scene_.vehicle->units[u], state_.units[u].body));
         next = std::max(tolerance::first_contact_step,
-                        std::min(next, fastest > 0.0 ? nearest_gap(scene_, state_) / fastest : infinity));
+                        std::min(next, fastest > 0.0 ? nearest_gap(scene_, state_, {}) / fastest : infinity));
     }
     state_.next_step = next;
 }

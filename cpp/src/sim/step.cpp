@@ -5,8 +5,8 @@
 
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
-#include "birm3d/sim/barrier_forces.hpp"
 #include "birm3d/sim/half_kick.hpp"
+#include "birm3d/sim/skin_forces.hpp"
 
 namespace birm3d {
 
@@ -44,16 +44,16 @@ Load within_push(const Load& correction, const LoadCourse& before, const LoadCou
 
 // The load at the new instant, its course, and what the higher order adds to the trapezoid rule. Returns the
 // estimated error of the step's velocity (m/s).
-double load_and_correct(const Unit& unit, const LoadCourse& before, double dt, UnitMotion& moved,
-                        HigherOrder& extra) {
-    LoadCourse& now = moved.course;
+double load_and_correct(const Unit& unit, const BodyState& body, const LoadCourse& before, double dt,
+                        const Load& load, Touch& touch) {
+    LoadCourse& now = touch.course;
     now = {};
-    now.now = {moved.skin.contact, moved.skin.normal_force};
-    now.now.wrench += moved.skin.friction;
+    now.now = load;
+    touch.extra = {lead(before, dt), {}};
     const Load rise = difference(now.now, before.now);
     // Where nothing presses any more, the rate ends with the load: a straight line is the better course
     // through the corner that a release makes.
-    if (moved.skin.normal_force == 0.0) return error_of(unit, moved.body, rise, dt);
+    if (touch.normal_force == 0.0) return error_of(unit, body, rise, dt);
 
     const double span = dt + before.step;
     now.step = dt;
@@ -61,20 +61,51 @@ double load_and_correct(const Unit& unit, const LoadCourse& before, double dt, U
     now.rate = scaled(rise, 1.0 / dt);
     const Load departure = scaled(difference(now.rate, before.rate), dt);  // from a straight line
     now.bend = scaled(departure, 1.0 / (dt * span));
-    extra.correction = scaled(departure, -dt * dt / (6.0 * span));
+    touch.extra.correction = scaled(departure, -dt * dt / (6.0 * span));
 
     // A cubic follows the change of the bend, where the bend lasts. At a corner it does not, and a bend of the
     // last step that was a corner says nothing of this one.
     const Load change = scaled(difference(now.bend, before.bend), dt * span);
     if (before.bend_lasts)
-        extra.correction +=
+        touch.extra.correction +=
             scaled(change, -cubic_weight(dt, before.step) / (span * (span + before.step_before)));
-    extra.correction = within_push(extra.correction, before, now, dt);
+    touch.extra.correction = within_push(touch.extra.correction, before, now, dt);
 
-    const double by_departure = error_of(unit, moved.body, departure, dt);
-    const double by_change = error_of(unit, moved.body, change, dt);
+    const double by_departure = error_of(unit, body, departure, dt);
+    const double by_change = error_of(unit, body, change, dt);
     now.bend_lasts = before.step > 0.0 && by_change < tolerance::lasting_bend * by_departure;
     return std::min(by_departure, by_change);
+}
+
+const LoadCourse& course_at(const std::vector<Touch>& touches, std::size_t obstacle) {
+    static const LoadCourse none;
+    for (const Touch& touch : touches)
+        if (touch.obstacle == obstacle) return touch.course;
+    return none;
+}
+
+// Load of a touch as both sides feel it: what turns the unit about its mass centre turns the obstacle about its own
+// point, the other way.
+Load load_of(const Scene& scene, const BodyState& body, const Touch& touch) {
+    Wrench wrench = touch.contact;
+    wrench += touch.friction;
+    const Vec3 arm = body.position - scene.obstacles[touch.obstacle].position;
+    return {wrench, -wrench.torque - arm.cross(wrench.force), touch.normal_force};
+}
+
+// Returns the estimated error of the step's velocity (m/s).
+double correct(const Scene& scene, std::size_t u, const UnitState& from, double dt, UnitState& moved) {
+    double error = 0.0;
+    for (Touch& touch : moved.touches)
+        error += load_and_correct(scene.vehicle->units[u], moved.body, course_at(from.touches, touch.obstacle),
+                                  dt, load_of(scene, moved.body, touch), touch);
+    return error;
+}
+
+bool touches_barrier(const Scene& scene, const UnitState& unit) {
+    return std::any_of(unit.touches.begin(), unit.touches.end(), [&](const Touch& touch) {
+        return touch.obstacle != scene.ground && touch.normal_force > 0.0;
+    });
 }
 
 // Infinite where nothing pushes.
@@ -84,7 +115,8 @@ double critical_step(const SkinForces& skin) {
 
 void clear(ContactImpulses& impulses) {
     std::fill(impulses.tire.begin(), impulses.tire.end(), 0.0);
-    impulses.tire_friction = impulses.barrier = Vec3::Zero();
+    impulses.tire_friction = Vec3::Zero();
+    impulses.obstacles.clear();
     impulses.barrier_normal = 0.0;
     impulses.member_contacts = 0;
 }
@@ -102,7 +134,8 @@ void begin(const State& from, double dt, Trial& trial) {
         clear(trial.impulses[u]);
         clear(trial.at_start.impulses[u]);
         clear(trial.at_end.impulses[u]);
-        trial.higher_order[u] = {lead(from.units[u].course, dt), {}};
+        for (Touch& touch : trial.state.units[u].touches)
+            touch.extra = {lead(touch.course, dt), {}};
     }
 }
 
@@ -132,7 +165,6 @@ Trial::Trial(const Vehicle& vehicle) : state(vehicle) {
             stale.back().add(block);
     }
     at_start.impulses = at_end.impulses = impulses;
-    higher_order.resize(vehicle.units.size());
 }
 
 bool Trial::body_held() const {
@@ -153,11 +185,10 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
         now.energies.potential += dt * unit.body.mass * scene.settings.gravity * moved.body.velocity.z();
         drift(unit.body, dt, moved.body);
 
-        if (scene.barrier) barrier_forces(scene, u, from, trial);
-        if (moved.skin.normal_force > 0.0) now.touched = true;
+        if (!scene.obstacles.empty()) skin_forces(scene, u, from, trial);
+        if (touches_barrier(scene, moved)) now.touched = true;
 
-        const double error = load_and_correct(unit, from.units[u].course, dt, moved, trial.higher_order[u]);
-        trial.error = std::max(trial.error, error);
+        trial.error = std::max(trial.error, correct(scene, u, from.units[u], dt, moved));
         trial.critical_step = std::min(trial.critical_step, critical_step(moved.skin));
     }
 

@@ -12,7 +12,7 @@ struct Gaps {
     double nodes = laboratory::infinity, anchors = laboratory::infinity;
 };
 Gaps least_gaps(const Simulation& simulation) {
-    const Surface& face = simulation.scene().barrier->face;
+    const Scene& scene = simulation.scene();
     const UnitState& unit = simulation.state().units[0];
     const TrussMesh& mesh = simulation.scene().vehicle->units[0].trusses;
     const Mat3 R = unit.body.orientation.toRotationMatrix();
@@ -21,8 +21,8 @@ Gaps least_gaps(const Simulation& simulation) {
         const TrussBlockState& block = unit.trusses.block[i / lanes];
         const std::size_t k = i % lanes;
         const Vec3 node(block.x[k], block.y[k], block.z[k]);
-        least.nodes = std::min(least.nodes, gap(face, unit.body.position + R * node));
-        least.anchors = std::min(least.anchors, gap(face, unit.body.position + R * mesh.anchor(i)));
+        least.nodes = std::min(least.nodes, laboratory::gap_to_barrier(scene, unit.body.position + R * node));
+        least.anchors = std::min(least.anchors, laboratory::gap_to_barrier(scene, unit.body.position + R * mesh.anchor(i)));
     }
     return least;
 }

@@ -19,46 +19,38 @@ struct alignas(64) BlockContact {
     void set_normal(const Vec3& n) { nx.fill(n.x()), ny.fill(n.y()), nz.fill(n.z()); }
 };
 
-// All that a unit's skin feels at one instant; wrenches in body axes until the step turns them to the world.
+// Sums over all that a unit's skin touches, world axes.
 struct SkinForces {
-    Wrench contact;              // of the barrier on the vehicle, without friction (N, N m)
+    Wrench contact;              // on the vehicle, without friction (N, N m)
     Wrench friction;             // N, N m
     double normal_force = 0.0;   // sum over nodes of the force along each surface normal (N)
     double work = 0.0;           // done on the trusses since the last instant, trapezoid rule (J)
     double stored = 0.0;         // elastic energy that unloading would return (J), blocks seen only
     double stiffness = 0.0;      // sum of k_unloading of pushing nodes times inverse effective mass (1/s^2)
     double friction_rate = 0.0;  // sum of mu * pressure times inverse effective mass (m/s^2)
-
-    SkinForces& operator+=(const SkinForces& o) {
-        contact += o.contact;
-        friction += o.friction;
-        normal_force += o.normal_force;
-        work += o.work;
-        stored += o.stored;
-        stiffness += o.stiffness;
-        friction_rate += o.friction_rate;
-        return *this;
-    }
 };
 
-// All that the skin does to its body, world axes, with the sum of its normal forces beside it.
+// What one obstacle and a unit's skin do to each other, world axes.
 struct Load {
-    Wrench wrench;
-    double normal_force = 0.0;
+    Wrench wrench;                         // on the unit, about its mass centre
+    Vec3 reaction_torque = Vec3::Zero();   // on the obstacle, about its own point (N m); its force is -wrench.force
+    double normal_force = 0.0;             // N
 
     Load& operator+=(const Load& o) {
         wrench += o.wrench;
+        reaction_torque += o.reaction_torque;
         normal_force += o.normal_force;
         return *this;
     }
 };
 
 inline Load scaled(const Load& load, double factor) {
-    return {scaled(load.wrench, factor), factor * load.normal_force};
+    return {scaled(load.wrench, factor), factor * load.reaction_torque, factor * load.normal_force};
 }
 
 inline Load difference(const Load& a, const Load& b) {
-    return {difference(a.wrench, b.wrench), a.normal_force - b.normal_force};
+    return {difference(a.wrench, b.wrench), a.reaction_torque - b.reaction_torque,
+            a.normal_force - b.normal_force};
 }
 
 // The course of the load over the last steps, in Newton's divided differences.
@@ -71,12 +63,28 @@ struct LoadCourse {
     bool bend_lasts = false;   // did the bend go on through the last step?
 };
 
+// What the scheme adds to half kicks by the trapezoid rule (see step.hpp), impulses.
+struct HigherOrder {
+    Load lead;        // lent to the drift, taken back after it
+    Load correction;  // of the whole step
+};
+
+// A unit's skin at one obstacle.
+struct Touch {
+    std::size_t obstacle = 0;
+    Wrench contact, friction;   // on the unit, world axes (N, N m)
+    double normal_force = 0.0;  // N
+    LoadCourse course;          // of contact and friction together
+    HigherOrder extra;          // of the step that led here
+};
+
 enum class ContactSource { tire, member };
 
 // A point where a rigid body meets a rigid surface or another rigid body (world axes).
 struct RigidContact {
     ContactSource source = ContactSource::tire;
     std::size_t index = 0;          // wheel, or truss in mesh order
+    std::size_t obstacle = 0;       // of Scene::obstacles, for members
     std::size_t body = 0;           // M_a of Eq. 1
     int other = -1;                 // M_b of Eq. 1; -1 = fixed, M_b infinite
     Vec3 arm = Vec3::Zero();        // from the body's mass centre to the point (m)
@@ -86,6 +94,8 @@ struct RigidContact {
     double compliance = 0.0;        // share of the point's own inverse effective mass
     double target = 0.0;            // least separation velocity wanted (m/s)
     double impulse = 0.0;           // result (N s), >= 0
+    double friction = 0.0;          // Coulomb coefficient of a member
+    Vec3 rubbing = Vec3::Zero();    // result: its friction impulse (N s)
 };
 
 }  // namespace birm3d

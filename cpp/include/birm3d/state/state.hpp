@@ -16,8 +16,8 @@ namespace birm3d {
 // What a unit has besides its trusses: small, copied whole with every step that is tried.
 struct UnitMotion {
     BodyState body;
-    SkinForces skin;    // at this instant, world axes
-    LoadCourse course;  // of contact and friction together
+    SkinForces skin;             // at this instant
+    std::vector<Touch> touches;  // in the order of the obstacles
 };
 
 struct UnitState : UnitMotion {
@@ -33,11 +33,13 @@ struct Energies {
     double stored = 0.0;            // elastic, in trusses
     double crushed = 0.0;           // plastic, in trusses
     double barrier_friction = 0.0;  // lost to friction on the barrier
-    double tire_friction = 0.0;     // lost to friction on the ground
+    double tire_friction = 0.0;     // lost to friction of tyres on the ground
+    double ground_friction = 0.0;   // lost to friction of the skin on the ground
     double impacts = 0.0;           // lost in rigid contacts
 
     double total() const {
-        return kinetic + potential + stored + crushed + barrier_friction + tire_friction + impacts;
+        return kinetic + potential + stored + crushed + barrier_friction + tire_friction + ground_friction +
+               impacts;
     }
 };
 

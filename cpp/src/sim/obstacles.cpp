@@ -1,0 +1,112 @@
+#include "birm3d/sim/obstacles.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/kernels/detect.hpp"
+#include "birm3d/kernels/integrate.hpp"
+
+namespace birm3d {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Box everything(const TrussMesh& mesh) {
+    return {Vec3::Zero(), Vec3::Constant(mesh.reach)};
+}
+
+// The least of `least` and the gaps of some points, of which a box can be left out that is further away.
+template <class Blocks>
+double nearest_in_blocks(const Shape& shape, const Placement& seen, std::size_t blocks, const Blocks& block,
+                         double least) {
+    alignas(64) NearestLanes found;
+    for (std::size_t b = 0; b < blocks; ++b) {
+        const auto [box, x, y, z] = block(b);
+        if (!within_reach(shape, seen, *box, least)) continue;
+        nearest_of(shape, seen, seen, *x, *y, *z, found);
+        least = std::min(least, *std::min_element(found.gap.begin(), found.gap.end()));
+    }
+    return least;
+}
+
+}  // namespace
+
+Placement placement(const Obstacle& obstacle, const BodyState& seen_from) {
+    const Mat3 to_own = obstacle.rotation.transpose();
+    return {to_own * seen_from.orientation.toRotationMatrix(),
+            to_own * (seen_from.position - obstacle.position)};
+}
+
+void find_near(const Scene& scene, std::size_t u, const BodyState& before, const BodyState& now, double margin,
+               std::vector<NearObstacle>& near) {
+    near.clear();
+    const Box box = everything(scene.vehicle->units[u].trusses);
+    for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+        if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
+        const Obstacle& obstacle = scene.obstacles[i];
+        const Placement seen = placement(obstacle, now);
+        if (within_reach(obstacle.shape, seen, box, margin))
+            near.push_back({i, seen, placement(obstacle, before)});
+    }
+}
+
+double fastest_point(const Unit& unit, const BodyState& body) {
+    return body.velocity.norm() + angular_velocity(unit.body, body).norm() * unit.trusses.reach;
+}
+
+double nearest_gap(const Scene& scene, const State& state, const Nearness& what) {
+    double least = infinity;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const UnitState& unit = state.units[u];
+        const TrussMesh& mesh = scene.vehicle->units[u].trusses;
+        for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+            if (i == scene.ground && !(what.ground && scene.skin_meets_ground[u])) continue;
+            const Shape& shape = scene.obstacles[i].shape;
+            const Placement seen = placement(scene.obstacles[i], unit.body);
+            if (!within_reach(shape, seen, everything(mesh), least)) continue;
+            struct Points {
+                const Box* box;
+                const Lanes *x, *y, *z;
+            };
+            least = nearest_in_blocks(
+                shape, seen, mesh.blocks,
+                [&](std::size_t b) {
+                    const TrussBlockState& block = unit.trusses.block[b];
+                    return Points{&block.box, &block.x, &block.y, &block.z};
+                },
+                least);
+            if (!what.anchors) continue;
+            least = nearest_in_blocks(
+                shape, seen, mesh.blocks,
+                [&](std::size_t b) {
+                    const TrussBlock& block = mesh.block[b];
+                    return Points{&mesh.anchor_box[b], &block.anchor_x, &block.anchor_y, &block.anchor_z};
+                },
+                least);
+        }
+    }
+    return least;
+}
+
+double passing_step(const Scene& scene, const State& state) {
+    double longest = infinity;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const BodyState& body = state.units[u].body;
+        const Unit& unit = scene.vehicle->units[u];
+        const double speed = fastest_point(unit, body);
+        if (!(speed > 0.0)) continue;
+        for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+            const double width = thickness(scene.obstacles[i].shape);
+            // Out of reach even after a step as long as this obstacle would allow.
+            if (width < infinity && 0.25 * width < longest * speed &&
+                within_reach(scene.obstacles[i].shape, placement(scene.obstacles[i], body),
+                             everything(unit.trusses), 0.25 * width))
+                longest = 0.25 * width / speed;
+        }
+    }
+    return longest;
+}
+
+}  // namespace birm3d

@@ -1,0 +1,339 @@
+#include "birm3d/sim/skin_forces.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/kernels/crush.hpp"
+#include "birm3d/kernels/detect.hpp"
+#include "birm3d/kernels/friction.hpp"
+#include "birm3d/kernels/integrate.hpp"
+#include "birm3d/sim/obstacles.hpp"
+
+namespace birm3d {
+
+namespace {
+
+Wrench turned(const Wrench& w, const Mat3& R) {
+    return {R * w.force, R * w.torque};
+}
+
+// Motion at the end of the step, body axes: what the drift has made of it, and what the loads so far will add
+// in the second half of the step.
+Twist predicted_motion(const Unit& unit, const std::vector<Touch>& touches, double dt,
+                       const BodyState& drifted, const Mat3& R) {
+    BodyState body = drifted;
+    for (const Touch& touch : touches) {
+        Load coming = scaled(touch.course.now, 0.5 * dt);
+        coming += scaled(touch.course.rate, dt * dt / 3.0);
+        kick(unit.body, coming.wrench, body);
+    }
+    return {R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
+}
+
+BIRM3D_LANE_LOOP void extent(const Lanes& values, double& low, double& high) {
+    alignas(64) Lanes least = values, most = values;
+    for (std::size_t half = lanes / 2; half > 0; half /= 2) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < half; ++i) {
+            least[i] = least[half + i] < least[i] ? least[half + i] : least[i];
+            most[i] = most[half + i] > most[i] ? most[half + i] : most[i];
+        }
+    }
+    low = least[0];
+    high = most[0];
+}
+
+Box box_around(const Lanes& x, const Lanes& y, const Lanes& z) {
+    Vec3 low, high;
+    extent(x, low[0], high[0]);
+    extent(y, low[1], high[1]);
+    extent(z, low[2], high[2]);
+    return {0.5 * (low + high), 0.5 * (high - low)};
+}
+
+// One unit's skin within one step; body axes.
+class Skin {
+  public:
+    Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial);
+
+    void press_blocks();
+    void hand_over();  // sums and touches, to the trial
+
+  private:
+    // Sums over blocks that saw one plane, or (by general detection) one obstacle.
+    struct PlaneSums {
+        std::size_t near;
+        FlatContact surface;
+        CrushSums sums;
+    };
+    struct ObstacleSums {
+        CrushSums sums;
+        Wrench by_trusses;  // of the paper's rule, in the stead of the projected force
+        Wrench contact;     // of blocks that saw several obstacles
+        double normal_force = 0.0;
+        SkinForces friction;
+    };
+
+    void press(std::size_t b, bool touching);
+    void find_seen(const Box& box, double margin);
+    PlaneSums& sums_of_plane(std::size_t near, const HalfSpace& plane);
+    void press_plane(PlaneSums& plane, std::size_t b);
+    void press_shapes(std::size_t b, bool touching);
+    void look(const TrussBlockState& before, bool touching);
+    void share_out(std::size_t b, const TrussBlockState& next);
+    void rub(std::size_t near, std::size_t b, const TrussBlockState& next, const BlockContact& contact);
+    template <class Crush>
+    void crush_with_rate(const TrussBlockState& next, CrushSums& sums, const Crush& crush);
+
+    const Scene& scene_;
+    const Unit& unit_;
+    const TrussMesh& mesh_;
+    const UnitState& before_;
+    UnitState& now_;
+    Trial& trial_;
+    const std::size_t u_;
+    const Mat3 R_;
+    const bool along_;
+    double full_speed_;
+    double margin_;  // how far a held node can have come off its surface within the step (m)
+    Twist motion_;   // body axes; only friction and the rate of deflection ask for it
+
+    std::vector<NearObstacle>& near_;
+    std::vector<std::size_t> seen_;  // by the block at hand, places in near_
+    std::vector<PlaneSums> planes_;
+    std::vector<ObstacleSums> obstacles_;  // parallel to near_
+    CrushSums shared_;                     // of blocks that saw several obstacles
+    NodeFaces faces_;
+    BlockContact contact_;
+    std::array<std::size_t, lanes> nearest_;  // place in seen_ of each node's obstacle
+};
+
+Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
+    : scene_(scene),
+      unit_(scene.vehicle->units[u]),
+      mesh_(unit_.trusses),
+      before_(from.units[u]),
+      now_(trial.state.units[u]),
+      trial_(trial),
+      u_(u),
+      R_(now_.body.orientation.toRotationMatrix()),
+      along_(scene.settings.contact_model == ContactModel::along_truss),
+      full_speed_(std::max(tolerance::full_friction_speed * scene.reference_speed(),
+                           trial.dt * before_.skin.friction_rate)),
+      margin_(trial.dt * std::max(fastest_point(unit_, before_.body), fastest_point(unit_, now_.body)) +
+              tolerance::touching_gap),
+      near_(trial.near) {
+    find_near(scene, u, before_.body, now_.body, before_.touches.empty() ? 0.0 : margin_, near_);
+    const bool rubs = std::any_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
+        return scene.obstacles[obstacle.index].friction > 0.0;
+    });
+    if (rubs || mesh_.rate_sensitivity > 0.0)
+        motion_ = predicted_motion(unit_, before_.touches, trial.dt, now_.body, R_);
+    obstacles_.resize(near_.size());
+}
+
+void Skin::press_blocks() {
+    trial_.active[u_].clear();
+    if (near_.empty()) return;
+    for (std::size_t b = 0; b < mesh_.blocks; ++b)
+        press(b, before_.trusses.block[b].touching);
+    trial_.state.statistics.node_evaluations += trial_.active[u_].blocks().size() * lanes;
+}
+
+void Skin::press(std::size_t b, bool touching) {
+    const TrussBlockState& block = before_.trusses.block[b];
+    // Where a flat surface is all there is, pushing nodes need no box.
+    const bool flat_only =
+        near_.size() == 1 && std::holds_alternative<HalfSpace>(scene_.obstacles[near_[0].index].shape);
+    const Box box = touching && !flat_only ? box_around(block.x, block.y, block.z) : block.box;
+    if (touching && flat_only)
+        seen_.assign(1, 0);
+    else
+        find_seen(box, touching ? margin_ : 0.0);
+    if (seen_.empty()) {
+        if (touching) throw std::logic_error("a node that pushes has lost its surface");
+        return;
+    }
+    trial_.active[u_].add(b);
+    trial_.stale[u_].add(b);
+    if (seen_.size() == 1) {
+        const NearObstacle& only = near_[seen_[0]];
+        if (const auto plane = flat_part(scene_.obstacles[only.index].shape, only.now, box)) {
+            press_plane(sums_of_plane(seen_[0], *plane), b);
+            return;
+        }
+    }
+    press_shapes(b, touching);
+}
+
+void Skin::find_seen(const Box& box, double margin) {
+    seen_.clear();
+    for (std::size_t k = 0; k < near_.size(); ++k)
+        if (within_reach(scene_.obstacles[near_[k].index].shape, near_[k].now, box, margin))
+            seen_.push_back(k);
+}
+
+Skin::PlaneSums& Skin::sums_of_plane(std::size_t near, const HalfSpace& plane) {
+    for (PlaneSums& known : planes_)
+        if (known.near == near && known.surface.face.normal == plane.normal) return known;
+    const NearObstacle& obstacle = near_[near];
+    HalfSpace before = plane;
+    before.normal = obstacle.before.rotation.transpose() * (obstacle.now.rotation * plane.normal);
+    planes_.push_back({near, FlatContact(unit_.body, plane, before), {}});
+    return planes_.back();
+}
+
+// The rate of deflection is taken where the nodes will be, so that a rate-sensitive block is first crushed without it.
+template <class Crush>
+void Skin::crush_with_rate(const TrussBlockState& next, CrushSums& sums, const Crush& crush) {
+    if (mesh_.rate_sensitivity == 0.0) {
+        crush(nullptr, sums);
+        return;
+    }
+    CrushSums without;
+    crush(nullptr, without);
+    alignas(64) Lanes factor;
+    set_rate_factor(mesh_.rate_sensitivity, next, motion_, contact_, factor);
+    crush(&factor, sums);
+}
+
+void Skin::press_plane(PlaneSums& plane, std::size_t b) {
+    TrussBlockState& next = now_.trusses.block[b];
+    contact_.set_normal(plane.surface.face.normal);
+    crush_with_rate(next, plane.sums, [&](const Lanes* factor, CrushSums& sums) {
+        crush(plane.surface, mesh_, b, factor, before_.trusses.block[b], next, contact_, sums);
+    });
+    if (next.touching) rub(plane.near, b, next, contact_);
+}
+
+void Skin::press_shapes(std::size_t b, bool touching) {
+    const TrussBlockState& block = before_.trusses.block[b];
+    TrussBlockState& next = now_.trusses.block[b];
+    look(block, touching);
+    CrushSums& to = seen_.size() == 1 ? obstacles_[seen_[0]].sums : shared_;
+    crush_with_rate(next, to, [&](const Lanes* factor, CrushSums& sums) {
+        crush(faces_, unit_.body, mesh_, b, factor, block, next, contact_, sums);
+    });
+    if (!next.touching) return;
+    if (seen_.size() == 1)
+        rub(seen_[0], b, next, contact_);
+    else
+        share_out(b, next);
+}
+
+// What each node of a block sees: the nearest of the surfaces in its reach.
+void Skin::look(const TrussBlockState& block, bool touching) {
+    alignas(64) NearestLanes found;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+        const NearObstacle& obstacle = near_[seen_[k]];
+        const Shape& shape = scene_.obstacles[obstacle.index].shape;
+        const double held = scene_.obstacles[obstacle.index].holds_skin ? 1.0 : 0.0;
+        nearest_of(shape, obstacle.now, obstacle.before, block.x, block.y, block.z, found);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            if (k > 0 && !(found.gap[i] < faces_.gap[i])) continue;
+            nearest_[i] = k;
+            faces_.gap[i] = found.gap[i];
+            faces_.held[i] = held;
+            contact_.nx[i] = faces_.bx[i] = found.nx[i];
+            contact_.ny[i] = faces_.by[i] = found.ny[i];
+            contact_.nz[i] = faces_.bz[i] = found.nz[i];
+        }
+    }
+    if (!touching) return;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+        const NearObstacle& obstacle = near_[seen_[k]];
+        nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.before, obstacle.before, block.x, block.y,
+                   block.z, found);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            if (nearest_[i] != k) continue;
+            faces_.bx[i] = found.nx[i];
+            faces_.by[i] = found.ny[i];
+            faces_.bz[i] = found.nz[i];
+        }
+    }
+}
+
+// Nodes of one block that push on several obstacles: to each its own.
+void Skin::share_out(std::size_t b, const TrussBlockState& next) {
+    BlockContact part = contact_;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+        ObstacleSums& sums = obstacles_[seen_[k]];
+        double force = 0.0;
+        for (std::size_t i = 0; i < lanes; ++i) {
+            part.pressure[i] = nearest_[i] == k ? contact_.pressure[i] : 0.0;
+            if (!(part.pressure[i] > 0.0)) continue;
+            const Vec3 push = part.pressure[i] * part.normal(i);
+            sums.contact += {push, Vec3(next.x[i], next.y[i], next.z[i]).cross(push)};
+            force += part.pressure[i];
+        }
+        sums.normal_force += force;
+        if (force > 0.0) rub(seen_[k], b, next, part);
+    }
+}
+
+void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, const BlockContact& contact) {
+    ObstacleSums& sums = obstacles_[near];
+    if (along_) sums.by_trusses += along_trusses(mesh_.block[b], next, contact);
+    const double mu = scene_.obstacles[near_[near].index].friction;
+    if (mu > 0.0) add_friction(unit_.body, mu, full_speed_, motion_, next, contact, sums.friction);
+}
+
+void Skin::hand_over() {
+    SkinForces& skin = now_.skin;
+    skin = {};
+    std::vector<Touch>& touches = trial_.touches;
+    touches.clear();
+    const auto add = [&skin](const CrushSums& sums) {
+        skin.work += 0.5 * row_sum(sums.nodes.twice_work) + sums.released_work;
+        skin.stored += 0.5 * row_sum(sums.nodes.twice_stored);
+        skin.stiffness += sums.stiffness;
+    };
+    add(shared_);
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+        ObstacleSums& sums = obstacles_[k];
+        Touch touch;
+        touch.obstacle = near_[k].index;
+        touch.contact = sums.contact;
+        touch.contact += total_wrench(sums.sums);
+        touch.normal_force = sums.normal_force + row_sum(sums.sums.nodes.force);
+        add(sums.sums);
+        for (const PlaneSums& plane : planes_) {
+            if (plane.near != k) continue;
+            touch.contact += total_wrench(plane.surface, plane.sums);
+            touch.normal_force += row_sum(plane.sums.nodes.force);
+            add(plane.sums);
+        }
+        if (along_) touch.contact = sums.by_trusses;
+        touch.contact = turned(touch.contact, R_);
+        touch.friction = turned(sums.friction.friction, R_);
+        skin.friction_rate += sums.friction.friction_rate;
+        skin.contact += touch.contact;
+        skin.friction += touch.friction;
+        skin.normal_force += touch.normal_force;
+        if (touch.normal_force > 0.0) touches.push_back(touch);
+    }
+    // What was touched before and is not now ends its course in this step.
+    for (const Touch& last : before_.touches) {
+        if (!(last.normal_force > 0.0)) continue;
+        const auto place = std::lower_bound(
+            touches.begin(), touches.end(), last.obstacle,
+            [](const Touch& touch, std::size_t obstacle) { return touch.obstacle < obstacle; });
+        if (place != touches.end() && place->obstacle == last.obstacle) continue;
+        Touch ended;
+        ended.obstacle = last.obstacle;
+        touches.insert(place, ended);
+    }
+    now_.touches = touches;
+}
+
+}  // namespace
+
+void skin_forces(const Scene& scene, std::size_t u, const State& from, Trial& trial) {
+    Skin skin(scene, u, from, trial);
+    skin.press_blocks();
+    skin.hand_over();
+}
+
+}  // namespace birm3d
