@@ -82,15 +82,17 @@ Nearest TriangleMesh::nearest(const Vec3& p, std::size_t& hint) const {
     return {sign * distance, sign / distance * from};
 }
 
-std::optional<Nearest> TriangleMesh::vertex_to_face(const Vec3& p, const Vec3& direction) const {
+std::optional<Nearest> TriangleMesh::vertex_to_face(const Vec3& p, const Vec3& direction,
+                                                    double longest) const {
     const double speed = direction.norm();
     if (!(speed > 0.0)) return std::nullopt;
     const Vec3 r = direction / speed;
     std::optional<Nearest> best;
-    data_->tree.along(p, -r, infinity, [&](std::size_t i) {
+    data_->tree.along(p, -r, longest, [&](std::size_t i) {
         const Triangle& t = data_->triangles[i];
         const double X = r.dot(t.normal), gap = t.normal.dot(p) - t.offset;  // Eq. 8, 11, 12
         if (!(X < 0.0 && gap <= 0.0) || (best && gap <= best->gap)) return;
+        if (gap < longest * X) return;
         if (!holds(t, p - gap / X * r)) return;                       // P1, Eq. 13
         if (!face_holds(*data_, t.face, p - gap * t.normal)) return;  // P2, Eq. 14
         best = Nearest{gap, t.normal};
@@ -98,10 +100,12 @@ std::optional<Nearest> TriangleMesh::vertex_to_face(const Vec3& p, const Vec3& d
     return best;
 }
 
-Nearest TriangleMesh::contact(const Vec3& p, const Vec3& direction, std::size_t& hint) const {
+Nearest TriangleMesh::contact(const Vec3& p, const Vec3& motion, std::size_t& hint) const {
     const Nearest exact = nearest(p, hint);
     if (exact.gap >= 0.0) return exact;
-    return vertex_to_face(p, direction).value_or(exact);
+    // Without a limit a vertex that slides along a wall would find the wall's end behind it.
+    const double longest = motion.norm() + tolerance::touching_gap;
+    return vertex_to_face(p, motion, longest).value_or(exact);
 }
 
 Box TriangleMesh::bounds() const {

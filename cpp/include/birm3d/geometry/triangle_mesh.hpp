@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -39,14 +40,16 @@ class TriangleMesh {
     Nearest nearest(const Vec3& p) const;
     Nearest nearest(const Vec3& p, std::size_t& hint) const;
 
-    // The face that a vertex at `p` has come through while it moved along `direction` (any length): p is behind
-    // its plane, the way back leads through the face (P1), and so does the normal (P2). None, if no face meets
-    // both conditions. It does not ask whether p is inside at all.
-    std::optional<Nearest> vertex_to_face(const Vec3& p, const Vec3& direction) const;
+    // The face that a vertex at `p` has come through while it moved along `direction` (of any length): p is
+    // behind its plane, the way back leads through the face (P1) after `longest` at the most (m), and so does
+    // the normal (P2). None, if no face meets both conditions. It does not ask whether p is inside at all.
+    std::optional<Nearest> vertex_to_face(const Vec3& p, const Vec3& direction,
+                                          double longest = std::numeric_limits<double>::infinity()) const;
 
-    // Outside the mesh: nearest. Inside: vertex_to_face, and nearest where that finds none (beside an edge, at
-    // rest, moving along the surface), so that no vertex inside is ever lost.
-    Nearest contact(const Vec3& p, const Vec3& direction, std::size_t& hint) const;
+    // What a vertex touches that has come to `p` by the motion `motion` (m). Outside the mesh: nearest. Inside:
+    // vertex_to_face, where the motion leads through the face; else (beside an edge, at rest, moving along the
+    // surface) nearest, so that no vertex inside is ever lost. `hint` as for nearest.
+    Nearest contact(const Vec3& p, const Vec3& motion, std::size_t& hint) const;
 
     Box bounds() const;        // as of a Shape
     double thickness() const;  // as of a Shape
