@@ -84,4 +84,22 @@ inline constexpr double solid_volume = 1e-12;
 // moment is above the sum of the other two.
 inline constexpr double symmetric_inertia = 1e-9;
 
+// Points nearer than this to an edge or a corner of a shape take the normal of one of its faces (m): the
+// direction from the edge to such a point is rounding. Large: the corner's normal jumps by a visible amount.
+inline constexpr double edge_radius = 1e-12;
+
+// Squares of lengths below this have lost their digits to underflow (m^2).
+inline constexpr double least_square = 1e-280;
+
+// A point lies within a triangle if the three areas it spans with the edges exceed the triangle's by no more
+// than this share (paper Eq. 15). Zero: points on an internal edge belong to neither of its triangles.
+inline constexpr double triangle_area = 1e-9;
+
+// Neighbouring triangles belong to one flat face if all corners lie this near to its plane, relative to the
+// size of the mesh. Large: a curved surface is taken as flat. Zero: rounding splits flat faces.
+inline constexpr double flat_face = 1e-10;
+
+// Height of a triangle above its longest edge, relative to that edge, below which it has no normal.
+inline constexpr double triangle_height = 1e-9;
+
 }  // namespace birm3d::tolerance
