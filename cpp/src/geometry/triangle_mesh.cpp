@@ -121,6 +121,10 @@ bool TriangleMesh::closed() const {
     return data_->closed;
 }
 
+const std::array<Vec3, 3>& TriangleMesh::corners(std::size_t triangle) const {
+    return data_->triangles.at(triangle).corner;
+}
+
 std::size_t TriangleMesh::triangle_count() const {
     return data_->triangles.size();
 }

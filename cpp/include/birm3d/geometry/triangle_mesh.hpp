@@ -55,6 +55,7 @@ class TriangleMesh {
     double thickness() const;  // as of a Shape
     bool closed() const;
     std::size_t triangle_count() const;
+    const std::array<Vec3, 3>& corners(std::size_t triangle) const;
 
   private:
     std::shared_ptr<const TriangleMeshData> data_;
