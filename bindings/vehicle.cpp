@@ -17,10 +17,12 @@ void register_vehicle(py::module_& m) {
         .def(py::init([](double mass, const InputArray& inertia, const InputArray& nodes,
                          const InputArray& anchors, const std::vector<TrussCurve>& curves,
                          const std::vector<std::size_t>& curve_of, const InputArray& scale,
-                         const InputArray& wheels, double mass_center_height, double rate_sensitivity) {
+                         const InputArray& wheels, double mass_center_height, double rate_sensitivity,
+                         double dent_slope) {
                  TrussInput trusses{points(nodes, "nodes"), points(anchors, "anchors"), curves, curve_of,
                                     numbers(scale, "scale")};
                  trusses.rate_sensitivity = rate_sensitivity;
+                 trusses.dent_slope = dent_slope;
                  if (wheels.ndim() != 2 || wheels.shape(1) != 4)
                      refuse("wheels shape", "(w, 4)", shape_text(wheels));
                  std::vector<Wheel> discs;
@@ -32,10 +34,11 @@ void register_vehicle(py::module_& m) {
              py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("nodes"), py::arg("anchors"),
              py::arg("curves"), py::arg("curve_of"), py::arg("scale"), py::arg("wheels"),
              py::arg("mass_center_height"), py::arg("rate_sensitivity") = 0.0,
+             py::arg("dent_slope") = 0.0,
              "mass kg; inertia (3, 3) kg m^2; nodes, anchors (n, 3) m; curves for the trusses with curve_of "
              "(n,) and scale (n,);\n"
              "wheels (w, 4): centre and radius, m; mass_center_height m above the ground;\n"
-             "rate_sensitivity s/m.")
+             "rate_sensitivity s/m; dent_slope: of the skin beside a dent, 0: none.")
         .def_property_readonly("n_trusses", [](const Unit& unit) { return unit.trusses.count; })
         .def_property_readonly(
             "input_index", [](const Unit& unit) { return unit.trusses.input_index; },

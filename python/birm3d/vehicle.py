@@ -160,6 +160,8 @@ class Vehicle:
     zones : mapping of str to Zone
     rate_sensitivity : float
         Optional physics, see :meth:`with_rate_sensitivity` [s/m].
+    dent_slope : float
+        Optional physics, see :meth:`with_dent_slope`.
     """
 
     name: str
@@ -175,6 +177,7 @@ class Vehicle:
     mass_center_height: float
     zones: Mapping[str, Zone]
     rate_sensitivity: float = 0.0
+    dent_slope: float = 0.0
     # What made the vehicle: laws per truss (m, N, N/m), or a file with its mesh density.
     _truss_laws: Floats | None = None
     _file: VehicleFile | None = None
@@ -322,6 +325,15 @@ class Vehicle:
         """
         return dataclasses.replace(self, rate_sensitivity=float(rate_sensitivity))
 
+    def with_dent_slope(self, dent_slope: float) -> Vehicle:
+        """Return the vehicle with a skin whose dents drag their surroundings along; at 0 that is left out.
+
+        Beside a narrow obstacle (a bollard, a pole) the skin is drawn in with this slope, so that the dent is
+        ``2 * depth / dent_slope`` wider than the obstacle; the paper's trusses know nothing of each other, and between
+        them a narrow post passes to the rigid core. A flat wall makes no dent. [1], >= 0.
+        """
+        return dataclasses.replace(self, dent_slope=float(dent_slope))
+
     def with_mesh_density(self, mesh_density: float) -> Vehicle:
         """Return the vehicle with another number of shell elements, relative to its file's choice."""
         if self._file is None:
@@ -403,9 +415,9 @@ class Vehicle:
 
     def _anew(self, vehicle: Vehicle) -> Vehicle:
         """Return a vehicle made anew from the file with what the file does not hold."""
-        if self.rate_sensitivity == 0.0:
-            return vehicle
-        return vehicle.with_rate_sensitivity(self.rate_sensitivity)
+        return dataclasses.replace(
+            vehicle, rate_sensitivity=self.rate_sensitivity, dent_slope=self.dent_slope
+        )
 
     def draft(self) -> Vehicle:
         """Return the vehicle to be changed several times at the cost of one; end with :meth:`finished`.
@@ -478,6 +490,7 @@ class Vehicle:
             wheels=self.wheels,
             mass_center_height=self.mass_center_height,
             rate_sensitivity=self.rate_sensitivity,
+            dent_slope=self.dent_slope,
         )
         return _core.Vehicle([unit])
 

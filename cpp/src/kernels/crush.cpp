@@ -10,10 +10,8 @@ namespace birm3d {
 
 namespace {
 
-// Cosine above which the normals of two instants are one surface's, and cosine c0 below which a truss that stands
-// across the normal is held in line less and less (see crush.hpp).
+// Cosine above which the normals of two instants are one surface's.
 constexpr double sharp_turn = 0.5;
-constexpr double held_cosine = 0.5;
 
 // Held nodes move along n + m, m the normal of the instant before, so that a path is followed to second order
 // while the body turns.
@@ -41,6 +39,7 @@ double release(const TrussBlock& truss, const TrussBlockState& before, const Lan
             b = from + share * (to - from) - anchor;
             d = d0 - share * way;
             spared += 0.5 * before.force[i] * (d - d1);
+            if ((before.leading >> i & 1U) != 0) continue;  // what hangs on it keeps it at the surface
         }
         const double length = truss.length[i] - d;
         const Vec3 place = anchor + (length > tolerance::truss_length ? length / b.norm() : 1.0) * b;
@@ -110,16 +109,16 @@ BIRM3D_LANE_LOOP void find_ways(const NodeFaces& faces, const BlockContact& cont
         const double c = (x * nx + y * ny + z * nz) * per_size;
         // Share of the way that goes along the truss, over its cosine.
         const double aligned = c > 0.0 ? c : 0.0;
-        const double in_line =
-            faces.held[i] * (aligned < held_cosine ? aligned / (held_cosine * held_cosine) : 1.0 / aligned);
-        const double free = 1.0 - in_line * aligned;
-        const double along = in_line * per_size;
-        ways.hx[i] = free * (mean * nx + part * faces.bx[i]) + along * x;
-        ways.hy[i] = free * (mean * ny + part * faces.by[i]) + along * y;
-        ways.hz[i] = free * (mean * nz + part * faces.bz[i]) + along * z;
-        ways.sx[i] = free * nx + along * x;
-        ways.sy[i] = free * ny + along * y;
-        ways.sz[i] = free * nz + along * z;
+        const double line = in_line(faces.held[i], aligned);
+        const double free = 1.0 - line * aligned;
+        const double along = line * per_size;
+        const bool own = faces.own_way[i] > 0.0;
+        ways.hx[i] = own ? nx : free * (mean * nx + part * faces.bx[i]) + along * x;
+        ways.hy[i] = own ? ny : free * (mean * ny + part * faces.by[i]) + along * y;
+        ways.hz[i] = own ? nz : free * (mean * nz + part * faces.bz[i]) + along * z;
+        ways.sx[i] = own ? nx : free * nx + along * x;
+        ways.sy[i] = own ? ny : free * ny + along * y;
+        ways.sz[i] = own ? nz : free * nz + along * z;
     }
 }
 
@@ -127,6 +126,7 @@ void finish(const TrussMesh& mesh, std::size_t b, double nodes, const TrussBlock
             const Lanes& gap, const BlockContact& contact, TrussBlockState& now, CrushSums& sums) {
     if (nodes >= left) sums.released_work += release(mesh.block[b], before, gap, contact, now);
     now.touching = std::fmod(nodes, left) > 0.0;
+    now.drawn = now.leading = 0;
     now.box = now.touching
                   ? before.box  // the block is looked at in any case while it touches
                   : Box::around(lanes, [&now](std::size_t i) { return Vec3(now.x[i], now.y[i], now.z[i]); });

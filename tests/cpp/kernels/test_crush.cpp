@@ -36,6 +36,7 @@ SkinForces press_by_pole(const TrussMesh& mesh, double x, double y, double radiu
         contact.nx[i] = faces.bx[i] = n.x(), contact.ny[i] = faces.by[i] = n.y();
         contact.nz[i] = faces.bz[i] = n.z();
         faces.held[i] = held;
+        faces.own_way[i] = 0.0;
     }
     CrushSums sums;
     crush(faces, laboratory::body(), mesh, 0, nullptr, before, now, contact, sums);

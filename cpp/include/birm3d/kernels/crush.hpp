@@ -51,10 +51,30 @@ struct FlatContact {
     InverseMass inverse_mass;
 };
 
+// Share of a node's way that goes along its truss, over the cosine c = -b . n >= 0 of the truss to the normal. `held`:
+// 1 where the surface holds the skin in line, else 0.
+BIRM3D_IN_LANE_LOOP double in_line(double held, double cosine) {
+    constexpr double c0 = 0.5;  // below it the share fades out
+    return held * (cosine < c0 ? cosine / (c0 * c0) : 1.0 / cosine);
+}
+
+// Normal force for each unit of truss force, -b . h.
+inline double share_held(double held, double cosine) {
+    const double along = in_line(held, cosine);
+    return cosine + along * (1.0 - cosine * cosine);
+}
+
+// The way h for each unit of the normal's way; `inward`: from the node to its anchor, unit.
+inline Vec3 way_held(double held, double cosine, const Vec3& normal, const Vec3& inward) {
+    const double along = in_line(held, cosine);
+    return (1.0 - along * cosine) * normal + along * inward;
+}
+
 // What each node of a block sees of surfaces of any shape (body axes); its normals now are in the BlockContact.
 struct alignas(64) NodeFaces {
     Lanes gap;         // of the nearest surface (m)
     Lanes bx, by, bz;  // outward normal of the same surface at the instant before
+    Lanes own_way;    // 1 where n is the node's way itself, for nodes drawn in by a dent (dent.hpp), else 0
     Lanes held;        // 1 where the surface holds the skin in line (see above), else 0
 };
 

@@ -28,6 +28,9 @@ struct TrussInput {
     // What is crushed has inertia and rate strength, which the law of Fig. 3 leaves out: the loading envelope
     // grows by 1 + (this times the rate of deflection)^2 (s/m).
     double rate_sensitivity = 0.0;
+    // Slope of the skin beside a dent that a narrow obstacle makes (kernels/dent.hpp); zero: nodes know nothing of each
+    // other.
+    double dent_slope = 0.0;
 };
 
 // Unloading stiffness of some trusses and its second moments about the mass centre, body axes.
@@ -79,6 +82,7 @@ struct TrussMesh {
     }
 
     double rate_sensitivity = 0.0;  // see TrussInput (s/m)
+    double dent_slope = 0.0;        // see TrussInput
 
     double reach = 0.0;  // greatest distance of a node or anchor from the mass centre (m)
 

@@ -1,0 +1,34 @@
+// A dent drags its surroundings along: beside a narrow obstacle the skin is drawn in with a slope of its own,
+//   d_j >= d_i - slope |p_j - p_i|   for every node i that the obstacle presses,
+// with d the deflections of the trusses and p the uncrushed places of their nodes. A node j that hangs on a node i
+// moves along its own truss, and its truss force F_j loads node i as if it were the own one of truss i: both have the
+// same rate of deflection, so that is what virtual work asks for. Nodes hang on nodes of the same panel, whose trusses
+// point the same way.
+//
+// A flat wall presses neighbours alike: there nothing hangs on anything. Not in the paper, whose trusses know nothing of
+// each other: between them a narrow post passes.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "birm3d/model/truss_mesh.hpp"
+
+namespace birm3d {
+
+// A node that an obstacle presses.
+struct DentDriver {
+    Vec3 place;         // uncrushed, body axes (m)
+    Vec3 direction;     // of its uncrushed truss, from the anchor to the node
+    double deflection;  // m
+};
+
+// What hangs on the drivers in one block.
+struct alignas(64) Hanging {
+    Lanes deflection;                     // that each node is drawn in to; below zero: none (m)
+    std::array<std::size_t, lanes> driver;  // on which each hangs
+};
+
+void hang(const TrussBlock& trusses, double slope, std::span<const DentDriver> drivers, Hanging& hanging);
+
+}  // namespace birm3d
