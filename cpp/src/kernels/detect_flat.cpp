@@ -75,11 +75,12 @@ bool beside_way(const PrismEdge& edge, const PrismEdge& face, const Spread& alon
 bool is_nearest_everywhere(const Prism& prism, const PrismEdge& face, const PlacedBox& box) {
     const Vec3 n = normal(face), t = tangent(face);
     const double offset = n.dot(point_on(face, 0.0)), start = t.dot(point_on(face, 0.0));
-    Spread along = box.along(t), ahead = box.along(n);
-    const Spread y = box.along(Vec3::UnitY());
+    Spread along = box.along(t);
     along.middle -= start;
-    ahead.middle -= offset;
     if (along.least() < face.low || along.most() > face.high) return false;
+    Spread ahead = box.along(n);
+    ahead.middle -= offset;
+    const Spread y = box.along(Vec3::UnitY());
     if (y.least() < prism.y_low() || y.most() > prism.y_high()) return false;
     bool all_behind = true;
     for (const PrismEdge& edge : prism.edges()) {
@@ -115,10 +116,16 @@ std::optional<HalfSpace> flat_part(const Shape& shape, const Placement& now, con
     const auto* prism = std::get_if<Prism>(&shape);
     if (!prism) return std::nullopt;
     const PlacedBox placed{now, box, now.to_own(box.center)};
-    for (const PrismEdge& edge : prism->edges())
-        if (is_nearest_everywhere(*prism, edge, placed))
-            return now.plane_from_own({normal(edge), normal(edge).dot(point_on(edge, 0.0))});
-    return std::nullopt;
+    // What is nearest everywhere is nearest to the middle.
+    const PrismEdge* face = nullptr;
+    NearestEdge nearest;
+    for (const PrismEdge& edge : prism->edges()) {
+        const NearestEdge n = nearer_edge(edge, placed.center.x(), placed.center.z(), nearest);
+        if (n.square < nearest.square) face = &edge;
+        nearest = n;
+    }
+    if (!face || nearest.past != 0.0 || !is_nearest_everywhere(*prism, *face, placed)) return std::nullopt;
+    return now.plane_from_own({normal(*face), normal(*face).dot(point_on(*face, 0.0))});
 }
 
 }  // namespace birm3d
