@@ -109,7 +109,7 @@ TEST("how a flat face is divided does not matter: no contact at internal edges")
     const TriangleMesh coarse = wall_mesh(1), fine = wall_mesh(40);
     laboratory::Random random(17);
     int met = 0;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 6000; ++i) {
         const Vec3 p = random.point({0.0, -1.0, 0.0}, {0.4, 1.0, 0.8}), r = random.direction();
         const auto a = coarse.vertex_to_face(p, r), b = fine.vertex_to_face(p, r);
         CHECK(a.has_value() == b.has_value());
@@ -118,7 +118,7 @@ TEST("how a flat face is divided does not matter: no contact at internal edges")
         CHECK_CLOSE(a->gap, b->gap, 1e-14, "rounding");
         CHECK_CLOSE((a->normal - b->normal).norm(), 0.0, 1e-14, "one plane");
     }
-    CHECK(met > 5000);
+    CHECK(met > 1500);
     // On the lines that divide the front, and just beside them.
     for (int j = 0; j <= 40; ++j)
         for (const double beside : {-1e-9, -1e-15, 0.0, 1e-15, 1e-9}) {
