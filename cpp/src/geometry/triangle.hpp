@@ -4,13 +4,10 @@
 #include <array>
 #include <cstddef>
 
-#include "birm3d/base/tolerances.hpp"
 #include "birm3d/base/types.hpp"
+#include "geometry/triangle_nearest.hpp"
 
 namespace birm3d {
-
-// Parts of a triangle: itself, the edges from corner i to i + 1, the corners.
-enum TrianglePart : std::size_t { inner = 0, edge_0 = 1, corner_0 = 4, part_count = 7 };
 
 // What the surface is like around a part.
 enum class Vicinity { flat, bent, rim };
@@ -25,26 +22,17 @@ struct Triangle {
     double offset;  // m
     std::array<Vec3, part_count> pseudo_normal;
     std::array<Vicinity, part_count> vicinity;
+    PlainTriangle plain;
 };
 
-inline double area_of(const Vec3& a, const Vec3& b, const Vec3& c) {  // paper Eq. 15
-    return 0.5 * (b - a).cross(c - b).norm();
-}
+double area_of(const Vec3& a, const Vec3& b, const Vec3& c);  // paper Eq. 15
 
 // Does a point of the triangle's plane lie within it? (paper 5.1)
-inline bool holds(const Triangle& t, const Vec3& p) {
-    const double parts = area_of(t.corner[0], t.corner[1], p) + area_of(t.corner[1], t.corner[2], p) +
-                         area_of(t.corner[2], t.corner[0], p);
-    return parts <= (1.0 + tolerance::triangle_area) * t.area;
-}
+bool holds(const Triangle& t, const Vec3& p);
 
-struct OnTriangle {
-    Vec3 point;
-    std::size_t part;  // that it lies on
-};
+// Of the corners alone.
+PlainTriangle plain_triangle(const std::array<Vec3, 3>& corner);
 
-// By the regions in which a corner, an edge or the inside is nearest (C. Ericson, Real-Time Collision
-// Detection, 2005, section 5.1.5).
 OnTriangle nearest_on(const Triangle& t, const Vec3& p);
 
 }  // namespace birm3d

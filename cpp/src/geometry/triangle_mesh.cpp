@@ -3,7 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "triangle_mesh_data.hpp"
+#include "birm3d/base/tolerances.hpp"
+#include "geometry/triangle_mesh_data.hpp"
 
 namespace birm3d {
 
@@ -43,6 +44,17 @@ double size_of(const std::vector<Triangle>& triangles) {
 
 }  // namespace
 
+Nearest nearest_from(const Triangle& t, const OnTriangle& on, const Vec3& p) {
+    const auto part = static_cast<std::size_t>(on.part);
+    if (t.vicinity[part] == Vicinity::flat) return {t.normal.dot(p) - t.offset, t.normal};
+    const Vec3 from(on.x, on.y, on.z);
+    const double distance = std::sqrt(on.square);
+    const bool outside = t.vicinity[part] == Vicinity::rim || t.pseudo_normal[part].dot(from) >= 0.0;
+    const double sign = outside ? 1.0 : -1.0;
+    if (!(distance > tolerance::edge_radius)) return {sign * distance, t.normal};
+    return {sign * distance, sign / distance * from};
+}
+
 TriangleMesh::TriangleMesh(const std::vector<Vec3>& vertices, const std::vector<Face>& faces) {
     auto data = std::make_shared<TriangleMeshData>();
     data->triangles = triangles_of(vertices, faces, data->closed);
@@ -61,25 +73,17 @@ Nearest TriangleMesh::nearest(const Vec3& p, std::size_t& hint) const {
     const std::vector<Triangle>& triangles = data_->triangles;
     std::size_t best = hint < triangles.size() ? hint : 0;
     OnTriangle on = nearest_on(triangles[best], p);
-    double square = (p - on.point).squaredNorm();
-    data_->tree.near(p, square, [&](std::size_t i) {
+    data_->tree.near(p, p, on.square, [&](std::size_t i) {
+        const double ahead = ahead_of(triangles[i].plain, p.x(), p.y(), p.z());
+        if (ahead * ahead >= on.square) return;
         const OnTriangle candidate = nearest_on(triangles[i], p);
-        const double d = (p - candidate.point).squaredNorm();
-        if (d < square) {
-            square = d;
+        if (candidate.square < on.square) {
             on = candidate;
             best = i;
         }
     });
     hint = best;
-    const Triangle& t = triangles[best];
-    if (t.vicinity[on.part] == Vicinity::flat) return {t.normal.dot(p) - t.offset, t.normal};
-    const Vec3 from = p - on.point;
-    const double distance = from.norm();
-    const bool outside = t.vicinity[on.part] == Vicinity::rim || t.pseudo_normal[on.part].dot(from) >= 0.0;
-    const double sign = outside ? 1.0 : -1.0;
-    if (!(distance > tolerance::edge_radius)) return {sign * distance, t.normal};
-    return {sign * distance, sign / distance * from};
+    return nearest_from(triangles[best], on, p);
 }
 
 std::optional<Nearest> TriangleMesh::vertex_to_face(const Vec3& p, const Vec3& direction,
@@ -100,8 +104,7 @@ std::optional<Nearest> TriangleMesh::vertex_to_face(const Vec3& p, const Vec3& d
     return best;
 }
 
-Nearest TriangleMesh::contact(const Vec3& p, const Vec3& motion, std::size_t& hint) const {
-    const Nearest exact = nearest(p, hint);
+Nearest TriangleMesh::contact(const Vec3& p, const Vec3& motion, const Nearest& exact) const {
     if (exact.gap >= 0.0) return exact;
     // Without a limit a vertex that slides along a wall would find the wall's end behind it.
     const double longest = motion.norm() + tolerance::touching_gap;

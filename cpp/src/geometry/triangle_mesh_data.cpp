@@ -1,4 +1,4 @@
-#include "triangle_mesh_data.hpp"
+#include "geometry/triangle_mesh_data.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,7 @@
 #include <string>
 
 #include "birm3d/base/error.hpp"
+#include "birm3d/base/tolerances.hpp"
 
 namespace birm3d {
 
@@ -214,6 +215,8 @@ std::vector<Triangle> triangles_of(const std::vector<Vec3>& vertices,
             size = std::max(size, (corner - triangles[0].corner[0]).norm());
     join_flat_faces(triangles, beyond, size);
     set_vicinities(triangles, beyond, vertices.size());
+    for (Triangle& t : triangles)
+        t.plain = plain_triangle(t.corner);
     return triangles;
 }
 

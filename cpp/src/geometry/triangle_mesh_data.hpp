@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "birm3d/geometry/triangle_mesh.hpp"
-#include "triangle.hpp"
-#include "triangle_tree.hpp"
+#include "geometry/triangle.hpp"
+#include "geometry/triangle_tree.hpp"
 
 namespace birm3d {
 
@@ -15,6 +15,9 @@ struct TriangleMeshData {
     bool closed = false;
     double thickness = 0.0;  // m
 };
+
+// What `p` sees whose nearest point lies on a part of a triangle, by the vector from there.
+Nearest nearest_from(const Triangle& triangle, const OnTriangle& on, const Vec3& p);
 
 // Checks the arguments of TriangleMesh and gives triangles with their neighbourhood.
 std::vector<Triangle> triangles_of(const std::vector<Vec3>& vertices,

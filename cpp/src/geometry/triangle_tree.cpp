@@ -1,4 +1,4 @@
-#include "triangle_tree.hpp"
+#include "geometry/triangle_tree.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,10 +1,12 @@
 // Boxes around triangles, boxes around those: finds triangles near a point or along a line without asking all.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
-#include "triangle.hpp"
+#include "geometry/triangle.hpp"
 
 namespace birm3d {
 
@@ -14,10 +16,10 @@ class TriangleTree {
     // `slack` widens every box (m).
     TriangleTree(const std::vector<Triangle>& triangles, double slack);
 
-    // Calls visit(i) for the triangles whose boxes are nearer to p than the root of `square`, near ones first;
-    // visit may lower it.
+    // Calls visit(i) for the triangles whose boxes are nearer to the box from `low` to `high` than the root of
+    // `square`, near ones first; visit may lower it.
     template <class Visit>
-    void near(const Vec3& p, double& square, const Visit& visit) const;
+    void near(const Vec3& low, const Vec3& high, double& square, const Visit& visit) const;
 
     // Calls visit(i) for all triangles whose boxes the points p + t d, 0 <= t <= longest, meet.
     template <class Visit>
@@ -32,13 +34,13 @@ class TriangleTree {
         Vec3 low, high;
         std::size_t first, count;
     };
-    static constexpr std::size_t leaf_size = 4;
+    static constexpr std::size_t leaf_size = 2;
     static constexpr std::size_t deepest = 128;
 
     void divide(std::size_t node, std::size_t first, std::size_t count,
                 const std::vector<Triangle>& triangles, double slack);
-    static double square_to(const Node& node, const Vec3& p) {
-        return (node.low - p).cwiseMax(p - node.high).cwiseMax(0.0).squaredNorm();
+    static double square_to(const Node& node, const Vec3& low, const Vec3& high) {
+        return (node.low - high).cwiseMax(low - node.high).cwiseMax(0.0).squaredNorm();
     }
 
     std::vector<Node> nodes_;
@@ -46,14 +48,14 @@ class TriangleTree {
 };
 
 template <class Visit>
-void TriangleTree::near(const Vec3& p, double& square, const Visit& visit) const {
+void TriangleTree::near(const Vec3& low, const Vec3& high, double& square, const Visit& visit) const {
     struct Open {
         std::size_t node;
         double square;
     };
     std::array<Open, deepest> open;
     std::size_t n = 0;
-    open[n++] = {0, square_to(nodes_[0], p)};
+    open[n++] = {0, square_to(nodes_[0], low, high)};
     while (n > 0) {
         const Open next = open[--n];
         if (!(next.square < square)) continue;
@@ -63,8 +65,8 @@ void TriangleTree::near(const Vec3& p, double& square, const Visit& visit) const
                 visit(order_[node.first + i]);
             continue;
         }
-        const Open a{node.first, square_to(nodes_[node.first], p)};
-        const Open b{node.first + 1, square_to(nodes_[node.first + 1], p)};
+        const Open a{node.first, square_to(nodes_[node.first], low, high)};
+        const Open b{node.first + 1, square_to(nodes_[node.first + 1], low, high)};
         const bool a_first = a.square <= b.square;
         open[n++] = a_first ? b : a;
         open[n++] = a_first ? a : b;

@@ -1,20 +1,8 @@
-#include "birm3d/kernels/detect.hpp"
+#include "kernels/detect_lanes.hpp"
 
 namespace birm3d {
 
 namespace {
-
-// A placement in plain numbers, and its way back for directions.
-struct Turn {
-    double xx, xy, xz, yx, yy, yz, zx, zy, zz;
-    double x, y, z;
-};
-
-Turn turn_of(const Placement& p) {
-    const Mat3& R = p.rotation;
-    return {R(0, 0), R(0, 1), R(0, 2), R(1, 0),        R(1, 1),        R(1, 2),
-            R(2, 0), R(2, 1), R(2, 2), p.position.x(), p.position.y(), p.position.z()};
-}
 
 BIRM3D_LANE_LOOP void to_plane(double nx, double ny, double nz, double offset, const Lanes& x, const Lanes& y,
                                const Lanes& z, NearestLanes& out) {
@@ -48,28 +36,21 @@ struct alignas(64) EdgeLanes {
     Lanes square, ahead, past, tx, tz;
 };
 
-struct alignas(64) OwnLanes {
-    Lanes x, y, z, side;
-};
-
-BIRM3D_LANE_LOOP void begin_prism(const Turn& t, const Lanes& x, const Lanes& y, const Lanes& z,
-                                  OwnLanes& own, EdgeLanes& best) {
+BIRM3D_LANE_LOOP void begin_prism(EdgeLanes& best, Lanes& side) {
+    const NearestEdge nothing;
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
-        own.x[i] = t.xx * x[i] + t.xy * y[i] + t.xz * z[i] + t.x;
-        own.y[i] = t.yx * x[i] + t.yy * y[i] + t.yz * z[i] + t.y;
-        own.z[i] = t.zx * x[i] + t.zy * y[i] + t.zz * z[i] + t.z;
-        own.side[i] = 1.0;
-        const NearestEdge nothing;
         best.square[i] = nothing.square;
         best.ahead[i] = nothing.ahead;
         best.past[i] = nothing.past;
         best.tx[i] = nothing.tx;
         best.tz[i] = nothing.tz;
+        side[i] = 1.0;
     }
 }
 
-BIRM3D_LANE_LOOP void ask_edges(const PrismEdge* edges, std::size_t count, OwnLanes& own, EdgeLanes& best) {
+BIRM3D_LANE_LOOP void ask_edges(const PrismEdge* edges, std::size_t count, const OwnLanes& own, Lanes& side,
+                                EdgeLanes& best) {
     for (std::size_t e = 0; e < count; ++e) {
         const PrismEdge edge = edges[e];
         BIRM3D_INDEPENDENT
@@ -82,14 +63,14 @@ BIRM3D_LANE_LOOP void ask_edges(const PrismEdge* edges, std::size_t count, OwnLa
             best.past[i] = b.past;
             best.tx[i] = b.tx;
             best.tz[i] = b.tz;
-            own.side[i] = side_after_edge(edge, own.x[i], own.z[i], own.side[i]);
+            side[i] = side_after_edge(edge, own.x[i], own.z[i], side[i]);
         }
     }
 }
 
 BIRM3D_LANE_LOOP void finish_prism(const Turn& t, double y_low, double y_high, bool low_end, bool high_end,
-                                   const OwnLanes& own, const EdgeLanes& faces, const EdgeLanes& outline,
-                                   NearestLanes& out) {
+                                   const OwnLanes& own, const Lanes& side, const EdgeLanes& faces,
+                                   const EdgeLanes& outline, NearestLanes& out) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
         const double y = own.y[i];
@@ -99,10 +80,10 @@ BIRM3D_LANE_LOOP void finish_prism(const Turn& t, double y_low, double y_high, b
         const NearestEdge all{outline.square[i], outline.ahead[i], outline.past[i], outline.tx[i],
                               outline.tz[i]};
         FromSurface v = from_edge(face, past_end);
-        if (low_end) v = nearer_end(all, own.side[i], y - y_low, -1.0, v);
-        if (high_end) v = nearer_end(all, own.side[i], y - y_high, 1.0, v);
+        if (low_end) v = nearer_end(all, side[i], y - y_low, -1.0, v);
+        if (high_end) v = nearer_end(all, side[i], y - y_high, 1.0, v);
         double gap, nx, ny, nz;
-        signed_distance(v, past_end == 0.0 ? own.side[i] : 1.0, gap, nx, ny, nz);
+        signed_distance(v, past_end == 0.0 ? side[i] : 1.0, gap, nx, ny, nz);
         out.gap[i] = gap;
         out.nx[i] = t.xx * nx + t.yx * ny + t.zx * nz;
         out.ny[i] = t.xy * nx + t.yy * ny + t.zy * nz;
@@ -124,29 +105,28 @@ struct Block {
         const Turn turn = turn_of(now);
         OwnLanes own;
         EdgeLanes faces, outline;
-        begin_prism(turn, x, y, z, own, faces);
-        ask_edges(prism.edges().data(), prism.edges().size(), own, faces);
+        alignas(64) Lanes side;
+        to_own(turn, x, y, z, own);
+        begin_prism(faces, side);
+        ask_edges(prism.edges().data(), prism.edges().size(), own, side, faces);
         outline = faces;
-        ask_edges(prism.covered_edges().data(), prism.covered_edges().size(), own, outline);
+        ask_edges(prism.covered_edges().data(), prism.covered_edges().size(), own, side, outline);
         finish_prism(turn, prism.y_low(), prism.y_high(), prism.low_end_is_surface(),
-                     prism.high_end_is_surface(), own, faces, outline, out);
+                     prism.high_end_is_surface(), own, side, faces, outline, out);
     }
-    void operator()(const TriangleMesh& mesh) const {
-        std::size_t hint = 0;
-        for (std::size_t i = 0; i < lanes; ++i) {
-            const Vec3 p(x[i], y[i], z[i]);
-            const Vec3 own = now.to_own(p);
-            const Nearest n = mesh.contact(own, own - before.to_own(p), hint);
-            const Vec3 normal = now.direction_from_own(n.normal);
-            out.gap[i] = n.gap;
-            out.nx[i] = normal.x();
-            out.ny[i] = normal.y();
-            out.nz[i] = normal.z();
-        }
-    }
+    void operator()(const TriangleMesh& mesh) const { nearest_of_mesh(mesh, now, before, x, y, z, out); }
 };
 
 }  // namespace
+
+BIRM3D_LANE_LOOP void to_own(const Turn& t, const Lanes& x, const Lanes& y, const Lanes& z, OwnLanes& own) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        own.x[i] = t.xx * x[i] + t.xy * y[i] + t.xz * z[i] + t.x;
+        own.y[i] = t.yx * x[i] + t.yy * y[i] + t.yz * z[i] + t.y;
+        own.z[i] = t.zx * x[i] + t.zy * y[i] + t.zz * z[i] + t.z;
+    }
+}
 
 void nearest_of(const Shape& shape, const Placement& now, const Placement& before, const Lanes& x,
                 const Lanes& y, const Lanes& z, NearestLanes& out) {

@@ -30,12 +30,11 @@ Counts random_vertices(const TriangleMesh& mesh, double step, unsigned seed) {
             random.point(bounds.center - 1.3 * bounds.half, bounds.center + 1.3 * bounds.half);
         const Vec3 way = random.within(0.0, step) * random.direction();
         const Vec3 p = before + way;
-        std::size_t hint = 0;
         const Nearest exact = mesh.nearest(p);
         if (mesh.nearest(before).gap <= 0.0 || exact.gap >= 0.0) continue;
         ++n.inside;
         const auto face = mesh.vertex_to_face(p, way);
-        const Nearest contact = mesh.contact(p, way, hint);
+        const Nearest contact = mesh.contact(p, way, exact);
         n.lost += contact.gap >= 0.0;
         n.off_surface += std::abs(mesh.nearest(p - contact.gap * contact.normal).gap) > 1e-12;
         if (!face) continue;
@@ -44,6 +43,10 @@ Counts random_vertices(const TriangleMesh& mesh, double step, unsigned seed) {
         n.nearer += face->gap > exact.gap + 1e-12;
     }
     return n;
+}
+
+Nearest contact(const TriangleMesh& mesh, const Vec3& p, const Vec3& motion) {
+    return mesh.contact(p, motion, mesh.nearest(p));
 }
 
 }  // namespace
@@ -62,23 +65,22 @@ TEST("both conditions met: the face that was passed, and the push-back p - gap n
 TEST("one condition missed: no face, but the vertex is not lost") {
     const TriangleMesh box = wall_mesh(),
                        barrier = laboratory::extruded(jersey, {0.0, 0.2}, -1.0, 1.0, 3).mesh();
-    std::size_t hint = 0;
     // At rest.
     const Vec3 p(0.1, 0.0, 0.4);
     CHECK(!box.vertex_to_face(p, Vec3::Zero()));
-    CHECK_CLOSE(box.contact(p, Vec3::Zero(), hint).gap, -0.1, 1e-15, "the exact nearest");
+    CHECK_CLOSE(contact(box, p, Vec3::Zero()).gap, -0.1, 1e-15, "the exact nearest");
     // Behind the concave break the normals of both slopes lead past their ends: no P2.
     const Vec3 q = Vec3(0.127, 0.0, 0.3302) + 0.01 * Vec3(-1.0, 0.0, -0.3).normalized();
     const Vec3 inwards(-0.1, 0.0, 0.0);
     CHECK(!barrier.vertex_to_face(q, inwards));
-    CHECK_CLOSE(barrier.contact(q, inwards, hint).gap, -0.01, 1e-15, "the exact nearest");
+    CHECK_CLOSE(contact(barrier, q, inwards).gap, -0.01, 1e-15, "the exact nearest");
     // Sliding along the front, which it touches: the way back leads to the wall's end, far beyond the motion.
     const Vec3 touching(1e-9, 0.0, 0.4), slide(0.0, 0.02, 0.0);
     CHECK_CLOSE(box.vertex_to_face(touching, slide)->gap, -1.0, 1e-15, "the paper's conditions alone");
-    CHECK_CLOSE(box.contact(touching, slide, hint).gap, -1e-9, 1e-15, "the exact nearest");
+    CHECK_CLOSE(contact(box, touching, slide).gap, -1e-9, 1e-15, "the exact nearest");
     // Outside.
     CHECK(!box.vertex_to_face({-0.1, 0.0, 0.4}, Vec3::UnitX()));
-    CHECK_CLOSE(box.contact({-0.1, 0.0, 0.4}, Vec3::UnitX(), hint).gap, 0.1, 1e-15, "the exact nearest");
+    CHECK_CLOSE(contact(box, {-0.1, 0.0, 0.4}, Vec3::UnitX()).gap, 0.1, 1e-15, "the exact nearest");
 }
 
 TEST("no vertex that is inside is ever lost; how often both conditions hold") {
@@ -107,7 +109,7 @@ TEST("how a flat face is divided does not matter: no contact at internal edges")
     const TriangleMesh coarse = wall_mesh(1), fine = wall_mesh(40);
     laboratory::Random random(17);
     int met = 0;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 6000; ++i) {
         const Vec3 p = random.point({0.0, -1.0, 0.0}, {0.4, 1.0, 0.8}), r = random.direction();
         const auto a = coarse.vertex_to_face(p, r), b = fine.vertex_to_face(p, r);
         CHECK(a.has_value() == b.has_value());
@@ -116,7 +118,7 @@ TEST("how a flat face is divided does not matter: no contact at internal edges")
         CHECK_CLOSE(a->gap, b->gap, 1e-14, "rounding");
         CHECK_CLOSE((a->normal - b->normal).norm(), 0.0, 1e-14, "one plane");
     }
-    CHECK(met > 5000);
+    CHECK(met > 1500);
     // On the lines that divide the front, and just beside them.
     for (int j = 0; j <= 40; ++j)
         for (const double beside : {-1e-9, -1e-15, 0.0, 1e-15, 1e-9}) {

@@ -20,11 +20,6 @@ struct Placement {
         return {direction_from_own(plane.normal), plane.offset - plane.normal.dot(position)};
     }
 
-    // How far a box of the body's axes reaches from its middle along a direction of the own axes (m).
-    double reach(const Vec3& half, const Vec3& direction) const {
-        return direction_from_own(direction).cwiseAbs().dot(half);
-    }
-
     Placement inverse() const { return {rotation.transpose(), -(rotation.transpose() * position)}; }
 
     // First `first`, then this one.

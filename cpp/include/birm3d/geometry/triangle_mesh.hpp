@@ -46,16 +46,18 @@ class TriangleMesh {
     std::optional<Nearest> vertex_to_face(const Vec3& p, const Vec3& direction,
                                           double longest = std::numeric_limits<double>::infinity()) const;
 
-    // What a vertex touches that has come to `p` by the motion `motion` (m). Outside the mesh: nearest. Inside:
-    // vertex_to_face, where the motion leads through the face; else (beside an edge, at rest, moving along the
-    // surface) nearest, so that no vertex inside is ever lost. `hint` as for nearest.
-    Nearest contact(const Vec3& p, const Vec3& motion, std::size_t& hint) const;
+    // What a vertex touches that has come to `p` by the motion `motion` (m); `exact`: what nearest says of p.
+    // Outside the mesh: that. Inside: vertex_to_face, where the motion leads through the face; else (beside an
+    // edge, at rest, moving along the surface) nearest, so that no vertex inside is ever lost.
+    Nearest contact(const Vec3& p, const Vec3& motion, const Nearest& exact) const;
 
     Box bounds() const;        // as of a Shape
     double thickness() const;  // as of a Shape
     bool closed() const;
     std::size_t triangle_count() const;
     const std::array<Vec3, 3>& corners(std::size_t triangle) const;
+
+    const TriangleMeshData& data() const { return *data_; }
 
   private:
     std::shared_ptr<const TriangleMeshData> data_;
