@@ -66,6 +66,12 @@ inline constexpr double touching_gap = 1e-6;
 // wheels lands first would else hang on rounding. Large: points that are still in the air are stopped.
 inline constexpr double joint_impact_gap = 1e-3;
 
+// Places of a joint on its two bodies may differ by this much at rest (m): what files are rounded to.
+inline constexpr double joint_fit = 1e-3;
+
+// Gap of a joint at the end of a step below which its impulses are not corrected any more (m, rad): rounding.
+inline constexpr double joint_gap = 1e-12;
+
 // After the vehicle has left the barrier for good the run goes on for this long (s), so that filtered
 // histories settle.
 inline constexpr double tail_duration = 0.02;
