@@ -66,7 +66,8 @@ ImpulseSolver::ImpulseSolver(std::span<const RigidContact> contacts, std::span<c
             row.g_other = -in_unit_mass(unit_wrench(contact, contact.other_arm), bodies[b], roots_[b]);
         }
         row.own = influence(row, row);
-        row.give = std::max(contact.compliance, tolerance::body_compliance) * row.own;
+        row.give = std::max(contact.compliance * bodies[row.body].inverse_mass,
+                            tolerance::body_compliance * row.own);
         rows_.push_back(row);
     }
     for (std::size_t i = 0; i < rows_.size(); ++i)

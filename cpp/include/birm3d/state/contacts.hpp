@@ -86,7 +86,7 @@ struct RigidContact {
     Vec3 other_arm = Vec3::Zero();  // the same for the other body
     Vec3 normal = Vec3::UnitZ();    // from the surface towards the body; or the axis
     double gap = 0.0;               // m
-    double compliance = 0.0;        // share of the point's own inverse effective mass
+    double compliance = 0.0;        // share of the inverse mass of its body
     double target = 0.0;            // least separation velocity wanted; where held, the one wanted (m/s)
     double impulse = 0.0;           // result (N s), >= 0 unless held
     bool held = false;              // acts both ways
