@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -12,6 +13,8 @@ namespace birm3d {
 namespace {
 
 using Eigen::Index;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Lower triangle; zero for a body that can not be turned.
 Mat3 root_of(const Mat3& inverse_inertia) {
@@ -59,7 +62,8 @@ ImpulseSolver::ImpulseSolver(std::span<const RigidContact> contacts, std::span<c
         roots_.push_back(root_of(body.inverse_inertia));
     rows_.reserve(contacts.size());
     for (const RigidContact& contact : contacts) {
-        Row row{contact.body, contact.other, {}, Vec6::Zero(), 0.0, 0.0, 0.0, contact.held};
+        Row row{contact.body, contact.other, {}, Vec6::Zero()};
+        row.held = contact.held;
         row.g = in_unit_mass(unit_wrench(contact, contact.arm), bodies[row.body], roots_[row.body]);
         if (row.other >= 0) {
             const auto b = static_cast<std::size_t>(row.other);
@@ -77,9 +81,20 @@ ImpulseSolver::ImpulseSolver(std::span<const RigidContact> contacts, std::span<c
 void ImpulseSolver::solve(std::span<RigidContact> contacts, std::span<ContactBody> bodies) {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         rows_[i].lack = contacts[i].target - separation_velocity(contacts[i], bodies);
-        rows_[i].settled = rows_[i].own == 0.0;  // nothing there can be moved
+        rows_[i].before = 0.0;
     }
-    find_impulses();
+    constexpr int most_passes = 10;
+    double given = infinity;
+    for (int pass = 0; pass < most_passes && given > 0.1 * tolerance_; ++pass) {
+        for (Row& row : rows_)
+            row.wanted = row.lack + row.give * row.before;
+        find_impulses();
+        given = 0.0;
+        for (Row& row : rows_) {
+            given = std::max(given, row.give * std::abs(row.impulse - row.before));
+            row.before = row.impulse;
+        }
+    }
     for (std::size_t i = 0; i < rows_.size(); ++i)
         contacts[i].impulse = rows_[i].impulse;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -119,6 +134,8 @@ void ImpulseSolver::activate(std::size_t row) {
 
 // From the impulses there are, which may be those of the last solution.
 void ImpulseSolver::find_impulses() {
+    for (Row& row : rows_)
+        row.settled = row.own == 0.0;  // nothing there can be moved
     if (active_.empty())
         motion_.setZero();
     else
@@ -146,7 +163,6 @@ void ImpulseSolver::find_impulses() {
         settle_active();
         if (!together && !rows_[worst].active) rows_[worst].settled = true;
     }
-    if (!active_.empty()) take_give_out();
 }
 
 // Moves from the present impulses towards the solution of the active rows; those that would pull leave where
@@ -177,14 +193,14 @@ void ImpulseSolver::settle_active() {
 void ImpulseSolver::solve_active() {
     if (!factorised_) factorise();
     for (const std::size_t i : active_)
-        rows_[i].residual = rows_[i].lack, rows_[i].next = 0.0;
+        rows_[i].residual = rows_[i].wanted, rows_[i].next = 0.0;
     add_solution(&Row::next);
     const int refinements = by_bodies_ ? 3 : 0;
     for (int pass = 0; pass < refinements; ++pass) {
         move_by(&Row::next, working_);
         for (const std::size_t i : active_) {
             Row& row = rows_[i];
-            row.residual = row.lack - along(row, working_) - row.give * row.next;
+            row.residual = row.wanted - along(row, working_) - row.give * row.next;
         }
         add_solution(&Row::next);
     }
@@ -244,23 +260,6 @@ void ImpulseSolver::move_by(double Row::* impulses, Eigen::VectorXd& motion) con
     motion.setZero(motion_.size());
     for (const std::size_t i : active_)
         push(rows_[i], rows_[i].*impulses, motion);
-}
-
-// The compliance has done its work, which is to share the load.
-void ImpulseSolver::take_give_out() {
-    constexpr int most_passes = 5;
-    for (int pass = 0; pass < most_passes; ++pass) {
-        double worst = 0.0;
-        for (const std::size_t i : active_) {
-            rows_[i].residual = shortfall(rows_[i]);
-            worst = std::max(worst, std::abs(rows_[i].residual));
-        }
-        if (worst <= 1e-3 * tolerance_) break;
-        add_solution(&Row::impulse);
-        for (const std::size_t i : active_)
-            if (!rows_[i].held) rows_[i].impulse = std::max(0.0, rows_[i].impulse);
-        move_by(&Row::impulse, motion_);
-    }
 }
 
 void solve_impulses(std::span<RigidContact> contacts, std::span<ContactBody> bodies, double speed_scale) {
