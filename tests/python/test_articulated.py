@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from birm3d import ArticulatedVehicle, Barrier, Joint, Result, Settings, Simulation, Vehicle, scenes
 from birm3d.fingerprint import fingerprint
+from birm3d.scene_parameters import parameter_names, value_of, varied
 
 G = 9.80665
 
@@ -316,6 +317,16 @@ def test_a_run_goes_on_from_a_snapshot_with_the_same_bits() -> None:
     )
     with pytest.raises(ValueError, match="snapshot"):
         welded.restore(snapshot)
+
+
+def test_parameters_of_a_scene_reach_both_units() -> None:
+    simulation = Simulation(semi(), Barrier.rigid_wall(), 12.0)
+    assert not any(name.startswith("truss.") for name in parameter_names(simulation))
+    assert value_of(simulation, "vehicle.gvw") == semi().mass
+    lighter = varied(simulation, {"vehicle.gvw": 30000.0, "vehicle.rate_sensitivity": 0.05})
+    vehicle = lighter.scene.vehicle
+    assert vehicle.mass == pytest.approx(30000.0)
+    assert [unit.rate_sensitivity for unit in vehicle.units] == [0.05, 0.05]
 
 
 def test_the_report_and_the_table_tell_of_the_joint() -> None:

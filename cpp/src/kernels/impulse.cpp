@@ -22,12 +22,6 @@ Mat3 root_of(const Mat3& inverse_inertia) {
     return inverse_inertia.llt().matrixL();
 }
 
-Eigen::Matrix<double, 6, 1> in_unit_mass(const Wrench& wrench, const ContactBody& body, const Mat3& root) {
-    Eigen::Matrix<double, 6, 1> g;
-    g << std::sqrt(body.inverse_mass) * wrench.force, root.transpose() * wrench.torque;
-    return g;
-}
-
 }  // namespace
 
 double separation_velocity(const RigidContact& contact, std::span<const ContactBody> bodies) {
@@ -59,15 +53,15 @@ ImpulseSolver::ImpulseSolver(std::span<const RigidContact> contacts, std::span<c
       motion_(Eigen::VectorXd::Zero(6 * static_cast<Index>(bodies.size()))) {
     roots_.reserve(bodies.size());
     for (const ContactBody& body : bodies)
-        roots_.push_back(root_of(body.inverse_inertia));
+        roots_.push_back({std::sqrt(body.inverse_mass), root_of(body.inverse_inertia)});
     rows_.reserve(contacts.size());
     for (const RigidContact& contact : contacts) {
         Row row{contact.body, contact.other, {}, Vec6::Zero()};
         row.held = contact.held;
-        row.g = in_unit_mass(unit_wrench(contact, contact.arm), bodies[row.body], roots_[row.body]);
+        row.g = in_unit_mass(unit_wrench(contact, contact.arm), row.body);
         if (row.other >= 0) {
-            const auto b = static_cast<std::size_t>(row.other);
-            row.g_other = -in_unit_mass(unit_wrench(contact, contact.other_arm), bodies[b], roots_[b]);
+            row.g_other =
+                -in_unit_mass(unit_wrench(contact, contact.other_arm), static_cast<std::size_t>(row.other));
         }
         row.own = influence(row, row);
         row.give = std::max(contact.compliance * bodies[row.body].inverse_mass,
@@ -99,9 +93,16 @@ void ImpulseSolver::solve(std::span<RigidContact> contacts, std::span<ContactBod
         contacts[i].impulse = rows_[i].impulse;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const auto u = motion_.segment<6>(6 * static_cast<Index>(b));
-        bodies[b].motion.velocity += std::sqrt(bodies[b].inverse_mass) * u.head<3>();
-        bodies[b].motion.angular_velocity += roots_[b] * u.tail<3>();
+        bodies[b].motion.velocity += roots_[b].mass * u.head<3>();
+        bodies[b].motion.angular_velocity += roots_[b].inertia * u.tail<3>();
     }
+}
+
+ImpulseSolver::Vec6 ImpulseSolver::in_unit_mass(const Wrench& wrench, std::size_t body) const {
+    Vec6 g;
+    g.head<3>() = roots_[body].mass * wrench.force;
+    g.tail<3>() = roots_[body].inertia.transpose() * wrench.torque;
+    return g;
 }
 
 double ImpulseSolver::along(const Row& row, const Eigen::VectorXd& motion) {

@@ -73,6 +73,7 @@ class ImpulseSolver {
         double residual = 0.0;  // working space
     };
 
+    Vec6 in_unit_mass(const Wrench& wrench, std::size_t body) const;
     static double along(const Row& row, const Eigen::VectorXd& motion);
     static void push(const Row& row, double impulse, Eigen::VectorXd& motion);
     static double influence(const Row& i, const Row& j);
@@ -85,8 +86,14 @@ class ImpulseSolver {
     void add_solution(double Row::* impulses);
     void move_by(double Row::* impulses, Eigen::VectorXd& motion) const;
 
+    // Of one body: r^2 = inverse mass, L L^T = inverse inertia.
+    struct Root {
+        double mass;
+        Mat3 inertia;
+    };
+
     double tolerance_;         // of velocities (m/s)
-    std::vector<Mat3> roots_;  // (bodies) L with L L^T = inverse inertia
+    std::vector<Root> roots_;  // (bodies)
     std::vector<Row> rows_;    // (contacts)
     std::vector<std::size_t> active_, kept_;
     bool by_bodies_ = false;   // are the factors those of the bodies' system, or of the rows'?
