@@ -48,7 +48,7 @@ class Simulation:
         Between the vehicle's path and the barrier's line [deg], 0 to 180; 90 is head-on. At 0 and 180 the barrier
         must have an end to meet.
     impact_offset
-        Where the path of the mass centre meets the barrier's line, from its origin [m].
+        Where the path of the mass centre (of the leading unit) meets the barrier's line, from its origin [m].
     standoff
         Distance of the nearest node from the barrier at t = 0 [m], >= 0.
     impact_yaw

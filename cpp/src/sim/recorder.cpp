@@ -13,7 +13,7 @@ namespace birm3d {
 namespace {
 
 // Where the numbers of a row stand. Energies and bodies at the end of the step, impulses within it.
-enum RowOffset : std::size_t { at_time = 0, at_energies = 1, at_units = 9 };
+enum RowOffset : std::size_t { at_time = 0, at_energies = 1, at_units = 10 };
 enum UnitOffset : std::size_t {
     at_position = 0,
     at_orientation = 3,  // x, y, z, w
@@ -29,10 +29,13 @@ enum UnitOffset : std::size_t {
     at_ground_force = 28,  // of the ground on the skin: the same three as of the barrier
     at_ground_impulse = 31,
     at_ground_bend = 34,
-    at_tire_impulses = 37
+    at_joint_impulse = 37,
+    at_tire_impulses = 40
 };
 // And in the numbers of an obstacle: force and torque on it, about its own point, world axes.
 enum ObstacleOffset : std::size_t { at_load = 0, at_load_impulse = 6, at_load_bend = 12, obstacle_width = 18 };
+// Behind the units: for each joint force and moment impulse.
+constexpr std::size_t joint_width = 6;
 
 std::size_t unit_width(const Unit& unit) {
     return at_tire_impulses + unit.wheels.size();
@@ -68,6 +71,7 @@ struct Impulses {
     Vec3 barrier = Vec3::Zero(), ground = Vec3::Zero();
     double barrier_normal = 0.0;
     Vec3 tire_friction = Vec3::Zero();
+    Vec3 joints = Vec3::Zero();
     Column tire;
 
     static Impulses within(const StepView& step, double t, std::size_t wheels) {
@@ -79,6 +83,7 @@ struct Impulses {
         sum.barrier_normal =
             step.force_integral(at_normal_force, at_normal_bend, t) + step.impulse(at_normal_impulse, t);
         sum.tire_friction = step.share(t) * vec(step.b + at_tire_friction);
+        sum.joints = step.share(t) * vec(step.b + at_joint_impulse);
         for (std::size_t w = 0; w < wheels; ++w)
             sum.tire.push_back(step.impulse(at_tire_impulses + w, t));
         return sum;
@@ -88,13 +93,14 @@ struct Impulses {
         ground += other.ground;
         barrier_normal += other.barrier_normal;
         tire_friction += other.tire_friction;
+        joints += other.joints;
         tire.resize(other.tire.size(), 0.0);
         for (std::size_t w = 0; w < tire.size(); ++w)
             tire[w] += other.tire[w];
         return *this;
     }
     Vec3 total() const {
-        Vec3 sum = barrier + ground + tire_friction;
+        Vec3 sum = barrier + ground + tire_friction + joints;
         for (const double j : tire)
             sum.z() += j;
         return sum;
@@ -116,8 +122,10 @@ Recorder::Recorder(const Scene& scene, const State& start) : width_(at_units) {
         width_ += unit_width(unit);
         none.emplace_back(unit.wheels.size());
     }
+    width_ += joint_width * scene.vehicle->joints.size();
     values_.reserve(512 * width_);
-    add_row(scene, start.time, start.energies, bodies_of(start), {start.units, none, false});
+    add_row(scene, start.time, start.energies, bodies_of(start),
+            {start.units, none, std::vector<Wrench>(scene.vehicle->joints.size()), false});
 }
 
 void Recorder::add(const Scene& scene, const Trial& accepted) {
@@ -127,7 +135,7 @@ void Recorder::add(const Scene& scene, const Trial& accepted) {
         const std::size_t before = values_.size() - width_;
         const std::size_t last = rows() - 1;
         add_row(scene, values_[before + at_time], accepted.at_start.energies, accepted.at_start.bodies,
-                {state.units, accepted.at_start.impulses, false});
+                {state.units, accepted.at_start.impulses, accepted.at_start.joint_impulses, false});
         const double* from = values_.data() + before + at_units;
         double* to = values_.data() + values_.size() - width_ + at_units;
         for (const Unit& unit : scene.vehicle->units) {
@@ -145,8 +153,8 @@ void Recorder::add(const Scene& scene, const Trial& accepted) {
     const std::vector<BodyState> bodies = bodies_of(state);
     const Impact& end = accepted.at_end;
     add_row(scene, state.time, end.happened ? end.energies : state.energies,
-            end.happened ? end.bodies : bodies, {state.units, accepted.impulses, true});
-    if (end.happened) add_row(scene, state.time, state.energies, bodies, {state.units, end.impulses, false});
+            end.happened ? end.bodies : bodies, {state.units, accepted.impulses, accepted.joint_impulses, true});
+    if (end.happened) add_row(scene, state.time, state.energies, bodies, {state.units, end.impulses, end.joint_impulses, false});
 }
 
 Recorder::ObstacleRow& Recorder::obstacle_row(std::size_t row, std::size_t obstacle) {
@@ -168,8 +176,8 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e,
             to[i] += v[i];
     };
     row[at_time] = time;
-    const std::array energies = {e.kinetic,          e.potential,     e.stored,          e.crushed,
-                                 e.barrier_friction, e.tire_friction, e.ground_friction, e.impacts};
+    const std::array energies = {e.kinetic,       e.potential,       e.stored,  e.crushed, e.barrier_friction,
+                                 e.tire_friction, e.ground_friction, e.impacts, e.joints};
     std::copy(energies.begin(), energies.end(), row + at_energies);
     row += at_units;
     for (std::size_t u = 0; u < bodies.size(); ++u) {
@@ -181,6 +189,7 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e,
         put(row + at_velocity, body.velocity);
         put(row + at_angular_velocity, body.orientation.conjugate() * angular_velocity(model.body, body));
         put(row + at_tire_friction, impulses.tire_friction);
+        put(row + at_joint_impulse, impulses.joints);
         row[at_normal_impulse] = impulses.barrier_normal;
         for (const Touch& touch : loads.units[u].touches) {
             const bool ground = touch.obstacle == scene.ground;
@@ -207,6 +216,50 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e,
         }
         std::copy(impulses.tire.begin(), impulses.tire.end(), row + at_tire_impulses);
         row += unit_width(model);
+    }
+    for (const Wrench& joint : loads.joint_impulses) {
+        put(row, joint.force);
+        put(row + 3, joint.torque);
+        row += joint_width;
+    }
+}
+
+void Recorder::resample_joints(const Scene& scene, const std::vector<std::size_t>& step_of,
+                               History& history) const {
+    const std::vector<Joint>& joints = scene.vehicle->joints;
+    const std::size_t first = width_ - joint_width * joints.size(), count = history.time.size();
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        JointHistory joint;
+        joint.force.assign(count, Vec3::Zero());
+        joint.moment.assign(count, Vec3::Zero());
+        const auto& leading = history.units[joints[j].leading].orientation;
+        const auto& trailing = history.units[joints[j].trailing].orientation;
+        for (std::size_t k = 0; k < count; ++k)
+            joint.angles.push_back(joint_angles(leading[k], trailing[k]));
+
+        const auto row_at = [&](std::size_t row) { return values_.data() + row * width_; };
+        const auto add = [&](std::size_t row, double share, Wrench& sum) {
+            const double* impulse = row_at(row + 1) + first + j * joint_width;
+            sum += {share * vec(impulse), share * vec(impulse + 3)};
+        };
+        Wrench before_step, previous;
+        std::size_t row = 0;
+        for (std::size_t k = 0; k < count && rows() > 1; ++k) {
+            for (; row < step_of[k]; ++row)
+                add(row, 1.0, before_step);
+            const double dt = row_at(row + 1)[at_time] - row_at(row)[at_time];
+            const double t = std::clamp(history.time[k] - row_at(row)[at_time], 0.0, dt);
+            Wrench now = before_step;
+            add(row, dt > 0.0 ? t / dt : 1.0, now);
+            if (k > 0) {
+                const double per = 1.0 / (history.time[k] - history.time[k - 1]);
+                joint.force[k] = per * (now.force - previous.force);
+                joint.moment[k] = per * (now.torque - previous.torque);
+            }
+            previous = now;
+        }
+        if (count > 1) joint.force[0] = joint.force[1], joint.moment[0] = joint.moment[1];
+        history.joints.push_back(std::move(joint));
     }
 }
 
@@ -237,7 +290,7 @@ History Recorder::resample(const Scene& scene) const {
 
     Column* const energies[] = {&history.kinetic, &history.potential,        &history.stored,
                                 &history.crushed, &history.barrier_friction, &history.tire_friction,
-                                &history.ground_friction, &history.impacts};
+                                &history.ground_friction, &history.impacts, &history.joint_work};
     for (std::size_t e = 0; e < std::size(energies); ++e) {
         energies[e]->resize(count);
         for (std::size_t k = 0; k < count; ++k) {
@@ -258,7 +311,8 @@ History Recorder::resample(const Scene& scene) const {
         unit.tire_reaction.assign(wheels, Column(count, 0.0));
         unit.barrier_normal_force.resize(count);
         for (auto* column : {&unit.position, &unit.velocity, &unit.angular_velocity, &unit.acceleration,
-                             &unit.barrier_force, &unit.ground_force, &unit.tire_friction_force})
+                             &unit.barrier_force, &unit.ground_force, &unit.tire_friction_force,
+                             &unit.joint_force})
             column->resize(count);
         unit.orientation.resize(count);
 
@@ -274,7 +328,7 @@ History Recorder::resample(const Scene& scene) const {
                 unit.velocity[k] = vec(a + at_velocity);
                 unit.angular_velocity[k] = vec(a + at_angular_velocity);
                 unit.acceleration[k] = unit.barrier_force[k] = unit.ground_force[k] =
-                    unit.tire_friction_force[k] = Vec3::Zero();
+                    unit.tire_friction_force[k] = unit.joint_force[k] = Vec3::Zero();
                 unit.barrier_normal_force[k] = 0.0;
                 continue;
             }
@@ -310,7 +364,9 @@ History Recorder::resample(const Scene& scene) const {
                 unit.barrier_normal_force[k] = per * (now.barrier_normal - previous.barrier_normal);
                 unit.ground_force[k] = per * (now.ground - previous.ground);
                 unit.tire_friction_force[k] = per * (now.tire_friction - previous.tire_friction);
+                unit.joint_force[k] = per * (now.joints - previous.joints);
                 Vec3 force = unit.barrier_force[k] + unit.ground_force[k] + unit.tire_friction_force[k] +
+                             unit.joint_force[k] +
                              model.body.mass * gravity;
                 for (std::size_t w = 0; w < wheels; ++w) {
                     unit.tire_reaction[w][k] = per * (now.tire[w] - previous.tire[w]);
@@ -332,6 +388,7 @@ History Recorder::resample(const Scene& scene) const {
             unit.barrier_normal_force[0] = unit.barrier_normal_force[1];
             unit.ground_force[0] = unit.ground_force[1];
             unit.tire_friction_force[0] = unit.tire_friction_force[1];
+            unit.joint_force[0] = unit.joint_force[1];
             for (Column& wheel : unit.tire_reaction)
                 wheel[0] = wheel[1];
         }
@@ -339,6 +396,7 @@ History Recorder::resample(const Scene& scene) const {
         offset += unit_width(model);
     }
     resample_obstacles(step_of, history);
+    resample_joints(scene, step_of, history);
     history.momentum_residual = largest > 0.0 ? worst / largest : 0.0;
     return history;
 }

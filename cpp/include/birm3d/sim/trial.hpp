@@ -25,6 +25,7 @@ struct ContactImpulses {
     std::vector<ObstacleImpulse> obstacles;  // of closed trusses
     double barrier_normal = 0.0;             // their part along the normals, of the barrier's (N s)
     std::size_t member_contacts = 0;    // closed trusses that carried load
+    Vec3 joints = Vec3::Zero();         // of all its joints, world axes (N s)
 };
 
 // A rigid impact at one end of a step: an instant of its own, not spread over the step.
@@ -33,6 +34,7 @@ struct Impact {
     std::vector<BodyState> bodies;          // (units) after an impact at the start, before one at the end
     Energies energies;                      // the same
     std::vector<ContactImpulses> impulses;  // (units)
+    std::vector<Wrench> joint_impulses;     // (joints) on the leading unit, about the joint (N s, N m s)
 };
 
 // Some of the blocks of a mesh.
@@ -67,6 +69,7 @@ struct Trial {
     std::vector<BlockSet> active;           // (units) blocks near the barrier
     std::vector<BlockSet> stale;            // (units) blocks that may differ from the state's
     std::vector<ContactImpulses> impulses;  // (units) of lasting contacts, even over the step
+    std::vector<Wrench> joint_impulses;     // (joints) the same, on the leading unit, about the joint
     Impact at_start, at_end;
     std::vector<NearObstacle> near;  // for skin_forces: reused, so that a step allocates nothing
     std::vector<Touch> touches;

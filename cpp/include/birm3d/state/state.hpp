@@ -36,10 +36,11 @@ struct Energies {
     double tire_friction = 0.0;     // lost to friction of tyres on the ground
     double ground_friction = 0.0;   // lost to friction of the skin on the ground
     double impacts = 0.0;           // lost in rigid contacts
+    double joints = 0.0;            // taken by what joints hold: zero but for the error of the steps
 
     double total() const {
         return kinetic + potential + stored + crushed + barrier_friction + tire_friction + ground_friction +
-               impacts;
+               impacts + joints;
     }
 };
 
