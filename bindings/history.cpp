@@ -60,6 +60,26 @@ void register_history(py::module_& m) {
         },
         "(n, wheels) N, interval means");
 
+    add_view(unit, "joint_force", &UnitHistory::joint_force,
+             "(n, 3) N, of all joints, interval means, world");
+
+    py::class_<JointHistory> joint(m, "JointHistory", "What a joint carries and how it stands.");
+    add_view(joint, "force", &JointHistory::force, "(n, 3) N on the leading unit, interval means, world");
+    add_view(joint, "moment", &JointHistory::moment, "(n, 3) N m on the leading unit about the joint, world");
+    joint.def_property_readonly(
+        "roll_pitch_yaw",
+        [](const JointHistory& history) {
+            py::array_t<double> angles({static_cast<py::ssize_t>(history.angles.size()), py::ssize_t{3}});
+            auto at = angles.mutable_unchecked<2>();
+            py::ssize_t row = 0;
+            for (const JointAngles& a : history.angles) {
+                at(row, 0) = a.roll, at(row, 1) = a.pitch, at(row, 2) = a.yaw;
+                ++row;
+            }
+            return angles;
+        },
+        "(n, 3) rad, of the trailing unit from the leading one");
+
     py::class_<History> history(m, "History", "Evenly spaced output of a run; read-only views.");
     add_view(history, "time", &History::time, "(n,) s");
     add_view(history, "kinetic", &History::kinetic, "(n,) J");
@@ -69,12 +89,17 @@ void register_history(py::module_& m) {
     add_view(history, "barrier_friction", &History::barrier_friction, "(n,) J");
     add_view(history, "tire_friction", &History::tire_friction, "(n,) J");
     add_view(history, "impacts", &History::impacts, "(n,) J");
+    add_view(history, "joint_work", &History::joint_work, "(n,) J");
     history.def_readonly("momentum_residual", &History::momentum_residual,
                          "max |m a - sum of forces| / max |force|");
     history.def(
         "unit",
         [](const History& self, std::size_t index) -> const UnitHistory& { return self.units.at(index); },
         py::return_value_policy::reference_internal, py::arg("index"), "Of one unit of the vehicle.");
+    history.def(
+        "joint",
+        [](const History& self, std::size_t index) -> const JointHistory& { return self.joints.at(index); },
+        py::return_value_policy::reference_internal, py::arg("index"), "Of one joint of the vehicle.");
 }
 
 }  // namespace birm3d::bindings

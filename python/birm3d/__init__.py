@@ -9,6 +9,7 @@ from __future__ import annotations
 from . import calibration, scenes, units
 from ._core import UnstableError
 from ._version import __version__
+from .articulated import ArticulatedVehicle, Joint
 from .barrier import Barrier
 from .calibration import calibrate
 from .channel import Channel
@@ -28,9 +29,11 @@ from .test_data import read_csv_channels, read_iso_mme, read_nhtsa
 from .vehicle import Vehicle, Zone
 
 __all__ = [
+    "ArticulatedVehicle",
     "Barrier",
     "Channel",
     "CurveComparison",
+    "Joint",
     "Result",
     "Scene",
     "Settings",

@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Barrier', 'ContactModel', 'EndReason', 'History', 'MassProperties', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tumble']
+__all__: list[str] = ['Barrier', 'ContactModel', 'EndReason', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tumble']
 class Barrier:
     """
     A flat rigid wall or a pole, fixed to the ground. Immutable.
@@ -112,6 +112,10 @@ class History:
     """
     Evenly spaced output of a run; read-only views.
     """
+    def joint(self, index: typing.SupportsInt | typing.SupportsIndex) -> JointHistory:
+        """
+        Of one joint of the vehicle.
+        """
     def unit(self, index: typing.SupportsInt | typing.SupportsIndex) -> UnitHistory:
         """
         Of one unit of the vehicle.
@@ -128,6 +132,11 @@ class History:
         """
     @property
     def impacts(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) J
+        """
+    @property
+    def joint_work(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) J
         """
@@ -161,6 +170,70 @@ class History:
         """
         (n,) J
         """
+class Joint:
+    """
+    Two units joined at a point. Immutable.
+    """
+    def __init__(self, *, kind: JointKind, leading: typing.SupportsInt | typing.SupportsIndex, trailing: typing.SupportsInt | typing.SupportsIndex, place_on_leading: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], place_on_trailing: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], roll_limit: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        """
+        leading, trailing: numbers of the units; places (3,) m, body axes of each; roll_limit rad.
+        """
+class JointHistory:
+    """
+    What a joint carries and how it stands.
+    """
+    @property
+    def force(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) N on the leading unit, interval means, world
+        """
+    @property
+    def moment(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) N m on the leading unit about the joint, world
+        """
+    @property
+    def roll_pitch_yaw(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) rad, of the trailing unit from the leading one
+        """
+class JointKind:
+    """
+    Members:
+    
+      fifth_wheel
+    
+      welded
+    """
+    __members__: typing.ClassVar[dict[str, JointKind]]  # value = {'fifth_wheel': <JointKind.fifth_wheel: 0>, 'welded': <JointKind.welded: 1>}
+    fifth_wheel: typing.ClassVar[JointKind]  # value = <JointKind.fifth_wheel: 0>
+    welded: typing.ClassVar[JointKind]  # value = <JointKind.welded: 1>
+    def __eq__(self, other: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> int:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __index__(self) -> int:
+        ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None:
+        ...
+    def __int__(self) -> int:
+        ...
+    def __ne__(self, other: typing.Any) -> bool:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None:
+        ...
+    def __str__(self) -> str:
+        ...
+    @property
+    def name(self) -> str:
+        ...
+    @property
+    def value(self) -> int:
+        ...
 class MassProperties:
     """
     Mass, mass centre and inertia about it (paper Eq. 2-7).
@@ -350,11 +423,11 @@ class Unit:
     """
     A rigid body with its crushable skin and wheels; body axes r, s, t, origin at the mass centre.
     """
-    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> None:
+    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex, offset: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
         """
         mass kg; inertia (3, 3) kg m^2; nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,);
         wheels (w, 4): centre and radius, m; mass_center_height m above the ground;
-        rate_sensitivity s/m.
+        rate_sensitivity s/m; offset (3,) m of the mass centre from the vehicle's reference point along the ground.
         """
     @property
     def input_index(self) -> list[int]:
@@ -389,6 +462,11 @@ class UnitHistory:
         (n,) N, interval means
         """
     @property
+    def joint_force(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) N, of all joints, interval means, world
+        """
+    @property
     def position(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n, 3) m, world
@@ -417,9 +495,9 @@ class UnstableError(ValueError):
     pass
 class Vehicle:
     """
-    One or more units. Immutable.
+    One or more units and the joints between them. Immutable.
     """
-    def __init__(self, units: collections.abc.Sequence[Unit]) -> None:
+    def __init__(self, units: collections.abc.Sequence[Unit], joints: collections.abc.Sequence[Joint]) -> None:
         ...
 def collide(mass_a: typing.SupportsFloat | typing.SupportsIndex, inertia_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_b: typing.SupportsFloat | typing.SupportsIndex, inertia_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arm_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arm_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], restitution: typing.SupportsFloat | typing.SupportsIndex) -> tuple[float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """

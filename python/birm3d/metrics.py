@@ -42,6 +42,8 @@ METRIC_UNITS: Mapping[str, str] = MappingProxyType(
         "max_roll": "deg",
         "max_pitch": "deg",
         "max_yaw": "deg",
+        "max_articulation_angle": "deg",
+        "peak_joint_force": "N",
         "energy_residual": "",
         "momentum_residual": "",
         "steps": "",
@@ -73,6 +75,9 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     ``restitution`` (normal separation over approach speed); where the vehicle has left: ``exit_angle`` (of
     its path from the barrier's line) [deg].
 
+    With two units: ``max_articulation_angle`` (greatest magnitude) [deg], ``peak_joint_force`` (greatest
+    magnitude) [N]. Scalars of motion are those of the leading unit, crushes the greatest of both.
+
     At sampling rates that allow it: ``peak_deceleration_cfc60``, ``peak_normal_force_cfc60``.
 
     Raises
@@ -102,6 +107,9 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     filtered = interval * 60.0 <= 0.1
     if filtered and (names is None or "peak_deceleration_cfc60" in names):
         metrics["peak_deceleration_cfc60"] = float(cfc(deceleration, 60, interval).max())
+    if scene.vehicle.joint is not None:
+        metrics["max_articulation_angle"] = float(np.abs(result.articulation_angle).max())
+        metrics["peak_joint_force"] = float(np.linalg.norm(result.joint_force, axis=1).max())
     if scene.barrier is None:
         return metrics
 
@@ -110,10 +118,16 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     if filtered and (names is None or "peak_normal_force_cfc60" in names):
         metrics["peak_normal_force_cfc60"] = float(cfc(force, 60, interval).max())
     metrics["peak_force_50ms"] = float(moving_average(force, 0.05, interval).max())
-    metrics["dynamic_crush"] = float(result.peak_deflection.max())
-    metrics["residual_crush"] = float(max(0.0, result.deflection.max()))
+    metrics["dynamic_crush"] = _greatest(result, "peak_deflection")
+    metrics["residual_crush"] = max(0.0, _greatest(result, "deflection"))
     metrics.update(_motion(result, -np.asarray(scene.barrier.core.normal)))
     return metrics
+
+
+def _greatest(result: Result, name: str) -> float:
+    """Greatest deflection of all units [m]."""
+    units = range(len(result.scene.vehicle.units))
+    return max(float(getattr(result.unit(u), name).max()) for u in units)
 
 
 def _motion(result: Result, inward: npt.NDArray[np.float64]) -> dict[str, float]:
@@ -129,7 +143,7 @@ def _motion(result: Result, inward: npt.NDArray[np.float64]) -> dict[str, float]
         "impact_severity": 0.5 * scene.vehicle.mass * (scene.impact_speed * math.sin(angle)) ** 2,
         "delta_v": float(velocity_change.max()),
     }
-    touched = result.peak_deflection.max() > 0.0
+    touched = _greatest(result, "peak_deflection") > 0.0
     turned = np.flatnonzero(approach <= 0.0)
     if touched and len(turned) and turned[0] > 0:
         i = int(turned[0])

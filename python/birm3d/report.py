@@ -46,6 +46,13 @@ def report(result: Result) -> str:
     lines += [
         f"  contact model: {settings.contact_model}; energy residual {metrics['energy_residual']:.1e} of the "
         f"initial kinetic energy, momentum residual {metrics['momentum_residual']:.1e}",
+    ]
+    if vehicle.joint is not None:
+        lines.append(
+            f"  {vehicle.joint.kind}: peak force {metrics['peak_joint_force']:.3g} N, greatest articulation "
+            f"angle {metrics['max_articulation_angle']:.1f} deg"
+        )
+    lines += [
         "",
         "left out",
         *(f"  {line}" for line in _left_out(result)),
@@ -64,7 +71,8 @@ def _left_out(result: Result) -> list[str]:
         lines.append(
             f"{max(0.0, share):.1%} of the node tests: blocks of nodes that could not reach the barrier"
         )
-        touched = int((result.peak_deflection > 0.0).sum())
+        units = [result.unit(u) for u in range(len(vehicle.units))]
+        touched = sum(int((unit.peak_deflection > 0.0).sum()) for unit in units)
         lines.append(f"the crush of {vehicle.n_nodes - touched} nodes that never touched the barrier")
         if scene.barrier.friction == 0.0:
             lines.append("barrier friction: its coefficient is 0")
@@ -81,5 +89,7 @@ def _left_out(result: Result) -> list[str]:
         lines.append("gravity: it is 0")
     if result.end_reason == "separated":
         lines.append("everything after the vehicle had left the barrier, but for a short tail")
+    if vehicle.joint is not None:
+        lines.append("contact of the two units with each other, but through their joint")
     lines.append("suspension, occupants, ground contact of the body: not part of the model")
     return lines

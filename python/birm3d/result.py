@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,7 @@ import numpy.typing as npt
 from . import _core
 from .metrics import compute_metrics
 from .report import report
+from .unit_result import UnitResult, read_only
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,6 +48,9 @@ class Result:
         Wall time of the stepping [s].
     nodes, deflection, peak_deflection : ndarray
         Shell nodes in body axes (k, 3), truss deflections (k,) at the end and their peaks [m].
+
+    Motions, ``nodes`` and deflections are those of unit 0, the leading one; forces of the barrier and of the
+    ground are those on all units together. :meth:`unit` has both for each unit.
     """
 
     def __init__(
@@ -58,36 +62,41 @@ class Result:
         end_reason: str,
         state_hash: int,
         run_time: float,
-        nodes: Floats,
-        deflection: Floats,
-        peak_deflection: Floats,
-        final_velocity: Floats,
+        units: tuple[UnitResult, ...],
     ) -> None:
         self.scene = scene
         self.statistics = statistics
         self.end_reason = end_reason
         self.state_hash = state_hash
         self.run_time = run_time
-        self.nodes = nodes
-        self.deflection = deflection
-        self.peak_deflection = peak_deflection
-        self.final_velocity = final_velocity
+        self.nodes = units[0].nodes
+        self.deflection = units[0].deflection
+        self.peak_deflection = units[0].peak_deflection
+        self.final_velocity = units[0].final_velocity
         self._history = history
-        self._unit = history.unit(0)
+        self._units = units
 
     @classmethod
     def _of(cls, scene: Scene, simulation: _core.Simulation, run_time: float) -> Result:
+        history = simulation.history()
+        units = tuple(
+            UnitResult(
+                history.unit(u),
+                nodes=simulation.nodes(u),
+                deflection=simulation.deflection(u),
+                peak_deflection=simulation.peak_deflection(u),
+                final_velocity=simulation.velocity(u),
+            )
+            for u in range(len(scene.vehicle.units))
+        )
         return cls(
             scene=scene,
-            history=simulation.history(),
+            history=history,
             statistics=simulation.statistics,
             end_reason=simulation.end_reason.name,
             state_hash=simulation.state_hash,
             run_time=run_time,
-            nodes=simulation.nodes(),
-            deflection=simulation.deflection(),
-            peak_deflection=simulation.peak_deflection(),
-            final_velocity=simulation.velocity(),
+            units=units,
         )
 
     @property
@@ -95,66 +104,119 @@ class Result:
         """Shape (n,) [s]."""
         return self._history.time
 
+    def unit(self, index: int) -> UnitResult:
+        """Return the histories of one rigid body: 0 the leading one (or the only one), 1 the trailing one.
+
+        Raises
+        ------
+        ValueError
+            If the vehicle has no such unit.
+        """
+        if not 0 <= index < len(self._units):
+            raise ValueError(f"index must be >= 0 and < {len(self._units)}, the number of units, got {index}")
+        return self._units[index]
+
     @property
     def position(self) -> Floats:
-        """Mass centre, world axes, shape (n, 3) [m]."""
-        return self._unit.position
+        """Mass centre of unit 0, world axes, shape (n, 3) [m]."""
+        return self._units[0].position
 
     @property
     def velocity(self) -> Floats:
-        """Of the mass centre, world axes, shape (n, 3) [m/s]."""
-        return self._unit.velocity
+        """Of the mass centre of unit 0, world axes, shape (n, 3) [m/s]."""
+        return self._units[0].velocity
 
     @property
     def acceleration(self) -> Floats:
-        """Of the mass centre, body axes r, s, t, shape (n, 3) [m/s^2]; interval means."""
-        return self._unit.acceleration
+        """Of the mass centre of unit 0, body axes r, s, t, shape (n, 3) [m/s^2]; interval means."""
+        return self._units[0].acceleration
 
     @property
     def angular_velocity(self) -> Floats:
-        """Body axes r, s, t, shape (n, 3) [deg/s]."""
-        return _read_only(np.degrees(self._unit.angular_velocity))
-
-    @cached_property
-    def _angles(self) -> Floats:
-        angles = np.unwrap(self._unit.roll_pitch_yaw, axis=0)
-        angles[:, 2] -= angles[0, 2]
-        return _read_only(np.degrees(angles))
+        """Of unit 0, body axes r, s, t, shape (n, 3) [deg/s]."""
+        return self._units[0].angular_velocity
 
     @property
     def roll(self) -> Floats:
-        """About r, shape (n,) [deg]."""
-        return self._angles[:, 0]
+        """Of unit 0 about r, shape (n,) [deg]."""
+        return self._units[0].roll
 
     @property
     def pitch(self) -> Floats:
-        """About s, positive nose-down, shape (n,) [deg]."""
-        return self._angles[:, 1]
+        """Of unit 0 about s, positive nose-down, shape (n,) [deg]."""
+        return self._units[0].pitch
 
     @property
     def yaw(self) -> Floats:
-        """About t, from the initial heading, positive to the left, shape (n,) [deg]."""
-        return self._angles[:, 2]
+        """Of unit 0 about t, from the initial heading, positive to the left, shape (n,) [deg]."""
+        return self._units[0].yaw
 
-    @property
+    @cached_property
     def barrier_force(self) -> Floats:
-        """Of the barrier on the vehicle, world axes, shape (n, 3) [N]; interval means."""
-        return self._unit.barrier_force
+        """Of the barrier on the vehicle, all units, world axes, shape (n, 3) [N]; interval means."""
+        return self._sum("barrier_force")
 
-    @property
+    @cached_property
     def barrier_normal_force(self) -> Floats:
-        """Sum of the normal forces of all nodes, shape (n,) [N]; interval means."""
-        return self._unit.barrier_normal_force
+        """Sum of the normal forces of all nodes of all units, shape (n,) [N]; interval means."""
+        return self._sum("barrier_normal_force")
 
-    @property
+    @cached_property
     def tire_reaction(self) -> Floats:
-        """Normal force under each wheel, shape (n, wheels) [N]; interval means."""
-        return self._unit.tire_reaction
+        """Normal force under each wheel of all units, shape (n, wheels) [N]; interval means."""
+        if len(self._units) == 1:
+            return self._units[0].tire_reaction
+        return read_only(np.concatenate([unit.tire_reaction for unit in self._units], axis=1))
 
-    @property
+    @cached_property
     def tire_friction_force(self) -> Floats:
         """Of the ground on the vehicle, tangential, world axes, shape (n, 3) [N]; interval means."""
-        return self._unit.tire_friction_force
+        return self._sum("tire_friction_force")
+
+    def _sum(self, name: str) -> Floats:
+        if len(self._units) == 1:
+            values: Floats = getattr(self._units[0], name)
+            return values
+        return read_only(np.sum([getattr(unit, name) for unit in self._units], axis=0))
+
+    @property
+    def joint_force(self) -> Floats:
+        """Of the joint on the leading unit, world axes, shape (n, 3) [N]; interval means."""
+        return self._joint.force
+
+    @property
+    def joint_moment(self) -> Floats:
+        """Of the joint on the leading unit about the joint, world axes, shape (n, 3) [N m]; means."""
+        return self._joint.moment
+
+    @property
+    def articulation_angle(self) -> Floats:
+        """Yaw of the trailing unit from the leading one, positive to the left, shape (n,) [deg].
+
+        The jackknife angle: the turn of the kingpin in the fifth wheel. Pitch, roll and this yaw follow each
+        other as in a Cardan joint, see ``joint_pitch`` and ``joint_roll``.
+        """
+        return self._joint_angles[:, 2]
+
+    @property
+    def joint_roll(self) -> Floats:
+        """Roll of the trailing unit from the leading one, shape (n,) [deg]."""
+        return self._joint_angles[:, 0]
+
+    @property
+    def joint_pitch(self) -> Floats:
+        """Pitch of the trailing unit from the leading one, positive nose-down, shape (n,) [deg]."""
+        return self._joint_angles[:, 1]
+
+    @property
+    def _joint(self) -> _core.JointHistory:
+        if self.scene.vehicle.joint is None:
+            raise ValueError(f"a joint needs a vehicle of two units, got {self.scene.vehicle.name!r} of one")
+        return self._history.joint(0)
+
+    @cached_property
+    def _joint_angles(self) -> Floats:
+        return read_only(np.degrees(np.unwrap(self._joint.roll_pitch_yaw, axis=0)))
 
     @cached_property
     def energy(self) -> Mapping[str, Floats]:
@@ -163,12 +225,15 @@ class Result:
         ``kinetic`` and ``potential`` of the body, ``stored`` (elastic) and ``crushed`` (plastic) in trusses,
         ``barrier_friction``, ``tire_friction`` and ``impacts`` (lost in rigid contacts); their ``total``; and
         ``residual``, total now less total at the start: no work enters from outside.
+        Where units are joined also ``joints``: what the joint's held directions took, zero but for the error
+        of the steps; it has a term of its own so that this error shows and is not mistaken for a loss. What
+        the stops of a fifth wheel take is in ``impacts``.
         """
         terms = {name: getattr(self._history, name) for name in _ENERGIES}
+        if self.scene.vehicle.joint is not None:
+            terms["joints"] = self._history.joint_work
         total = np.sum(list(terms.values()), axis=0)
-        return MappingProxyType(
-            {**terms, "total": _read_only(total), "residual": _read_only(total - total[0])}
-        )
+        return MappingProxyType({**terms, "total": read_only(total), "residual": read_only(total - total[0])})
 
     @property
     def momentum_residual(self) -> float:
@@ -204,6 +269,10 @@ class Result:
         columns["barrier_normal_force [N]"] = self.barrier_normal_force
         for i in range(self.tire_reaction.shape[1]):
             columns[f"tire_reaction_{i} [N]"] = self.tire_reaction[:, i]
+        if self.scene.vehicle.joint is not None:
+            for i, axis in enumerate("xyz"):
+                columns[f"joint_force_{axis} [N]"] = self.joint_force[:, i]
+            columns["articulation_angle [deg]"] = self.articulation_angle
         for name, values in self.energy.items():
             columns[f"energy_{name} [J]"] = values
         return pd.DataFrame(columns, index=pd.Index(self.time, name="time [s]"))
@@ -217,9 +286,3 @@ class Result:
     def __repr__(self) -> str:
         rows, steps = len(self.time), self.statistics.steps
         return f"Result({rows} rows to {self.time[-1]:g} s, {self.end_reason}, {steps} steps)"
-
-
-def _read_only(array: Any) -> Floats:
-    result: Floats = np.asarray(array, float)
-    result.setflags(write=False)
-    return result

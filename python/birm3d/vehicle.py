@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -16,117 +16,17 @@ import numpy.typing as npt
 
 from . import _core
 from .loading import check_load, solids_at, structure_mass
+from .zone import KNEE, TRUSS_LAW, Zone, positive
 
 if TYPE_CHECKING:
+    from .articulated import ArticulatedVehicle, Joint
     from .mesher import ExteriorMesh
     from .vehicle_file import VehicleFile
-    from .vehicle_file import Zone as FileZone
 
 __all__ = ["TRUSS_LAW", "Vehicle", "Zone"]
 
 Floats = npt.NDArray[np.float64]
 FloatsLike = npt.ArrayLike
-
-
-_KNEE = ("k_initial", "knee", "k_hardening", "f_max")
-
-TRUSS_LAW = ("k_initial", "knee", "k_hardening", "f_max", "k_unloading")
-"""The numbers of the paper's law (Fig. 3)."""
-
-
-@dataclass(frozen=True)
-class Zone(Mapping[str, Any]):
-    """Crush stiffness of a part of the skin per unit of area (paper Fig. 3); also a read-only mapping.
-
-    A truss has this curve times its node's tributary area. Either the first four numbers, or ``envelope``.
-
-    Parameters
-    ----------
-    k_initial, k_hardening
-        Slopes before and after the knee [N/m per m^2].
-    knee
-        Deflection at the knee [m].
-    f_max
-        Stress of the plateau [N per m^2]; ``None`` beside a knee: without end.
-    k_unloading
-        Slope of unloading and reloading [N/m per m^2], not below any slope of the envelope.
-    envelope
-        Points (deflection [m], stress [N per m^2]) from (0, 0); constant after the last.
-    """
-
-    k_initial: float | None = None
-    knee: float | None = None
-    k_hardening: float | None = None
-    f_max: float | None = None
-    k_unloading: float = math.nan
-    envelope: tuple[tuple[float, float], ...] | None = None
-
-    def __post_init__(self) -> None:
-        if self.envelope is None:
-            if self.f_max is None:
-                object.__setattr__(self, "f_max", math.inf)
-        else:
-            for name in _KNEE:
-                if getattr(self, name) is not None:
-                    raise ValueError(f"{name} must be None beside an envelope, got {getattr(self, name)}")
-        _ = self.curve
-
-    def __getitem__(self, name: str) -> Any:
-        if name not in self._names:
-            raise KeyError(name)
-        return getattr(self, name)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
-
-    def __len__(self) -> int:
-        return len(self._names)
-
-    @property
-    def _names(self) -> tuple[str, ...]:
-        if self.envelope is not None:
-            return ("envelope", "k_unloading")
-        return (*_KNEE, "k_unloading")
-
-    @cached_property
-    def curve(self) -> _core.TrussCurve:
-        """The law of 1 m^2 for the core."""
-        if self.envelope is not None:
-            points = np.asarray(self.envelope, float)
-            if points.ndim != 2 or points.shape[1] != 2:
-                raise ValueError(f"envelope must have shape (n, 2), got {points.shape}")
-            return _core.point_curve(points[:, 0].tolist(), points[:, 1].tolist(), self.k_unloading)
-        numbers = {name: getattr(self, name) for name in _KNEE}
-        for name, value in numbers.items():
-            if value is None:
-                raise ValueError(f"{name} must be given where there is no envelope, got None")
-        return _core.knee_curve(**numbers, k_unloading=self.k_unloading)
-
-    def scaled(self, factor: float) -> Zone:
-        """Return the zone with all its stresses and slopes times a factor > 0; deflections stay."""
-        factor = _positive("scale", factor)
-        if self.envelope is not None:
-            return Zone(
-                envelope=tuple((d, factor * stress) for d, stress in self.envelope),
-                k_unloading=factor * self.k_unloading,
-            )
-        changes = {name: factor * getattr(self, name) for name in TRUSS_LAW if name != "knee"}
-        return dataclasses.replace(self, **changes)
-
-    def __getstate__(self) -> dict[str, object]:
-        return {name: value for name, value in self.__dict__.items() if name != "curve"}
-
-    @staticmethod
-    def _from_file(zone: FileZone) -> Zone:
-        if zone.envelope_m_Pa is not None:
-            return Zone(envelope=zone.envelope_m_Pa, k_unloading=zone.k_unloading_Pa_per_m)
-        return Zone(
-            k_initial=zone.k_initial_Pa_per_m,
-            knee=zone.knee_m,
-            k_hardening=zone.k_hardening_Pa_per_m,
-            f_max=zone.f_max_Pa,
-            k_unloading=zone.k_unloading_Pa_per_m,
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -299,6 +199,29 @@ class Vehicle:
             _truss_laws=laws,
         )
 
+    @staticmethod
+    def articulated(units: Sequence[Vehicle], joint: Joint, *, name: str | None = None) -> ArticulatedVehicle:
+        """Make one vehicle of a leading and a trailing unit, as a tractor and its semi-trailer.
+
+        Parameters
+        ----------
+        units
+            Two vehicles of one unit, from files or arrays; the leading one first.
+        joint
+            See :class:`birm3d.Joint`.
+        name
+            ``None``: the names of both.
+
+        Raises
+        ------
+        ValueError
+            If there are not two units of one body, if a zone's name is in both, or if the heights of the
+            joint on the two units differ by more than 1 mm.
+        """
+        from .articulated import articulate
+
+        return articulate(units, joint, name)
+
     def with_gvw(self, gvw: float) -> Vehicle:
         """Return the vehicle with another mass [kg]; every mass property follows.
 
@@ -306,7 +229,7 @@ class Vehicle:
         :meth:`with_payload`; below the unladen mass the structure is rescaled, without payload.
         A vehicle made from arrays keeps its mass centre and scales its inertia.
         """
-        gvw = _positive("gvw", gvw)
+        gvw = positive("gvw", gvw)
         if self._file is None:
             return dataclasses.replace(
                 self, mass=gvw, inertia=self.inertia * (gvw / self.mass), wheels=self.wheels.copy()
@@ -364,7 +287,7 @@ class Vehicle:
         no zone was fitted to has a median error of 7 % (``tests/bench/bench_blind.py``). For a load in this
         vehicle see :meth:`with_gvw` and :meth:`with_payload`, which leave the zones alone.
         """
-        mass = _positive("mass", mass)
+        mass = positive("mass", mass)
         if self._file is None:
             raise ValueError(f"scaled_to needs a vehicle that has a file, got {self.name!r} from arrays")
         factor = mass / self._file.zones_mass
@@ -414,7 +337,7 @@ class Vehicle:
 
         Mass and inertia about the mass centre stay. A later :meth:`with_gvw` keeps the shift.
         """
-        height = _positive("mass_center_height", height)
+        height = positive("mass_center_height", height)
         up = np.array([0.0, 0.0, height - self.mass_center_height])
         wheels = self.wheels.copy()
         wheels[:, :3] -= up
@@ -437,18 +360,18 @@ class Vehicle:
         if name not in self.zones:
             known = ", ".join(self.zones) or "none: the vehicle was made from arrays"
             raise ValueError(f"zone must be one of {known}; got {name!r}")
-        known = ", ".join((*_KNEE, "k_unloading", "envelope"))
+        known = ", ".join((*KNEE, "k_unloading", "envelope"))
         for key in changes:
             if key not in known.split(", "):
                 raise ValueError(f"zone parameter must be one of {known}; got {key!r}")
         if "envelope" in changes:
-            changes = {**dict.fromkeys(_KNEE), **changes}
-        elif self.zones[name].envelope is not None and any(key in changes for key in _KNEE):
-            missing = [key for key in _KNEE[:3] if key not in changes]
+            changes = {**dict.fromkeys(KNEE), **changes}
+        elif self.zones[name].envelope is not None and any(key in changes for key in KNEE):
+            missing = [key for key in KNEE[:3] if key not in changes]
             if missing:
                 raise ValueError(
                     f"{missing[0]} must be given too: zone {name!r} has an envelope, "
-                    f"which needs {', '.join(_KNEE[:3])} to take its place; got {', '.join(changes)}"
+                    f"which needs {', '.join(KNEE[:3])} to take its place; got {', '.join(changes)}"
                 )
             changes = {"envelope": None, **changes}
         return self.with_zones({name: dataclasses.replace(self.zones[name], **changes)})
@@ -500,6 +423,16 @@ class Vehicle:
     # ---- what it is ---------------------------------------------------------------------------------------
 
     @property
+    def units(self) -> tuple[Vehicle, ...]:
+        """The rigid bodies, each as a vehicle of its own; (self,) where there is one."""
+        return (self,)
+
+    @property
+    def joint(self) -> Joint | None:
+        """What joins the units; ``None`` where there is one."""
+        return None
+
+    @property
     def has_file(self) -> bool:
         """Whether the vehicle comes from a file, so that it can be meshed anew."""
         return self._file is not None
@@ -536,6 +469,10 @@ class Vehicle:
     @cached_property
     def core(self) -> _core.Vehicle:
         """The same vehicle for the core."""
+        return _core.Vehicle([self._core_unit(np.zeros(3))], [])
+
+    def _core_unit(self, offset: Floats) -> _core.Unit:
+        """Return the rigid body for the core; offset of its mass centre along the ground (3,) [m]."""
         if self._truss_laws is not None:
             laws, which = np.unique(self._truss_laws, axis=0, return_inverse=True)
             curves = [
@@ -546,7 +483,7 @@ class Vehicle:
         else:
             curves = [zone.curve for zone in self.zones.values()]
             curve_of = self.zone_of_node
-        unit = _core.Unit(
+        return _core.Unit(
             mass=self.mass,
             inertia=self.inertia,
             nodes=self.nodes,
@@ -557,8 +494,8 @@ class Vehicle:
             wheels=self.wheels,
             mass_center_height=self.mass_center_height,
             rate_sensitivity=self.rate_sensitivity,
+            offset=offset,
         )
-        return _core.Vehicle([unit])
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Vehicle):
@@ -587,12 +524,6 @@ def _rebuild(arguments: dict[str, Any]) -> Vehicle:
     return Vehicle(**arguments)
 
 
-def _positive(name: str, value: float) -> float:
-    if not (math.isfinite(value) and value > 0.0):
-        raise ValueError(f"{name} must be finite and > 0, got {value}")
-    return float(value)
-
-
 def _from_file(
     file: VehicleFile,
     gvw: float | None,
@@ -604,7 +535,7 @@ def _from_file(
 ) -> Vehicle:
     from .mesher import build_mesh
 
-    mass = file.gvw_kg if gvw is None else _positive("gvw", gvw)
+    mass = file.gvw_kg if gvw is None else positive("gvw", gvw)
     mesh = build_mesh(file, mesh_density)
     return _assemble(file, mesh, mass, mesh_density, zones, raised, draft, load_density)
 

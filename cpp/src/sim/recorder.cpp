@@ -11,7 +11,7 @@ namespace birm3d {
 namespace {
 
 // Where the numbers of a row stand. Energies and bodies at the end of the step, impulses within it.
-enum RowOffset : std::size_t { at_time = 0, at_energies = 1, at_units = 8 };
+enum RowOffset : std::size_t { at_time = 0, at_energies = 1, at_units = 9 };
 enum UnitOffset : std::size_t {
     at_position = 0,
     at_orientation = 3,  // x, y, z, w
@@ -24,8 +24,11 @@ enum UnitOffset : std::size_t {
     at_normal_impulse = 23,
     at_barrier_bend = 24,  // what the higher order adds to the straight course of the force: impulse
     at_normal_bend = 27,
-    at_tire_impulses = 28
+    at_joint_impulse = 28,
+    at_tire_impulses = 31
 };
+// Behind the units: for each joint force and moment impulse.
+constexpr std::size_t joint_width = 6;
 
 std::size_t unit_width(const Unit& unit) {
     return at_tire_impulses + unit.wheels.size();
@@ -61,6 +64,7 @@ struct Impulses {
     Vec3 barrier = Vec3::Zero();
     double barrier_normal = 0.0;
     Vec3 tire_friction = Vec3::Zero();
+    Vec3 joints = Vec3::Zero();
     Column tire;
 
     static Impulses within(const StepView& step, double t, std::size_t wheels) {
@@ -70,6 +74,7 @@ struct Impulses {
         sum.barrier_normal =
             step.force_integral(at_normal_force, at_normal_bend, t) + step.impulse(at_normal_impulse, t);
         sum.tire_friction = step.share(t) * vec(step.b + at_tire_friction);
+        sum.joints = step.share(t) * vec(step.b + at_joint_impulse);
         for (std::size_t w = 0; w < wheels; ++w)
             sum.tire.push_back(step.impulse(at_tire_impulses + w, t));
         return sum;
@@ -78,13 +83,14 @@ struct Impulses {
         barrier += other.barrier;
         barrier_normal += other.barrier_normal;
         tire_friction += other.tire_friction;
+        joints += other.joints;
         tire.resize(other.tire.size(), 0.0);
         for (std::size_t w = 0; w < tire.size(); ++w)
             tire[w] += other.tire[w];
         return *this;
     }
     Vec3 total() const {
-        Vec3 sum = barrier + tire_friction;
+        Vec3 sum = barrier + tire_friction + joints;
         for (const double j : tire)
             sum.z() += j;
         return sum;
@@ -106,9 +112,10 @@ Recorder::Recorder(const Scene& scene, const State& start) : width_(at_units) {
         width_ += unit_width(unit);
         none.emplace_back(unit.wheels.size());
     }
+    width_ += joint_width * scene.vehicle->joints.size();
     values_.reserve(512 * width_);
     add_row(scene, start.time, start.energies, bodies_of(start), start.units, none,
-            std::vector<HigherOrder>(none.size()));
+            std::vector<Wrench>(scene.vehicle->joints.size()), std::vector<HigherOrder>(none.size()));
 }
 
 void Recorder::add(const Scene& scene, const Trial& accepted) {
@@ -118,7 +125,7 @@ void Recorder::add(const Scene& scene, const Trial& accepted) {
         // The forces of that instant are those of the row before.
         const std::size_t before = values_.size() - width_;
         add_row(scene, values_[before + at_time], accepted.at_start.energies, accepted.at_start.bodies,
-                state.units, accepted.at_start.impulses, none());
+                state.units, accepted.at_start.impulses, accepted.at_start.joint_impulses, none());
         const double* from = values_.data() + before + at_units;
         double* to = values_.data() + values_.size() - width_ + at_units;
         for (const Unit& unit : scene.vehicle->units) {
@@ -129,21 +136,25 @@ void Recorder::add(const Scene& scene, const Trial& accepted) {
     const std::vector<BodyState> bodies = bodies_of(state);
     const Impact& end = accepted.at_end;
     add_row(scene, state.time, end.happened ? end.energies : state.energies,
-            end.happened ? end.bodies : bodies, state.units, accepted.impulses, accepted.higher_order);
-    if (end.happened) add_row(scene, state.time, state.energies, bodies, state.units, end.impulses, none());
+            end.happened ? end.bodies : bodies, state.units, accepted.impulses, accepted.joint_impulses,
+            accepted.higher_order);
+    if (end.happened)
+        add_row(scene, state.time, state.energies, bodies, state.units, end.impulses, end.joint_impulses,
+                none());
 }
 
 void Recorder::add_row(const Scene& scene, double time, const Energies& e,
                        const std::vector<BodyState>& bodies, const std::vector<UnitState>& forces,
                        const std::vector<ContactImpulses>& impulses,
+                       const std::vector<Wrench>& joint_impulses,
                        const std::vector<HigherOrder>& higher_order) {
     const std::size_t begin = values_.size();
     values_.resize(begin + width_);
     double* row = values_.data() + begin;
     const auto put = [](double* to, const Vec3& v) { std::copy_n(v.data(), 3, to); };
     row[at_time] = time;
-    const std::array energies = {e.kinetic,          e.potential,     e.stored, e.crushed,
-                                 e.barrier_friction, e.tire_friction, e.impacts};
+    const std::array energies = {e.kinetic,          e.potential,     e.stored,  e.crushed,
+                                 e.barrier_friction, e.tire_friction, e.impacts, e.joints};
     std::copy(energies.begin(), energies.end(), row + at_energies);
     row += at_units;
     for (std::size_t u = 0; u < bodies.size(); ++u) {
@@ -157,12 +168,57 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e,
         put(row + at_barrier_force, skin.contact.force + skin.friction.force);
         row[at_normal_force] = skin.normal_force;
         put(row + at_tire_friction, impulses[u].tire_friction);
+        put(row + at_joint_impulse, impulses[u].joints);
         put(row + at_barrier_impulse, impulses[u].barrier);
         row[at_normal_impulse] = impulses[u].barrier_normal;
         put(row + at_barrier_bend, higher_order[u].correction.wrench.force);
         row[at_normal_bend] = higher_order[u].correction.normal_force;
         std::copy(impulses[u].tire.begin(), impulses[u].tire.end(), row + at_tire_impulses);
         row += unit_width(model);
+    }
+    for (const Wrench& joint : joint_impulses) {
+        put(row, joint.force);
+        put(row + 3, joint.torque);
+        row += joint_width;
+    }
+}
+
+void Recorder::resample_joints(const Scene& scene, const std::vector<std::size_t>& step_of,
+                               History& history) const {
+    const std::vector<Joint>& joints = scene.vehicle->joints;
+    const std::size_t first = width_ - joint_width * joints.size(), count = history.time.size();
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        JointHistory joint;
+        joint.force.assign(count, Vec3::Zero());
+        joint.moment.assign(count, Vec3::Zero());
+        const auto& leading = history.units[joints[j].leading].orientation;
+        const auto& trailing = history.units[joints[j].trailing].orientation;
+        for (std::size_t k = 0; k < count; ++k)
+            joint.angles.push_back(joint_angles(leading[k], trailing[k]));
+
+        const auto row_at = [&](std::size_t row) { return values_.data() + row * width_; };
+        const auto add = [&](std::size_t row, double share, Wrench& sum) {
+            const double* impulse = row_at(row + 1) + first + j * joint_width;
+            sum += {share * vec(impulse), share * vec(impulse + 3)};
+        };
+        Wrench before_step, previous;
+        std::size_t row = 0;
+        for (std::size_t k = 0; k < count && rows() > 1; ++k) {
+            for (; row < step_of[k]; ++row)
+                add(row, 1.0, before_step);
+            const double dt = row_at(row + 1)[at_time] - row_at(row)[at_time];
+            const double t = std::clamp(history.time[k] - row_at(row)[at_time], 0.0, dt);
+            Wrench now = before_step;
+            add(row, dt > 0.0 ? t / dt : 1.0, now);
+            if (k > 0) {
+                const double per = 1.0 / (history.time[k] - history.time[k - 1]);
+                joint.force[k] = per * (now.force - previous.force);
+                joint.moment[k] = per * (now.torque - previous.torque);
+            }
+            previous = now;
+        }
+        if (count > 1) joint.force[0] = joint.force[1], joint.moment[0] = joint.moment[1];
+        history.joints.push_back(std::move(joint));
     }
 }
 
@@ -193,7 +249,7 @@ History Recorder::resample(const Scene& scene) const {
 
     Column* const energies[] = {&history.kinetic, &history.potential,        &history.stored,
                                 &history.crushed, &history.barrier_friction, &history.tire_friction,
-                                &history.impacts};
+                                &history.impacts, &history.joint_work};
     for (std::size_t e = 0; e < std::size(energies); ++e) {
         energies[e]->resize(count);
         for (std::size_t k = 0; k < count; ++k) {
@@ -214,7 +270,7 @@ History Recorder::resample(const Scene& scene) const {
         unit.tire_reaction.assign(wheels, Column(count, 0.0));
         unit.barrier_normal_force.resize(count);
         for (auto* column : {&unit.position, &unit.velocity, &unit.angular_velocity, &unit.acceleration,
-                             &unit.barrier_force, &unit.tire_friction_force})
+                             &unit.barrier_force, &unit.tire_friction_force, &unit.joint_force})
             column->resize(count);
         unit.orientation.resize(count);
 
@@ -229,7 +285,8 @@ History Recorder::resample(const Scene& scene) const {
                 unit.orientation[k] = Quat(Eigen::Map<const Eigen::Vector4d>(a + at_orientation));
                 unit.velocity[k] = vec(a + at_velocity);
                 unit.angular_velocity[k] = vec(a + at_angular_velocity);
-                unit.acceleration[k] = unit.barrier_force[k] = unit.tire_friction_force[k] = Vec3::Zero();
+                unit.acceleration[k] = unit.barrier_force[k] = unit.tire_friction_force[k] =
+                    unit.joint_force[k] = Vec3::Zero();
                 unit.barrier_normal_force[k] = 0.0;
                 continue;
             }
@@ -264,7 +321,9 @@ History Recorder::resample(const Scene& scene) const {
                 unit.barrier_force[k] = per * (now.barrier - previous.barrier);
                 unit.barrier_normal_force[k] = per * (now.barrier_normal - previous.barrier_normal);
                 unit.tire_friction_force[k] = per * (now.tire_friction - previous.tire_friction);
-                Vec3 force = unit.barrier_force[k] + unit.tire_friction_force[k] + model.body.mass * gravity;
+                unit.joint_force[k] = per * (now.joints - previous.joints);
+                Vec3 force = unit.barrier_force[k] + unit.tire_friction_force[k] + unit.joint_force[k] +
+                             model.body.mass * gravity;
                 for (std::size_t w = 0; w < wheels; ++w) {
                     unit.tire_reaction[w][k] = per * (now.tire[w] - previous.tire[w]);
                     force.z() += unit.tire_reaction[w][k];
@@ -284,12 +343,14 @@ History Recorder::resample(const Scene& scene) const {
             unit.barrier_force[0] = unit.barrier_force[1];
             unit.barrier_normal_force[0] = unit.barrier_normal_force[1];
             unit.tire_friction_force[0] = unit.tire_friction_force[1];
+            unit.joint_force[0] = unit.joint_force[1];
             for (Column& wheel : unit.tire_reaction)
                 wheel[0] = wheel[1];
         }
         history.units.push_back(std::move(unit));
         offset += unit_width(model);
     }
+    resample_joints(scene, step_of, history);
     history.momentum_residual = largest > 0.0 ? worst / largest : 0.0;
     return history;
 }

@@ -90,6 +90,7 @@ std::uint64_t Scene::fingerprint() const {
         for (int column = 0; column < 3; ++column)
             hash.add(Vec3(unit.body.inertia.col(column)));
         hash.add(unit.mass_center_height);
+        hash.add(unit.offset);
         for (const TrussBlock& b : unit.trusses.block)
             for (const Lanes* lane :
                  {&b.node_x, &b.node_y, &b.node_z, &b.anchor_x, &b.anchor_y, &b.anchor_z, &b.k_unloading})
@@ -103,6 +104,14 @@ std::uint64_t Scene::fingerprint() const {
             hash.add(wheel.center);
             hash.add(wheel.radius);
         }
+    }
+    for (const Joint& joint : vehicle->joints) {
+        hash.add(static_cast<double>(joint.kind));
+        hash.add(static_cast<double>(joint.leading));
+        hash.add(static_cast<double>(joint.trailing));
+        hash.add(joint.place_on_leading);
+        hash.add(joint.place_on_trailing);
+        hash.add(joint.roll_limit);
     }
     if (barrier) {
         hash.add(barrier->friction);
@@ -128,9 +137,9 @@ State Scene::initial_state() const {
     for (std::size_t u = 0; u < vehicle->units.size(); ++u) {
         BodyState& body = state.units[u].body;
         const Unit& unit = vehicle->units[u];
-        body.position = Vec3(origin.x(), origin.y(), 0.0) + approach.offset * line +
-                        unit.mass_center_height * Vec3::UnitZ();
         body.orientation = from_roll_pitch_yaw({0.0, 0.0, yaw});
+        body.position = Vec3(origin.x(), origin.y(), 0.0) + approach.offset * line +
+                        unit.mass_center_height * Vec3::UnitZ() + body.orientation * unit.offset;
         body.velocity = approach.speed * heading;
         state.energies.kinetic += kinetic_energy(unit.body, body);
     }

@@ -7,12 +7,12 @@ namespace birm3d::tolerance {
 // gravity gives every resting tyre a small approach speed in each step. Large: light bounces are lost.
 inline constexpr double restitution_speed = 0.1;
 
-// Share of a tyre's own effective mass added as compliance, so that four tyres on a plane share the load
+// Share of a unit's inverse mass added to each of its tyres as compliance, so that tyres on a plane share the load
 // as equal springs would (the rigid problem has no unique answer). Large: tyres sink by a visible amount.
 inline constexpr double tire_compliance = 1e-3;
 
-// The same for the rigid body at the barrier: there the number of touching points is large, and only the
-// resulting wrench matters. Zero: the matrix of coinciding points is singular.
+// The least of any rigid contact, as a share of its own inverse effective mass: at the barrier the number of
+// touching points is large, and only the resulting wrench matters. Zero: the matrix of coinciding points is singular.
 inline constexpr double body_compliance = 1e-9;
 
 // Velocity by which a solved rigid contact may still approach, relative to the scene's speed.
@@ -65,6 +65,12 @@ inline constexpr double touching_gap = 1e-6;
 // When a point meets a rigid surface hard, points nearer than this share the impact (m): which of two
 // wheels lands first would else hang on rounding. Large: points that are still in the air are stopped.
 inline constexpr double joint_impact_gap = 1e-3;
+
+// Places of a joint on its two bodies may differ by this much at rest (m): what files are rounded to.
+inline constexpr double joint_fit = 1e-3;
+
+// Gap of a joint at the end of a step below which its impulses are not corrected any more (m, rad): rounding.
+inline constexpr double joint_gap = 1e-12;
 
 // After the vehicle has left the barrier for good the run goes on for this long (s), so that filtered
 // histories settle.

@@ -9,6 +9,7 @@
 
 #include <vector>
 
+#include "birm3d/kernels/joints.hpp"
 #include "birm3d/sim/scene.hpp"
 #include "birm3d/sim/step.hpp"
 
@@ -24,14 +25,22 @@ struct UnitHistory {
     std::vector<Vec3> barrier_force;        // on the vehicle, mean over the interval, world (N)
     std::vector<Vec3> tire_friction_force;  // the same, tangential to the ground (N)
     Column barrier_normal_force;            // sum of the normal forces, mean over the interval (N)
+    std::vector<Vec3> joint_force;          // of all its joints, mean over the interval, world (N)
     std::vector<Column> tire_reaction;      // (wheels)(n) normal force, mean over the interval (N)
+};
+
+struct JointHistory {
+    std::vector<Vec3> force;          // on the leading unit, mean over the interval, world (N)
+    std::vector<Vec3> moment;         // the same, about the joint's place (N m)
+    std::vector<JointAngles> angles;  // of the trailing unit from the leading one
 };
 
 struct History {
     Column time;  // s
     std::vector<UnitHistory> units;
-    Column kinetic, potential, stored, crushed, barrier_friction, tire_friction, impacts;  // J
-    double momentum_residual = 0.0;  // max |m a - sum of forces| / max |force|
+    std::vector<JointHistory> joints;
+    Column kinetic, potential, stored, crushed, barrier_friction, tire_friction, impacts, joint_work;  // J
+    double momentum_residual = 0.0;  // max |m a - sum of forces| / max |force|, over all units
 };
 
 class Recorder {
@@ -47,7 +56,9 @@ class Recorder {
   private:
     void add_row(const Scene& scene, double time, const Energies& energies,
                  const std::vector<BodyState>& bodies, const std::vector<UnitState>& forces,
-                 const std::vector<ContactImpulses>& impulses, const std::vector<HigherOrder>& higher_order);
+                 const std::vector<ContactImpulses>& impulses, const std::vector<Wrench>& joint_impulses,
+                 const std::vector<HigherOrder>& higher_order);
+    void resample_joints(const Scene& scene, const std::vector<std::size_t>& step_of, History& history) const;
 
     std::size_t width_;  // numbers in a row
     Column values_;      // (rows * width), flat: adding a row allocates only when the buffer grows

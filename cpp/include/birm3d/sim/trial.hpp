@@ -18,6 +18,7 @@ struct ContactImpulses {
     Vec3 barrier = Vec3::Zero();        // of closed trusses, world axes (N s)
     double barrier_normal = 0.0;        // its part along the normals (N s)
     std::size_t member_contacts = 0;    // closed trusses that carried load
+    Vec3 joints = Vec3::Zero();         // of all its joints, world axes (N s)
 };
 
 // A rigid impact at one end of a step: an instant of its own, not spread over the step.
@@ -26,6 +27,7 @@ struct Impact {
     std::vector<BodyState> bodies;          // (units) after an impact at the start, before one at the end
     Energies energies;                      // the same
     std::vector<ContactImpulses> impulses;  // (units)
+    std::vector<Wrench> joint_impulses;     // (joints) on the leading unit, about the joint (N s, N m s)
 };
 
 // What the scheme adds to half kicks by the trapezoid rule (see step.hpp), impulses.
@@ -66,6 +68,7 @@ struct Trial {
     std::vector<BlockSet> active;           // (units) blocks near the barrier
     std::vector<BlockSet> stale;            // (units) blocks that may differ from the state's
     std::vector<ContactImpulses> impulses;  // (units) of lasting contacts, even over the step
+    std::vector<Wrench> joint_impulses;     // (joints) the same, on the leading unit, about the joint
     Impact at_start, at_end;
     std::vector<HigherOrder> higher_order;  // (units)
     double error = 0.0;                     // estimated velocity error of this step (m/s)

@@ -35,9 +35,10 @@ struct Energies {
     double barrier_friction = 0.0;  // lost to friction on the barrier
     double tire_friction = 0.0;     // lost to friction on the ground
     double impacts = 0.0;           // lost in rigid contacts
+    double joints = 0.0;            // taken by what joints hold: zero but for the error of the steps
 
     double total() const {
-        return kinetic + potential + stored + crushed + barrier_friction + tire_friction + impacts;
+        return kinetic + potential + stored + crushed + barrier_friction + tire_friction + impacts + joints;
     }
 };
 
