@@ -122,16 +122,24 @@ class Vehicle:
 
     @staticmethod
     def from_file(path: str | Path, *, gvw: float | None = None, mesh_density: float = 1.0) -> Vehicle:
-        """Read a vehicle file (TOML); the presets are files of the same format.
+        """Read a vehicle file (TOML), of one unit or of two; the presets are files of the same format.
 
         Raises
         ------
         ValueError
             Naming file, line, key, limit and value of everything that is wrong.
         """
+        from .combination_file import read_combination
         from .vehicle_file import read_vehicle_file
 
-        return _from_file(read_vehicle_file(path), gvw, mesh_density, None)
+        combination = read_combination(path)
+        if combination is None:
+            return _from_file(read_vehicle_file(path), gvw, mesh_density, None)
+        from .articulated import combine
+
+        units = [_from_file(unit, None, mesh_density, None) for unit in combination.units]
+        vehicle = combine(units, combination.file)
+        return vehicle if gvw is None else vehicle.with_gvw(gvw)
 
     @staticmethod
     def from_arrays(

@@ -27,17 +27,23 @@ __all__ = [
     "Dimensions",
     "End",
     "Exterior",
+    "Name",
+    "Point",
+    "Positive",
     "Solid",
     "Source",
     "Target",
+    "Text",
     "Upper",
     "VehicleFile",
     "VehicleFileError",
     "Wheel",
     "Zone",
+    "check_known",
     "preset_names",
     "preset_path",
     "read_vehicle_file",
+    "unit_paths",
 ]
 
 Point: TypeAlias = tuple[float, float, float]
@@ -80,7 +86,8 @@ def _check_unique(key: str, names: list[str]) -> None:
             reject(key, f"names must differ, got '{name}' twice")
 
 
-def _check_known(key: str, names: tuple[str, ...], known: set[str]) -> None:
+def check_known(key: str, names: tuple[str, ...], known: set[str]) -> None:
+    """Require every name to be a known one."""
     for name in names:
         if name not in known:
             reject(key, f"must be one of {', '.join(sorted(known))}; got '{name}'")
@@ -452,11 +459,11 @@ class VehicleFile(Strict):
         blocks = {"body", *(upper.name for upper in self.exterior.upper)}
         boxes = {box.name for box in self.core}
         for zone in self.zones:
-            _check_known(f"zone.{zone.name}.blocks", zone.blocks, blocks)
-            _check_known(f"zone.{zone.name}.core", zone.core, boxes)
+            check_known(f"zone.{zone.name}.blocks", zone.blocks, blocks)
+            check_known(f"zone.{zone.name}.core", zone.core, boxes)
         known = {source.id for source in self.sources}
         for key, block in self._blocks():
-            _check_known(f"{key}.source", block.source, known)
+            check_known(f"{key}.source", block.source, known)
         return self
 
     def _blocks(self) -> Iterator[tuple[str, Block]]:
@@ -597,3 +604,11 @@ def preset_path(name: str) -> Path:
     if name not in preset_names():
         raise ValueError(f"preset must be one of {', '.join(preset_names())}; got {name!r}")
     return Path(str(resources.files("birm3d") / "data" / f"{name}.toml"))
+
+
+def unit_paths() -> dict[str, Path]:
+    """Files of one unit that come with the package, by their names: presets, and the units of the others."""
+    folder = Path(str(resources.files("birm3d") / "data"))
+    units = {path.stem: path for path in sorted((folder / "units").glob("*.toml"))}
+    single = {name: preset_path(name) for name in preset_names() if name != "semi_truck"}
+    return {**single, **units}
