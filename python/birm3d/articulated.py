@@ -42,8 +42,8 @@ class Joint:
         ``"fifth_wheel"``: force in three directions; pitch and yaw are free, roll only within
         ``roll_limit``, beyond which the plates touch and carry a moment. ``"welded"``: all six are held.
     roll_limit
-        Greatest relative roll of a fifth wheel to either side [deg], 0 to below 90. The default is the play
-        of a plate that is locked against rolling; couplings may allow 3 deg and more.
+        Greatest relative roll of a fifth wheel to either side [deg], 0 to below 90. UN Regulation 55 speaks
+        of up to 3 deg for a plate that does not oscillate; the default is an estimate within that.
     """
 
     place_on_leading: Place

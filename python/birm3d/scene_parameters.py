@@ -92,7 +92,7 @@ def _names(scene: Scene) -> tuple[str, ...]:
     names += [f"settings.{f.name}" for f in dataclasses.fields(Settings)]
     vehicle = scene.vehicle
     names += [f"vehicle.{name}" for name in _VEHICLE if name != "mesh_density" or vehicle.has_file]
-    if not vehicle.zones:
+    if not vehicle.zones and vehicle.joint is None:
         names += [f"truss.{name}" for name in TRUSS_LAW]
     for zone, law in vehicle.zones.items():
         names += [f"zone.{zone}.{number}" for number in _zone_numbers(law)]

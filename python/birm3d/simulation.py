@@ -45,7 +45,7 @@ class Simulation:
     impact_angle
         Between the vehicle's path and the barrier's line [deg], above 0 and below 180; 90 is head-on.
     impact_offset
-        Where the path of the mass centre meets the barrier's line, from its origin [m].
+        Where the path of the mass centre (of the leading unit) meets the barrier's line, from its origin [m].
     standoff
         Distance of the nearest node from the barrier at t = 0 [m], >= 0.
     duration

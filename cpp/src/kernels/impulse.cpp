@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -13,16 +14,12 @@ namespace {
 
 using Eigen::Index;
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 // Lower triangle; zero for a body that can not be turned.
 Mat3 root_of(const Mat3& inverse_inertia) {
     if (inverse_inertia.isZero(0.0)) return Mat3::Zero();
     return inverse_inertia.llt().matrixL();
-}
-
-Eigen::Matrix<double, 6, 1> in_unit_mass(const Wrench& wrench, const ContactBody& body, const Mat3& root) {
-    Eigen::Matrix<double, 6, 1> g;
-    g << std::sqrt(body.inverse_mass) * wrench.force, root.transpose() * wrench.torque;
-    return g;
 }
 
 }  // namespace
@@ -56,14 +53,15 @@ ImpulseSolver::ImpulseSolver(std::span<const RigidContact> contacts, std::span<c
       motion_(Eigen::VectorXd::Zero(6 * static_cast<Index>(bodies.size()))) {
     roots_.reserve(bodies.size());
     for (const ContactBody& body : bodies)
-        roots_.push_back(root_of(body.inverse_inertia));
+        roots_.push_back({std::sqrt(body.inverse_mass), root_of(body.inverse_inertia)});
     rows_.reserve(contacts.size());
     for (const RigidContact& contact : contacts) {
-        Row row{contact.body, contact.other, {}, Vec6::Zero(), 0.0, 0.0, 0.0, contact.held};
-        row.g = in_unit_mass(unit_wrench(contact, contact.arm), bodies[row.body], roots_[row.body]);
+        Row row{contact.body, contact.other, {}, Vec6::Zero()};
+        row.held = contact.held;
+        row.g = in_unit_mass(unit_wrench(contact, contact.arm), row.body);
         if (row.other >= 0) {
-            const auto b = static_cast<std::size_t>(row.other);
-            row.g_other = -in_unit_mass(unit_wrench(contact, contact.other_arm), bodies[b], roots_[b]);
+            row.g_other =
+                -in_unit_mass(unit_wrench(contact, contact.other_arm), static_cast<std::size_t>(row.other));
         }
         row.own = influence(row, row);
         row.give = std::max(contact.compliance * bodies[row.body].inverse_mass,
@@ -77,16 +75,34 @@ ImpulseSolver::ImpulseSolver(std::span<const RigidContact> contacts, std::span<c
 void ImpulseSolver::solve(std::span<RigidContact> contacts, std::span<ContactBody> bodies) {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         rows_[i].lack = contacts[i].target - separation_velocity(contacts[i], bodies);
-        rows_[i].settled = rows_[i].own == 0.0;  // nothing there can be moved
+        rows_[i].before = 0.0;
     }
-    find_impulses();
+    constexpr int most_passes = 10;
+    double given = infinity;
+    for (int pass = 0; pass < most_passes && given > 0.1 * tolerance_; ++pass) {
+        for (Row& row : rows_)
+            row.wanted = row.lack + row.give * row.before;
+        find_impulses();
+        given = 0.0;
+        for (Row& row : rows_) {
+            given = std::max(given, row.give * std::abs(row.impulse - row.before));
+            row.before = row.impulse;
+        }
+    }
     for (std::size_t i = 0; i < rows_.size(); ++i)
         contacts[i].impulse = rows_[i].impulse;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const auto u = motion_.segment<6>(6 * static_cast<Index>(b));
-        bodies[b].motion.velocity += std::sqrt(bodies[b].inverse_mass) * u.head<3>();
-        bodies[b].motion.angular_velocity += roots_[b] * u.tail<3>();
+        bodies[b].motion.velocity += roots_[b].mass * u.head<3>();
+        bodies[b].motion.angular_velocity += roots_[b].inertia * u.tail<3>();
     }
+}
+
+ImpulseSolver::Vec6 ImpulseSolver::in_unit_mass(const Wrench& wrench, std::size_t body) const {
+    Vec6 g;
+    g.head<3>() = roots_[body].mass * wrench.force;
+    g.tail<3>() = roots_[body].inertia.transpose() * wrench.torque;
+    return g;
 }
 
 double ImpulseSolver::along(const Row& row, const Eigen::VectorXd& motion) {
@@ -119,6 +135,8 @@ void ImpulseSolver::activate(std::size_t row) {
 
 // From the impulses there are, which may be those of the last solution.
 void ImpulseSolver::find_impulses() {
+    for (Row& row : rows_)
+        row.settled = row.own == 0.0;  // nothing there can be moved
     if (active_.empty())
         motion_.setZero();
     else
@@ -146,7 +164,6 @@ void ImpulseSolver::find_impulses() {
         settle_active();
         if (!together && !rows_[worst].active) rows_[worst].settled = true;
     }
-    if (!active_.empty()) take_give_out();
 }
 
 // Moves from the present impulses towards the solution of the active rows; those that would pull leave where
@@ -177,14 +194,14 @@ void ImpulseSolver::settle_active() {
 void ImpulseSolver::solve_active() {
     if (!factorised_) factorise();
     for (const std::size_t i : active_)
-        rows_[i].residual = rows_[i].lack, rows_[i].next = 0.0;
+        rows_[i].residual = rows_[i].wanted, rows_[i].next = 0.0;
     add_solution(&Row::next);
     const int refinements = by_bodies_ ? 3 : 0;
     for (int pass = 0; pass < refinements; ++pass) {
         move_by(&Row::next, working_);
         for (const std::size_t i : active_) {
             Row& row = rows_[i];
-            row.residual = row.lack - along(row, working_) - row.give * row.next;
+            row.residual = row.wanted - along(row, working_) - row.give * row.next;
         }
         add_solution(&Row::next);
     }
@@ -244,23 +261,6 @@ void ImpulseSolver::move_by(double Row::* impulses, Eigen::VectorXd& motion) con
     motion.setZero(motion_.size());
     for (const std::size_t i : active_)
         push(rows_[i], rows_[i].*impulses, motion);
-}
-
-// The compliance has done its work, which is to share the load.
-void ImpulseSolver::take_give_out() {
-    constexpr int most_passes = 5;
-    for (int pass = 0; pass < most_passes; ++pass) {
-        double worst = 0.0;
-        for (const std::size_t i : active_) {
-            rows_[i].residual = shortfall(rows_[i]);
-            worst = std::max(worst, std::abs(rows_[i].residual));
-        }
-        if (worst <= 1e-3 * tolerance_) break;
-        add_solution(&Row::impulse);
-        for (const std::size_t i : active_)
-            if (!rows_[i].held) rows_[i].impulse = std::max(0.0, rows_[i].impulse);
-        move_by(&Row::impulse, motion_);
-    }
 }
 
 void solve_impulses(std::span<RigidContact> contacts, std::span<ContactBody> bodies, double speed_scale) {

@@ -6,8 +6,10 @@
 //   w = target                                                  for rows that are held.
 // For one contact this is Eq. 1: j = -(1 + xi) v / (1/M_a + 1/M_b + n.[I_a^-1 (r_a x n) x r_a] + ...), with
 // target = -xi v. (The paper's v_rel^-1 is v_rel^-, the velocity before the impact.)
-// A small compliance C on the diagonal makes the shares of redundant rows unique; once they are shared, its
-// give is taken out again.
+// A small compliance C on the diagonal makes the shares of redundant rows unique. Its give is taken out again by
+// the proximal-point method (Rockafellar, SIAM J. Control Optim. 14, 1976, p. 877), each time with the target
+// moved on by the last give: (A + C) j_new + v >= target + C j_old. What can not be met by all is then met as far
+// as bodies of these compliances would.
 //
 // Solved exactly by the active-set method of Lawson and Hanson (Solving Least Squares Problems, ch. 23). The row
 // that lacks most joins first, then all that lack join together while that helps, then one by one again; held
@@ -58,21 +60,24 @@ class ImpulseSolver {
         std::size_t body;
         int other;
         Vec6 g, g_other;
-        double own;         // A_ii
-        double give;        // C_ii
-        double lack = 0.0;  // target less separation velocity without impulses
-        bool held;
+        double own = 0.0;     // A_ii
+        double give = 0.0;    // C_ii
+        double lack = 0.0;    // target less separation velocity without impulses
+        double wanted = 0.0;  // the same with the give of the impulses before
+        bool held = false;
         bool active = false;
         bool settled = false;  // joined and left at once: at its target but for rounding
         double impulse = 0.0;
+        double before = 0.0;    // impulse whose give is in `wanted`
         double next = 0.0;      // what the active rows alone would take
         double residual = 0.0;  // working space
     };
 
+    Vec6 in_unit_mass(const Wrench& wrench, std::size_t body) const;
     static double along(const Row& row, const Eigen::VectorXd& motion);
     static void push(const Row& row, double impulse, Eigen::VectorXd& motion);
     static double influence(const Row& i, const Row& j);
-    double shortfall(const Row& row) const { return row.lack - along(row, motion_); }
+    double shortfall(const Row& row) const { return row.wanted - along(row, motion_); }
     void activate(std::size_t row);
     void find_impulses();
     void settle_active();
@@ -80,10 +85,15 @@ class ImpulseSolver {
     void factorise();
     void add_solution(double Row::* impulses);
     void move_by(double Row::* impulses, Eigen::VectorXd& motion) const;
-    void take_give_out();
+
+    // Of one body: r^2 = inverse mass, L L^T = inverse inertia.
+    struct Root {
+        double mass;
+        Mat3 inertia;
+    };
 
     double tolerance_;         // of velocities (m/s)
-    std::vector<Mat3> roots_;  // (bodies) L with L L^T = inverse inertia
+    std::vector<Root> roots_;  // (bodies)
     std::vector<Row> rows_;    // (contacts)
     std::vector<std::size_t> active_, kept_;
     bool by_bodies_ = false;   // are the factors those of the bodies' system, or of the rows'?

@@ -15,10 +15,9 @@ namespace birm3d {
 // The start: the vehicle comes along a straight path at `impact_angle` to the barrier's line and stands
 // `standoff` before its first touch.
 struct Approach {
-    double speed = 0.0;  // m/s, >= 0
-    double angle = 0.0;  // rad between path and barrier line, in (0, pi); pi/2 = head-on
-    double offset =
-        0.0;  // m along the barrier's line, where the path of the vehicle's reference point meets it
+    double speed = 0.0;     // m/s, >= 0
+    double angle = 0.0;     // rad between path and barrier line, in (0, pi); pi/2 = head-on
+    double offset = 0.0;    // m along the barrier's line, where the path of the mass centre meets it
     double standoff = 0.0;  // m between the nearest node and the barrier, >= 0
 };
 
