@@ -17,8 +17,8 @@ Floats = npt.NDArray[np.float64]
 
 def structure_mass(file: VehicleFile) -> float:
     """Mass of a vehicle without its payload [kg]; 0 where a file names none: then all of it is rescaled."""
-    structure = [solid.mass for solid in file.solids if not solid.payload]
-    return 0.0 if len(structure) == len(file.solids) else sum(structure)
+    mass, payload = _masses(file)
+    return float(mass[~payload].sum())
 
 
 def solids_at(file: VehicleFile, gvw: float, load_density: float | None = None) -> tuple[Floats, Floats]:
@@ -29,12 +29,11 @@ def solids_at(file: VehicleFile, gvw: float, load_density: float | None = None) 
     Other payload (people on seats) gets heavier where it is. Below the unladen mass the structure is
     rescaled, without payload.
     """
-    structure = structure_mass(file)
-    loaded = sum(solid.mass for solid in file.solids) - structure
-    factor = max(0.0, (gvw - structure) / loaded)
+    mass, payload = _masses(file)
+    structure = float(mass[~payload].sum())
+    factor = max(0.0, (gvw - structure) / float(mass[payload].sum()))
     corners = np.array([solid.corners for solid in file.solids], float)
     density = np.array([solid.density for solid in file.solids])
-    payload = np.array([solid.payload for solid in file.solids]) | (structure == 0.0)
     density[~payload] *= min(1.0, gvw / structure) if structure else 1.0
     for i in np.flatnonzero(payload):
         solid = file.solids[i]
@@ -45,6 +44,13 @@ def solids_at(file: VehicleFile, gvw: float, load_density: float | None = None) 
         corners[i, 4:, 2] = corners[i, 0, 2] + height
         density[i] = factor * solid.mass / (_floor_area(solid) * height)
     return corners, density
+
+
+def _masses(file: VehicleFile) -> tuple[Floats, npt.NDArray[np.bool_]]:
+    """Mass of each solid [kg], and whether it is payload: all, where a file names none; shape (n,)."""
+    mass = np.array([solid.mass for solid in file.solids])
+    payload = np.array([solid.payload for solid in file.solids])
+    return mass, payload if payload.any() else np.ones_like(payload)
 
 
 def load_height(solid: Solid, mass: float, density: float | None = None) -> float:
