@@ -5,8 +5,8 @@
 The vehicle goes at 8.9 m/s into a rigid pole of 254 mm that stands beside the driver's head; its axis makes
 75 deg with the path. Of these tests only the greatest static crush is known, to be met by the residual crush,
 and the tyres' friction is left out: the vehicle stands on a carrier. The shape of the envelope and the
-unloading slope stay; one factor is fitted to the rows marked CALIBRATE, of the pickup to its two rows together.
-With --predict the rows marked EXTRA are computed too, at the mass of each.
+unloading slope stay; one factor is fitted to the rows marked CALIBRATE, of the pickup to its two rows
+together. With --predict the rows marked EXTRA are computed too, at the mass of each.
 """
 
 from __future__ import annotations
