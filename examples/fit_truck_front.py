@@ -13,7 +13,6 @@ import argparse
 from pathlib import Path
 
 import birm3d
-import numpy as np
 from birm3d import scenes
 from birm3d.calibration import Parameter, ScalarTarget
 from birm3d.scene_parameters import varied
@@ -75,8 +74,8 @@ def main() -> None:
         print(f"{name:26s}{result.metrics[name]:12.4g}")
 
     print(f"\n{'goods [kg/m3]':>14s}{'mass centre [m]':>17s}{'pitch [deg]':>13s}")
-    payload = 2203.89
-    for density in np.array([150.0, 200.0, 300.0, 600.0]):
+    payload = truck.mass - truck.with_payload(0.0).mass
+    for density in (150.0, 200.0, 300.0, 600.0):
         loaded = fit.vehicle.with_payload(payload, density=density)
         pitch = varied(crash, {"vehicle": loaded}).run().metrics["max_pitch"]
         print(f"{density:14.0f}{loaded.mass_center_height:17.3f}{pitch:13.1f}")

@@ -162,6 +162,40 @@ BLOCK = {"source": ("s",), "status": "estimated", "name": "part"}
 WEDGE = ((0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 
 
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"payload": False}, "must be payload with box_m to fill a space"),
+        ({"box_m": None, "corners_m": WEDGE}, "must be payload with box_m to fill a space"),
+        ({"fills_to_m": 0.4}, r"must be at least the top of box_m, 0.5, got 0.4"),
+    ],
+)
+def test_a_load_space_is_a_box_of_payload_below_a_roof(changes, message):
+    good = {
+        "box_m": ((-1.0, 1.0), (0.0, 3.0), (0.0, 0.5)),
+        "mass_kg": 60.0,
+        "payload": True,
+        "fills_to_m": 2.0,
+    }
+    assert Solid(**BLOCK, **good).density == pytest.approx(20.0)
+    with pytest.raises(ValueError, match=message):
+        Solid(**BLOCK, **{**good, **changes})
+
+
+def test_scaled_files_are_files(vehicle):
+    """Masses, and stresses relative to what the zones hold for; nothing else."""
+    heavy = vehicle.scaled_to(2.0 * vehicle.gvw_kg)
+    assert heavy.solids_mass == pytest.approx(2.0 * vehicle.solids_mass, rel=1e-12)
+    assert heavy.gvw_kg == heavy.zones_mass == 2.0 * vehicle.gvw_kg
+    factor = heavy.gvw_kg / vehicle.zones_mass
+    for old, new in zip(vehicle.zones, heavy.zones, strict=True):
+        points, scaled = np.array(old.envelope), np.array(new.envelope)
+        np.testing.assert_allclose(scaled[:, 1], factor * points[:, 1], rtol=1e-12)
+        np.testing.assert_allclose(scaled[:, 0], points[:, 0], rtol=1e-12)
+    for part in ("dimensions", "wheels", "exterior", "core"):
+        assert getattr(heavy, part) == getattr(vehicle, part)
+
+
 def test_density_and_mass_are_two_ways_to_say_it():
     box = ((-1.0, 1.0), (0.0, 3.0), (0.0, 0.5))
     by_mass = Solid(**BLOCK, box_m=box, mass_kg=60.0)
