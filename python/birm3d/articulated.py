@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,9 @@ import numpy.typing as npt
 from . import _core
 from .vehicle import Vehicle
 from .zone import Zone, positive
+
+if TYPE_CHECKING:
+    from .combination_file import CombinationFile
 
 __all__ = ["ArticulatedVehicle", "Joint", "articulate"]
 
@@ -146,6 +149,18 @@ class ArticulatedVehicle(Vehicle):
             raise ValueError(f"gvw must be above the leading unit's mass ({leading.mass:g} kg), got {gvw:g}")
         return self._with([leading, trailing.with_gvw(gvw - leading.mass)])
 
+    def with_payload(
+        self, payload: float, *, density: float | None = None, height: float | None = None
+    ) -> ArticulatedVehicle:
+        """Return the vehicle with another payload [kg]: :meth:`Vehicle.with_payload` of the trailing unit."""
+        leading, trailing = self._units
+        return self._with([leading, trailing.with_payload(payload, density=density, height=height)])
+
+    def scaled_to(self, mass: float) -> ArticulatedVehicle:
+        """Return a similar vehicle of another mass [kg]: :meth:`Vehicle.scaled_to` of both units."""
+        factor = positive("mass", mass) / self.mass
+        return self._with([unit.scaled_to(factor * unit.mass) for unit in self._units])
+
     def with_rate_sensitivity(self, rate_sensitivity: float) -> ArticulatedVehicle:
         """Return the vehicle with :meth:`Vehicle.with_rate_sensitivity` of both units."""
         return self._with([unit.with_rate_sensitivity(rate_sensitivity) for unit in self._units])
@@ -218,6 +233,13 @@ class ArticulatedVehicle(Vehicle):
     def __repr__(self) -> str:
         leading, trailing = self._units
         return f"ArticulatedVehicle({self.name!r}, {leading!r}, {trailing!r}, {self.joint.kind})"
+
+
+def combine(units: Sequence[Vehicle], file: CombinationFile) -> ArticulatedVehicle:
+    """Return the vehicle of a file of two units."""
+    block = file.joint
+    joint = Joint(block.place_on_leading_m, block.place_on_trailing_m, block.kind, block.roll_limit_deg)
+    return articulate(units, joint, file.name)
 
 
 def articulate(units: Sequence[Vehicle], joint: Joint, name: str | None) -> ArticulatedVehicle:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from . import units
 from .articulated import ArticulatedVehicle, Joint
 from .barrier import Barrier
+from .reference import NhtsaTest, nhtsa_tests
 from .settings import Settings
 from .simulation import Simulation
 from .vehicle import Vehicle
@@ -23,10 +24,13 @@ __all__ = [
     "laboratory_block",
     "laboratory_semi",
     "nhtsa_10146",
+    "nhtsa_frontal",
     "oblique",
     "paper_table_2",
     "parked",
+    "preset_for",
     "rolling",
+    "truck_at_wall",
     "w1",
     "w2",
     "w2_force",
@@ -197,6 +201,47 @@ def nhtsa_10146(settings: Settings | None = None, mesh_density: float = 1.0) -> 
     """
     vehicle = Vehicle.preset("passenger_car", gvw=1719.0, mesh_density=mesh_density)
     return Simulation(vehicle, Barrier.rigid_wall(), units.km_h(57.09), settings=settings)
+
+
+def preset_for(test: NhtsaTest) -> str:
+    """Name of the preset that stands for the vehicle of a test.
+
+    The one of its class; for a class that has none, of those whose front was fitted to the same kind of
+    structure (a unit body), the one whose test vehicle is nearest in mass: a sport utility vehicle below
+    1,996 kg is a passenger car, above it a minivan.
+    """
+    if test.vehicle_class.startswith("pickup"):
+        return "pickup"
+    if test.vehicle_class == "car":
+        return "passenger_car"
+    if test.vehicle_class == "minivan":
+        return "minivan"
+    fitted = {"passenger_car": 1719.0, "minivan": 2273.0}
+    return min(fitted, key=lambda name: abs(fitted[name] - test.mass))
+
+
+def nhtsa_frontal(number: str, settings: Settings | None = None, mesh_density: float = 1.0) -> Simulation:
+    """Return a full-width rigid-wall test of NHTSA, by its number in :func:`birm3d.reference.nhtsa_tests`.
+
+    The preset of :func:`preset_for`, scaled to the mass of the vehicle tested.
+    """
+    tests = nhtsa_tests()
+    if number not in tests or tests[number].kind != "frontal":
+        known = ", ".join(name for name, test in tests.items() if test.kind == "frontal")
+        raise ValueError(f"number must be one of {known}; got {number!r}")
+    test = tests[number]
+    vehicle = Vehicle.preset(preset_for(test), mesh_density=mesh_density).scaled_to(test.mass)
+    return Simulation(vehicle, Barrier.rigid_wall(), test.speed, settings=settings)
+
+
+def truck_at_wall(settings: Settings | None = None, mesh_density: float = 1.0) -> Simulation:
+    """Paper, case 4: a 15,000-lb truck at 50 mph head-on into a rigid wall.
+
+    Film of a test of the Texas Transportation Institute showed a greatest pitch of 27 deg, which the front
+    of the preset is fitted to. The rear wheels are in the air for more than a second.
+    """
+    truck = Vehicle.preset("cargo_truck", mesh_density=mesh_density)
+    return Simulation(truck, Barrier.rigid_wall(), units.mph(50.0), duration=1.5, settings=settings)
 
 
 def oblique(angle: float, friction: float = 0.0, settings: Settings | None = None) -> Simulation:

@@ -27,17 +27,23 @@ __all__ = [
     "Dimensions",
     "End",
     "Exterior",
+    "Name",
+    "Point",
+    "Positive",
     "Solid",
     "Source",
     "Target",
+    "Text",
     "Upper",
     "VehicleFile",
     "VehicleFileError",
     "Wheel",
     "Zone",
+    "check_known",
     "preset_names",
     "preset_path",
     "read_vehicle_file",
+    "unit_paths",
 ]
 
 Point: TypeAlias = tuple[float, float, float]
@@ -80,7 +86,8 @@ def _check_unique(key: str, names: list[str]) -> None:
             reject(key, f"names must differ, got '{name}' twice")
 
 
-def _check_known(key: str, names: tuple[str, ...], known: set[str]) -> None:
+def check_known(key: str, names: tuple[str, ...], known: set[str]) -> None:
+    """Require every name to be a known one."""
     for name in names:
         if name not in known:
             reject(key, f"must be one of {', '.join(sorted(known))}; got '{name}'")
@@ -139,6 +146,9 @@ class Solid(Block):
     """An 8-node solid of uniform density: a box, or eight corners.
 
     Corners in m, file axes: 0-3 counter-clockwise seen from above, 4-7 above them. Faces are plane.
+
+    payload: what is loaded; a change of weight goes there first. fills_to_m: the payload is a box of goods on
+    a floor, which keeps its density and grows upwards with its mass, to this height at most.
     """
 
     name: Name
@@ -147,6 +157,7 @@ class Solid(Block):
     mass_kg: Positive | None = None
     density_kg_per_m3: Positive | None = None
     payload: bool = False
+    fills_to_m: Positive | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Solid:
@@ -157,6 +168,12 @@ class Solid(Block):
         for low, high in self.box_m or ():
             if not low < high:
                 reject("box_m", f"each range must be increasing, got [{low}, {high}]")
+        if self.fills_to_m is not None:
+            if not (self.payload and self.box_m is not None):
+                reject("fills_to_m", f"solid '{self.name}' must be payload with box_m to fill a space")
+            if not self.fills_to_m >= self.box_m[2][1]:
+                message = f"must be at least the top of box_m, {self.box_m[2][1]}, got {self.fills_to_m}"
+                reject("fills_to_m", message)
         self._check_shape()
         return self
 
@@ -379,6 +396,16 @@ class Zone(Block):
             message = f"must be at least the stress at the knee, {at_knee:g}, got {self.f_max_Pa:g}"
             reject("f_max_Pa", message)
 
+    def scaled(self, factor: float) -> Zone:
+        """Return the zone with all stresses and slopes times a factor."""
+        if self.envelope_m_Pa is not None:
+            points = tuple((depth, factor * stress) for depth, stress in self.envelope_m_Pa)
+            changes: dict[str, Any] = {"envelope_m_Pa": points}
+        else:
+            names = ("k_initial_Pa_per_m", "k_hardening_Pa_per_m", "f_max_Pa")
+            changes = {name: factor * getattr(self, name) for name in names}
+        return self.model_copy(update={**changes, "k_unloading_Pa_per_m": factor * self.k_unloading_Pa_per_m})
+
     @property
     def envelope(self) -> tuple[tuple[float, float], ...]:
         """Loading envelope, rows (deflection in m, stress in Pa), starting at (0, 0)."""
@@ -397,13 +424,17 @@ class Zone(Block):
 
 
 class VehicleFile(Strict):
-    """A vehicle as its file describes it: SI units, file axes, immutable."""
+    """A vehicle as its file describes it: SI units, file axes, immutable.
+
+    zones_at_kg: mass of the vehicle that the stiffness of the zones holds for; without it, gvw_kg.
+    """
 
     format_version: Literal[1]
     name: Name
     title: Text
     description: Text
     gvw_kg: Positive
+    zones_at_kg: Positive | None = None
     sources: Annotated[tuple[Source, ...], Field(alias="source", min_length=1)]
     dimensions: Dimensions
     targets: Annotated[tuple[Target, ...], Field(alias="target")] = ()
@@ -428,11 +459,11 @@ class VehicleFile(Strict):
         blocks = {"body", *(upper.name for upper in self.exterior.upper)}
         boxes = {box.name for box in self.core}
         for zone in self.zones:
-            _check_known(f"zone.{zone.name}.blocks", zone.blocks, blocks)
-            _check_known(f"zone.{zone.name}.core", zone.core, boxes)
+            check_known(f"zone.{zone.name}.blocks", zone.blocks, blocks)
+            check_known(f"zone.{zone.name}.core", zone.core, boxes)
         known = {source.id for source in self.sources}
         for key, block in self._blocks():
-            _check_known(f"{key}.source", block.source, known)
+            check_known(f"{key}.source", block.source, known)
         return self
 
     def _blocks(self) -> Iterator[tuple[str, Block]]:
@@ -454,6 +485,22 @@ class VehicleFile(Strict):
     def solids_mass(self) -> float:
         """Sum of the solids' masses in kg, before they are scaled to a gross vehicle weight."""
         return sum(solid.mass for solid in self.solids)
+
+    @property
+    def zones_mass(self) -> float:
+        """Mass of the vehicle that the zones' stiffness holds for [kg]."""
+        return self.gvw_kg if self.zones_at_kg is None else self.zones_at_kg
+
+    def scaled_to(self, mass: float) -> VehicleFile:
+        """Return the file of a vehicle of another mass [kg]: solids and zones heavier in proportion."""
+        weight, strength = mass / self.gvw_kg, mass / self.zones_mass
+        solids = tuple(
+            solid.model_copy(update={"mass_kg": weight * solid.mass, "density_kg_per_m3": None})
+            for solid in self.solids
+        )
+        zones = tuple(zone.scaled(strength) for zone in self.zones)
+        changes = {"gvw_kg": mass, "zones_at_kg": mass, "solids": solids, "zones": zones, "targets": ()}
+        return self.model_copy(update=changes)
 
     @property
     def zone_names(self) -> tuple[str, ...]:
@@ -541,10 +588,15 @@ def read_vehicle_file(path: str | Path) -> VehicleFile:
     return document.validate(VehicleFile, document.zones_in_order())
 
 
+# By weight, then the replication target.
+_ORDER = ("passenger_car", "minivan", "pickup", "cargo_truck", "semi_truck", "paper_pickup")
+
+
 def preset_names() -> tuple[str, ...]:
-    """Names of the vehicle files that come with the package, sorted."""
+    """Names of the vehicle files that come with the package, the library's five first, by weight."""
     folder = resources.files("birm3d") / "data"
-    return tuple(sorted(f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")))
+    names = {f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")}
+    return (*(name for name in _ORDER if name in names), *sorted(names.difference(_ORDER)))
 
 
 def preset_path(name: str) -> Path:
@@ -552,3 +604,11 @@ def preset_path(name: str) -> Path:
     if name not in preset_names():
         raise ValueError(f"preset must be one of {', '.join(preset_names())}; got {name!r}")
     return Path(str(resources.files("birm3d") / "data" / f"{name}.toml"))
+
+
+def unit_paths() -> dict[str, Path]:
+    """Files of one unit that come with the package, by their names: presets, and the units of the others."""
+    folder = Path(str(resources.files("birm3d") / "data"))
+    units = {path.stem: path for path in sorted((folder / "units").glob("*.toml"))}
+    single = {name: preset_path(name) for name in preset_names() if name != "semi_truck"}
+    return {**single, **units}

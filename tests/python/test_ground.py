@@ -28,12 +28,14 @@ def test_tyre_reactions_carry_the_weight(name: str, speed: float, duration: floa
     assert total.std() < 0.01 * weight
     assert (reaction > 0.0).all()
 
-    # Lever rule about the axles; left and right alike.
+    left = vehicle.wheels[:, 1] > 0.0
+    assert reaction[:, left].sum(axis=1) == pytest.approx(reaction[:, ~left].sum(axis=1), rel=1e-6)
+    if len(vehicle.units) > 1:
+        return  # see the test of the semi truck
+    # Lever rule about the axles.
     front = vehicle.wheels[:, 0] > 0.0
     a, b = vehicle.wheels[front, 0].mean(), -vehicle.wheels[~front, 0].mean()
     assert reaction[:, front].sum(axis=1).mean() == pytest.approx(weight * b / (a + b), rel=1e-3)
-    left = vehicle.wheels[:, 1] > 0.0
-    assert reaction[:, left].sum(axis=1) == pytest.approx(reaction[:, ~left].sum(axis=1), rel=1e-6)
 
 
 def test_a_parked_vehicle_stays_where_it_is(result_of: Callable[[str], Result]) -> None:

@@ -90,3 +90,17 @@ def test_metrics_are_within_a_percent_of_their_fine_step_answers(result_of: Call
         for name in set(fine) - NOT_PHYSICS
     }
     assert {name: error for name, error in errors.items() if error > 0.0} == {}
+
+
+class TestTruckAtWall:
+    """Paper, case 4: 15,000-lb diesel truck, 50 mph head-on, Texas Transportation Institute."""
+
+    def test_pitch(self) -> None:
+        """Film: 27 deg, which the front is fitted to."""
+        result = scenes.truck_at_wall().run()
+        assert result.scene.vehicle.mass == pytest.approx(units.lb(15000), rel=1e-5)
+        assert result.metrics["max_pitch"] == pytest.approx(27.0, abs=2.0)
+        assert result.pitch.max() == result.metrics["max_pitch"]  # nose down: the rear wheels rise
+        assert result.time[np.argmax(result.pitch)] < 0.9 * result.time[-1]  # the run saw it come down again
+        # A front that grows in proportion to mass: 0.97 m; 1 MN/m: 1.84 m.
+        assert 0.97 < result.metrics["max_displacement"] < 1.84
