@@ -6,15 +6,19 @@ Only what a picture needs is loaded, and only when it is made.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
     from matplotlib.figure import Figure
 
     from .crush_profile import Side
+    from .rendering import Color, View
     from .result import Result
 
-__all__ = ["plot", "plot_crush", "plot_histories", "plot_plan"]
+__all__ = ["animate", "plot", "plot_crush", "plot_histories", "plot_plan", "render", "show"]
 
 
 def plot(self: Result) -> Figure:
@@ -43,3 +47,54 @@ def plot_crush(self: Result, side: Side = "front", *, height: float | None = Non
     from .plotting import plot_crush
 
     return plot_crush(self, side, height=height, unit=unit)
+
+
+def render(
+    self: Result,
+    time: float | Sequence[float] | None = None,
+    path: str | Path | None = None,
+    *,
+    view: View = "three_quarter",
+    color: Color = "crush",
+    size: tuple[int, int] = (1280, 720),
+    follow: bool = False,
+) -> npt.NDArray[np.uint8]:
+    """Return 3-D pictures of some instants, drawn off-screen; see :func:`birm3d.rendering.render`."""
+    from .rendering import render
+
+    return render(self, time, path, view=view, color=color, size=size, follow=follow)
+
+
+def animate(
+    self: Result,
+    path: str | Path,
+    *,
+    frames: int = 100,
+    fps: float = 25.0,
+    view: View = "three_quarter",
+    color: Color = "crush",
+    size: tuple[int, int] = (1280, 720),
+    follow: bool = False,
+    progress: bool | None = None,
+) -> None:
+    """Write a movie of the whole run (.mp4, .gif, ...); see :func:`birm3d.rendering.animate`."""
+    from .rendering import animate
+
+    animate(
+        self,
+        path,
+        frames=frames,
+        fps=fps,
+        view=view,
+        color=color,
+        size=size,
+        follow=follow,
+        progress=progress,
+    )
+
+
+def show(self: Result, *, view: View = "three_quarter", color: Color = "crush") -> None:
+    """Open a window with the scene in three dimensions; see :func:`birm3d.rendering.show`."""
+    from .rendering import show
+
+    show(self, view=view, color=color)

@@ -61,6 +61,9 @@ class Result:
     plot_histories = pictures.plot_histories
     plot_plan = pictures.plot_plan
     plot_crush = pictures.plot_crush
+    render = pictures.render
+    animate = pictures.animate
+    show = pictures.show
 
     def __init__(
         self,
