@@ -14,6 +14,7 @@ from .cli_calibrate import calibrate_file
 from .cli_scene import scene_options, simulation_of
 from .cli_sweep import sweep
 from .cli_table import print_table
+from .outcome import outcome_rows
 
 if TYPE_CHECKING:
     from .result import Result
@@ -117,27 +118,6 @@ def _as_json(result: Result) -> dict[str, Any]:
 _cli.add_command(sweep)
 
 
-_ROWS = (
-    ("dynamic_crush", "dynamic crush (greatest truss shortening)", "m", 1.0, ".3f"),
-    ("residual_crush", "residual crush", "m", 1.0, ".3f"),
-    ("max_displacement", "travel of the mass centre towards the barrier", "m", 1.0, ".3f"),
-    ("vehicle_penetration", "penetration past the barrier's face", "m", 1.0, ".3f"),
-    ("time_of_zero_velocity", "time of zero normal velocity", "ms", 1e-3, ".1f"),
-    ("peak_normal_force_cfc60", "peak normal force, CFC 60", "kN", 1e3, ".0f"),
-    ("peak_force_50ms", "peak 50-ms mean of the normal force", "kN", 1e3, ".0f"),
-    ("peak_deceleration_cfc60", "peak deceleration along r, CFC 60", "g", units.g, ".1f"),
-    ("delta_v", "change of velocity", "m/s", 1.0, ".2f"),
-    ("restitution", "restitution along the normal", "", 1.0, ".2f"),
-    ("exit_speed", "exit speed", "m/s", 1.0, ".2f"),
-    ("exit_angle", "exit angle from the barrier's line", "deg", 1.0, ".1f"),
-    ("max_roll", "greatest roll", "deg", 1.0, ".1f"),
-    ("max_pitch", "greatest pitch", "deg", 1.0, ".1f"),
-    ("max_yaw", "greatest yaw", "deg", 1.0, ".1f"),
-    ("energy_residual", "energy residual / initial kinetic energy", "", 1.0, ".1e"),
-    ("momentum_residual", "momentum residual / greatest force", "", 1.0, ".1e"),
-)
-
-
 def _print_outcome(result: Result) -> None:
     from rich.table import Table
 
@@ -151,9 +131,8 @@ def _print_outcome(result: Result) -> None:
         caption=f"{result.end_reason} after {result.time[-1] * 1e3:.0f} ms; {result.statistics.steps} steps "
         f"in {result.run_time * 1e3:.1f} ms of computing",
     )
-    for name, label, unit, size, form in _ROWS:
-        if name in result.metrics:
-            table.add_row(label, format(result.metrics[name] / size, form), unit)
+    for row in outcome_rows(result):
+        table.add_row(*row)
     print_table(table)
 
 

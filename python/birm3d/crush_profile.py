@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
@@ -13,14 +14,19 @@ from .unit_shapes import UnitShape, unit_shapes
 if TYPE_CHECKING:
     from .result import Result
 
-__all__ = ["CrushMap", "CrushProfile", "Side", "crush_map", "crush_profile"]
+__all__ = ["CrushMap", "CrushProfile", "Side", "crush_map", "crush_profile", "crushed_sides"]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Side: TypeAlias = Literal["front", "rear", "left", "right"]
 
 # Outward direction of each side and its lateral axis, body axes.
-_SIDES = {"front": (0, 1.0, 1), "rear": (0, -1.0, 1), "left": (1, 1.0, 0), "right": (1, -1.0, 0)}
+_SIDES: Mapping[Side, tuple[int, float, int]] = {
+    "front": (0, 1.0, 1),
+    "rear": (0, -1.0, 1),
+    "left": (1, 1.0, 0),
+    "right": (1, -1.0, 0),
+}
 # An element belongs to a side if its normal is within 60 degrees of outwards.
 _FACING = 0.5
 _POINTS = 6
@@ -146,6 +152,18 @@ def crush_profile(
         width=float(lateral[-1] - lateral[0]),
         mean=float(weights @ points),
     )
+
+
+def crushed_sides(result: Result, least: float = 0.01, *, unit: int = 0) -> tuple[Side, ...]:
+    """Return the sides that are crushed by more than `least` [m] somewhere, greatest crush first."""
+    shape = unit_shapes(result.scene.vehicle)[unit]
+    greatest: dict[Side, float] = {}
+    for side, (axis, sign, lateral) in _SIDES.items():
+        if len(_facing(shape, axis, sign, lateral)):
+            field = crush_map(result, side, unit=unit)
+            greatest[side] = float(field.crush[np.unique(field.triangles)].max())
+    order = sorted(greatest, key=lambda side: -greatest[side])
+    return tuple(side for side in order if greatest[side] > least)
 
 
 def _facing(shape: UnitShape, axis: int, sign: float, lateral: int) -> Ints:

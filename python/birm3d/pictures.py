@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .rendering import Color, View
     from .result import Result
 
-__all__ = ["animate", "plot", "plot_crush", "plot_histories", "plot_plan", "render", "show"]
+__all__ = ["animate", "plot", "plot_crush", "plot_histories", "plot_plan", "render", "show", "write_html"]
 
 
 def plot(self: Result) -> Figure:
@@ -98,3 +98,10 @@ def show(self: Result, *, view: View = "three_quarter", color: Color = "crush") 
     from .rendering import show
 
     show(self, view=view, color=color)
+
+
+def write_html(self: Result, path: str | Path, *, frames: int = 61) -> None:
+    """Write one self-contained, interactive page; see :func:`birm3d.html_page.write_html`."""
+    from .html_page import write_html
+
+    write_html(self, path, frames=frames)

@@ -64,6 +64,7 @@ class Result:
     render = pictures.render
     animate = pictures.animate
     show = pictures.show
+    write_html = pictures.write_html
 
     def __init__(
         self,

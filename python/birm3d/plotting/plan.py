@@ -13,7 +13,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from ..barrier_surfaces import barrier_axes, barrier_surfaces
+from ..plan_axes import PlanAxes, is_oblique
 from ..silhouette import silhouette
 from ..skin import skins_at
 from ..unit_shapes import unit_shapes
@@ -56,12 +56,8 @@ def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box:
     """
     scene = result.scene
     instants = np.linspace(0.0, result.time[-1], _INSTANTS) if times is None else np.asarray(times, float)
-    to_plan, labels = _axes(result)
-    origin = np.zeros(2) if scene.barrier is None else np.asarray(scene.barrier.origin)[:2]
-
-    def plan(points: Floats) -> Floats:
-        return np.asarray((points[..., :2] - origin) @ to_plan.T)
-
+    view = PlanAxes(result)
+    plan = view.plan
     figure = Figure(layout="constrained")
     axes = figure.subplots()
     prepare(axes)
@@ -84,37 +80,17 @@ def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box:
     around = np.vstack([skin.world for units in skins for skin in units])
     if exit_box and _redirected(result):
         drawn.append(_exit_box(axes, result, plan))
-    _draw_barrier(axes, result, around, plan, drawn)
-    axes.set_xlabel(labels[0])
-    axes.set_ylabel(labels[1])
+    _draw_barrier(axes, view, around, drawn)
+    axes.set_xlabel(view.labels[0])
+    axes.set_ylabel(view.labels[1])
     _fit(figure, axes, np.vstack(drawn))
     axes.set_title(f"{title(result)}\n{_outcome(result)}", fontsize="medium")
     figure.legend(loc="outside lower center", ncols=6, frameon=False, fontsize="small")
     return figure
 
 
-def _axes(result: Result) -> tuple[Floats, tuple[str, str]]:
-    """World x, y to the picture's axes (2, 2), right-handed, and their names."""
-    along, out, _ = barrier_axes(result.scene.barrier)[:, :2]
-    if result.scene.barrier is None:
-        return np.eye(2), ("x [m]", "y [m]")
-    if 45.0 <= result.scene.impact_angle <= 135.0:
-        return np.stack([-out, along]), ("past the barrier's line [m]", "along the barrier's line [m]")
-    return np.stack([along, out]), ("along the barrier's line [m]", "in front of the barrier's face [m]")
-
-
-def _draw_barrier(
-    axes: Axes, result: Result, around: Floats, plan: Callable[[Floats], Floats], drawn: list[Floats]
-) -> None:
-    barrier = result.scene.barrier
-    if barrier is None:
-        return
-    if not np.isfinite(barrier.width):  # also as wide as the exit box
-        back = np.linalg.inv(_axes(result)[0]).T
-        points = np.vstack(drawn) @ back + np.asarray(barrier.origin)[:2]
-        around = np.vstack([around, np.column_stack([points, np.full(len(points), barrier.origin[2])])])
-    for part, (vertices, faces) in enumerate(barrier_surfaces(barrier, around)):
-        flat = plan(vertices)
+def _draw_barrier(axes: Axes, view: PlanAxes, world: Floats, drawn: list[Floats]) -> None:
+    for part, (flat, faces) in enumerate(view.barrier(world, np.vstack(drawn))):
         label = "_" if part else "barrier"
         axes.add_collection(
             PolyCollection(list(flat[faces]), fc="0.75", ec="0.75", lw=0.6, label=label, zorder=1.5)
@@ -124,9 +100,8 @@ def _draw_barrier(
 
 def _redirected(result: Result) -> bool:
     scene = result.scene
-    oblique = not 45.0 <= scene.impact_angle <= 135.0
     flat = scene.barrier is not None and scene.barrier.diameter is None
-    return oblique and flat and "exit_angle" in result.metrics
+    return is_oblique(result) and flat and "exit_angle" in result.metrics
 
 
 def _exit_box(axes: Axes, result: Result, plan: Callable[[Floats], Floats]) -> Floats:

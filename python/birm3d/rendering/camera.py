@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..barrier_surfaces import barrier_axes
+from ..plan_axes import is_oblique
 from ..skin import Skin
 from ..unit_shapes import unit_shapes
 
@@ -28,12 +29,16 @@ _UP = np.array([0.0, 0.0, 1.0])
 
 
 class Camera(NamedTuple):
-    """Place, what it looks at, what is up in the picture (world axes, m), vertical angle of view [deg]."""
+    """Place, what it looks at, what is up in the picture (world axes, m), vertical angle of view [deg].
+
+    With ``half_height`` the view is without perspective: half of what the picture shows vertically [m].
+    """
 
     place: Floats
     target: Floats
     up: Floats
     angle: float
+    half_height: float | None = None
 
 
 def check_view(view: str) -> None:
@@ -51,8 +56,8 @@ def outside_camera(result: Result, view: View, points: Floats, aspect: float, ta
         Gives the directions of the path and of the barrier.
     view
         ``"three_quarter"``: from above the side, behind in head-on impacts and ahead in those below 45
-        degrees; ``"side"``: square to the path; ``"top"``: from
-        above, the path going to the right; ``"front"``: against the path, which a wall would hide.
+        degrees; ``"side"``: square to the path, and ``"top"``: from above, the path going to the right,
+        both without perspective; ``"front"``: against the path, which a wall would hide.
     points
         World axes [m].
     aspect
@@ -65,10 +70,10 @@ def outside_camera(result: Result, view: View, points: Floats, aspect: float, ta
     out = barrier_axes(result.scene.barrier)[1]
     # The side of the path that the barrier does not hide.
     side = left if left @ out >= -1e-9 else -left
-    oblique = not 45.0 <= result.scene.impact_angle <= 135.0
+    oblique = is_oblique(result)
     look, up = {
         "three_quarter": (side + (0.7 if oblique else -0.55) * ahead + 0.45 * _UP, _UP),
-        "side": (side + 0.10 * _UP, _UP),
+        "side": (side, _UP),
         "top": (_UP, left),
         "front": (ahead + 0.25 * _UP, _UP),
     }[view]
@@ -84,9 +89,12 @@ def outside_camera(result: Result, view: View, points: Floats, aspect: float, ta
     width = aspect * (1.0 - taken)
     near = np.maximum(np.abs(x - x_middle) / width, np.abs(y - y_middle)) / slope + z
     distance = _MARGIN * float(near.max())
+    flat = np.maximum(np.abs(x - x_middle) / width, np.abs(y - y_middle))
+    half_height = _MARGIN * float(flat.max()) if view in ("side", "top") else None
     # The free share moves what is shown to the left.
-    target = middle + (x_middle + taken * aspect * slope * distance) * right + y_middle * above
-    return Camera(target + distance * back, target, above, _LENS)
+    shift = taken * aspect * (slope * distance if half_height is None else half_height)
+    target = middle + (x_middle + shift) * right + y_middle * above
+    return Camera(target + distance * back, target, above, _LENS, half_height)
 
 
 def driver_camera(result: Result, skins: Sequence[Skin]) -> Camera:
@@ -104,7 +112,7 @@ def driver_camera(result: Result, skins: Sequence[Skin]) -> Camera:
     eyes = np.array([roof[:, 0].max() - 0.45, 0.4 * roof[:, 1].max(), top - 0.25])
     skin = skins[0]
     place = skin.center + skin.turn @ eyes
-    forward = skin.turn @ np.array([1.0, 0.0, -0.12])
+    forward = skin.turn @ np.array([1.0, 0.0, -0.2])
     return Camera(place, place + 10.0 * forward, skin.turn @ _UP, _DRIVER_LENS)
 
 

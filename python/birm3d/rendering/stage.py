@@ -28,7 +28,7 @@ Floats = npt.NDArray[np.float64]
 
 _BARRIER, _GROUND, _GRID = "#B9B4AA", "#EDEEEA", "#C9CBC6"
 _LEAST_SCALE = 0.05  # m, of the colours of crush
-_BAR = 0.12  # share of the picture's width that the bar of colours takes
+_BAR = 0.12  # share of the picture's width that the bar of colours or the names of zones take
 _AROUND = 3.0  # ground past what is shown, m
 
 
@@ -131,7 +131,7 @@ class Stage:
             chosen = [self._skins[k]] if self._follow else self._skins
             points = np.vstack([skin.world for units in chosen for skin in units])
             aspect = self._size[0] / self._size[1]
-            taken = _BAR if self._color == "crush" else 0.0
+            taken = 0.0 if self._color == "plain" else _BAR
             self._camera = outside_camera(self._result, self._view, points, aspect, taken)
             self._put(self._camera)
         self.plotter.reset_camera_clipping_range()
@@ -141,10 +141,14 @@ class Stage:
         self.plotter.camera.focal_point = tuple(camera.target)
         self.plotter.camera.up = tuple(camera.up)
         self.plotter.camera.view_angle = camera.angle
+        self.plotter.camera.parallel_projection = camera.half_height is not None
+        if camera.half_height is not None:
+            self.plotter.camera.parallel_scale = camera.half_height
 
     def picture(self) -> npt.NDArray[np.uint8]:
         """Return what the camera sees, shape (height, width, 3), red, green, blue."""
         with _quiet():
+            self.plotter.render()  # a screenshot by itself is of the last drawing
             image = np.asarray(self.plotter.screenshot(return_img=True))
         if image.ndim != 3 or image.std() == 0.0:
             raise RuntimeError(

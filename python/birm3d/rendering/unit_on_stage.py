@@ -85,6 +85,8 @@ class UnitOnStage:
             # The four nodes of an element share one zone.
             self._mesh.cell_data["zone"] = rgb[shape.zone_of_node[shape.quads[:, 0]]]
             look = {"scalars": "zone", "rgb": True}
+            if first:
+                _add_zone_names(plotter, shape.zone_names, palette)
         plotter.add_mesh(
             self._mesh,
             show_edges=True,
@@ -115,6 +117,14 @@ class UnitOnStage:
 def polygons(corners: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
     """Return faces or lines (m, k) as VTK has them: the number of corners before each."""
     return np.column_stack([np.full(len(corners), corners.shape[1]), corners]).ravel()
+
+
+def _add_zone_names(plotter: Any, names: tuple[str, ...], palette: list[str]) -> None:
+    height = min(0.9, 0.045 * len(names))
+    labels = [[name.replace("_", " "), color] for name, color in zip(names, palette, strict=True)]
+    plotter.add_legend(
+        labels, bcolor=None, border=False, size=(0.14, height), loc="center right", face="rectangle"
+    )
 
 
 def _bar(font: int) -> dict[str, Any]:
