@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 __all__ = ["main"]
 
 
+_FILE = click.Path(dir_okay=False, path_type=Path)
+
+
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="birm3d")
 def _cli() -> None:
@@ -35,20 +38,20 @@ _cli.add_command(calibrate_file)
 @scene_options
 @click.option("--json", "as_json", is_flag=True, help="Metrics as JSON on stdout.")
 @click.option("--report", "with_report", is_flag=True, help="Also what was computed and what was left out.")
-@click.option(
-    "--plot",
-    type=click.Path(dir_okay=False, path_type=Path),
-    help="Write figures to this file (.png, .pdf, .svg).",
-)
-@click.option(
-    "--csv", "csv_path", type=click.Path(dir_okay=False, path_type=Path), help="Write histories to this file."
-)
+@click.option("--plot", type=_FILE, help="Write figures to this file (.png, .pdf, .svg).")
+@click.option("--csv", "csv_path", type=_FILE, help="Write histories to this file.")
+@click.option("--save", type=_FILE, help="Write the result to this file; birm3d.load() reads it.")
+@click.option("--html", type=_FILE, help="Write an interactive page that needs no network to this file.")
+@click.option("--movie", type=_FILE, help="Write a movie to this file (.mp4, .gif, ...).")
 def run(
     scene: Path | None,
     as_json: bool,
     with_report: bool,
     plot: Path | None,
     csv_path: Path | None,
+    save: Path | None,
+    html: Path | None,
+    movie: Path | None,
     **options: Any,
 ) -> None:
     """Run one crash: a SCENE file, or the options --vehicle and --speed."""
@@ -66,6 +69,15 @@ def run(
     if plot is not None:
         result.plot().savefig(plot, dpi=150)
         click.echo(f"figures: {plot}", err=True)
+    if save is not None:
+        result.save(save)
+        click.echo(f"result: {save}", err=True)
+    if html is not None:
+        result.write_html(html)
+        click.echo(f"page: {html}", err=True)
+    if movie is not None:
+        result.animate(movie)
+        click.echo(f"movie: {movie}", err=True)
 
 
 @_cli.command()
@@ -153,6 +165,6 @@ def main() -> None:
     except StudyStoppedError as error:
         click.echo(f"birm3d: {error}", err=True)
         sys.exit(1)
-    except (ValueError, UnstableError) as error:
+    except (ValueError, UnstableError, ImportError) as error:  # the last: an extra is missing
         click.echo(f"birm3d: {error}", err=True)
         sys.exit(2)

@@ -51,7 +51,7 @@ class PlanAxes:
             self.labels = ("past the barrier's line [m]", "along the barrier's line [m]")
 
     def plan(self, points: Floats) -> Floats:
-        """Return points or one point in the plan, shape (..., 2), from world axes (..., 2) or (..., 3) [m]."""
+        """Return points in the plan, shape (..., 2), from world axes, shape (..., 2) or (..., 3) [m]."""
         return np.asarray((points[..., :2] - self._origin) @ self._turn.T)
 
     def barrier(self, world: Floats, plan: Floats) -> list[Surface]:

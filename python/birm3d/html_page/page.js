@@ -7,10 +7,14 @@ const font = { family: "system-ui, sans-serif", size: 12 };
 const axis = { gridcolor: "#e6e6e6", zerolinecolor: "#bbbbbb" };
 
 // Histories: one panel each; zooming one in time zooms all.
-const panels = data.panels.map((panel) => {
+const panels = data.panels.map(() => {
   const div = document.createElement("div");
   div.className = "panel";
   document.getElementById("panels").appendChild(div);
+  return div;
+});
+data.panels.forEach((panel, n) => {
+  const div = panels[n];
   const curves = panel.curves.map((curve, i) => ({
     x: data.time,
     y: curve.y,
@@ -29,7 +33,6 @@ const panels = data.panels.map((panel) => {
     xaxis: { ...axis, title: { text: "time [ms]", standoff: 4 }, range: [data.time[0], data.time.at(-1)] },
     yaxis: { ...axis, title: { text: `[${panel.unit}]` } },
   }, config);
-  return div;
 });
 let following = false;
 for (const div of panels) {

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 import io
 import json
+from collections.abc import Sequence
 from html import escape
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .. import units
-from ..crush_profile import crushed_sides
+from ..crush_profile import Side, crushed_sides
 from ..metrics import METRIC_UNITS
 from ..outcome import outcome_rows
 from ..report import END_REASONS
@@ -19,6 +21,7 @@ from ..whole_file import whole_file
 from .page_data import page_data
 
 if TYPE_CHECKING:
+    from ..barrier import Barrier
     from ..result import Result
 
 __all__ = ["write_html"]
@@ -28,7 +31,7 @@ _ENERGY, _MOMENTUM = 5e-3, 1e-9
 
 
 def write_html(result: Result, path: str | Path, *, frames: int = 61) -> None:
-    """Write one page that needs no network: scene, outcome, checks, plan view with a slider, histories, crush.
+    """Write one page that needs no network: scene, outcome, plan view with a slider, histories, crush.
 
     Histories are after their channel frequency class (SAE J211-1).
 
@@ -51,7 +54,8 @@ def write_html(result: Result, path: str | Path, *, frames: int = 61) -> None:
     except ImportError as error:
         raise ImportError("write_html() needs plotly: pip install 'birm3d[html]'") from error
     # Inside a script element no text may end it.
-    data = json.dumps(page_data(result, frames), allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
+    content = page_data(result, frames)
+    data = json.dumps(content, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
     here = files(__package__)
     page = here.joinpath("page.html").read_text(encoding="utf-8")
     scene = result.scene
@@ -62,8 +66,9 @@ def write_html(result: Result, path: str | Path, *, frames: int = 61) -> None:
         "OUTCOME": _table(("outcome", "value", "unit"), outcome_rows(result)),
         "CHECKS": _table(("check", "", "limit", "value"), _check_rows(result)),
         "METRICS": _table(("metric", "value", "unit"), _metric_rows(result)),
-        "CRUSH": "".join(_crush_picture(result, i) for i in range(len(crushed_sides(result)))),
+        "CRUSH": "".join(_crush_picture(result, side) for side in crushed_sides(result)) or "<p>None.</p>",
         "REPORT": escape(result.report()),
+        "ROWS": "" if content["every"] == 1 else f"One row in {content['every']} is shown.",
         "SCRIPT": here.joinpath("page.js").read_text(encoding="utf-8"),
         "DATA": data,
         "PLOTLY": get_plotlyjs(),
@@ -78,7 +83,7 @@ def write_html(result: Result, path: str | Path, *, frames: int = 61) -> None:
         part.write_text("".join(text), encoding="utf-8")
 
 
-def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
     def line(cells: tuple[str, ...], tag: str) -> str:
         return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>"
 
@@ -96,7 +101,7 @@ def _scene_rows(result: Result) -> list[tuple[str, ...]]:
     )
     return [
         ("vehicle", f"{vehicle.name}, {vehicle.mass:,.1f} kg, {vehicle.n_nodes:,} shell nodes"),
-        ("barrier", "none" if scene.barrier is None else str(scene.barrier)),
+        ("barrier", _barrier(scene.barrier)),
         ("impact speed", f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph)"),
         ("impact angle", f"{scene.impact_angle:g}° from the barrier's line"),
         ("impact offset", f"{scene.impact_offset:g} m"),
@@ -105,6 +110,18 @@ def _scene_rows(result: Result) -> list[tuple[str, ...]]:
         ("ended", f"at {result.time[-1]:.4f} s: {END_REASONS[result.end_reason]}"),
         ("state hash", f"{result.state_hash:016x}"),
     ]
+
+
+def _barrier(barrier: Barrier | None) -> str:
+    """Return what the barrier has that others have not."""
+    if barrier is None:
+        return "none"
+    given = [f"friction {barrier.friction:g}"]
+    for field in dataclasses.fields(barrier):
+        value = getattr(barrier, field.name)
+        if field.name != "friction" and value != field.default:
+            given.append(f"{field.name} {value}")
+    return ", ".join([type(barrier).__name__.lower(), *given])
 
 
 def _check_rows(result: Result) -> list[tuple[str, ...]]:
@@ -125,8 +142,7 @@ def _metric_rows(result: Result) -> list[tuple[str, ...]]:
     return [(name, f"{value:.6g}", METRIC_UNITS.get(name, "")) for name, value in result.metrics.items()]
 
 
-def _crush_picture(result: Result, rank: int) -> str:
-    side = crushed_sides(result)[rank]
+def _crush_picture(result: Result, side: Side) -> str:
     stream = io.BytesIO()
     result.plot_crush(side).savefig(stream, format="png", dpi=90)
     image = base64.b64encode(stream.getvalue()).decode("ascii")

@@ -28,7 +28,7 @@ _DIGITS = 6
 
 
 def page_data(result: Result, frames: int) -> dict[str, Any]:
-    """Return what the page's script draws: numbers, texts, lists and mappings."""
+    """Return what the page's script draws; of long runs every so many rows."""
     every = -(-len(result.time) // _ROWS)
     ms = result.time[::every] * 1e3
     panels = [
@@ -41,7 +41,7 @@ def page_data(result: Result, frames: int) -> dict[str, Any]:
     ]
     return {
         "time": _short(ms),
-        "rows_shown": f"1 in {every}",
+        "every": every,
         "panels": panels,
         "plan": _plan(result, frames),
     }
@@ -59,8 +59,7 @@ def _panels(result: Result) -> list[tuple[str, str, list[tuple[str, Floats]]]]:
         normal = result.barrier_normal_force / 1e3
         forces = [curve("normal", normal, 60), ("normal, 50-ms mean", moving_average(normal, 0.05, interval))]
         forces += [
-            curve(f"on the vehicle, {axis}", result.barrier_force[:, i] / 1e3, 60)
-            for i, axis in enumerate("xyz")
+            curve(f"{axis} (world)", result.barrier_force[:, i] / 1e3, 60) for i, axis in enumerate("xyz")
         ]
         forces.append(("normal, unfiltered", normal))
         panels.append(("Barrier force", "kN", forces))
@@ -109,9 +108,16 @@ def _plan(result: Result, frames: int) -> dict[str, Any]:
         "time": _short(times * 1e3),
         "outlines": [[_short(np.vstack([p, p[:1]]).T) for p in one] for one in outlines],
         "paths": [_short(path.T) for path in paths],
-        "barrier": [[_short(vertices[[*face, face[0]]].T) for face in faces] for vertices, faces in parts],
+        "barrier": [[_short(v[[*face, face[0]]].T) for face in _from_above(v, faces)] for v, faces in parts],
         "range": _short(np.stack([shown.min(axis=0), shown.max(axis=0)]).T),
     }
+
+
+def _from_above(plan: Floats, faces: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """Return the triangles that look up: they cover a solid's plan once."""
+    a, b, c = (plan[faces[:, i]] for i in range(3))
+    u, v = b - a, c - a
+    return faces[u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] > 1e-9]
 
 
 def _short(values: Floats) -> Any:

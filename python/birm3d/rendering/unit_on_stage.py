@@ -80,13 +80,15 @@ class UnitOnStage:
             look = {"scalars": "crush", "cmap": "YlOrRd", "clim": (0.0, greatest)}
             look |= {"show_scalar_bar": first, "scalar_bar_args": _bar(font)}
         elif color == "zone" and len(shape.zone_names):
-            palette = [_ZONES[i % len(_ZONES)] for i in range(len(shape.zone_names))]
-            rgb = np.array([pv.Color(c).int_rgb for c in palette], np.uint8)
+            n = len(shape.zone_names)
             # The four nodes of an element share one zone.
-            self._mesh.cell_data["zone"] = rgb[shape.zone_of_node[shape.quads[:, 0]]]
-            look = {"scalars": "zone", "rgb": True}
-            if first:
-                _add_zone_names(plotter, shape.zone_names, palette)
+            self._mesh.cell_data["zone"] = shape.zone_of_node[shape.quads[:, 0]].astype(float)
+            look = {"scalars": "zone", "cmap": [_ZONES[i % len(_ZONES)] for i in range(n)]}
+            look |= {"clim": (-0.5, n - 0.5), "n_colors": n, "show_scalar_bar": first}
+            look["annotations"] = {
+                float(i): name.replace("_", " ") for i, name in enumerate(shape.zone_names)
+            }
+            look["scalar_bar_args"] = {**_bar(font), "title": "zone\n ", "n_labels": 0}
         plotter.add_mesh(
             self._mesh,
             show_edges=True,
@@ -117,14 +119,6 @@ class UnitOnStage:
 def polygons(corners: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
     """Return faces or lines (m, k) as VTK has them: the number of corners before each."""
     return np.column_stack([np.full(len(corners), corners.shape[1]), corners]).ravel()
-
-
-def _add_zone_names(plotter: Any, names: tuple[str, ...], palette: list[str]) -> None:
-    height = min(0.9, 0.045 * len(names))
-    labels = [[name.replace("_", " "), color] for name, color in zip(names, palette, strict=True)]
-    plotter.add_legend(
-        labels, bcolor=None, border=False, size=(0.14, height), loc="center right", face="rectangle"
-    )
 
 
 def _bar(font: int) -> dict[str, Any]:
