@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import BaseModel
 
 __all__ = ["decode", "encode"]
 
@@ -62,7 +61,7 @@ def encode(value: Any, arrays: dict[str, npt.NDArray[Any]], name: str) -> Any:
     kind = type(value).__name__
     if _classes().get(kind) is not type(value):
         raise TypeError(f"{name} must be of a kind that files know, got {type(value).__qualname__}")
-    if isinstance(value, BaseModel):
+    if hasattr(value, "model_dump"):  # pydantic's, which takes long to load
         fields = value.model_dump(by_alias=True)
     else:
         fields = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
@@ -96,7 +95,7 @@ def decode(plain: Any, arrays: Arrays) -> Any:
     kind = _classes().get(marker.removeprefix("$"))
     if kind is None:
         raise ValueError(f"kind must be one of {', '.join(_classes())}; got {marker!r}")
-    if issubclass(kind, BaseModel):
+    if hasattr(kind, "model_validate"):
         return kind.model_validate(fields)
     known = {field.name for field in dataclasses.fields(kind)}
     for key in fields:

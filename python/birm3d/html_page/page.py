@@ -113,7 +113,7 @@ def _scene_rows(result: Result) -> list[tuple[str, ...]]:
 
 
 def _barrier(barrier: Barrier | None) -> str:
-    """Return what the barrier has that others have not."""
+    """Return the numbers of the barrier that are not the usual ones, and its friction."""
     if barrier is None:
         return "none"
     given = [f"friction {barrier.friction:g}"]
@@ -121,7 +121,7 @@ def _barrier(barrier: Barrier | None) -> str:
         value = getattr(barrier, field.name)
         if field.name != "friction" and value != field.default:
             given.append(f"{field.name} {value}")
-    return ", ".join([type(barrier).__name__.lower(), *given])
+    return ", ".join(given)
 
 
 def _check_rows(result: Result) -> list[tuple[str, ...]]:

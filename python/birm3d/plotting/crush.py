@@ -82,7 +82,7 @@ def plot_crush(result: Result, side: Side = "front", *, height: float | None = N
     above.plot(profile.stations, np.full(6, profile.height), "o", color=BLUE, mec="w", ms=7.0)
     above.set_ylabel("height above the ground [m]")
     above.set_aspect("equal")
-    above.set_title(f"Residual crush of the {side}, greatest {field.crush[nodes].max():.3f} m")
+    above.set_title(f"Residual crush of the {side}, greatest {float(shown[nodes].max()):.3f} m")
     bar = figure.colorbar(colors, ax=[above, below], label="residual crush [m]", pad=0.02)
     if lines is not None:
         bar.add_lines(lines)

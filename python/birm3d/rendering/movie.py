@@ -112,7 +112,8 @@ def _write_gif(path: Path, pictures: Iterator[Picture], fps: float, size: tuple[
     first = next(images)
     # A GIF counts in hundredths of a second, and viewers slow down what is below two of them.
     duration = 10 * max(2, round(100.0 / fps))
-    first.save(path, save_all=True, append_images=images, duration=duration, loop=0)
+    with path.open("wb") as stream:  # Pillow leaves its own open when it is stopped
+        first.save(stream, "GIF", save_all=True, append_images=images, duration=duration, loop=0)
 
 
 def _write_video(path: Path, pictures: Iterator[Picture], fps: float, size: tuple[int, int]) -> None:

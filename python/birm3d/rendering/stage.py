@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import sys
 from collections.abc import Iterator, Sequence
@@ -27,6 +28,11 @@ __all__ = ["Color", "Stage"]
 Floats = npt.NDArray[np.float64]
 
 _BARRIER, _GROUND, _GRID = "#B9B4AA", "#EDEEEA", "#C9CBC6"
+_OFF_SCREEN = ("libEGL.so.1", "libOSMesa.so.8", "libOSMesa.so.6")
+_NO_DRAWING = (
+    "this machine has no way to draw: without a display VTK needs EGL or OSMesa "
+    "(Debian: apt install libegl1 libgl1-mesa-dri, or libosmesa6)"
+)
 _LEAST_SCALE = 0.05  # m, of the colours of crush
 _BAR = 0.12  # share of the picture's width that the bar of colours or the names of zones take
 _AROUND = 3.0  # ground past what is shown, m
@@ -79,6 +85,7 @@ class Stage:
         if len(size) != 2 or not all(isinstance(n, int) and 16 <= n <= 8192 for n in size):
             raise ValueError(f"size must be two whole numbers of 16 to 8192 pixels, got {size}")
         self._pv = _pyvista()
+        _check_drawing()
         self._result, self._view, self._color, self._follow = result, view, color, follow
         self.times = np.atleast_1d(np.asarray(times, float))
         self._skins = skins_at(result, self.times)
@@ -151,10 +158,7 @@ class Stage:
             self.plotter.render()  # a screenshot by itself is of the last drawing
             image = np.asarray(self.plotter.screenshot(return_img=True))
         if image.ndim != 3 or image.std() == 0.0:
-            raise RuntimeError(
-                "this machine has no way to draw off-screen: VTK needs EGL or OSMesa "
-                "(Debian: apt install libegl1 libgl1-mesa-dri, or libosmesa6)"
-            )
+            raise RuntimeError(_NO_DRAWING)
         return np.ascontiguousarray(image[..., :3], np.uint8)
 
     def close(self) -> None:
@@ -174,6 +178,19 @@ def _pyvista() -> Any:
     except ImportError as error:
         raise ImportError("3-D pictures need pyvista: pip install 'birm3d[render]'") from error
     return pyvista
+
+
+def _check_drawing() -> None:
+    """Refuse a machine on which VTK would crash: without a display it needs one of these libraries."""
+    if not sys.platform.startswith("linux") or os.environ.get("DISPLAY"):
+        return
+    for library in _OFF_SCREEN:
+        try:
+            ctypes.CDLL(library)
+        except OSError:
+            continue
+        return
+    raise RuntimeError(_NO_DRAWING)
 
 
 @contextmanager

@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -87,19 +87,20 @@ def show(result: Result, *, view: View = "three_quarter", color: Color = "crush"
     display = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
     if sys.platform.startswith("linux") and not display:
         raise RuntimeError("show() needs a display, and DISPLAY is not set; render() and animate() need none")
-    with with_slider(result, view=view, color=color, off_screen=False) as stage:
+    stage, _ = with_slider(result, view=view, color=color, off_screen=False)
+    with stage:
         stage.plotter.show()
 
 
-def with_slider(result: Result, *, view: View, color: Color, off_screen: bool) -> Stage:
-    """Return a stage with a slider for the time."""
+def with_slider(result: Result, *, view: View, color: Color, off_screen: bool) -> tuple[Stage, Any]:
+    """Return a stage and its slider for the time."""
     times = np.linspace(result.time[0], result.time[-1], _INSTANTS)
     stage = Stage(result, times, view=view, color=color, off_screen=off_screen)
 
     def slide(ms: float) -> None:  # the camera stays where the user has put it
         stage.move_to(int(np.argmin(np.abs(times * 1e3 - ms))))
 
-    stage.plotter.add_slider_widget(
+    slider = stage.plotter.add_slider_widget(
         slide,
         [0.0, float(times[-1] * 1e3)],
         value=0.0,
@@ -109,4 +110,4 @@ def with_slider(result: Result, *, view: View, color: Color, off_screen: bool) -
         color="black",
         style="modern",
     )
-    return stage
+    return stage, slider
