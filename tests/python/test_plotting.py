@@ -60,6 +60,15 @@ def test_histories(oblique: Result) -> None:
     assert np.array_equal(smooth.get_ydata(), cfc(oblique.barrier_normal_force / 1e3, 60, 1e-4))
 
 
+def test_an_impulse_does_not_hide_the_rest(make_soft_scene: Callable[..., Simulation]) -> None:
+    """The rigid body at the wall stops within a row: the unfiltered line leaves the panel."""
+    result = make_soft_scene().run()
+    smooth = cfc(result.barrier_normal_force, 60, 1e-4).max() / 1e3
+    assert result.barrier_normal_force.max() / 1e3 > 10.0 * smooth
+    for figure in (result.plot(), result.plot_histories()):
+        assert smooth < figure.get_axes()[0].get_ylim()[1] < 1.7 * smooth
+
+
 def test_rows_too_far_apart_are_said_to_be_unfiltered() -> None:
     block = scenes.laboratory_block(16, k_initial=3e6, k_unloading=3e6)
     settings = Settings(output_interval=2e-3, gravity=0.0, ground=False)

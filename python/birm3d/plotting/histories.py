@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import units
 from ..filters import moving_average
-from .style import BLUE, GREEN, RED, legend, plot_filtered, prepare, title
+from .style import BLUE, GREEN, RED, fit, legend, plot_filtered, prepare, title
 
 if TYPE_CHECKING:
     from ..result import Result
@@ -81,23 +80,19 @@ def plot_histories(result: Result) -> Figure:
         plot_filtered(tires, result, total, _STRUCTURE, "all wheels", BLUE)
         weight = result.scene.vehicle.mass * result.scene.settings.gravity / 1e3
         tires.axhline(weight, color="0.4", ls=":", label="weight")
-        # The first touches of tyres are impulses: the filtered line tells the range.
-        tires.set_ylim(0.0, max(1.5 * weight, 1.1 * _visible(tires)))
         legend([tires])
     tires.set_title("Tyre reaction")
     tires.set_ylabel("force [kN]")
 
+    for axes in (force, acceleration, rates, tires):
+        fit(axes)
+    if result.tire_reaction.shape[1]:
+        tires.set_ylim(bottom=0.0)
     for axes in panels[-1]:
         axes.set_xlabel("time [ms]")
         axes.set_xlim(0.0, float(ms[-1]))
     figure.suptitle(title(result))
     return figure
-
-
-def _visible(axes: Axes) -> float:
-    """Return the greatest value of the lines that have a name."""
-    named = [line for line in axes.get_lines() if not str(line.get_label()).startswith("_")]
-    return max(float(np.max(np.asarray(line.get_ydata(), float))) for line in named)
 
 
 def _heading(result: Result) -> npt.NDArray[np.float64]:

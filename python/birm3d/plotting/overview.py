@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import units
-from .style import BLUE, GREEN, RED, legend, plot_filtered, prepare, title
+from .style import BLUE, GREEN, RED, fit, legend, plot_filtered, prepare, title
 
 if TYPE_CHECKING:
     from ..result import Result
@@ -35,6 +35,8 @@ def plot_result(result: Result) -> Figure:
     force.set_ylabel("barrier normal force [kN]")
     right.set_ylabel("deceleration of the mass centre [g]")
     force.set_title("Force and deceleration")
+    for axes in (force, right):
+        fit(axes)
     legend([force, right])
 
     speed = np.linalg.norm(result.velocity, axis=1)

@@ -132,7 +132,7 @@ def _outcome(result: Result) -> str:
         return f"{result.end_reason} after {result.time[-1] * 1e3:.0f} ms at {metrics['exit_speed']:.1f} m/s"
     return (
         f"leaves at {metrics['exit_speed']:.1f} m/s, {metrics['exit_angle']:.1f}° from the barrier's line; "
-        f"turned by {result.yaw[-1]:.1f}° after {result.time[-1] * 1e3:.0f} ms"
+        f"turned by {round(result.yaw[-1], 1) + 0.0:.1f}° after {result.time[-1] * 1e3:.0f} ms"
     )
 
 

@@ -23,6 +23,7 @@ __all__ = [
     "ORANGE",
     "RED",
     "filtered",
+    "fit",
     "legend",
     "plot_filtered",
     "prepare",
@@ -34,6 +35,7 @@ Floats = npt.NDArray[np.float64]
 # Okabe and Ito's palette, told apart by colour-blind readers; yellow is left out: too faint on white.
 BLUE, ORANGE, GREEN, RED = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 CYCLE = (BLUE, RED, GREEN, "#CC79A7", ORANGE, "#56B4E9", "#000000", "#7F7F7F")
+_UNFILTERED = "_unfiltered"
 _STYLES = ("-", "--", "-.", ":", "-", "--", "-", "--")
 
 
@@ -69,8 +71,31 @@ def plot_filtered(
     """Draw a channel of a result filtered, and unfiltered as a thin line behind."""
     ms = result.time * 1e3
     values, name = filtered(signal, channel_class, result.scene.settings.output_interval)
-    axes.plot(ms, signal, color=color, ls="-", lw=0.6, alpha=0.45, zorder=1.5, label="_unfiltered")
+    axes.plot(ms, signal, color=color, ls="-", lw=0.6, alpha=0.45, zorder=1.5, label=_UNFILTERED)
     axes.plot(ms, values, color=color, ls=style, lw=1.5, label=f"{label}, {name}" if label else name)
+
+
+def fit(axes: Axes) -> None:
+    """Let the named lines set the vertical range; unfiltered ones may widen it by half on either side.
+
+    The impulse of a rigid contact within one row may be a thousand times the filtered force.
+    """
+    named: list[tuple[float, float]] = []
+    unfiltered: list[tuple[float, float]] = []
+    for line in axes.get_lines():
+        values = np.asarray(line.get_ydata(), float)
+        (unfiltered if line.get_label() == _UNFILTERED else named).append(
+            (float(values.min()), float(values.max()))
+        )
+    if not named:
+        return
+    low, high = float(np.min(named)), float(np.max(named))
+    room = 0.5 * (high - low)
+    for least, most in unfiltered:
+        low, high = min(low, max(least, low - room)), max(high, min(most, high + room))
+    margin = 0.05 * (high - low)
+    if margin > 0.0:
+        axes.set_ylim(low - margin, high + margin)
 
 
 def legend(
