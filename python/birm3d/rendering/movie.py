@@ -108,7 +108,9 @@ def _ffmpeg(ending: str) -> Any:
 def _write_gif(path: Path, pictures: Iterator[Picture], fps: float, size: tuple[int, int]) -> None:
     from PIL import Image
 
-    images = (Image.fromarray(picture).quantize(128, dither=Image.Dither.NONE) for picture in pictures)
+    # Rare colours matter, those of crush and of its bar: a palette by area would lose them.
+    rare, plain = Image.Quantize.MAXCOVERAGE, Image.Dither.NONE
+    images = (Image.fromarray(picture).quantize(256, method=rare, dither=plain) for picture in pictures)
     first = next(images)
     # A GIF counts in hundredths of a second, and viewers slow down what is below two of them.
     duration = 10 * max(2, round(100.0 / fps))
