@@ -19,6 +19,7 @@ from .fragility import fragility
 from .impact_point import critical_impact_point
 from .monte_carlo import monte_carlo
 from .result import Result
+from .result_file import load
 from .runs import StudyInterrupted, StudyStoppedError
 from .settings import Settings
 from .simulation import Scene, Simulation
@@ -51,6 +52,7 @@ __all__ = [
     "compare_curves",
     "critical_impact_point",
     "fragility",
+    "load",
     "monte_carlo",
     "read_csv_channels",
     "read_iso_mme",

@@ -10,15 +10,16 @@ if TYPE_CHECKING:
     from .barrier import Barrier
     from .result import Result
 
-__all__ = ["report"]
+__all__ = ["END_REASONS", "report"]
 
-_ENDS = {
+END_REASONS = {
     "separated": "the vehicle has left the barrier and can not come back",
     "stopped": "the vehicle stands still at the barrier",
     "duration": "the duration asked for is over",
     "longest": "the longest event without a duration is over; the outcome is not decided",
     "running": "the run is not over yet",
 }
+"""Why a run ended, in words."""
 
 
 def report(result: Result) -> str:
@@ -30,7 +31,7 @@ def report(result: Result) -> str:
         f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph) "
         f"at {scene.impact_angle:g} deg "
         + (_barrier(scene.barrier) if scene.barrier else "without a barrier"),
-        f"ended at {result.time[-1]:.4f} s: {_ENDS[result.end_reason]}",
+        f"ended at {result.time[-1]:.4f} s: {END_REASONS[result.end_reason]}",
         "",
         "computed",
         f"  {statistics.steps} steps of {statistics.shortest_step:.2e} to {statistics.longest_step:.2e} s "

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import copy
+from collections.abc import Mapping, Sequence
 from functools import cached_property
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _core, pictures
+from ._version import __version__
+from .frames import Frames, capture, pose
 from .metrics import compute_metrics
 from .report import report
 from .unit_result import UnitResult, read_only
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
+    from .result_file import Stored, StoredHistory
     from .simulation import Scene
 
 __all__ = ["Result"]
@@ -48,21 +52,36 @@ class Result:
         Wall time of the stepping [s].
     nodes, deflection, peak_deflection : ndarray
         Shell nodes in body axes (k, 3), truss deflections (k,) at the end and their peaks [m].
+    frames : Frames or None
+        Places of the shell nodes over time, see :meth:`with_frames`.
+    version : str
+        Of the package that made the result.
 
     Motions, ``nodes`` and deflections are those of unit 0, the leading one; forces of the barrier and of the
     ground are those on all units together. :meth:`unit` has both for each unit.
     """
 
+    plot = pictures.plot
+    plot_histories = pictures.plot_histories
+    plot_plan = pictures.plot_plan
+    plot_crush = pictures.plot_crush
+    render = pictures.render
+    animate = pictures.animate
+    show = pictures.show
+    write_html = pictures.write_html
+
     def __init__(
         self,
         *,
         scene: Scene,
-        history: _core.History,
-        statistics: _core.StepStatistics,
+        history: _core.History | StoredHistory,
+        statistics: _core.StepStatistics | Stored,
         end_reason: str,
         state_hash: int,
         run_time: float,
         units: tuple[UnitResult, ...],
+        frames: Frames | None = None,
+        version: str = __version__,
     ) -> None:
         self.scene = scene
         self.statistics = statistics
@@ -73,6 +92,8 @@ class Result:
         self.deflection = units[0].deflection
         self.peak_deflection = units[0].peak_deflection
         self.final_velocity = units[0].final_velocity
+        self.frames = frames
+        self.version = version
         self._history = history
         self._units = units
 
@@ -253,7 +274,59 @@ class Result:
 
     def report(self) -> str:
         """Return what was computed, what was left out, and how the ledgers close, as text."""
+        return self._report
+
+    @cached_property
+    def _report(self) -> str:
         return report(self)
+
+    def final_nodes(self, unit: int = 0) -> Floats:
+        """Return the shell nodes of one unit at the end, body axes, shape (k, 3) [m]."""
+        return (self.nodes,)[unit]
+
+    def pose(self, time: npt.ArrayLike, unit: int = 0) -> tuple[Floats, Floats]:
+        """Return mass centres (k, 3) [m] and rotation matrices body to world (k, 3, 3) at instants (k,) [s].
+
+        Positions are linear between the rows, orientations turn at a constant rate.
+        """
+        rows = self._history.unit(unit)
+        return pose(self.time, rows.position, rows.roll_pitch_yaw, time)
+
+    def with_frames(self, frames: int | Sequence[float] = 61) -> Result:
+        """Return the same result with places of the shell nodes over time, for pictures.
+
+        The scene is run once more, which must end in the same bits.
+
+        Parameters
+        ----------
+        frames
+            A number of instants, spread over the run and among its rows, or the instants [s].
+
+        Raises
+        ------
+        ValueError
+            If the instants are outside the run, or the scene does not run the same way again.
+        """
+        other = copy.copy(self)
+        other.frames = capture(self, frames)
+        return other
+
+    def save(self, path: str | Path) -> None:
+        """Write everything to one file (npz, see :mod:`birm3d.result_file`); :func:`birm3d.load` reads it.
+
+        Raises
+        ------
+        ValueError
+            If the path is a folder or lies in none.
+        """
+        from .result_file import save
+
+        save(self, path)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        from .result_file import from_bytes, to_bytes
+
+        return (from_bytes, (to_bytes(self),))
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the histories as a table, one row an output instant, indexed by time [s]."""
@@ -282,12 +355,6 @@ class Result:
         for name, values in self.energy.items():
             columns[f"energy_{name} [J]"] = values
         return pd.DataFrame(columns, index=pd.Index(self.time, name="time [s]"))
-
-    def plot(self) -> Figure:
-        """Return a figure of force, motion, angles and energies against time; see :mod:`birm3d.plotting`."""
-        from .plotting import plot_result
-
-        return plot_result(self)
 
     def __repr__(self) -> str:
         rows, steps = len(self.time), self.statistics.steps

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from . import _core
@@ -110,6 +111,22 @@ class Simulation:
         )
         self._run_time = 0.0
 
+    @staticmethod
+    def from_scene(scene: Scene) -> Simulation:
+        """Return the simulation of a scene, such as that of a loaded result."""
+        return Simulation(
+            scene.vehicle,
+            scene.barrier,
+            scene.impact_speed,
+            scene.impact_angle,
+            scene.impact_offset,
+            standoff=scene.standoff,
+            impact_yaw=scene.impact_yaw,
+            impact_roll=scene.impact_roll,
+            duration=scene.duration,
+            settings=scene.settings,
+        )
+
     @property
     def scene(self) -> Scene:
         """What the run is about."""
@@ -120,20 +137,29 @@ class Simulation:
         """Present time of the state [s]."""
         return self._core.time
 
-    def run(self) -> Result:
+    def run(self, *, frames: int | Sequence[float] | None = None) -> Result:
         """Run from the present state to the end; a run that is over starts anew. Ctrl-C stops it.
+
+        Parameters
+        ----------
+        frames
+            Number or instants [s] of the skin's positions that the result keeps for pictures, see
+            :meth:`birm3d.Result.with_frames`; ``None``: none, at no cost.
 
         Raises
         ------
         UnstableError
             If a fixed time step is beyond what the scene allows; the message names one that would do.
+        ValueError
+            If the frames are more than the result's rows or outside the run.
         """
         if self._core.end_reason != _core.EndReason.running:
             self.reset()
         start = time.perf_counter()
         self._core.run()
         self._run_time += time.perf_counter() - start
-        return self.result()
+        result = self.result()
+        return result if frames is None else result.with_frames(frames)
 
     def step(self) -> bool:
         """Take one accepted step; return ``False`` when the run is over and nothing was done."""
@@ -164,7 +190,7 @@ class Simulation:
         self._core.restore(snapshot)
 
     def __reduce__(self) -> tuple[object, ...]:
-        return (_rebuild, (self._scene,))
+        return (Simulation.from_scene, (self._scene,))
 
     def __repr__(self) -> str:
         scene = self._scene
@@ -172,18 +198,3 @@ class Simulation:
             f"Simulation({scene.vehicle.name}, {scene.barrier}, {scene.impact_speed:g} m/s, "
             f"{scene.impact_angle:g} deg)"
         )
-
-
-def _rebuild(scene: Scene) -> Simulation:
-    return Simulation(
-        scene.vehicle,
-        scene.barrier,
-        scene.impact_speed,
-        scene.impact_angle,
-        scene.impact_offset,
-        standoff=scene.standoff,
-        impact_yaw=scene.impact_yaw,
-        impact_roll=scene.impact_roll,
-        duration=scene.duration,
-        settings=scene.settings,
-    )
