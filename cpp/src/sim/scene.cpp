@@ -10,6 +10,7 @@
 #include "birm3d/base/rotation.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
+#include "birm3d/kernels/tires.hpp"
 #include "birm3d/sim/obstacles.hpp"
 
 namespace birm3d {
@@ -70,6 +71,24 @@ bool skin_above_ground(const Unit& unit) {
 void move(State& state, const Vec3& way) {
     for (UnitState& unit : state.units)
         unit.body.position += way;
+}
+
+// A vehicle that is rolled stands on what is then its lowest point.
+void raise_to_ground(const Scene& scene, State& state) {
+    double lowest = 0.0;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const Unit& unit = scene.vehicle->units[u];
+        std::vector<RigidContact> wheels;
+        find_tire_contacts(unit, u, state.units[u].body, wheels);
+        for (const RigidContact& wheel : wheels)
+            lowest = std::min(lowest, wheel.gap);
+        if (scene.skin_meets_ground[u])
+            for (std::size_t i = 0; i < unit.trusses.count; ++i)
+                lowest = std::min(lowest, (state.units[u].body.position +
+                                           state.units[u].body.orientation * unit.trusses.node(i))
+                                              .z());
+    }
+    move(state, -lowest * Vec3::UnitZ());
 }
 
 // Moves the vehicle of `state` along its path, forward or back, until its nearest point stands `standoff` before the
@@ -211,15 +230,20 @@ State Scene::initial_state() const {
     const Vec3 heading(std::cos(yaw), std::sin(yaw), 0.0);
     const Vec3 line(-std::sin(barrier_heading), std::cos(barrier_heading), 0.0);
 
+    const double turn = yaw + approach.yaw;
+    const Quat orientation = from_roll_pitch_yaw({approach.roll, 0.0, turn});
+    const Unit& first = vehicle->units.front();
+    const Vec3 foot = Vec3(origin.x(), origin.y(), 0.0) + approach.offset * line;
+    const Vec3 center = foot + from_roll_pitch_yaw({0.0, 0.0, turn}) * first.place();
     for (std::size_t u = 0; u < vehicle->units.size(); ++u) {
         BodyState& body = state.units[u].body;
         const Unit& unit = vehicle->units[u];
-        body.orientation = from_roll_pitch_yaw({approach.roll, 0.0, yaw + approach.yaw});
-        body.position = Vec3(origin.x(), origin.y(), 0.0) + approach.offset * line +
-                        unit.mass_center_height * Vec3::UnitZ() + body.orientation * unit.offset;
+        body.orientation = orientation;
+        body.position = center + orientation * (unit.place() - first.place());
         body.velocity = approach.speed * heading;
         state.energies.kinetic += kinetic_energy(unit.body, body);
     }
+    if (approach.roll != 0.0 && settings.ground) raise_to_ground(*this, state);
     if (barrier) {
         place(*this, heading, state);
         const double nearest = nearest_gap(*this, state, {.anchors = true});
