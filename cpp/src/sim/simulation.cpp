@@ -23,7 +23,8 @@ bool touches(const State& state) {
 
 // From the nearest point of a convex body around the shape to `p`, own axes.
 Vec3 from_hull(const Shape& shape, const Vec3& p) {
-    if (const auto* plane = std::get_if<HalfSpace>(&shape)) return std::max(0.0, plane->gap(p)) * plane->normal;
+    if (const auto* plane = std::get_if<HalfSpace>(&shape))
+        return std::max(0.0, plane->gap(p)) * plane->normal;
     const Box box = bounds(shape);
     const Vec3 from = p - box.center;
     return from - from.cwiseMax(-box.half).cwiseMin(box.half);
@@ -197,8 +198,8 @@ void Simulation::refuse_step(double dt, double critical) const {
 void Simulation::adaptive_step() {
     const double allowed =
         tolerance::step_error_per_tolerance * scene_.settings.tolerance * scene_.reference_speed();
-    double dt = std::min(
-        {state_.next_step, tolerance::longest_step, remaining(), passing_step(scene_, state_)});
+    double dt =
+        std::min({state_.next_step, tolerance::longest_step, remaining(), passing_step(scene_, state_)});
     if (touches(state_)) dt = std::min(dt, std::max(time_to_release(state_), tolerance::release_resolution));
     for (;;) {
         if (dt < tolerance::shortest_step)
