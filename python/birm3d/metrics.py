@@ -20,7 +20,7 @@ from .filters import cfc, moving_average
 if TYPE_CHECKING:
     from .result import Result
 
-__all__ = ["METRIC_UNITS", "compute_metrics"]
+__all__ = ["JOINT_METRICS", "METRIC_UNITS", "compute_metrics"]
 
 METRIC_UNITS: Mapping[str, str] = MappingProxyType(
     {
@@ -52,6 +52,9 @@ METRIC_UNITS: Mapping[str, str] = MappingProxyType(
     }
 )
 """Every scalar that a run may have -> its unit; "" for a pure number."""
+
+JOINT_METRICS = ("max_articulation_angle", "peak_joint_force")
+"""Those that only a vehicle of two units has."""
 
 # Below this speed a direction of travel means nothing, m/s.
 _SLOWEST = 1e-3

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._version import __version__
-from .metrics import METRIC_UNITS
+from .metrics import JOINT_METRICS, METRIC_UNITS
 from .scene_parameters import value_of, varied
 from .simulation import Simulation
 from .study import Study
@@ -102,7 +102,8 @@ def run_study(
     from .run_store import RunStore
 
     names = tuple(names)
-    wanted = _checked_metrics(metrics)
+    joined = simulation.scene.vehicle.joint is not None or "vehicle" in names
+    wanted = _checked_metrics(metrics, joined)
     table = [tuple(_plain(value) for value in row) for row in rows]
     _check_rows(simulation, names, table)
     units = {name: METRIC_UNITS[name] for name in wanted}
@@ -145,8 +146,10 @@ def run_study(
     return study(outcomes, grid=grid)
 
 
-def _checked_metrics(metrics: Sequence[str] | None) -> tuple[str, ...]:
-    wanted = _STUDY_METRICS if metrics is None else tuple(dict.fromkeys(metrics))
+def _checked_metrics(metrics: Sequence[str] | None, joined: bool) -> tuple[str, ...]:
+    """Return the metrics of a study; those of joints by themselves only where a vehicle may have one."""
+    usual = tuple(name for name in _STUDY_METRICS if joined or name not in JOINT_METRICS)
+    wanted = usual if metrics is None else tuple(dict.fromkeys(metrics))
     if not wanted:
         raise ValueError("metrics must name at least one, got none")
     for name in wanted:

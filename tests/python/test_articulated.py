@@ -329,6 +329,14 @@ def test_parameters_of_a_scene_reach_both_units() -> None:
     assert [unit.rate_sensitivity for unit in vehicle.units] == [0.05, 0.05]
 
 
+def test_a_sweep_has_the_scalars_of_the_joint() -> None:
+    simulation = Simulation(semi(), Barrier.rigid_wall(), 8.0, 60.0, duration=0.05)
+    study = birm3d.sweep(simulation, impact_speed=[4.0, 8.0])
+    result = simulation.run()
+    for name in ("max_articulation_angle", "peak_joint_force"):
+        assert study.metrics[name][1] == result.metrics[name]
+
+
 def test_the_report_and_the_table_tell_of_the_joint() -> None:
     pytest.importorskip("pandas")
     result = crash(40.0)
