@@ -17,6 +17,7 @@ from .toml_document import Strict, reject
 __all__ = [
     "Block",
     "CoreBox",
+    "Dents",
     "Dimensions",
     "End",
     "Exterior",
@@ -295,6 +296,12 @@ class Exterior(Block):
         if any(upper.name == "body" for upper in self.upper):
             reject("upper", "the name 'body' is taken by the lofted body itself")
         return self
+
+
+class Dents(Block):
+    """The skin beside a dent that a narrow obstacle makes: its slope, see :meth:`birm3d.Vehicle.with_dent_slope`."""
+
+    slope: Positive
 
 
 class CoreBox(Block):

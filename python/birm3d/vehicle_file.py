@@ -21,6 +21,7 @@ from .toml_document import Document, DocumentError, KeyPath, Strict, frozen, rec
 from .vehicle_blocks import (
     Block,
     CoreBox,
+    Dents,
     Dimensions,
     End,
     Exterior,
@@ -83,6 +84,7 @@ class VehicleFile(Strict):
     solids: Annotated[tuple[Solid, ...], Field(alias="solid", min_length=1)]
     wheels: Annotated[tuple[Wheel, ...], Field(alias="wheel")] = ()
     exterior: Exterior
+    dents: Dents | None = None
     core: Annotated[tuple[CoreBox, ...], Field(min_length=1)]
     zones: Annotated[tuple[Zone, ...], Field(alias="zone", min_length=1)]
 
@@ -111,6 +113,8 @@ class VehicleFile(Strict):
     def _blocks(self) -> Iterator[tuple[str, Block]]:
         yield "dimensions", self.dimensions
         yield "exterior", self.exterior
+        if self.dents is not None:
+            yield "dents", self.dents
         groups: Mapping[str, tuple[Block, ...]] = {
             "target": self.targets,
             "solid": self.solids,
