@@ -67,13 +67,14 @@ void register_simulation(py::module_& m) {
     py::class_<Simulation>(m, "Simulation", "A run of one scene (SI, rad).")
         .def(py::init([](std::shared_ptr<Vehicle> vehicle,
                          const std::vector<std::shared_ptr<Barrier>>& barriers, double speed, double angle,
-                         double offset, double standoff, double yaw, double roll,
-                         const Settings& settings, std::optional<double> duration) {
+                         double offset, double standoff, double yaw, double roll, const Settings& settings,
+                         std::optional<double> duration) {
                  return Simulation(Scene(std::move(vehicle), only(barriers),
                                          {speed, angle, offset, standoff, yaw, roll}, settings, duration));
              }),
              py::kw_only(), py::arg("vehicle"), py::arg("barriers"), py::arg("speed"), py::arg("angle"),
-             py::arg("offset"), py::arg("standoff"), py::arg("yaw"), py::arg("roll"), py::arg("settings"), py::arg("duration"))
+             py::arg("offset"), py::arg("standoff"), py::arg("yaw"), py::arg("roll"), py::arg("settings"),
+             py::arg("duration"))
         .def("step", &Simulation::step, py::call_guard<py::gil_scoped_release>(),
              "One accepted step; False when the run is over.")
         .def(

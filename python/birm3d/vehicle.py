@@ -589,6 +589,7 @@ def _assemble(
         wheels=wheels,
         mass_center_height=float(center[2]),
         zones=zones if zones is not None else {zone.name: Zone._from_file(zone) for zone in file.zones},
+        dent_slope=0.0 if file.dents is None else file.dents.slope,
         _file=file,
         _mesh=mesh,
         _mesh_density=mesh_density,

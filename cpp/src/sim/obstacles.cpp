@@ -39,8 +39,8 @@ Placement placement(const Obstacle& obstacle, const BodyState& seen_from) {
             to_own * (seen_from.position - obstacle.position)};
 }
 
-void find_near(const Scene& scene, std::size_t u, const BodyState& before, const BodyState& now, double margin,
-               std::vector<NearObstacle>& near) {
+void find_near(const Scene& scene, std::size_t u, const BodyState& before, const BodyState& now,
+               double margin, std::vector<NearObstacle>& near) {
     near.clear();
     const Box box = everything(scene.vehicle->units[u].trusses);
     for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {

@@ -95,9 +95,9 @@ void raise_to_ground(const Scene& scene, State& state) {
 // barrier. A path that leads past the barrier starts where the barrier begins.
 void place(const Scene& scene, const Vec3& heading, State& state) {
     const Barrier& barrier = *scene.barrier;
-    const std::vector<Obstacle> elements(scene.obstacles.begin(),
-                                         scene.obstacles.begin() +
-                                             static_cast<std::ptrdiff_t>(barrier.elements.size()));
+    const std::vector<Obstacle> elements(
+        scene.obstacles.begin(),
+        scene.obstacles.begin() + static_cast<std::ptrdiff_t>(barrier.elements.size()));
     // Towards the barrier, or along it for a path that never comes nearer.
     const Vec3 inward = heading.dot(barrier.normal()) < -1e-12 ? Vec3(-barrier.normal()) : heading;
     const double first = -extent(elements, -inward), last = extent(elements, inward);
@@ -167,8 +167,8 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
     for (const Unit& unit : vehicle->units)
         skin_meets_ground.push_back(settings.ground && !unit.wheels.empty() && skin_above_ground(unit));
     if (std::any_of(skin_meets_ground.begin(), skin_meets_ground.end(), [](char meets) { return meets; }))
-        obstacles.push_back({HalfSpace{Vec3::UnitZ(), 0.0}, Mat3::Identity(), Vec3::Zero(), false,
-                             settings.mu_body});
+        obstacles.push_back(
+            {HalfSpace{Vec3::UnitZ(), 0.0}, Mat3::Identity(), Vec3::Zero(), false, settings.mu_body});
 }
 
 double Scene::reference_speed() const {

@@ -8,6 +8,7 @@
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
+#include "birm3d/kernels/tires.hpp"
 #include "birm3d/sim/obstacles.hpp"
 
 namespace birm3d {
@@ -23,7 +24,8 @@ bool touches(const State& state) {
 
 // From the nearest point of a convex body around the shape to `p`, own axes.
 Vec3 from_hull(const Shape& shape, const Vec3& p) {
-    if (const auto* plane = std::get_if<HalfSpace>(&shape)) return std::max(0.0, plane->gap(p)) * plane->normal;
+    if (const auto* plane = std::get_if<HalfSpace>(&shape))
+        return std::max(0.0, plane->gap(p)) * plane->normal;
     const Box box = bounds(shape);
     const Vec3 from = p - box.center;
     return from - from.cwiseMax(-box.half).cwiseMin(box.half);
@@ -47,6 +49,27 @@ bool has_left(const Scene& scene, const State& state) {
         }
     }
     return true;
+}
+
+// Is the vehicle still lifting a wheel from the ground, or tipped over and not yet at rest?
+bool tips(const Scene& scene, const State& state) {
+    if (!scene.settings.ground || scene.settings.gravity == 0.0) return false;
+    constexpr double tipped = 0.7;  // cosine of the up axis to the vertical: about 45 degrees
+    std::vector<RigidContact> wheels;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const BodyState& body = state.units[u].body;
+        const Unit& unit = scene.vehicle->units[u];
+        if (unit.wheels.empty()) continue;
+        if ((body.orientation * Vec3::UnitZ()).z() < tipped) return true;
+        wheels.clear();
+        find_tire_contacts(unit, u, body, wheels);
+        const Twist motion = twist(unit.body, body);
+        for (const RigidContact& wheel : wheels)
+            if (wheel.gap > tolerance::lifted_wheel &&
+                (motion.velocity + motion.angular_velocity.cross(wheel.arm)).z() > 0.0)
+                return true;
+    }
+    return false;
 }
 
 // Mean velocity of the pushing nodes along their normals, weighted by their forces (m/s); negative =
@@ -160,7 +183,7 @@ void Simulation::take(Trial& trial) {
         throw std::runtime_error("the state is no longer finite at t = " + to_text(state_.time) +
                                  " s, step " + to_text(trial.dt) + " s");
     if (!state_.decided && scene_.barrier && state_.touched &&
-        ((!touches(state_) && has_left(scene_, state_)) || at_rest(scene_, state_))) {
+        ((!touches(state_) && has_left(scene_, state_) && !tips(scene_, state_)) || at_rest(scene_, state_))) {
         state_.decided = true;
         state_.decided_at = state_.time;
     }
@@ -197,8 +220,8 @@ void Simulation::refuse_step(double dt, double critical) const {
 void Simulation::adaptive_step() {
     const double allowed =
         tolerance::step_error_per_tolerance * scene_.settings.tolerance * scene_.reference_speed();
-    double dt = std::min(
-        {state_.next_step, tolerance::longest_step, remaining(), passing_step(scene_, state_)});
+    double dt =
+        std::min({state_.next_step, tolerance::longest_step, remaining(), passing_step(scene_, state_)});
     if (touches(state_)) dt = std::min(dt, std::max(time_to_release(state_), tolerance::release_resolution));
     for (;;) {
         if (dt < tolerance::shortest_step)

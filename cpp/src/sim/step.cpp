@@ -97,8 +97,9 @@ Load load_of(const Scene& scene, const BodyState& body, const Touch& touch) {
 double correct(const Scene& scene, std::size_t u, const UnitState& from, double dt, UnitState& moved) {
     double error = 0.0;
     for (Touch& touch : moved.touches)
-        error += load_and_correct(scene.vehicle->units[u], moved.body, course_at(from.touches, touch.obstacle),
-                                  dt, load_of(scene, moved.body, touch), touch);
+        error +=
+            load_and_correct(scene.vehicle->units[u], moved.body, course_at(from.touches, touch.obstacle), dt,
+                             load_of(scene, moved.body, touch), touch);
     return error;
 }
 

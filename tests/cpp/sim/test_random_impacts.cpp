@@ -22,7 +22,8 @@ Gaps least_gaps(const Simulation& simulation) {
         const std::size_t k = i % lanes;
         const Vec3 node(block.x[k], block.y[k], block.z[k]);
         least.nodes = std::min(least.nodes, laboratory::gap_to_barrier(scene, unit.body.position + R * node));
-        least.anchors = std::min(least.anchors, laboratory::gap_to_barrier(scene, unit.body.position + R * mesh.anchor(i)));
+        least.anchors = std::min(least.anchors,
+                                 laboratory::gap_to_barrier(scene, unit.body.position + R * mesh.anchor(i)));
     }
     return least;
 }

@@ -76,6 +76,10 @@ inline constexpr double joint_gap = 1e-12;
 // histories settle.
 inline constexpr double tail_duration = 0.02;
 
+// A vehicle of which a wheel is further than this above the ground and still rises has not shown its greatest roll and
+// pitch yet (m). Small: every hop after an impact makes the run longer.
+inline constexpr double lifted_wheel = 0.1;
+
 // A run without a duration ends here at the latest (s).
 inline constexpr double longest_event = 5.0;
 

@@ -25,7 +25,7 @@ struct DentDriver {
 
 // What hangs on the drivers in one block.
 struct alignas(64) Hanging {
-    Lanes deflection;                     // that each node is drawn in to; below zero: none (m)
+    Lanes deflection;                       // that each node is drawn in to; below zero: none (m)
     std::array<std::size_t, lanes> driver;  // on which each hangs
 };
 

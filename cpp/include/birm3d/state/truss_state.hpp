@@ -38,9 +38,9 @@ struct TrussState {
                  {&b.x, &b.y, &b.z, &b.deflection, &b.force, &b.peak_deflection, &b.residual})
                 hash.add(*column);
         for (const TrussBlockState& b : block)
-            if ((b.drawn | b.leading) != 0) hash.add(Vec3(static_cast<double>(b.drawn >> 32),
-                                                          static_cast<double>(b.drawn & 0xffffffffU),
-                                                          static_cast<double>(b.leading)));
+            if ((b.drawn | b.leading) != 0)
+                hash.add(Vec3(static_cast<double>(b.drawn >> 32), static_cast<double>(b.drawn & 0xffffffffU),
+                              static_cast<double>(b.leading)));
     }
 };
 

@@ -1,0 +1,72 @@
+#include "birm3d/kernels/dent.hpp"
+
+#include <vector>
+
+#include "check.hpp"
+#include "laboratory.hpp"
+
+using namespace birm3d;
+
+namespace {
+
+// 8 by 8 nodes at x = 3 m, trusses straight back to x = 1 m.
+const TrussMesh mesh(laboratory::front_face(laboratory::w2_curve(), 8, 8));
+
+Vec3 node(std::size_t i) {
+    return mesh.node(i);
+}
+
+}  // namespace
+
+TEST("a dent falls off with its slope from the node that is pressed") {
+    const DentDriver driver{node(20), Vec3::UnitX(), 0.5};
+    for (const double slope : {0.5, 1.0, 2.0}) {
+        Hanging hanging;
+        hang(mesh.block[0], slope, {&driver, 1}, hanging);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            const double expected = 0.5 - slope * (node(i) - node(20)).norm();
+            if (expected > 0.0)
+                CHECK_CLOSE(hanging.deflection[i], expected, 1e-15, "rounding");
+            else
+                CHECK(hanging.deflection[i] <= 0.0);
+        }
+    }
+}
+
+TEST("each node hangs on the driver that draws it in furthest") {
+    const std::vector<DentDriver> drivers = {{node(3), Vec3::UnitX(), 0.4}, {node(40), Vec3::UnitX(), 0.7}};
+    Hanging hanging;
+    hang(mesh.block[0], 0.8, drivers, hanging);
+    for (std::size_t i = 0; i < lanes; ++i) {
+        double best = -1.0;
+        std::size_t by = 0;
+        for (std::size_t k = 0; k < drivers.size(); ++k) {
+            const double drawn = drivers[k].deflection - 0.8 * (node(i) - drivers[k].place).norm();
+            if (drawn > best) best = drawn, by = k;
+        }
+        if (best <= 0.0) continue;
+        CHECK(hanging.driver[i] == by);
+        CHECK_CLOSE(hanging.deflection[i], best, 1e-15, "rounding");
+    }
+}
+
+TEST("nodes of another panel do not hang on a dent") {
+    const DentDriver driver{node(20), Vec3::UnitY(), 0.5};
+    Hanging hanging;
+    hang(mesh.block[0], 1.0, {&driver, 1}, hanging);
+    for (const double deflection : hanging.deflection)
+        CHECK(deflection < 0.0);
+}
+
+TEST("a driver does not draw itself in further, nor a node that is pressed as deep") {
+    // The slope between neighbours that a wall presses alike is nil: nothing hangs deeper than it is pressed.
+    std::vector<DentDriver> drivers;
+    for (std::size_t i = 0; i < lanes; ++i)
+        drivers.push_back({node(i), Vec3::UnitX(), 0.3});
+    Hanging hanging;
+    hang(mesh.block[0], 1.0, drivers, hanging);
+    for (std::size_t i = 0; i < lanes; ++i) {
+        CHECK(hanging.deflection[i] == 0.3);
+        CHECK(hanging.driver[i] == i);
+    }
+}
