@@ -75,7 +75,11 @@ _OPTIONS = (
         "--angle", type=Quantity("angle"), default=90.0, show_default=True, help="Path to barrier line, deg."
     ),
     click.option(
-        "--offset", type=Quantity("length"), default=0.0, show_default=True, help="Along the barrier, m."
+        "--offset",
+        type=Quantity("length"),
+        default=0.0,
+        show_default=True,
+        help="Along the barrier, m; at angle 0 behind its line.",
     ),
     click.option(
         "--yaw",

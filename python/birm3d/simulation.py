@@ -51,6 +51,8 @@ class Simulation:
         barrier must have an end to meet.
     impact_offset
         Where the path of the mass centre (of the leading unit) meets the barrier's line, from its origin [m].
+        At angles 0 and 180 the distance of the path from the line, positive behind it: half the thickness
+        leads to the middle of a wall's end.
     standoff
         Distance of the nearest node from the barrier at t = 0 [m], >= 0.
     impact_yaw

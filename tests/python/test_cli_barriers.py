@@ -26,8 +26,8 @@ def birm3d(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     ("options", "barrier"),
     [
         (
-            "--barrier bollards --count 3 --spacing 110cm --diameter 12in --height 3ft --rows 2 "
-            "--row-spacing 1.5 --row-offset 55cm",
+            "--barrier bollards --count 3 --spacing 1100mm --diameter 12in --height 3ft --rows 2 "
+            "--row-spacing 1.5 --row-offset 550mm",
             Barrier.bollards(
                 count=3, spacing=1.1, diameter=12 * units.inch, height=3 * units.ft, rows=2, row_spacing=1.5,
                 row_offset=0.55,

@@ -109,17 +109,15 @@ def test_the_end_of_a_wall(angle: float, heading: float) -> None:
     wall = Barrier.rigid_wall(
         width=10.0, height=1.2, thickness=0.4, friction=0.0, heading=heading, origin=(1.0, 2.0, 0.0)
     )
-    # The wall is behind its line; the path along the line is moved into its middle by the origin.
+    result = Simulation(box(k), wall, speed, angle, 0.2, settings=FREE, standoff=0.05).run()
     line = math.radians(heading)
-    middle = np.array([1.0 - 0.2 * math.cos(line), 2.0 - 0.2 * math.sin(line), 0.0])
-    wall = Barrier.rigid_wall(
-        width=10.0, height=1.2, thickness=0.4, friction=0.0, heading=heading, origin=tuple(middle)
-    )
-    result = Simulation(box(k), wall, speed, angle, settings=FREE, standoff=0.05).run()
     way = np.array([-math.sin(line), math.cos(line), 0.0]) * (1.0 if angle == 0.0 else -1.0)
+    behind = np.array([math.cos(line), math.sin(line), 0.0])
     assert result.velocity[0] == pytest.approx(speed * way, abs=1e-12)
-    # The foremost node stands 0.05 m before the end, which is 5 m from the origin.
-    assert (result.position[0] - middle) @ way + 2.0 == pytest.approx(-5.0 - 0.05, abs=1e-6)
+    # The foremost node stands 0.05 m before the end, which is 5 m from the origin, in the middle of the wall.
+    start = result.position[0] - [1.0, 2.0, 0.5]
+    assert start @ way + 2.0 == pytest.approx(-5.0 - 0.05, abs=1e-6)
+    assert start @ behind == pytest.approx(0.2, abs=1e-12)
     assert result.peak_deflection.argmax() == 0
     metrics = result.metrics
     assert metrics["dynamic_crush"] == pytest.approx(speed * math.sqrt(m / k), rel=1e-3)
