@@ -37,7 +37,7 @@ def plot_elements(result: Result) -> Figure:
     ms = result.time * 1e3
     name = ""
     for i, load in enumerate(loads):
-        look = {"color": CYCLE[i % len(CYCLE)], "ls": STYLES[(i // len(CYCLE)) % len(STYLES)], "lw": 1.5}
+        look = {"color": CYCLE[i % len(CYCLE)], "ls": STYLES[i % len(STYLES)], "lw": 1.5}
         force, name = filtered(load.force, 60, load.interval)
         moment, _ = filtered(load.moment, 60, load.interval)
         level = np.hypot(force[:, 0], force[:, 1])
