@@ -183,7 +183,8 @@ void Simulation::take(Trial& trial) {
         throw std::runtime_error("the state is no longer finite at t = " + to_text(state_.time) +
                                  " s, step " + to_text(trial.dt) + " s");
     if (!state_.decided && scene_.barrier && state_.touched &&
-        ((!touches(state_) && has_left(scene_, state_) && !tips(scene_, state_)) || at_rest(scene_, state_))) {
+        ((!touches(state_) && has_left(scene_, state_) && !tips(scene_, state_)) ||
+         at_rest(scene_, state_))) {
         state_.decided = true;
         state_.decided_at = state_.time;
     }
