@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/friction.hpp"
 #include "sim/skin.hpp"
 
@@ -108,7 +109,7 @@ bool Skin::set_hanging(std::size_t b) {
             const double cosine = std::max(b_in.dot(contact_.normal(i)), 0.0);
             const double pressed_to =
                 drafted ? now_.trusses.block[b].deflection[i] : block.deflection[i] - faces_.gap[i] * cosine;
-            if (drawn_to <= pressed_to) continue;
+            if (drawn_to <= pressed_to + tolerance::drawn_further) continue;
         } else if (!was_drawn && drawn_to <= block.deflection[i]) {
             continue;
         }
@@ -135,7 +136,8 @@ void Skin::note_drawn(TrussBlockState& next) {
             continue;
         }
         next.drawn |= std::uint64_t{1} << i;
-        drivers_[hanging_.driver[i]].extra += next.force[i];
+        drivers_[hanging_.driver[i]].extra += 0.5 * next.force[i];
+        drivers_[hanging_.second[i]].extra += 0.5 * next.force[i];
     }
     if (!next.touching) next.box = box_around(next.x, next.y, next.z);
 }

@@ -54,6 +54,21 @@ TEST("each node hangs on the driver that draws it in furthest") {
     }
 }
 
+TEST("a node between two drivers hangs on both, on the lower one where one stands higher") {
+    const auto around_node_20 = [](const Vec3& way) {
+        return std::vector<DentDriver>{{node(20) + way, Vec3::UnitX(), 0.5},
+                                       {node(20) - way, Vec3::UnitX(), 0.5}};
+    };
+    Hanging hanging;
+    const std::vector<DentDriver> beside = around_node_20(0.1 * Vec3::UnitY());
+    hang(mesh.block[0], mesh.node_box[0], 1.0, beside, grouped(beside), hanging);
+    CHECK(hanging.driver[20] != hanging.second[20]);
+    const std::vector<DentDriver> above = around_node_20(0.1 * Vec3::UnitZ());
+    hang(mesh.block[0], mesh.node_box[0], 1.0, above, grouped(above), hanging);
+    CHECK(hanging.driver[20] == 1);
+    CHECK(hanging.second[20] == 1);
+}
+
 TEST("nodes of another panel do not hang on a dent") {
     const DentDriver driver{node(20), Vec3::UnitY(), 0.5};
     Hanging hanging;

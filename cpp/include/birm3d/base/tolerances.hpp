@@ -94,6 +94,10 @@ inline constexpr double solid_volume = 1e-12;
 // moment is above the sum of the other two.
 inline constexpr double symmetric_inertia = 1e-9;
 
+// A node leaves an obstacle for the dent beside it where that draws it in further by this (m): two nodes at one place,
+// on the border of two zones, are as deep as each other but for rounding.
+inline constexpr double drawn_further = 1e-9;
+
 // Points nearer than this to an edge or a corner of a shape take the normal of one of its faces (m): the
 // direction from the edge to such a point is rounding. Large: the corner's normal jumps by a visible amount.
 inline constexpr double edge_radius = 1e-12;
