@@ -25,16 +25,17 @@ Point = tuple[float, float, float]
 class Barrier:
     """A barrier that stands on the ground; immutable. Make one with :meth:`rigid_wall`, :meth:`bollards`, ...
 
-    Its line runs along +y at heading 0 and its traffic face looks to -x; the vehicle comes from there. It has one
-    or more elements (a post, a segment of a wall): loads are reported element by element.
+    Its line runs along +y at heading 0 and its traffic face looks to -x; the vehicle comes from there. It has
+    one or more elements (a post, a segment of a wall): loads are reported element by element, see
+    :attr:`birm3d.Result.element_loads`.
 
     Parameters
     ----------
     friction
         Coulomb coefficient between vehicle and barrier; 0.15 to 0.20 for steel on concrete (paper 5.4).
     origin
-        A point of the barrier's line, at the foot of its traffic face, of posts of their axes; world axes [m],
-        shape (3,).
+        A point of the barrier's line, at the foot of its traffic face, of posts of their axes; world axes,
+        shape (3,) [m].
     heading
         Turn of the barrier's line about the vertical [deg].
     """
@@ -283,7 +284,7 @@ class Barrier:
         """
         angle = math.radians(self.heading)
         turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-        return np.asarray(self.origin, float) + np.array([*(turn @ [across, along]), 0.0])
+        return np.asarray(np.asarray(self.origin) + np.array([*(turn @ [across, along]), 0.0]))
 
     def __getstate__(self) -> dict[str, object]:
         return {field.name: getattr(self, field.name) for field in fields(self)}

@@ -34,8 +34,8 @@ def _whole(name: str, value: int) -> None:
 class RigidWall(Barrier):
     """A flat, rigid, vertical wall.
 
-    Without end in width and height it is a half-space. Else it has a ``thickness``, with ends, a top and a back that
-    can be met like the face.
+    Without end in width and height it is a half-space. Else it has a ``thickness``, with ends, a top and a
+    back that can be met like the face.
     """
 
     width: float = math.inf
@@ -96,8 +96,8 @@ class Pole(Barrier):
 class Bollards(Barrier):
     """Rigid bollards in rows.
 
-    A bollard is narrow: sheet metal is drawn in with its neighbours and held in line, where free nodes would slip
-    round to either side and let it pass between them.
+    A bollard is narrow: sheet metal is drawn in with its neighbours and held in line, where free nodes would
+    slip round to either side and let it pass between them.
     """
 
     count: int = 5
@@ -126,13 +126,20 @@ class Bollards(Barrier):
             _core.Element.post(
                 radius=0.5 * self.diameter,
                 height=self.height,
-                position=self.place(
-                    row * self.row_spacing if row else 0.0,
-                    ((i - 0.5 * (self.count - 1)) * self.spacing if self.count > 1 else 0.0)
-                    + row * self.row_offset,
-                ),
+                position=self.place(across, along),
                 heading=math.radians(self.heading),
                 holds_skin=True,
+            )
+            for across, along in self.places()
+        ]
+
+    def places(self) -> list[tuple[float, float]]:
+        """Return the axes of the bollards across and along the line [m], see :meth:`Barrier.place`."""
+        return [
+            (
+                row * self.row_spacing if row else 0.0,
+                ((i - 0.5 * (self.count - 1)) * self.spacing if self.count > 1 else 0.0)
+                + row * self.row_offset,
             )
             for row in range(self.rows)
             for i in range(self.count)
@@ -146,9 +153,9 @@ class Bollards(Barrier):
         return tuple(f"row {r + 1}, bollard {i + 1}" for r in range(self.rows) for i in range(self.count))
 
 
-# Half widths and heights of concrete barriers [in] with the slope of the upper face [deg]: 3 in vertical, 55 deg to the
-# break, 84 deg above (FHWA; the break is at 13 in for New Jersey, at 10 in for the F-shape); Texas single slope 10.8
-# deg from the vertical, base 24 in.
+# Half widths and heights of concrete barriers [in] with the slope of the upper face [deg]: 3 in vertical,
+# 55 deg to the break, 84 deg above (FHWA; the break is at 13 in for New Jersey, at 10 in for the F-shape);
+# Texas single slope 10.8 deg from the vertical, base 24 in.
 _INCH = 0.0254
 PROFILES = MappingProxyType(
     {
@@ -164,7 +171,7 @@ _USUAL_HEIGHT = {"new_jersey": 32.0, "f_shape": 32.0, "single_slope": 42.0}
 
 @dataclass(frozen=True)
 class Jersey(Barrier):
-    """A concrete barrier with sloped faces, the same on both sides; the line is the foot of its traffic face."""
+    """A concrete barrier with sloped faces, the same on both sides; its line is the traffic face's foot."""
 
     profile: str | tuple[tuple[float, float], ...] = "new_jersey"
     height: float | None = None
@@ -179,7 +186,11 @@ class Jersey(Barrier):
             points = np.array(self.profile, float)
             if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2:
                 raise ValueError(f"profile must have shape (n, 2) with n >= 2, got {points.shape}")
-            if points[0, 1] != 0.0 or not (np.diff(points[:, 1]) > 0.0).all() or not (points[:, 0] > 0.0).all():
+            if (
+                points[0, 1] != 0.0
+                or not (np.diff(points[:, 1]) > 0.0).all()
+                or not (points[:, 0] > 0.0).all()
+            ):
                 raise ValueError(
                     f"profile must begin at height 0, rise, and have half widths > 0, got {points.tolist()}"
                 )

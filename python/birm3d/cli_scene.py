@@ -73,7 +73,11 @@ _OPTIONS = (
         "--offset", type=Quantity("length"), default=0.0, show_default=True, help="Along the barrier, m."
     ),
     click.option(
-        "--yaw", type=Quantity("angle"), default=0.0, show_default=True, help="Nose to the left of the path, deg."
+        "--yaw",
+        type=Quantity("angle"),
+        default=0.0,
+        show_default=True,
+        help="Nose to the left of the path, deg.",
     ),
     click.option("--duration", type=Quantity("time"), help="Default: until the outcome is decided."),
     click.option("--tolerance", type=float, help="Wanted relative error.  [default: 0.001]"),

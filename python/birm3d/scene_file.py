@@ -38,7 +38,12 @@ class _Vehicle(Strict):
 
 # Kind of barrier -> keys of the file and the arguments of Barrier.<kind> that they are.
 _BARRIERS: dict[str, dict[str, str]] = {
-    "rigid_wall": {"width_m": "width", "height_m": "height", "thickness_m": "thickness", "segments": "segments"},
+    "rigid_wall": {
+        "width_m": "width",
+        "height_m": "height",
+        "thickness_m": "thickness",
+        "segments": "segments",
+    },
     "pole": {"diameter_m": "diameter"},
     "bollards": {
         "count": "count",

@@ -169,7 +169,9 @@ _preset = lru_cache(maxsize=16)(Vehicle.preset)
 
 
 def _build(given: Mapping[str, Any]) -> Simulation:
-    keywords = {name: given[name] for name in ("standoff", "impact_yaw", "impact_roll", "duration", "settings")}
+    keywords = {
+        name: given[name] for name in ("standoff", "impact_yaw", "impact_roll", "duration", "settings")
+    }
     return Simulation(
         given["vehicle"],
         given["barrier"],

@@ -26,8 +26,8 @@ class Settings:
     gravity
         [m/s^2].
     ground
-        Whether tyres and body meet the ground z = 0. The body of a vehicle without wheels, or with skin below the
-        ground from the start, does not.
+        Whether tyres and body meet the ground z = 0. The body of a vehicle without wheels, or with skin below
+        the ground from the start, does not.
     mu_tire
         Tyre-pavement friction coefficient.
     mu_body

@@ -74,7 +74,7 @@ FLOOR = {
     "max_roll": 0.1,
     "max_yaw": 0.1,
     "max_pitch": 0.1,
-    "vehicle_penetration": 1e-5,
+    "contact_overlap": 1e-5,
     "residual_crush": 1e-3,
 }
 NOT_PHYSICS = {"energy_residual", "momentum_residual", "steps", "run_time"}
