@@ -83,8 +83,9 @@ class ArticulatedVehicle(Vehicle):
     one's first. ``units`` are the two, each with its own in its own axes; zones keep their names, which
     differ between the units.
 
-    ``with_zone``, ``with_rate_sensitivity``, ``with_dent_slope`` and ``with_mesh_density`` go to the units that they concern;
-    ``with_gvw`` loads or lightens the trailing unit; ``with_unit`` and ``with_joint`` change a part.
+    ``with_zone``, ``with_rate_sensitivity``, ``with_dent_slope`` and ``with_mesh_density`` go to the units
+    that they concern; ``with_gvw`` loads or lightens the trailing unit; ``with_unit`` and ``with_joint``
+    change a part.
     """
 
     _units: tuple[Vehicle, ...] = ()

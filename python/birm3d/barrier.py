@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -44,11 +44,20 @@ class Barrier:
     origin: Point = (0.0, 0.0, 0.0)
     heading: float = 0.0
 
+    _counts: ClassVar[tuple[str, ...]] = ()  # fields that are whole numbers
+
     def __post_init__(self) -> None:
         if np.shape(self.origin) != (3,):
             raise ValueError(f"origin must have shape (3,), got {np.shape(self.origin)}")
         x, y, z = (float(value) for value in self.origin)
         object.__setattr__(self, "origin", (x, y, z))
+        for name in self._counts:
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 1 and int(value) == value):
+                raise ValueError(f"{name} must be a whole number >= 1, got {value}")
+            object.__setattr__(self, name, int(value))  # a sweep gives 3.0
+        if not math.isfinite(self.heading):
+            raise ValueError(f"heading must be finite, got {self.heading}")
         _ = self.core
 
     # ---- making barriers ----------------------------------------------------------------------------------
@@ -206,7 +215,11 @@ class Barrier:
         """
         from .barrier_kinds import Jersey
 
-        points = profile if isinstance(profile, str) else tuple((float(x), float(z)) for x, z in profile)
+        points: Any = profile
+        if not isinstance(profile, str):
+            if np.ndim(profile) != 2 or np.shape(profile)[1] != 2:
+                raise ValueError(f"profile must have shape (n, 2), got {np.shape(profile)}")
+            points = tuple((float(x), float(z)) for x, z in profile)
         return Jersey(
             float(friction),
             _point(origin),
@@ -243,7 +256,8 @@ class Barrier:
         Raises
         ------
         ValueError
-            If shapes or indices are wrong, or the triangles are no surface; the message names the culprit.
+            If shapes or indices are wrong, the triangles are no surface, or a closed surface is inside out;
+            the message names the culprit.
         """
         from .barrier_kinds import MeshBarrier
 

@@ -115,8 +115,8 @@ def resultant_height(force: Floats, moment: Floats) -> Floats:
 
     With F_h the horizontal force and z up: height = M . (z x F_h) / |F_h|^2. It is the height of the point of
     application where the force has no vertical part, or meets the vertical through the foot; else the moment
-    of the vertical force is in it, as it is in the overturning moment. 0 in rows where the size of F_h is below
-    ``LEAST_SHARE`` of its greatest value, and where there is none.
+    of the vertical force is in it, as it is in the overturning moment. 0 in rows where the size of F_h is
+    below ``LEAST_SHARE`` of its greatest value, and where there is none.
 
     Parameters
     ----------

@@ -81,13 +81,13 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     With a barrier: ``peak_normal_force``, ``peak_force_50ms`` [N]; greatest of all its elements:
     ``peak_element_force``, ``peak_element_force_50ms`` [N], ``peak_overturning_moment`` and
     ``peak_overturning_moment_50ms`` [N m] (see :class:`birm3d.element_loads.ElementLoad`);
-    ``dynamic_crush``, ``residual_crush`` (greatest truss shortening, during the run and at its end) [m], ``max_displacement`` (of the mass centre
-    towards the barrier since t = 0 less the standoff; on a path along the barrier's line, towards its end)
-    [m], ``contact_overlap`` (of the rigid body inside the barrier, what the steps leave) [m],
-    ``impact_severity`` (1/2 m (v sin angle)^2) [J], ``delta_v`` (greatest change of velocity)
-    [m/s]; where the motion towards the barrier ends: ``time_of_zero_velocity`` (since the first touch) [s],
-    ``restitution`` (normal separation over approach speed); where the vehicle has left: ``exit_angle`` (of
-    its path from the barrier's line) [deg].
+    ``dynamic_crush``, ``residual_crush`` (greatest truss shortening, during the run and at its end) [m],
+    ``max_displacement`` (of the mass centre towards the barrier since t = 0 less the standoff; on a path
+    along the barrier's line, towards its end) [m], ``contact_overlap`` (of the rigid body inside the barrier,
+    what the steps leave) [m], ``impact_severity`` (1/2 m (v sin angle)^2) [J], ``delta_v`` (greatest change
+    of velocity) [m/s]; where the motion towards the barrier ends: ``time_of_zero_velocity`` (since the first
+    touch) [s], ``restitution`` (normal separation over approach speed); where the vehicle has left:
+    ``exit_angle`` (of its path from the barrier's line) [deg].
 
     With a barrier that is not met along its line (angles 0 and 180): ``vehicle_penetration`` [m], how far
     the rigid body got past the barrier's line: the greatest distance of any anchor behind the line over the

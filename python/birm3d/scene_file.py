@@ -141,6 +141,7 @@ class _Settings(Strict):
     ground: bool = Settings.ground
     mu_tire: float = Settings.mu_tire
     mu_body: float = Settings.mu_body
+    braking: float = Settings.braking
     cornering_stiffness: float = Settings.cornering_stiffness
     restitution: float = Settings.restitution
     contact_model: Literal["projected", "along_truss"] = Settings.contact_model

@@ -299,7 +299,7 @@ class Exterior(Block):
 
 
 class Dents(Block):
-    """The skin beside a dent that a narrow obstacle makes: its slope, see :meth:`birm3d.Vehicle.with_dent_slope`."""
+    """Slope of the skin beside a narrow obstacle's dent, see :meth:`birm3d.Vehicle.with_dent_slope`."""
 
     slope: Positive
 

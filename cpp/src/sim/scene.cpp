@@ -102,7 +102,8 @@ void place(const Scene& scene, const Vec3& heading, State& state) {
     const Vec3 inward = heading.dot(barrier.normal()) < -1e-12 ? Vec3(-barrier.normal()) : heading;
     const double first = -extent(elements, -inward), last = extent(elements, inward);
     if (!std::isfinite(first))
-        refuse("impact_angle", "> 0 deg where the barrier has no end", scene.approach.angle);
+        refuse("impact_angle", "> 0 and < 180 deg where the barrier has no end",
+               scene.approach.angle * 180.0 / std::numbers::pi);
     double front = -infinity, rear = infinity;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const BodyState& body = state.units[u].body;

@@ -89,7 +89,8 @@ class Skin {
     std::vector<std::size_t> drafted_;  // blocks
     TrussBlockState followed_;
     std::vector<DentDriver> dent_;  // parallel to drivers_
-    Box dent_box_;                  // around all that can hang on them
+    std::vector<DentGroup> dent_groups_;
+    Box dent_box_;  // around all that can hang on them
     Hanging hanging_;
     Box box_;  // around the nodes of the block at hand
     NodeFaces faces_;

@@ -50,6 +50,7 @@ void Skin::find_dents() {
     for (const DentDriver& driver : dent_)
         deepest = std::max(deepest, driver.deflection);
     dent_box_ = Box::around(dent_.size(), [&](std::size_t i) { return dent_[i].place; });
+    dent_groups_ = grouped(dent_);
     dent_box_.half += Vec3::Constant(deepest / mesh_.dent_slope);
 }
 
@@ -83,7 +84,7 @@ bool Skin::draw_in(std::size_t b) {
         const Vec3 apart = (mesh_.node_box[b].center - dent_box_.center).cwiseAbs();
         if (((mesh_.node_box[b].half + dent_box_.half - apart).array() < 0.0).any()) return false;
     }
-    hang(mesh_.block[b], mesh_.dent_slope, dent_, hanging_);
+    hang(mesh_.block[b], mesh_.node_box[b], mesh_.dent_slope, dent_, dent_groups_, hanging_);
     return before_.trusses.block[b].drawn != 0 ||
            std::any_of(hanging_.deflection.begin(), hanging_.deflection.end(),
                        [](double d) { return d > 0.0; });

@@ -12,6 +12,10 @@ namespace {
 // 8 by 8 nodes at x = 3 m, trusses straight back to x = 1 m.
 const TrussMesh mesh(laboratory::front_face(laboratory::w2_curve(), 8, 8));
 
+std::span<const DentDriver> one(const DentDriver& driver) {
+    return {&driver, 1};
+}
+
 Vec3 node(std::size_t i) {
     return mesh.node(i);
 }
@@ -22,7 +26,7 @@ TEST("a dent falls off with its slope from the node that is pressed") {
     const DentDriver driver{node(20), Vec3::UnitX(), 0.5};
     for (const double slope : {0.5, 1.0, 2.0}) {
         Hanging hanging;
-        hang(mesh.block[0], slope, {&driver, 1}, hanging);
+        hang(mesh.block[0], mesh.node_box[0], slope, one(driver), grouped(one(driver)), hanging);
         for (std::size_t i = 0; i < lanes; ++i) {
             const double expected = 0.5 - slope * (node(i) - node(20)).norm();
             if (expected > 0.0)
@@ -36,7 +40,7 @@ TEST("a dent falls off with its slope from the node that is pressed") {
 TEST("each node hangs on the driver that draws it in furthest") {
     const std::vector<DentDriver> drivers = {{node(3), Vec3::UnitX(), 0.4}, {node(40), Vec3::UnitX(), 0.7}};
     Hanging hanging;
-    hang(mesh.block[0], 0.8, drivers, hanging);
+    hang(mesh.block[0], mesh.node_box[0], 0.8, drivers, grouped(drivers), hanging);
     for (std::size_t i = 0; i < lanes; ++i) {
         double best = -1.0;
         std::size_t by = 0;
@@ -53,7 +57,7 @@ TEST("each node hangs on the driver that draws it in furthest") {
 TEST("nodes of another panel do not hang on a dent") {
     const DentDriver driver{node(20), Vec3::UnitY(), 0.5};
     Hanging hanging;
-    hang(mesh.block[0], 1.0, {&driver, 1}, hanging);
+    hang(mesh.block[0], mesh.node_box[0], 1.0, one(driver), grouped(one(driver)), hanging);
     for (const double deflection : hanging.deflection)
         CHECK(deflection < 0.0);
 }
@@ -64,7 +68,7 @@ TEST("a driver does not draw itself in further, nor a node that is pressed as de
     for (std::size_t i = 0; i < lanes; ++i)
         drivers.push_back({node(i), Vec3::UnitX(), 0.3});
     Hanging hanging;
-    hang(mesh.block[0], 1.0, drivers, hanging);
+    hang(mesh.block[0], mesh.node_box[0], 1.0, drivers, grouped(drivers), hanging);
     for (std::size_t i = 0; i < lanes; ++i) {
         CHECK(hanging.deflection[i] == 0.3);
         CHECK(hanging.driver[i] == i);
