@@ -164,7 +164,9 @@ def test_a_landing_does_not_hang_on_the_steps() -> None:
 def test_braking_slows_a_car_by_its_share_of_the_friction(braking: float, tire_model: str) -> None:
     """Deceleration b mu g, by the change of speed over 0.5 s; the paper's skid only once it brakes."""
     settings = Settings(braking=braking, mu_tire=0.7, tire_model=tire_model)
-    run = Simulation(Vehicle.preset("passenger_car", mesh_density=0.1), None, 20.0, duration=0.5, settings=settings)
+    run = Simulation(
+        Vehicle.preset("passenger_car", mesh_density=0.1), None, 20.0, duration=0.5, settings=settings
+    )
     change = 20.0 - run.run().velocity[-1, 0]
     assert change == pytest.approx(braking * 0.7 * 9.80665 * 0.5, rel=2e-3)  # wheels dip and rise at first
 
@@ -174,7 +176,9 @@ def test_a_braked_car_comes_to_rest_and_stays() -> None:
     car = Vehicle.preset("passenger_car", mesh_density=0.1)
     result = Simulation(car, None, 4.0, duration=1.2, settings=settings).run()
     assert np.hypot(*result.velocity[-1, :2]) < 1e-3
-    assert result.position[-1, 0] - result.position[0, 0] == pytest.approx(4.0**2 / (2 * 0.8 * 9.80665), rel=0.02)
+    assert result.position[-1, 0] - result.position[0, 0] == pytest.approx(
+        4.0**2 / (2 * 0.8 * 9.80665), rel=0.02
+    )
     assert abs(result.energy["residual"]).max() < 1e-3 * result.energy["kinetic"][0]
 
 
