@@ -81,7 +81,9 @@ def test_vehicles(monkeypatch, capsys):
     assert facts["passenger_car"]["mass"] == pytest.approx(1814.37)
     assert "bumper" in facts["pickup"]["zones"]
     assert birm3d(monkeypatch, "vehicles") == 0
-    assert "paper_pickup" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "paper_pickup" in out
+    assert "mass [kg]" in out
 
 
 @pytest.mark.parametrize(
