@@ -176,7 +176,7 @@ def test_the_example_scene_is_read(monkeypatch, capsys):
         (('"45 deg"', '"45 m"'), 13, ["angle", "deg", "45 m"]),
         (('preset = "passenger_car"', ""), 2, ["preset or file"]),
         (("[barrier]", "[barrier"), 7, ["TOML"]),
-        (('"rigid_wall"', '"pole"'), 7, ["diameter_m", "pole"]),
+        (('"rigid_wall"', '"pole"\nwidth_m = 2.0'), 9, ["width_m", "rigid_wall", "pole"]),
     ],
 )
 def test_scene_file_errors(monkeypatch, capsys, tmp_path, wrong, line, parts):

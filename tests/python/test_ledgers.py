@@ -11,7 +11,16 @@ from scipy.spatial.transform import Rotation
 
 Orientation = Callable[[Result], Rotation]
 
-TERMS = ("kinetic", "potential", "stored", "crushed", "barrier_friction", "tire_friction", "impacts")
+TERMS = (
+    "kinetic",
+    "potential",
+    "stored",
+    "crushed",
+    "barrier_friction",
+    "tire_friction",
+    "ground_friction",
+    "impacts",
+)
 
 
 def energy_scale(result: Result) -> float:
