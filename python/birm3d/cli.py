@@ -84,6 +84,7 @@ def run(
 @click.option("--json", "as_json", is_flag=True, help="As JSON on stdout.")
 def vehicles(as_json: bool) -> None:
     """List the vehicles that come with the package."""
+    from rich.markup import escape
     from rich.table import Table
 
     from .vehicle import Vehicle
@@ -105,7 +106,10 @@ def vehicles(as_json: bool) -> None:
         return
     table = Table(
         "vehicle",
-        *(f"{name}" for name in ("mass [kg]", "CG height [m]", "Ixx, Iyy, Izz [kg m²]", "elements", "zones")),
+        *(
+            escape(name)
+            for name in ("mass [kg]", "CG height [m]", "Ixx, Iyy, Izz [kg m²]", "elements", "zones")
+        ),
     )
     for name, v in rows.items():
         inertia = ", ".join(f"{value:,.0f}" for value in v.inertia.diagonal())
@@ -132,6 +136,7 @@ _cli.add_command(sweep)
 
 
 def _print_outcome(result: Result) -> None:
+    from rich.markup import escape
     from rich.table import Table
 
     scene = result.scene
@@ -150,7 +155,9 @@ def _print_outcome(result: Result) -> None:
     elements = element_rows(result)
     if scene.barrier is None or len(scene.barrier.element_names) < 2 or not elements:
         return  # the loads on the only element are in the first table
-    loads = Table(*ELEMENT_COLUMNS, title="elements of the barrier that were touched")
+    loads = Table(
+        *(escape(name) for name in ELEMENT_COLUMNS), title="elements of the barrier that were touched"
+    )
     for numbers in elements:
         loads.add_row(*numbers)
     print_table(loads)
