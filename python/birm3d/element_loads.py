@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from .barrier_kinds import Jersey, RigidWall
 from .filters import moving_average
 from .unit_result import read_only
 
@@ -47,6 +48,9 @@ class ElementLoad:
         About the foot, shape (n, 3) [N m].
     interval
         Between rows [s].
+    line
+        Of a wall or a Jersey barrier the unit vector along its line, about which it overturns, shape (3,); ``None``
+        for posts and meshes, which may overturn any way.
     """
 
     index: int
@@ -54,16 +58,17 @@ class ElementLoad:
     force: Floats
     moment: Floats
     interval: float
+    line: Floats | None = None
 
     @cached_property
     def resultant_height(self) -> Floats:
         """Of the horizontal force above the foot, shape (n,) [m]; see :func:`resultant_height`."""
-        return read_only(resultant_height(self.force, self.moment))
+        return read_only(resultant_height(self.force, self.moment, self.line))
 
     @cached_property
     def overturning_moment(self) -> Floats:
-        """Magnitude of the horizontal part of the moment, shape (n,) [N m]."""
-        return read_only(np.hypot(self.moment[:, 0], self.moment[:, 1]))
+        """Magnitude of the horizontal moment, of a wall of its part about the line, shape (n,) [N m]."""
+        return read_only(_overturning(self.moment, self.line))
 
     @cached_property
     def touched(self) -> bool:
@@ -85,7 +90,7 @@ class ElementLoad:
         """Height of the resultant of the 50-ms mean where its horizontal force is greatest, else 0 [m]."""
         force, moment = self._mean
         row = int(np.argmax(np.hypot(force[:, 0], force[:, 1])))
-        return float(resultant_height(force, moment)[row])
+        return float(resultant_height(force, moment, self.line)[row])
 
     @cached_property
     def peak_overturning_moment(self) -> float:
@@ -94,8 +99,8 @@ class ElementLoad:
 
     @cached_property
     def peak_overturning_moment_50ms(self) -> float:
-        """Greatest magnitude of the mean horizontal moment over 50 ms [N m]."""
-        return float(np.hypot(*self._mean[1][:, :2].T).max())
+        """Greatest overturning moment of the mean over 50 ms [N m]."""
+        return float(_overturning(self._mean[1], self.line).max())
 
     @cached_property
     def _mean(self) -> tuple[Floats, Floats]:
@@ -110,7 +115,13 @@ class ElementLoad:
         return f"ElementLoad({self.name!r}, {force:.4g} N, {moment:.4g} N m)"
 
 
-def resultant_height(force: Floats, moment: Floats) -> Floats:
+def _overturning(moment: Floats, line: Floats | None) -> Floats:
+    if line is None:
+        return np.asarray(np.hypot(moment[:, 0], moment[:, 1]))
+    return np.abs(moment @ line)
+
+
+def resultant_height(force: Floats, moment: Floats, line: Floats | None = None) -> Floats:
     """Return the height at which the horizontal force alone makes its overturning moment, shape (n,) [m].
 
     With F_h the horizontal force and z up: height = M . (z x F_h) / |F_h|^2. It is the height of the point of
@@ -122,7 +133,12 @@ def resultant_height(force: Floats, moment: Floats) -> Floats:
     ----------
     force, moment
         Shape (n, 3) [N, N m]; z up.
+    line
+        Of a wall: only the force across its line and the moment about it count, shape (3,).
     """
+    if line is not None:
+        across = np.array([line[1], -line[0], 0.0])
+        force, moment = np.outer(force @ across, across), np.outer(moment @ line, line)
     x, y = force[:, 0], force[:, 1]
     size = np.hypot(x, y)
     height = np.zeros(len(force))
@@ -140,10 +156,14 @@ def element_loads(result: Result) -> tuple[ElementLoad, ...]:
     touched = {one.element: one for one in result._history.elements}
     nothing = read_only(np.zeros((len(result.time), 3)))
     interval = result.scene.settings.output_interval
+    line = None
+    if isinstance(barrier, (RigidWall, Jersey)):
+        angle = np.radians(barrier.heading)
+        line = read_only(np.array([-np.sin(angle), np.cos(angle), 0.0]))
     return tuple(
-        ElementLoad(i, name, touched[i].force, touched[i].moment, interval)
+        ElementLoad(i, name, touched[i].force, touched[i].moment, interval, line)
         if i in touched
-        else ElementLoad(i, name, nothing, nothing, interval)
+        else ElementLoad(i, name, nothing, nothing, interval, line)
         for i, name in enumerate(barrier.element_names)
     )
 

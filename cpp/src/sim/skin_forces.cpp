@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
 
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/friction.hpp"
@@ -33,6 +32,19 @@ Twist predicted_motion(const Unit& unit, const std::vector<Touch>& touches, doub
     return {R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
 }
 
+// Obstacles that were touched an instant before are near, whatever the step has made of it.
+void add_touched(const Scene& scene, const UnitState& before, const BodyState& now,
+                 std::vector<NearObstacle>& near) {
+    for (const Touch& touch : before.touches) {
+        const auto place = std::lower_bound(
+            near.begin(), near.end(), touch.obstacle,
+            [](const NearObstacle& known, std::size_t obstacle) { return known.index < obstacle; });
+        if (place != near.end() && place->index == touch.obstacle) continue;
+        const Obstacle& obstacle = scene.obstacles[touch.obstacle];
+        near.insert(place, {touch.obstacle, placement(obstacle, now), placement(obstacle, before.body)});
+    }
+}
+
 }  // namespace
 
 Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
@@ -52,6 +64,7 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
               tolerance::touching_gap),
       near_(trial.near) {
     find_near(scene, u, before_.body, now_.body, before_.touches.empty() ? 0.0 : margin_, near_);
+    add_touched(scene, before_, now_.body, near_);
     const bool rubs = std::any_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
         return scene.obstacles[obstacle.index].friction > 0.0;
     });
@@ -81,13 +94,15 @@ bool Skin::look_about(std::size_t b) {
         seen_.assign(1, 0);
     else
         find_seen(box_, block.touching ? margin_ : 0.0);
+    // What pushes stays at what it pushes on until it is released, however far it was drawn off within the step.
+    if (block.touching && seen_.empty())
+        for (std::size_t k = 0; k < near_.size(); ++k)
+            seen_.push_back(k);
     return !seen_.empty();
 }
 
 void Skin::press(std::size_t b) {
-    const TrussBlockState& block = before_.trusses.block[b];
     const bool sees = look_about(b);
-    if (block.touching && !sees) throw std::logic_error("a node that pushes has lost its surface");
     const bool drawn = draw_in(b);
     if (!sees && !drawn) return;
     trial_.active[u_].add(b);

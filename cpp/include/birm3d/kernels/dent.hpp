@@ -34,7 +34,7 @@ std::vector<DentGroup> grouped(std::span<const DentDriver> drivers);
 
 // What hangs on the drivers in one block.
 struct alignas(64) Hanging {
-    Lanes deflection;                       // that each node is drawn in to; below zero: none (m)
+    Lanes deflection;  // that each node is drawn in to; below zero: none (m)
     // On which each hangs, half on the one and half on the other where two draw it in alike.
     std::array<std::size_t, lanes> driver, second;
 };
