@@ -49,8 +49,8 @@ class ElementLoad:
     interval
         Between rows [s].
     line
-        Of a wall or a Jersey barrier the unit vector along its line, about which it overturns, shape (3,); ``None``
-        for posts and meshes, which may overturn any way.
+        Of a wall or a Jersey barrier the unit vector along its line, about which it overturns, shape (3,);
+        ``None`` for posts and meshes, which may overturn any way.
     """
 
     index: int
