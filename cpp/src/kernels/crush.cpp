@@ -40,6 +40,8 @@ double release(const TrussBlock& truss, const TrussBlockState& before, const Lan
             d = d0 - share * way;
             spared += 0.5 * before.force[i] * (d - d1);
             if ((before.leading >> i & 1U) != 0) continue;  // what hangs on it keeps it at the surface
+        } else if (!(d < d1)) {
+            continue;  // drawn out beyond its length: back there it would be inside
         }
         const double length = truss.length[i] - d;
         const Vec3 place = anchor + (length > tolerance::truss_length ? length / b.norm() : 1.0) * b;
@@ -122,11 +124,25 @@ BIRM3D_LANE_LOOP void find_ways(const NodeFaces& faces, const BlockContact& cont
     }
 }
 
+BIRM3D_LANE_LOOP double greatest_slack(const Lanes& force, const Lanes& deflection, const Lanes& residual) {
+    alignas(64) Lanes slack;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i)
+        slack[i] = force[i] > 0.0 ? 0.0 : residual[i] - deflection[i];
+    for (std::size_t half = lanes / 2; half > 0; half /= 2) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < half; ++i)
+            slack[i] = slack[half + i] > slack[i] ? slack[half + i] : slack[i];
+    }
+    return slack[0];
+}
+
 void finish(const TrussMesh& mesh, std::size_t b, double nodes, const TrussBlockState& before,
             const Lanes& gap, const BlockContact& contact, TrussBlockState& now, CrushSums& sums) {
     if (nodes >= left) sums.released_work += release(mesh.block[b], before, gap, contact, now);
     now.touching = std::fmod(nodes, left) > 0.0;
     now.drawn = now.leading = 0;
+    now.slack = greatest_slack(now.force, now.deflection, now.residual) > tolerance::touching_gap;
     now.box = now.touching
                   ? before.box  // the block is looked at in any case while it touches
                   : Box::around(lanes, [&now](std::size_t i) { return Vec3(now.x[i], now.y[i], now.z[i]); });

@@ -12,6 +12,7 @@
 #include "birm3d/kernels/detect.hpp"
 #include "birm3d/kernels/friction.hpp"
 #include "birm3d/kernels/integrate.hpp"
+#include "birm3d/sim/entered_face.hpp"
 #include "birm3d/sim/obstacles.hpp"
 
 namespace birm3d {
@@ -19,6 +20,9 @@ namespace birm3d {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Cosine above which the normals of two instants are of the same face.
+constexpr double same_face = 0.9;
 
 // In the stead of the place of a node's obstacle, for nodes that hang on others.
 constexpr std::size_t by_dent = lanes;
@@ -93,6 +97,10 @@ class Skin {
 
     void press(std::size_t b);
     bool look_about(std::size_t b);
+    void spring_back(std::size_t b);
+    const TrussBlockState& from(std::size_t b) const {
+        return sprung_back_ ? sprung_ : before_.trusses.block[b];
+    }
     void draft(std::size_t b);
     bool draw_in(std::size_t b);
     void find_seen(const Box& box, double margin);
@@ -100,6 +108,8 @@ class Skin {
     void press_plane(PlaneSums& plane, std::size_t b);
     void press_shapes(std::size_t b);
     const TrussBlockState& look(std::size_t b);
+    void turn_flat_faces();
+    void find_entered_faces(const TrussBlockState& block);
     const TrussBlockState& follow_with_leading(std::size_t b);
     bool set_hanging(std::size_t b);
     void note_drawn(TrussBlockState& next);
@@ -133,17 +143,19 @@ class Skin {
     // Nodes pressed by obstacles that hold the skin, on which others may hang, with what these add to their pressure.
     struct Driver {
         std::size_t near, block, lane;
-        Vec3 normal;      // of the obstacle
-        double per_force; // normal force for each unit of truss force
+        Vec3 normal;       // of the obstacle
+        double per_force;  // normal force for each unit of truss force
         double extra = 0.0;
     };
     std::vector<Driver> drivers_;
     std::vector<std::size_t> drafted_;  // blocks
+    TrussBlockState sprung_;            // the block at hand, if some of its nodes have sprung back
+    bool sprung_back_ = false;
     TrussBlockState followed_;
     std::vector<DentDriver> dent_;  // parallel to drivers_
     Box dent_box_;                  // around all that can hang on them
     Hanging hanging_;
-    Box box_;                       // around the nodes of the block at hand
+    Box box_;  // around the nodes of the block at hand
     NodeFaces faces_;
     BlockContact contact_;
     std::array<std::size_t, lanes> nearest_;  // place in seen_ of each node's obstacle
@@ -164,7 +176,7 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
       margin_(trial.dt * std::max(fastest_point(unit_, before_.body), fastest_point(unit_, now_.body)) +
               tolerance::touching_gap),
       near_(trial.near) {
-    find_near(scene, u, before_.body, now_.body, before_.touches.empty() ? 0.0 : margin_, near_);
+    find_near(scene, u, before_, now_.body, before_.touches.empty() ? 0.0 : margin_, near_);
     const bool rubs = std::any_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
         return scene.obstacles[obstacle.index].friction > 0.0;
     });
@@ -175,7 +187,9 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
 
 void Skin::press_blocks() {
     trial_.active[u_].clear();
-    if (near_.empty() && before_.touches.empty()) return;
+    const bool slack = std::any_of(before_.trusses.block.begin(), before_.trusses.block.end(),
+                                   [](const TrussBlockState& block) { return block.slack; });
+    if (near_.empty() && before_.touches.empty() && !slack) return;
     find_dents();
     for (std::size_t b = 0; b < mesh_.blocks; ++b)
         press(b);
@@ -183,9 +197,36 @@ void Skin::press_blocks() {
     trial_.state.statistics.node_evaluations += trial_.active[u_].blocks().size() * lanes;
 }
 
+// Nodes that an obstacle has drawn out beyond the free length of their trusses return to it once their way is free.
+void Skin::spring_back(std::size_t b) {
+    sprung_back_ = false;
+    const TrussBlockState& block = before_.trusses.block[b];
+    if (!block.slack) return;
+    const TrussBlock& truss = mesh_.block[b];
+    sprung_ = block;
+    sprung_.slack = false;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!is_slack(block, i)) continue;
+        const Vec3 anchor(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
+        const Vec3 place = anchor - (truss.length[i] - block.residual[i]) * inward(truss, block, i);
+        const bool free = std::all_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
+            return nearest(scene_.obstacles[obstacle.index].shape, obstacle.now.to_own(place)).gap >= 0.0;
+        });
+        if (!free) {
+            sprung_.slack = true;
+            continue;
+        }
+        sprung_.x[i] = place.x(), sprung_.y[i] = place.y(), sprung_.z[i] = place.z();
+        sprung_.deflection[i] = block.residual[i];
+        sprung_back_ = true;
+    }
+    if (sprung_back_) sprung_.box = box_around(sprung_.x, sprung_.y, sprung_.z);
+}
+
 // Which obstacles can the nodes of the block meet? False where there are none.
 bool Skin::look_about(std::size_t b) {
-    const TrussBlockState& block = before_.trusses.block[b];
+    spring_back(b);
+    const TrussBlockState& block = from(b);
     // Where a flat surface is all there is, pushing nodes need no box.
     const bool flat_only =
         near_.size() == 1 && std::holds_alternative<HalfSpace>(scene_.obstacles[near_[0].index].shape);
@@ -198,13 +239,17 @@ bool Skin::look_about(std::size_t b) {
 }
 
 void Skin::press(std::size_t b) {
-    const TrussBlockState& block = before_.trusses.block[b];
     const bool sees = look_about(b);
+    const TrussBlockState& block = from(b);
     if (block.touching && !sees) throw std::logic_error("a node that pushes has lost its surface");
     const bool drawn = draw_in(b);
-    if (!sees && !drawn) return;
+    if (!sees && !drawn && !sprung_back_) return;
     trial_.active[u_].add(b);
     trial_.stale[u_].add(b);
+    if (!sees && !drawn) {
+        now_.trusses.block[b] = sprung_;
+        return;
+    }
     if (seen_.size() == 1 && !drawn) {
         const NearObstacle& only = near_[seen_[0]];
         if (const auto plane = flat_part(scene_.obstacles[only.index].shape, only.now, box_)) {
@@ -250,7 +295,7 @@ void Skin::press_plane(PlaneSums& plane, std::size_t b) {
     TrussBlockState& next = now_.trusses.block[b];
     contact_.set_normal(plane.surface.face.normal);
     crush_with_rate(next, plane.sums, [&](const Lanes* factor, CrushSums& sums) {
-        crush(plane.surface, mesh_, b, factor, before_.trusses.block[b], next, contact_, sums);
+        crush(plane.surface, mesh_, b, factor, from(b), next, contact_, sums);
     });
     if (next.touching) rub(plane.near, b, next, contact_);
 }
@@ -274,7 +319,7 @@ void Skin::press_shapes(std::size_t b) {
 
 // What each node of a block sees: the nearest of the surfaces in its reach.
 const TrussBlockState& Skin::look(std::size_t b) {
-    const TrussBlockState& block = before_.trusses.block[b];
+    const TrussBlockState& block = from(b);
     alignas(64) NearestLanes found;
     faces_.own_way.fill(0.0);
     if (seen_.empty()) {  // nothing but what hangs on others
@@ -298,25 +343,65 @@ const TrussBlockState& Skin::look(std::size_t b) {
             contact_.nz[i] = faces_.bz[i] = found.nz[i];
         }
     }
-    if (!block.touching) return block;
-    for (std::size_t k = 0; k < seen_.size(); ++k) {
-        const NearObstacle& obstacle = near_[seen_[k]];
+    if (!block.touching) {
+        find_entered_faces(block);
+        return block;
+    }
+    // Of all surfaces at that instant: segments of a wall take over from each other.
+    alignas(64) Lanes gap_before;
+    gap_before.fill(infinity);
+    for (const std::size_t k : seen_) {
+        const NearObstacle& obstacle = near_[k];
         nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.before, obstacle.before, block.x, block.y,
                    block.z, found);
         for (std::size_t i = 0; i < lanes; ++i) {
-            if (nearest_[i] != k) continue;
+            if (!(found.gap[i] < gap_before[i])) continue;
+            gap_before[i] = found.gap[i];
             faces_.bx[i] = found.nx[i];
             faces_.by[i] = found.ny[i];
             faces_.bz[i] = found.nz[i];
         }
     }
+    find_entered_faces(block);
+    turn_flat_faces();
     return block.leading == 0 ? block : follow_with_leading(b);
+}
+
+// A flat face, or an edge, had the same normal in its own axes an instant before, whatever was nearest then.
+void Skin::turn_flat_faces() {
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const NearObstacle& obstacle = near_[seen_[nearest_[i]]];
+        if (std::holds_alternative<Post>(scene_.obstacles[obstacle.index].shape)) continue;
+        const Vec3 m = obstacle.before.direction_from_own(obstacle.now.direction_to_own(contact_.normal(i)));
+        faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
+    }
+}
+
+// The nearest face can be the wrong one to nodes beside an edge: those that arrive, and those that seem to have changed
+// over to another face. Meshes do the like with all that come in.
+void Skin::find_entered_faces(const TrussBlockState& block) {
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!(faces_.gap[i] < 0.0)) continue;
+        const Shape& shape = scene_.obstacles[near_[seen_[nearest_[i]]].index].shape;
+        if (std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<TriangleMesh>(shape)) continue;
+        const double turn =
+            contact_.nx[i] * faces_.bx[i] + contact_.ny[i] * faces_.by[i] + contact_.nz[i] * faces_.bz[i];
+        if (block.force[i] > 0.0 && turn > same_face) continue;
+        const auto entered = entered_face(scene_, near_, seen_, {block.x[i], block.y[i], block.z[i]});
+        if (!entered) continue;
+        nearest_[i] = entered->seen;
+        const Vec3 &n = entered->now.normal, &m = entered->normal_before;
+        faces_.gap[i] = entered->now.gap;
+        faces_.held[i] = scene_.obstacles[near_[seen_[entered->seen]].index].holds_skin ? 1.0 : 0.0;
+        contact_.nx[i] = n.x(), contact_.ny[i] = n.y(), contact_.nz[i] = n.z();
+        faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
+    }
 }
 
 // A node on which others hang stays at the surface while they press, though its own truss does not any more.
 const TrussBlockState& Skin::follow_with_leading(std::size_t b) {
     const TrussBlock& truss = mesh_.block[b];
-    followed_ = before_.trusses.block[b];
+    followed_ = from(b);
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!leads(b, i) || followed_.force[i] > 0.0 || !(faces_.gap[i] > 0.0)) continue;
         const Vec3 b_in = inward(truss, followed_, i);
@@ -378,21 +463,21 @@ void Skin::draft(std::size_t b) {
 // Does any node of the block hang on a driver, or has it done so?
 bool Skin::draw_in(std::size_t b) {
     hanging_.deflection.fill(-1.0);
-    if (before_.trusses.block[b].drawn == 0) {
+    if (from(b).drawn == 0) {
         if (drivers_.empty()) return false;
         const Vec3 apart = (mesh_.node_box[b].center - dent_box_.center).cwiseAbs();
         if (((mesh_.node_box[b].half + dent_box_.half - apart).array() < 0.0).any()) return false;
     }
     hang(mesh_.block[b], mesh_.dent_slope, dent_, hanging_);
-    return before_.trusses.block[b].drawn != 0 ||
-           std::any_of(hanging_.deflection.begin(), hanging_.deflection.end(), [](double d) { return d > 0.0; });
+    return from(b).drawn != 0 || std::any_of(hanging_.deflection.begin(), hanging_.deflection.end(),
+                                             [](double d) { return d > 0.0; });
 }
 
 // Nodes that hang deeper than a surface would press them go by their driver; those that have lost theirs are let go.
 // Returns whether there are any of either kind.
 bool Skin::set_hanging(std::size_t b) {
     const TrussBlock& truss = mesh_.block[b];
-    const TrussBlockState& block = before_.trusses.block[b];
+    const TrussBlockState& block = from(b);
     const bool drafted = std::binary_search(drafted_.begin(), drafted_.end(), b);
     bool any = false;
     for (std::size_t i = 0; i < lanes; ++i) {
@@ -404,8 +489,8 @@ bool Skin::set_hanging(std::size_t b) {
         if (at_surface) {
             // Where the surface presses the node to: as drafted, or, free to slide, by the gap along its truss.
             const double cosine = std::max(b_in.dot(contact_.normal(i)), 0.0);
-            const double pressed_to = drafted ? now_.trusses.block[b].deflection[i]
-                                              : block.deflection[i] - faces_.gap[i] * cosine;
+            const double pressed_to =
+                drafted ? now_.trusses.block[b].deflection[i] : block.deflection[i] - faces_.gap[i] * cosine;
             if (drawn_to <= pressed_to) continue;
         } else if (!was_drawn && drawn_to <= block.deflection[i]) {
             continue;
@@ -446,7 +531,8 @@ void Skin::load_drivers() {
         ObstacleSums& sums = obstacles_[k];
         std::size_t count = 0;
         const auto rub_some = [&] {
-            std::fill(contact.pressure.begin() + static_cast<std::ptrdiff_t>(count), contact.pressure.end(), 0.0);
+            std::fill(contact.pressure.begin() + static_cast<std::ptrdiff_t>(count), contact.pressure.end(),
+                      0.0);
             const double mu = scene_.obstacles[near_[k].index].friction;
             if (mu > 0.0 && count > 0)
                 add_friction(unit_.body, mu, full_speed_, motion_, places, contact, sums.friction);
@@ -531,9 +617,11 @@ void Skin::hand_over() {
         skin.normal_force += touch.normal_force;
         if (touch.normal_force > 0.0) touches.push_back(touch);
     }
-    // What was touched before and is not now ends its course in this step.
+    // What was touched before and is not now ends its course: at once, or, as part of a structure that is, in the
+    // steps by which the structure's course reaches back.
     for (const Touch& last : before_.touches) {
-        if (!(last.normal_force > 0.0)) continue;
+        const Load &rate = last.course.rate, &bend = last.course.bend;
+        if (!(last.normal_force > 0.0) && rate.normal_force == 0.0 && bend.normal_force == 0.0) continue;
         const auto place = std::lower_bound(
             touches.begin(), touches.end(), last.obstacle,
             [](const Touch& touch, std::size_t obstacle) { return touch.obstacle < obstacle; });

@@ -25,11 +25,13 @@ struct Approach {
 
 // What the vehicle can touch: an element of the barrier, or the ground.
 struct Obstacle {
-    Shape shape;                      // own axes
-    Mat3 rotation = Mat3::Identity(); // own axes to the world
-    Vec3 position = Vec3::Zero();     // of the own axes' origin, world (m)
+    Shape shape;                       // own axes
+    Mat3 rotation = Mat3::Identity();  // own axes to the world
+    Vec3 position = Vec3::Zero();      // of the own axes' origin, world (m)
     bool holds_skin = false;
     double friction = 0.0;
+    std::size_t structure =
+        0;  // place of the first obstacle that this one is joined to, itself where it stands alone
 };
 
 struct Scene {
@@ -43,9 +45,10 @@ struct Scene {
     Settings settings;
     std::optional<double> duration;  // s; absent: until the outcome is decided
 
-    std::vector<Obstacle> obstacles;    // the barrier's elements in their order, then the ground
-    std::size_t ground;                 // place of the ground among them; beyond the last where there is none
-    std::vector<char> skin_meets_ground;  // (units) those that stand on wheels, with all of their skin above the ground
+    std::vector<Obstacle> obstacles;  // the barrier's elements in their order, then the ground
+    std::size_t ground;               // place of the ground among them; beyond the last where there is none
+    std::vector<char>
+        skin_meets_ground;  // (units) those that stand on wheels, with all of their skin above the ground
 
     State initial_state() const;
 

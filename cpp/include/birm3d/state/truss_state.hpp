@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "birm3d/base/hash.hpp"
+#include "birm3d/base/tolerances.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 
 namespace birm3d {
@@ -17,7 +18,13 @@ struct alignas(64) TrussBlockState {
     std::uint64_t drawn;              // bit by bit: is the node drawn in by a dent beside it?
     std::uint64_t leading;            // the same: do nodes that are drawn in hang on it?
     bool touching;                    // does any node push on an obstacle?
+    bool slack;  // has an obstacle drawn any node out beyond the free length of its truss?
 };
+
+// Was the node drawn out beyond the free length of its truss? A truss does not pull.
+inline bool is_slack(const TrussBlockState& block, std::size_t i) {
+    return block.force[i] == 0.0 && block.residual[i] - block.deflection[i] > tolerance::touching_gap;
+}
 
 struct TrussState {
     explicit TrussState(const TrussMesh& mesh) : block(mesh.blocks) {
@@ -38,9 +45,9 @@ struct TrussState {
                  {&b.x, &b.y, &b.z, &b.deflection, &b.force, &b.peak_deflection, &b.residual})
                 hash.add(*column);
         for (const TrussBlockState& b : block)
-            if ((b.drawn | b.leading) != 0) hash.add(Vec3(static_cast<double>(b.drawn >> 32),
-                                                          static_cast<double>(b.drawn & 0xffffffffU),
-                                                          static_cast<double>(b.leading)));
+            if ((b.drawn | b.leading) != 0)
+                hash.add(Vec3(static_cast<double>(b.drawn >> 32), static_cast<double>(b.drawn & 0xffffffffU),
+                              static_cast<double>(b.leading)));
     }
 };
 
