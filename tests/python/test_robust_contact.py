@@ -1,4 +1,4 @@
-"""Nothing ends a step inside a barrier, a wall in segments is the same wall, and gliding along one costs few steps."""
+"""Nothing ends a step inside a barrier, a wall in segments is the same wall, and gliding costs few steps."""
 
 from __future__ import annotations
 
