@@ -3,10 +3,10 @@
     python tests/bench/bench_library.py [--mesh-density 1.0] [--dent-slope S] [--save] [--csv FILE]
     python tests/bench/bench_library.py --quick
 
-Vehicle presets x barriers (endless wall, finite wall, five bollards, Jersey barrier of 32 in) x angles 10, 25, 45, 90
-deg x speeds 5, 15, 25, 40 m/s. A row each: outcome, steps, time of stepping, greatest crush, vehicle penetration, how
-deep nodes and anchors were inside at the end of any step, residuals of energy (below 0.5 %) and momentum (below 1e-9).
-Ends with 1 if any row has a fault. Times include looking at every step and say little.
+Vehicle presets x barriers (endless wall, finite wall, five bollards, Jersey barrier of 32 in) x angles 10,
+25, 45, 90 deg x speeds 5, 15, 25, 40 m/s. A row each: outcome, steps, time of stepping, greatest crush, vehicle
+penetration, how deep nodes and anchors were inside at the end of any step, residuals of energy (below 0.5 %)
+and momentum (below 1e-9). Ends with 1 if any row has a fault. Times include looking at every step.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ def print_summary(rows: Sequence[Row]) -> None:
     for scene, fault in faults:
         print("FAULT", *(text(cell) for cell in scene), fault)
     print(
-        f"{len(rows)} scenes, {len(faults)} with a fault; nodes may be {1e3 * NODE_DEPTH:g} mm inside in corners, "
+        f"{len(rows)} scenes, {len(faults)} with a fault; limits of depth: nodes {1e3 * NODE_DEPTH:g} mm, "
         f"anchors {1e3 * ANCHOR_DEPTH:g} mm"
     )
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 from birm3d import Simulation
 
-# A node in an inner corner, of two slopes or of barrier and ground, leaves its deeper face in one step and the
-# other in the next: it may be this far inside at the end of a step [m].
-NODE_DEPTH = 10e-3
+# Where three faces meet, as those of a barrier on the ground, a node may be this far inside at the end of a
+# step [m]: it goes onto two of them.
+NODE_DEPTH = 5e-3
 # Closed trusses are held by rigid contact, which finds what is inside at the end of the step [m].
 ANCHOR_DEPTH = 1e-3
 ENERGY = 5e-3
@@ -19,7 +19,7 @@ MOMENTUM = 1e-9
 
 @dataclass(frozen=True)
 class Watched:
-    """Outcome of one run; lengths in m, energies relative to the start, forces relative to the greatest."""
+    """Outcome of one run; lengths in m, energies and forces relative."""
 
     outcome: str
     steps: int

@@ -109,6 +109,7 @@ class Skin {
     void press_shapes(std::size_t b);
     const TrussBlockState& look(std::size_t b);
     void turn_flat_faces();
+    void settle_in_corners(const TrussBlockState& block);
     void find_entered_faces(const TrussBlockState& block);
     const TrussBlockState& follow_with_leading(std::size_t b);
     bool set_hanging(std::size_t b);
@@ -345,6 +346,7 @@ const TrussBlockState& Skin::look(std::size_t b) {
     }
     if (!block.touching) {
         find_entered_faces(block);
+        settle_in_corners(block);
         return block;
     }
     // Of all surfaces at that instant: segments of a wall take over from each other.
@@ -364,7 +366,48 @@ const TrussBlockState& Skin::look(std::size_t b) {
     }
     find_entered_faces(block);
     turn_flat_faces();
+    settle_in_corners(block);
     return block.leading == 0 ? block : follow_with_leading(b);
+}
+
+// Where a node that leaves one surface would get into another, in the corner between a barrier and the ground or of two
+// slopes, it goes onto both: the corner pushes it straight there.
+void Skin::settle_in_corners(const TrussBlockState& block) {
+    const auto is_prism = [&](std::size_t k) {
+        return std::holds_alternative<Prism>(scene_.obstacles[near_[k].index].shape);
+    };
+    if (seen_.empty() || (seen_.size() == 1 && !is_prism(seen_[0]))) return;
+    const auto inside = [&](std::size_t i) { return faces_.gap[i] < -tolerance::touching_gap; };
+    alignas(64) Lanes x = block.x, y = block.y, z = block.z;
+    bool any = false;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!inside(i)) continue;
+        any = true;
+        x[i] -= faces_.gap[i] * contact_.nx[i];
+        y[i] -= faces_.gap[i] * contact_.ny[i];
+        z[i] -= faces_.gap[i] * contact_.nz[i];
+    }
+    if (!any) return;
+    constexpr double parallel = 0.01;  // square of the sine below which two faces make no corner
+    alignas(64) NearestLanes found;
+    for (const std::size_t k : seen_) {
+        const NearObstacle& obstacle = near_[k];
+        nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.now, obstacle.now, x, y, z, found);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            if (!inside(i) || !(found.gap[i] < -tolerance::touching_gap)) continue;
+            const Vec3 first = contact_.normal(i), second(found.nx[i], found.ny[i], found.nz[i]);
+            const Vec3 along = second - second.dot(first) * first;
+            const double square = along.squaredNorm();
+            if (square < parallel) continue;
+            const Vec3 way = -faces_.gap[i] * first - found.gap[i] / square * along;
+            const double length = way.norm();
+            const Vec3 n = way / length;
+            faces_.gap[i] = -length;
+            contact_.nx[i] = faces_.bx[i] = n.x();
+            contact_.ny[i] = faces_.by[i] = n.y();
+            contact_.nz[i] = faces_.bz[i] = n.z();
+        }
+    }
 }
 
 // A flat face, or an edge, had the same normal in its own axes an instant before, whatever was nearest then.
