@@ -3,8 +3,8 @@
     python tests/bench/bench_library.py [--mesh-density 1.0] [--dent-slope S] [--save] [--csv FILE]
     python tests/bench/bench_library.py --quick
 
-Vehicle presets x barriers (endless wall, finite wall, five bollards, Jersey barrier of 32 in) x angles 10,
-25, 45, 90 deg x speeds 5, 15, 25, 40 m/s. A row each: outcome, steps, time of stepping, greatest crush, vehicle
+Vehicle presets x barriers (endless and finite wall, five bollards, Jersey barrier of 32 in) x angles 10, 25,
+45, 90 deg x speeds 5, 15, 25, 40 m/s. A row each: outcome, steps, time of stepping, greatest crush, vehicle
 penetration, how deep nodes and anchors were inside at the end of any step, residuals of energy (below 0.5 %)
 and momentum (below 1e-9). Ends with 1 if any row has a fault. Times include looking at every step.
 """

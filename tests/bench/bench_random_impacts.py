@@ -4,7 +4,7 @@
     python tests/bench/bench_random_impacts.py --quick
 
 Coarse presets and a laboratory block at 1 to 60 m/s and 5 to 90 deg against posts of 0.1 to 0.5 m, sloped
-profiles, walls without end, finite and in segments, and meshes of walls and posts; every fifth group of vehicles
+profiles, walls without end, finite and in segments, and meshes of walls and posts; every fifth group
 with `Vehicle.with_dent_slope(1.0)`. Watched step by step (watched_run.py):
 
 - missed: the straight path of some node leads 5 cm or more into the barrier, and nothing touched;
@@ -86,7 +86,7 @@ def vehicle(name: str, dents: bool) -> Vehicle:
 
 
 def prism_mesh(profile: Floats, length: float, pieces: int) -> tuple[Floats, npt.NDArray[np.int64]]:
-    """Return vertices and faces of a convex profile (x, z) [m], drawn along y in `pieces`, closed at its ends."""
+    """Return vertices and faces of a convex profile (x, z) [m], drawn along y in `pieces`, with ends."""
     n = len(profile)
     rings = [
         np.column_stack([profile[:, 0], np.full(n, y), profile[:, 1]])
@@ -263,7 +263,8 @@ def print_summary(found: Sequence[Found]) -> None:
             continue
         _, runs, touched, node, anchor, energy, momentum, ghost, faults = summary(kind, of)
         print(
-            f"{kind:18s}{runs:6d}{touched:8d}{1e3 * float(str(node)):8.3f} mm{1e3 * float(str(anchor)):8.3f} mm",
+            f"{kind:18s}{runs:6d}{touched:8d}{1e3 * float(str(node)):8.3f} mm",
+            f"{1e3 * float(str(anchor)):7.3f} mm",
             end="",
         )
         print(f"{energy:9.1e}{momentum:9.1e}{ghost:9.1e}{faults:7d}")

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Simulation, Vehicle
 
-# Depth in which a node may be left (m): one in an inner corner leaves its deeper face in one step, the other
-# in the next.
-DEPTH = 10e-3
+# Depth in which a node may be left where three faces meet (m).
+DEPTH = 5e-3
 
 
 def deepest(simulation: Simulation) -> tuple[float, float]:
