@@ -13,7 +13,7 @@ DEPTH = 5e-3
 
 
 def deepest(simulation: Simulation) -> tuple[float, float]:
-    """Run to the end and return how deep the deepest node and the deepest anchor were at the end of any step [m]."""
+    """Run to the end; return how deep the deepest node and anchor were at the end of any step [m]."""
     node = anchor = 0.0
     while simulation.step():
         node = max(node, simulation._core.deepest_node)
