@@ -60,7 +60,8 @@ void register_barrier(py::module_& m) {
             py::kw_only(), py::arg("profile"), py::arg("y_low"), py::arg("y_high"), py::arg("covered_edges"),
             py::arg("covered_low_end"), py::arg("covered_high_end"), py::arg("position"), py::arg("heading"),
             py::arg("holds_skin"),
-            "profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered faces are "
+            "profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered faces "
+            "are "
             "no surface.")
         .def_static(
             "mesh",
@@ -74,12 +75,13 @@ void register_barrier(py::module_& m) {
 
     py::class_<Barrier, std::shared_ptr<Barrier>>(m, "Barrier",
                                                   "Elements that stand on the ground. Immutable.")
-        .def(py::init([](const std::vector<Element>& elements, double friction, const InputArray& origin,
-                         double heading) {
-                 return std::make_shared<Barrier>(elements, friction, vector(origin, "origin"), heading);
-             }),
-             py::kw_only(), py::arg("elements"), py::arg("friction"), py::arg("origin"), py::arg("heading"),
-             "friction: Coulomb coefficient; origin (3,) m on the barrier's line; heading of it about z, rad.")
+        .def(
+            py::init([](const std::vector<Element>& elements, double friction, const InputArray& origin,
+                        double heading) {
+                return std::make_shared<Barrier>(elements, friction, vector(origin, "origin"), heading);
+            }),
+            py::kw_only(), py::arg("elements"), py::arg("friction"), py::arg("origin"), py::arg("heading"),
+            "friction: Coulomb coefficient; origin (3,) m on the barrier's line; heading of it about z, rad.")
         .def_property_readonly(
             "normal", [](const Barrier& barrier) { return copy(barrier.normal()); },
             "(3,) of the barrier's line, towards the traffic, world axes");

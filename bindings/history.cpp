@@ -103,7 +103,7 @@ void register_history(py::module_& m) {
     history.def_property_readonly(
         "elements",
         [](const py::object& self) {
-            py::list list;
+            py::typing::List<ObstacleHistory> list;
             for (const ObstacleHistory& of : self.cast<const History&>().obstacles)
                 list.append(py::cast(of, py::return_value_policy::reference_internal, self));
             return list;

@@ -15,6 +15,7 @@ from .calibration import calibrate
 from .channel import Channel
 from .channel_checks import check_channel
 from .comparison import CurveComparison, compare_curves
+from .element_loads import ElementLoad
 from .fragility import fragility
 from .impact_point import critical_impact_point
 from .monte_carlo import monte_carlo
@@ -34,6 +35,7 @@ __all__ = [
     "Barrier",
     "Channel",
     "CurveComparison",
+    "ElementLoad",
     "Joint",
     "Result",
     "Scene",

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -25,16 +25,17 @@ Point = tuple[float, float, float]
 class Barrier:
     """A barrier that stands on the ground; immutable. Make one with :meth:`rigid_wall`, :meth:`bollards`, ...
 
-    Its line runs along +y at heading 0 and its traffic face looks to -x; the vehicle comes from there. It has one
-    or more elements (a post, a segment of a wall): loads are reported element by element.
+    Its line runs along +y at heading 0 and its traffic face looks to -x; the vehicle comes from there. It has
+    one or more elements (a post, a segment of a wall): loads are reported element by element, see
+    :attr:`birm3d.Result.element_loads`.
 
     Parameters
     ----------
     friction
         Coulomb coefficient between vehicle and barrier; 0.15 to 0.20 for steel on concrete (paper 5.4).
     origin
-        A point of the barrier's line, at the foot of its traffic face, of posts of their axes; world axes [m],
-        shape (3,).
+        A point of the barrier's line, at the foot of its traffic face, of posts of their axes; world axes,
+        shape (3,) [m].
     heading
         Turn of the barrier's line about the vertical [deg].
     """
@@ -43,11 +44,20 @@ class Barrier:
     origin: Point = (0.0, 0.0, 0.0)
     heading: float = 0.0
 
+    _counts: ClassVar[tuple[str, ...]] = ()  # fields that are whole numbers
+
     def __post_init__(self) -> None:
         if np.shape(self.origin) != (3,):
             raise ValueError(f"origin must have shape (3,), got {np.shape(self.origin)}")
         x, y, z = (float(value) for value in self.origin)
         object.__setattr__(self, "origin", (x, y, z))
+        for name in self._counts:
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 1 and int(value) == value):
+                raise ValueError(f"{name} must be a whole number >= 1, got {value}")
+            object.__setattr__(self, name, int(value))  # a sweep gives 3.0
+        if not math.isfinite(self.heading):
+            raise ValueError(f"heading must be finite, got {self.heading}")
         _ = self.core
 
     # ---- making barriers ----------------------------------------------------------------------------------
@@ -205,7 +215,11 @@ class Barrier:
         """
         from .barrier_kinds import Jersey
 
-        points = profile if isinstance(profile, str) else tuple((float(x), float(z)) for x, z in profile)
+        points: Any = profile
+        if not isinstance(profile, str):
+            if np.ndim(profile) != 2 or np.shape(profile)[1] != 2:
+                raise ValueError(f"profile must have shape (n, 2), got {np.shape(profile)}")
+            points = tuple((float(x), float(z)) for x, z in profile)
         return Jersey(
             float(friction),
             _point(origin),
@@ -242,7 +256,8 @@ class Barrier:
         Raises
         ------
         ValueError
-            If shapes or indices are wrong, or the triangles are no surface; the message names the culprit.
+            If shapes or indices are wrong, the triangles are no surface, or a closed surface is inside out;
+            the message names the culprit.
         """
         from .barrier_kinds import MeshBarrier
 
@@ -283,7 +298,7 @@ class Barrier:
         """
         angle = math.radians(self.heading)
         turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-        return np.asarray(self.origin, float) + np.array([*(turn @ [across, along]), 0.0])
+        return np.asarray(np.asarray(self.origin) + np.array([*(turn @ [across, along]), 0.0]))
 
     def __getstate__(self) -> dict[str, object]:
         return {field.name: getattr(self, field.name) for field in fields(self)}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -16,26 +17,28 @@ __all__ = ["PROFILES", "Bollards", "Jersey", "MeshBarrier", "Pole", "RigidWall"]
 
 Floats = npt.NDArray[np.float64]
 
+# A wall of finite width without a top has it here, above anything that could come [m].
+_HIGH = 100.0
 # Solids that stand on the ground go on below it, so that nothing is pushed out downwards [m].
 _FOOT = 1.0
 
 
-def _positive(name: str, value: float, unit: str = " m") -> None:
+def _positive(name: str, value: float) -> None:
     if not value > 0.0:
-        raise ValueError(f"{name} must be > 0{unit}, got {value}")
+        raise ValueError(f"{name} must be > 0 m, got {value}")
 
 
-def _whole(name: str, value: int) -> None:
-    if int(value) != value or value < 1:
-        raise ValueError(f"{name} must be a whole number >= 1, got {value}")
+def _finite(name: str, value: float) -> None:
+    if not 0.0 < value < math.inf:
+        raise ValueError(f"{name} must be finite and > 0 m, got {value}")
 
 
 @dataclass(frozen=True)
 class RigidWall(Barrier):
     """A flat, rigid, vertical wall.
 
-    Without end in width and height it is a half-space. Else it has a ``thickness``, with ends, a top and a back that
-    can be met like the face.
+    Without end in width and height it is a half-space. Else it has a ``thickness``, with ends, a top and a
+    back that can be met like the face.
     """
 
     width: float = math.inf
@@ -43,22 +46,20 @@ class RigidWall(Barrier):
     thickness: float = 0.5
     segments: int = 1
 
+    _counts: ClassVar = ("segments",)
+
     def elements(self) -> list[_core.Element]:
         """Return the segments, from low y to high y."""
-        for name in ("width", "height", "thickness"):
-            _positive(name, getattr(self, name))
-        _whole("segments", self.segments)
+        _positive("width", self.width)
+        _positive("height", self.height)
+        _finite("thickness", self.thickness)
         heading = math.radians(self.heading)
         if math.isinf(self.width) and self.segments > 1:
             raise ValueError(f"segments must be 1 for a wall of infinite width, got {self.segments}")
         if math.isinf(self.width) and math.isinf(self.height):
             return [_core.Element.plane(position=self.place(0.0, 0.0), heading=heading, holds_skin=False)]
-        corners = [
-            (0.0, -_FOOT),
-            (self.thickness, -_FOOT),
-            (self.thickness, self.height),
-            (0.0, self.height),
-        ]
+        top = self.height if math.isfinite(self.height) else _HIGH
+        corners = [(0.0, -_FOOT), (self.thickness, -_FOOT), (self.thickness, top), (0.0, top)]
         return _along_line(self, np.array(corners), 0.0, self.width, self.segments)
 
     @property
@@ -75,7 +76,7 @@ class Pole(Barrier):
 
     def elements(self) -> list[_core.Element]:
         """Return the pole."""
-        _positive("diameter", self.diameter)
+        _finite("diameter", self.diameter)
         return [
             _core.Element.post(
                 radius=0.5 * self.diameter,
@@ -96,8 +97,8 @@ class Pole(Barrier):
 class Bollards(Barrier):
     """Rigid bollards in rows.
 
-    A bollard is narrow: sheet metal is drawn in with its neighbours and held in line, where free nodes would slip
-    round to either side and let it pass between them.
+    A bollard is narrow: sheet metal is drawn in with its neighbours and held in line, where free nodes would
+    slip round to either side and let it pass between them.
     """
 
     count: int = 5
@@ -108,11 +109,11 @@ class Bollards(Barrier):
     row_spacing: float = 1.2
     row_offset: float = 0.0
 
+    _counts: ClassVar = ("count", "rows")
+
     def elements(self) -> list[_core.Element]:
         """Return the bollards, row by row from the front, each from low y to high y."""
-        _whole("count", self.count)
-        _whole("rows", self.rows)
-        _positive("diameter", self.diameter)
+        _finite("diameter", self.diameter)
         _positive("height", self.height)
         for name, number in (("spacing", self.count), ("row_spacing", self.rows)):
             value = getattr(self, name)
@@ -126,13 +127,20 @@ class Bollards(Barrier):
             _core.Element.post(
                 radius=0.5 * self.diameter,
                 height=self.height,
-                position=self.place(
-                    row * self.row_spacing if row else 0.0,
-                    ((i - 0.5 * (self.count - 1)) * self.spacing if self.count > 1 else 0.0)
-                    + row * self.row_offset,
-                ),
+                position=self.place(across, along),
                 heading=math.radians(self.heading),
                 holds_skin=True,
+            )
+            for across, along in self.places()
+        ]
+
+    def places(self) -> list[tuple[float, float]]:
+        """Return the axes of the bollards across and along the line [m], see :meth:`Barrier.place`."""
+        return [
+            (
+                row * self.row_spacing if row else 0.0,
+                ((i - 0.5 * (self.count - 1)) * self.spacing if self.count > 1 else 0.0)
+                + row * self.row_offset,
             )
             for row in range(self.rows)
             for i in range(self.count)
@@ -146,9 +154,9 @@ class Bollards(Barrier):
         return tuple(f"row {r + 1}, bollard {i + 1}" for r in range(self.rows) for i in range(self.count))
 
 
-# Half widths and heights of concrete barriers [in] with the slope of the upper face [deg]: 3 in vertical, 55 deg to the
-# break, 84 deg above (FHWA; the break is at 13 in for New Jersey, at 10 in for the F-shape); Texas single slope 10.8
-# deg from the vertical, base 24 in.
+# Half widths and heights of concrete barriers [in] with the slope of the upper face [deg]: 3 in vertical,
+# 55 deg to the break, 84 deg above (FHWA; the break is at 13 in for New Jersey, at 10 in for the F-shape);
+# Texas single slope 10.8 deg from the vertical, base 24 in.
 _INCH = 0.0254
 PROFILES = MappingProxyType(
     {
@@ -164,12 +172,14 @@ _USUAL_HEIGHT = {"new_jersey": 32.0, "f_shape": 32.0, "single_slope": 42.0}
 
 @dataclass(frozen=True)
 class Jersey(Barrier):
-    """A concrete barrier with sloped faces, the same on both sides; the line is the foot of its traffic face."""
+    """A concrete barrier with sloped faces, the same on both sides; its line is the traffic face's foot."""
 
     profile: str | tuple[tuple[float, float], ...] = "new_jersey"
     height: float | None = None
     length: float = math.inf
     segments: int = 1
+
+    _counts: ClassVar = ("segments",)
 
     def half_profile(self) -> Floats:
         """Return half width and height of the face's corners from the foot to the top, shape (n, 2) [m]."""
@@ -179,7 +189,10 @@ class Jersey(Barrier):
             points = np.array(self.profile, float)
             if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2:
                 raise ValueError(f"profile must have shape (n, 2) with n >= 2, got {points.shape}")
-            if points[0, 1] != 0.0 or not (np.diff(points[:, 1]) > 0.0).all() or not (points[:, 0] > 0.0).all():
+            if not np.isfinite(points).all():
+                raise ValueError(f"profile must be finite, got {points.tolist()}")
+            rises = points[0, 1] == 0.0 and (np.diff(points[:, 1]) > 0.0).all()
+            if not (rises and (points[:, 0] > 0.0).all()):
                 raise ValueError(
                     f"profile must begin at height 0, rise, and have half widths > 0, got {points.tolist()}"
                 )
@@ -198,7 +211,6 @@ class Jersey(Barrier):
     def elements(self) -> list[_core.Element]:
         """Return the segments, from low y to high y."""
         _positive("length", self.length)
-        _whole("segments", self.segments)
         if math.isinf(self.length) and self.segments > 1:
             raise ValueError(f"segments must be 1 for a barrier of infinite length, got {self.segments}")
         half = self.half_profile()
@@ -232,6 +244,20 @@ class MeshBarrier(Barrier):
         for array in (self.vertices, self.faces):
             array.setflags(write=False)
         super().__post_init__()
+        volume = self._volume()
+        if volume < 0.0:
+            raise ValueError(
+                f"faces must be counter-clockwise seen from outside, around > 0 m^3, got {volume:.4g}"
+            )
+
+    def _volume(self) -> float:
+        """Volume that a closed surface encloses [m^3], negative if it is inside out; 0 of an open one."""
+        edges = np.vstack([self.faces[:, [0, 1]], self.faces[:, [1, 2]], self.faces[:, [2, 0]]])
+        there = set(map(tuple, edges.tolist()))
+        if any((b, a) not in there for a, b in there):
+            return 0.0
+        a, b, c = (self.vertices[self.faces[:, i]] - self.vertices[0] for i in range(3))
+        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
 
     def elements(self) -> list[_core.Element]:
         """Return the mesh."""

@@ -14,7 +14,7 @@ from .cli_calibrate import calibrate_file
 from .cli_scene import scene_options, simulation_of
 from .cli_sweep import sweep
 from .cli_table import print_table
-from .outcome import outcome_rows
+from .outcome import ELEMENT_COLUMNS, element_rows, elements_in_si, outcome_rows
 
 if TYPE_CHECKING:
     from .result import Result
@@ -36,7 +36,7 @@ _cli.add_command(calibrate_file)
 
 @_cli.command()
 @scene_options
-@click.option("--json", "as_json", is_flag=True, help="Metrics as JSON on stdout.")
+@click.option("--json", "as_json", is_flag=True, help="Metrics and loads on elements as JSON on stdout.")
 @click.option("--report", "with_report", is_flag=True, help="Also what was computed and what was left out.")
 @click.option("--plot", type=_FILE, help="Write figures to this file (.png, .pdf, .svg).")
 @click.option("--csv", "csv_path", type=_FILE, help="Write histories to this file.")
@@ -84,6 +84,7 @@ def run(
 @click.option("--json", "as_json", is_flag=True, help="As JSON on stdout.")
 def vehicles(as_json: bool) -> None:
     """List the vehicles that come with the package."""
+    from rich.markup import escape
     from rich.table import Table
 
     from .vehicle import Vehicle
@@ -105,7 +106,10 @@ def vehicles(as_json: bool) -> None:
         return
     table = Table(
         "vehicle",
-        *(f"{name}" for name in ("mass [kg]", "CG height [m]", "Ixx, Iyy, Izz [kg m²]", "elements", "zones")),
+        *(
+            escape(name)
+            for name in ("mass [kg]", "CG height [m]", "Ixx, Iyy, Izz [kg m²]", "elements", "zones")
+        ),
     )
     for name, v in rows.items():
         inertia = ", ".join(f"{value:,.0f}" for value in v.inertia.diagonal())
@@ -124,6 +128,7 @@ def _as_json(result: Result) -> dict[str, Any]:
         "end_reason": result.end_reason,
         "state_hash": f"{result.state_hash:016x}",
         "metrics": dict(result.metrics),
+        "elements": elements_in_si(result),
     }
 
 
@@ -131,6 +136,7 @@ _cli.add_command(sweep)
 
 
 def _print_outcome(result: Result) -> None:
+    from rich.markup import escape
     from rich.table import Table
 
     scene = result.scene
@@ -146,6 +152,15 @@ def _print_outcome(result: Result) -> None:
     for row in outcome_rows(result):
         table.add_row(*row)
     print_table(table)
+    elements = element_rows(result)
+    if scene.barrier is None or len(scene.barrier.element_names) < 2 or not elements:
+        return  # the loads on the only element are in the first table
+    loads = Table(
+        *(escape(name) for name in ELEMENT_COLUMNS), title="elements of the barrier that were touched"
+    )
+    for numbers in elements:
+        loads.add_row(*numbers)
+    print_table(loads)
 
 
 def main() -> None:

@@ -36,10 +36,10 @@ class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]
 
 # Kind of barrier -> the options that give its sizes.
 _SIZES = {
-    "rigid_wall": ("width", "height"),
+    "rigid_wall": ("width", "height", "thickness", "segments"),
     "pole": ("diameter",),
-    "bollards": ("count", "diameter", "height", "spacing"),
-    "jersey": ("profile", "height", "length"),
+    "bollards": ("count", "diameter", "height", "spacing", "rows", "row_spacing", "row_offset"),
+    "jersey": ("profile", "height", "length", "segments"),
 }
 
 _OPTIONS = (
@@ -57,23 +57,39 @@ _OPTIONS = (
     ),
     click.option("--width", type=Quantity("length"), help="Of the wall.  [default: without end]"),
     click.option("--height", type=Quantity("length"), help="Of wall, bollards or Jersey barrier."),
+    click.option("--thickness", type=Quantity("length"), help="Of a wall with an end or a top."),
     click.option("--diameter", type=Quantity("length"), help="Of pole or bollards."),
     click.option("--count", type=int, help="Bollards in a row."),
     click.option("--spacing", type=Quantity("length"), help="Of bollards, centre to centre."),
+    click.option("--rows", type=int, help="Of bollards."),
+    click.option("--row-spacing", type=Quantity("length"), help="Of rows of bollards, axis to axis."),
+    click.option("--row-offset", type=Quantity("length"), help="Shift of each row from the one before it."),
     click.option(
         "--profile", type=click.Choice(["new_jersey", "f_shape", "single_slope"]), help="Of a Jersey barrier."
     ),
     click.option("--length", type=Quantity("length"), help="Of a Jersey barrier.  [default: without end]"),
+    click.option("--segments", type=int, help="Of a wall or Jersey barrier that has ends."),
     click.option("--friction", type=float, default=0.2, show_default=True, help="Vehicle on barrier."),
     click.option("--speed", type=Quantity("speed"), help="Such as 50mph, 57.09km/h or 15.9 (m/s)."),
     click.option(
         "--angle", type=Quantity("angle"), default=90.0, show_default=True, help="Path to barrier line, deg."
     ),
     click.option(
-        "--offset", type=Quantity("length"), default=0.0, show_default=True, help="Along the barrier, m."
+        "--offset",
+        type=Quantity("length"),
+        default=0.0,
+        show_default=True,
+        help="Along the barrier, m; at angle 0 behind its line.",
     ),
     click.option(
-        "--yaw", type=Quantity("angle"), default=0.0, show_default=True, help="Nose to the left of the path, deg."
+        "--yaw",
+        type=Quantity("angle"),
+        default=0.0,
+        show_default=True,
+        help="Nose to the left of the path, deg.",
+    ),
+    click.option(
+        "--roll", type=Quantity("angle"), default=0.0, show_default=True, help="To the right at impact, deg."
     ),
     click.option("--duration", type=Quantity("time"), help="Default: until the outcome is decided."),
     click.option("--tolerance", type=float, help="Wanted relative error.  [default: 0.001]"),
@@ -113,11 +129,12 @@ def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
     make = Vehicle.from_file if options["vehicle"].endswith(".toml") else Vehicle.preset
     vehicle = make(options["vehicle"], gvw=options["gvw"], mesh_density=options["mesh_density"])
     kind = options["barrier"]
-    sizes = {name: options[name] for names in _SIZES.values() for name in names if options[name] is not None}
+    known = dict.fromkeys(name for names in _SIZES.values() for name in names)
+    sizes = {name: options[name] for name in known if options[name] is not None}
     for name in sizes:
         if name not in _SIZES.get(kind, ()):
             kinds = " or ".join(other for other, names in _SIZES.items() if name in names)
-            raise click.UsageError(f"--{name}: of {kinds}, not of {kind}")
+            raise click.UsageError(f"--{name.replace('_', '-')}: of {kinds}, not of {kind}")
     barrier = None
     if kind != "none":
         barrier = getattr(Barrier, kind)(friction=options["friction"], **sizes)
@@ -129,6 +146,7 @@ def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
         options["angle"],
         options["offset"],
         impact_yaw=options["yaw"],
+        impact_roll=options["roll"],
         duration=options["duration"],
         settings=Settings(**settings),
     )

@@ -25,18 +25,8 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from .toml_document import Document, Strict, frozen, reject
-from .vehicle_file import (
-    Block,
-    Name,
-    Point,
-    Positive,
-    Source,
-    Text,
-    VehicleFile,
-    VehicleFileError,
-    check_known,
-    read_vehicle_file,
-)
+from .vehicle_blocks import Block, Name, Point, Positive, Source, Text, check_known
+from .vehicle_file import VehicleFile, VehicleFileError, read_vehicle_file
 
 __all__ = ["Combination", "CombinationFile", "JointBlock", "UnitReference", "read_combination"]
 

@@ -14,6 +14,9 @@ __all__ = ["check_load", "load_height", "solids_at", "structure_mass"]
 
 Floats = npt.NDArray[np.float64]
 
+# Goods are not spread thinner, m: a solid needs a volume, and what is left of a load weighs nothing then.
+_THINNEST = 1e-3
+
 
 def structure_mass(file: VehicleFile) -> float:
     """Mass of a vehicle without its payload [kg]; 0 where a file names none: then all of it is rescaled."""
@@ -54,9 +57,9 @@ def _masses(file: VehicleFile) -> tuple[Floats, npt.NDArray[np.bool_]]:
 
 
 def load_height(solid: Solid, mass: float, density: float | None = None) -> float:
-    """Height of goods of a mass [kg] on the floor of their space [m], at most that of the space."""
+    """Height of goods of a mass [kg] on the floor of their space [m]: 1 mm at least, the space at most."""
     height = mass / (_floor_area(solid) * (solid.density if density is None else density))
-    return min(height, _space(solid))
+    return min(max(height, _THINNEST), _space(solid))
 
 
 def check_load(file: VehicleFile, mass: float, density: float | None, height: float | None) -> float | None:

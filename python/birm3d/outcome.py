@@ -1,24 +1,36 @@
-"""The scalars of a run that decide, with labels and units of practice."""
+"""The numbers of a run that decide, with labels and units of practice."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from . import units
+from .element_loads import touched_elements
 
 if TYPE_CHECKING:
     from .result import Result
 
-__all__ = ["outcome_rows"]
+__all__ = ["ELEMENT_COLUMNS", "element_rows", "elements_in_si", "outcome_rows"]
+
+ELEMENT_COLUMNS = (
+    "element",
+    "peak force, unfiltered [kN]",
+    "50-ms mean [kN]",
+    "height then [m]",
+    "overturning moment, 50-ms mean [kN m]",
+)
+"""Of :func:`element_rows`."""
 
 _ROWS = (
     ("dynamic_crush", "dynamic crush (greatest truss shortening)", "m", 1.0, ".3f"),
     ("residual_crush", "residual crush", "m", 1.0, ".3f"),
     ("max_displacement", "travel of the mass centre towards the barrier", "m", 1.0, ".3f"),
-    ("vehicle_penetration", "penetration past the barrier's face", "m", 1.0, ".3f"),
+    ("vehicle_penetration", "rigid body past the barrier's line", "m", 1.0, ".3f"),
     ("time_of_zero_velocity", "time of zero normal velocity", "ms", 1e-3, ".1f"),
     ("peak_normal_force_cfc60", "peak normal force, CFC 60", "kN", 1e3, ".0f"),
     ("peak_force_50ms", "peak 50-ms mean of the normal force", "kN", 1e3, ".0f"),
+    ("peak_element_force_50ms", "peak 50-ms force on one element", "kN", 1e3, ".0f"),
+    ("peak_overturning_moment_50ms", "peak 50-ms overturning moment of one element", "kN m", 1e3, ".0f"),
     ("peak_deceleration_cfc60", "peak deceleration along r, CFC 60", "g", units.g, ".1f"),
     ("delta_v", "change of velocity", "m/s", 1.0, ".2f"),
     ("restitution", "restitution along the normal", "", 1.0, ".2f"),
@@ -39,4 +51,30 @@ def outcome_rows(result: Result) -> list[tuple[str, str, str]]:
         (label, format(metrics[name] / size, form), unit)
         for name, label, unit, size, form in _ROWS
         if name in metrics
+    ]
+
+
+def element_rows(result: Result) -> list[tuple[str, ...]]:
+    """Return the loads on the elements that were touched, one row each; see ``ELEMENT_COLUMNS``."""
+    return [
+        (
+            load.name,
+            f"{load.peak_force / 1e3:.0f}",
+            f"{load.peak_force_50ms / 1e3:.0f}",
+            f"{load.height_at_peak:.2f}",
+            f"{load.peak_overturning_moment_50ms / 1e3:.0f}",
+        )
+        for load in touched_elements(result)
+    ]
+
+
+def elements_in_si(result: Result) -> list[dict[str, str | float]]:
+    """Return the loads on the elements that were touched by name, SI."""
+    numbers = (
+        *("peak_force", "peak_force_50ms", "height_at_peak"),
+        *("peak_overturning_moment", "peak_overturning_moment_50ms"),
+    )
+    return [
+        {"name": load.name, **{number: getattr(load, number) for number in numbers}}
+        for load in touched_elements(result)
     ]

@@ -18,7 +18,17 @@ if TYPE_CHECKING:
     from .rendering import Color, View
     from .result import Result
 
-__all__ = ["animate", "plot", "plot_crush", "plot_histories", "plot_plan", "render", "show", "write_html"]
+__all__ = [
+    "animate",
+    "plot",
+    "plot_crush",
+    "plot_elements",
+    "plot_histories",
+    "plot_plan",
+    "render",
+    "show",
+    "write_html",
+]
 
 
 def plot(self: Result) -> Figure:
@@ -47,6 +57,13 @@ def plot_crush(self: Result, side: Side = "front", *, height: float | None = Non
     from .plotting import plot_crush
 
     return plot_crush(self, side, height=height, unit=unit)
+
+
+def plot_elements(self: Result) -> Figure:
+    """Return the loads on the barrier's elements over time; see :func:`birm3d.plotting.plot_elements`."""
+    from .plotting import plot_elements
+
+    return plot_elements(self)
 
 
 def render(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from . import units
+from .element_loads import touched_elements
 
 if TYPE_CHECKING:
     from .barrier import Barrier
@@ -53,6 +54,12 @@ def report(result: Result) -> str:
         lines.append(
             f"  {vehicle.joint.kind}: peak force {metrics['peak_joint_force']:.3g} N, greatest articulation "
             f"angle {metrics['max_articulation_angle']:.1f} deg"
+        )
+    for load in touched_elements(result):
+        lines.append(
+            f"  {load.name}: peak 50-ms mean of the force {load.peak_force_50ms / 1e3:.3g} kN at "
+            f"{load.height_at_peak:.2f} m, of the overturning moment "
+            f"{load.peak_overturning_moment_50ms / 1e3:.3g} kN m"
         )
     lines += [
         "",

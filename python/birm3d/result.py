@@ -7,21 +7,20 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _core, pictures
+from . import _core, pictures, result_table
 from ._version import __version__
+from .element_loads import ElementLoad, element_loads
 from .frames import Frames, capture, pose
 from .metrics import compute_metrics
 from .report import report
 from .unit_result import UnitResult, read_only
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from .result_file import Stored, StoredHistory
     from .simulation import Scene
 
@@ -29,7 +28,16 @@ __all__ = ["Result"]
 
 Floats = npt.NDArray[np.float64]
 
-_ENERGIES = ("kinetic", "potential", "stored", "crushed", "barrier_friction", "tire_friction", "ground_friction", "impacts")
+_ENERGIES = (
+    "kinetic",
+    "potential",
+    "stored",
+    "crushed",
+    "barrier_friction",
+    "tire_friction",
+    "ground_friction",
+    "impacts",
+)
 
 
 class Result:
@@ -65,10 +73,12 @@ class Result:
     plot_histories = pictures.plot_histories
     plot_plan = pictures.plot_plan
     plot_crush = pictures.plot_crush
+    plot_elements = pictures.plot_elements
     render = pictures.render
     animate = pictures.animate
     show = pictures.show
     write_html = pictures.write_html
+    to_dataframe = result_table.to_dataframe
 
     def __init__(
         self,
@@ -183,6 +193,14 @@ class Result:
         return self._sum("barrier_normal_force")
 
     @cached_property
+    def element_loads(self) -> tuple[ElementLoad, ...]:
+        """Force, moment and resultant height of every element of the barrier; () without a barrier.
+
+        See :class:`birm3d.element_loads.ElementLoad` for frames and signs.
+        """
+        return element_loads(self)
+
+    @cached_property
     def tire_reaction(self) -> Floats:
         """Normal force under each wheel of all units, shape (n, wheels) [N]; interval means."""
         if len(self._units) == 1:
@@ -235,7 +253,7 @@ class Result:
         return self._joint_angles[:, 1]
 
     @property
-    def _joint(self) -> _core.JointHistory:
+    def _joint(self) -> _core.JointHistory | Stored:
         if self.scene.vehicle.joint is None:
             raise ValueError(f"a joint needs a vehicle of two units, got {self.scene.vehicle.name!r} of one")
         return self._history.joint(0)
@@ -249,9 +267,9 @@ class Result:
         """Energy ledger, name -> shape (n,) [J].
 
         ``kinetic`` and ``potential`` of the body, ``stored`` (elastic) and ``crushed`` (plastic) in trusses,
-        ``barrier_friction``, ``tire_friction``, ``ground_friction`` (of the body on the ground) and ``impacts``
-        (lost in rigid contacts); their ``total``; and ``residual``, total now less total at the start: no work
-        enters from outside.
+        ``barrier_friction``, ``tire_friction``, ``ground_friction`` (of the body on the ground) and
+        ``impacts`` (lost in rigid contacts); their ``total``; and ``residual``, total now less total at the
+        start: no work enters from outside.
         Where units are joined also ``joints``: what the joint's held directions took, zero but for the error
         of the steps; it has a term of its own so that this error shows and is not mistaken for a loss. What
         the stops of a fifth wheel take is in ``impacts``.
@@ -282,7 +300,7 @@ class Result:
 
     def final_nodes(self, unit: int = 0) -> Floats:
         """Return the shell nodes of one unit at the end, body axes, shape (k, 3) [m]."""
-        return (self.nodes,)[unit]
+        return self.unit(unit).nodes
 
     def pose(self, time: npt.ArrayLike, unit: int = 0) -> tuple[Floats, Floats]:
         """Return mass centres (k, 3) [m] and rotation matrices body to world (k, 3, 3) at instants (k,) [s].
@@ -327,34 +345,6 @@ class Result:
         from .result_file import from_bytes, to_bytes
 
         return (from_bytes, (to_bytes(self),))
-
-    def to_dataframe(self) -> pd.DataFrame:
-        """Return the histories as a table, one row an output instant, indexed by time [s]."""
-        try:
-            import pandas as pd
-        except ImportError as error:
-            raise ImportError("to_dataframe() needs pandas: pip install 'birm3d[table]'") from error
-        columns: dict[str, Floats] = {}
-        for name, unit, axes in (
-            ("position", "m", "xyz"),
-            ("velocity", "m/s", "xyz"),
-            ("acceleration", "m/s^2", "rst"),
-            ("barrier_force", "N", "xyz"),
-        ):
-            for i, axis in enumerate(axes):
-                columns[f"{name}_{axis} [{unit}]"] = getattr(self, name)[:, i]
-        for name in ("roll", "pitch", "yaw"):
-            columns[f"{name} [deg]"] = getattr(self, name)
-        columns["barrier_normal_force [N]"] = self.barrier_normal_force
-        for i in range(self.tire_reaction.shape[1]):
-            columns[f"tire_reaction_{i} [N]"] = self.tire_reaction[:, i]
-        if self.scene.vehicle.joint is not None:
-            for i, axis in enumerate("xyz"):
-                columns[f"joint_force_{axis} [N]"] = self.joint_force[:, i]
-            columns["articulation_angle [deg]"] = self.articulation_angle
-        for name, values in self.energy.items():
-            columns[f"energy_{name} [J]"] = values
-        return pd.DataFrame(columns, index=pd.Index(self.time, name="time [s]"))
 
     def __repr__(self) -> str:
         rows, steps = len(self.time), self.statistics.steps

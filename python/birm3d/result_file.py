@@ -1,7 +1,8 @@
 """Results as files: NumPy's npz with a JSON header, readable without this package.
 
 ``numpy.load(path)`` has every array by name: ``history/...`` (rows at the output interval; angles in rad),
-``history/0/...`` (of unit 0), ``final/...`` (state at the end), ``scene/...`` and ``frames/...``; and a text
+``history/0/...`` (of unit 0), ``history/joint/0/...``, ``history/element/2/...`` (of element 2 of the
+barrier, if it was touched), ``final/0/...`` (unit 0 at the end), ``scene/...`` and ``frames/...``; and a text
 ``header``: JSON with format and versions, the scene (see :mod:`birm3d.scene_codec`), scalars, metrics and
 report.
 """
@@ -24,7 +25,7 @@ import numpy.typing as npt
 from . import _core
 from .frames import Frames
 from .scene_codec import decode, encode
-from .unit_shapes import unit_shapes
+from .unit_result import UnitResult
 from .whole_file import check_format, whole_file
 
 if TYPE_CHECKING:
@@ -32,8 +33,9 @@ if TYPE_CHECKING:
 
 __all__ = ["FORMAT_VERSION", "StoredHistory", "load", "save"]
 
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 _FORMAT = "birm3d result"
+_LISTED = "elements"  # of the history: records of their own
 _FINAL = ("nodes", "deflection", "peak_deflection", "final_velocity")
 
 
@@ -52,13 +54,25 @@ class Stored:
 class StoredHistory(Stored):
     """The history of a run, read from a file; reads like the core's."""
 
-    def __init__(self, values: Mapping[str, Any], units: list[Stored]) -> None:
+    def __init__(
+        self,
+        values: Mapping[str, Any],
+        units: list[Stored],
+        joints: list[Stored],
+        elements: list[Stored],
+    ) -> None:
         super().__init__(values)
+        self.elements = elements
         self._units = units
+        self._joints = joints
 
     def unit(self, index: int) -> Stored:
         """Return the history of one unit of the vehicle."""
         return self._units[index]
+
+    def joint(self, index: int) -> Stored:
+        """Return the history of one joint of the vehicle."""
+        return self._joints[index]
 
 
 def save(result: Result, path: str | Path) -> None:
@@ -72,12 +86,22 @@ def write(result: Result, stream: IO[bytes]) -> None:
     arrays: dict[str, npt.NDArray[Any]] = {}
     scene = encode(result.scene, arrays, "scene")
     history = _parts(result._history, _core.History, arrays, "history")
+    vehicle = result.scene.vehicle
     units = [
         _parts(result._history.unit(i), _core.UnitHistory, arrays, f"history/{i}")
-        for i in range(len(unit_shapes(result.scene.vehicle)))
+        for i in range(len(vehicle.units))
     ]
-    for name in _FINAL:
-        arrays[f"final/{name}"] = getattr(result, name)
+    joints = [
+        _parts(result._history.joint(i), _core.JointHistory, arrays, f"history/joint/{i}")
+        for i in range(0 if vehicle.joint is None else 1)
+    ]
+    elements = [
+        _parts(one, _core.ObstacleHistory, arrays, f"history/element/{one.element}")
+        for one in result._history.elements
+    ]
+    for i in range(len(vehicle.units)):
+        for name in _FINAL:
+            arrays[f"final/{i}/{name}"] = getattr(result.unit(i), name)
     if result.frames is not None:
         arrays["frames/time"] = result.frames.time
         for i, displacement in enumerate(result.frames.displacement):
@@ -95,6 +119,8 @@ def write(result: Result, stream: IO[bytes]) -> None:
         "scene": scene,
         "history": history,
         "units": units,
+        "joints": joints,
+        "elements": elements,
         "statistics": _parts(result.statistics, _core.StepStatistics, arrays, "statistics"),
         "end_reason": result.end_reason,
         "state_hash": f"{result.state_hash:016x}",
@@ -158,21 +184,26 @@ def read(stream: IO[bytes], path: Path) -> Result:
 def _result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -> Result:
     from .result import Result
 
-    units = [Stored(_values(unit, arrays)) for unit in header["units"]]
+    units, joints, elements = (
+        [Stored(_values(one, arrays)) for one in header[name]] for name in ("units", "joints", "elements")
+    )
     frames = None
     if "frames/time" in arrays:
         moved = tuple(arrays[f"frames/{i}/displacement"] for i in range(len(units)))
         frames = Frames(arrays["frames/time"], moved)
     result = Result(
         scene=decode(header["scene"], arrays),
-        history=StoredHistory(_values(header["history"], arrays), units),
+        history=StoredHistory(_values(header["history"], arrays), units, joints, elements),
         statistics=Stored(_values(header["statistics"], arrays)),
         end_reason=header["end_reason"],
         state_hash=int(header["state_hash"], 16),
         run_time=header["run_time"],
+        units=tuple(
+            UnitResult(unit, **{name: arrays[f"final/{i}/{name}"] for name in _FINAL})
+            for i, unit in enumerate(units)
+        ),
         frames=frames,
         version=header["made_with"]["birm3d"],
-        **{name: arrays[f"final/{name}"] for name in _FINAL},
     )
     if header["metrics"] is not None:
         # As they were then: a later version may compute them in another way.
@@ -183,7 +214,7 @@ def _result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -
 
 def _parts(record: Any, kind: type, arrays: dict[str, npt.NDArray[Any]], name: str) -> dict[str, Any]:
     """Return all properties that a record of the core has, for JSON."""
-    properties = [key for key, value in vars(kind).items() if isinstance(value, property)]
+    properties = [key for key, value in vars(kind).items() if isinstance(value, property) and key != _LISTED]
     return {key: encode(getattr(record, key), arrays, f"{name}/{key}") for key in properties}
 
 

@@ -24,14 +24,19 @@ Arrays = Mapping[str, npt.NDArray[Any]]
 @cache
 def _classes() -> Mapping[str, type[Any]]:
     """Return the classes that scenes are made of by the names they have in files."""
-    from .barrier import Barrier
+    from .articulated import ArticulatedVehicle, Joint
+    from .barrier_kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
     from .mesher import ExteriorMesh
     from .settings import Settings
     from .simulation import Scene
     from .vehicle import Vehicle, Zone
     from .vehicle_file import VehicleFile
 
-    known: tuple[type[Any], ...] = (Barrier, ExteriorMesh, Scene, Settings, Vehicle, VehicleFile, Zone)
+    known: tuple[type[Any], ...] = (
+        *(ArticulatedVehicle, Joint, Vehicle, VehicleFile, ExteriorMesh, Zone),
+        *(RigidWall, Pole, Bollards, Jersey, MeshBarrier),
+        *(Scene, Settings),
+    )
     return {kind.__name__: kind for kind in known}
 
 
@@ -63,6 +68,8 @@ def encode(value: Any, arrays: dict[str, npt.NDArray[Any]], name: str) -> Any:
         raise TypeError(f"{name} must be of a kind that files know, got {type(value).__qualname__}")
     if hasattr(value, "model_dump"):  # pydantic's, which takes long to load
         fields = value.model_dump(by_alias=True)
+    elif kind == "ArticulatedVehicle":  # the rest of it follows from these
+        fields = {"units": value.units, "joint": value.joint, "name": value.name}
     else:
         fields = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
     return {f"${kind}": {key: encode(item, arrays, f"{name}/{key}") for key, item in fields.items()}}
@@ -97,6 +104,10 @@ def decode(plain: Any, arrays: Arrays) -> Any:
         raise ValueError(f"kind must be one of {', '.join(_classes())}; got {marker!r}")
     if hasattr(kind, "model_validate"):
         return kind.model_validate(fields)
+    if kind.__name__ == "ArticulatedVehicle":
+        from .articulated import articulate
+
+        return articulate(**fields)
     known = {field.name for field in dataclasses.fields(kind)}
     for key in fields:
         if key not in known:

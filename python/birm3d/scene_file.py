@@ -38,7 +38,12 @@ class _Vehicle(Strict):
 
 # Kind of barrier -> keys of the file and the arguments of Barrier.<kind> that they are.
 _BARRIERS: dict[str, dict[str, str]] = {
-    "rigid_wall": {"width_m": "width", "height_m": "height", "thickness_m": "thickness", "segments": "segments"},
+    "rigid_wall": {
+        "width_m": "width",
+        "height_m": "height",
+        "thickness_m": "thickness",
+        "segments": "segments",
+    },
     "pole": {"diameter_m": "diameter"},
     "bollards": {
         "count": "count",
@@ -136,6 +141,7 @@ class _Settings(Strict):
     ground: bool = Settings.ground
     mu_tire: float = Settings.mu_tire
     mu_body: float = Settings.mu_body
+    braking: float = Settings.braking
     cornering_stiffness: float = Settings.cornering_stiffness
     restitution: float = Settings.restitution
     contact_model: Literal["projected", "along_truss"] = Settings.contact_model

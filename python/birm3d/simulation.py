@@ -35,7 +35,8 @@ class Scene:
 class Simulation:
     """A vehicle that runs into a barrier.
 
-    The vehicle comes along a straight path, its nose ahead unless stated, and stands before the barrier at t = 0.
+    The vehicle comes along a straight path, its nose ahead unless stated, and stands before the barrier at
+    t = 0.
 
     Parameters
     ----------
@@ -46,10 +47,12 @@ class Simulation:
     impact_speed
         [m/s], >= 0.
     impact_angle
-        Between the vehicle's path and the barrier's line [deg], 0 to 180; 90 is head-on. At 0 and 180 the barrier
-        must have an end to meet.
+        Between the vehicle's path and the barrier's line [deg], 0 to 180; 90 is head-on. At 0 and 180 the
+        barrier must have an end to meet.
     impact_offset
         Where the path of the mass centre (of the leading unit) meets the barrier's line, from its origin [m].
+        At angles 0 and 180 the distance of the path from the line, positive behind it: half the thickness
+        leads to the middle of a wall's end.
     standoff
         Distance of the nearest node from the barrier at t = 0 [m], >= 0.
     impact_yaw

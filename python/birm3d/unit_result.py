@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
+
+if TYPE_CHECKING:
+    from .result_file import Stored
 
 __all__ = ["UnitResult", "read_only"]
 
@@ -28,7 +31,7 @@ class UnitResult:
 
     def __init__(
         self,
-        history: _core.UnitHistory,
+        history: _core.UnitHistory | Stored,
         *,
         nodes: Floats,
         deflection: Floats,

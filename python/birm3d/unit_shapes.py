@@ -48,14 +48,15 @@ class UnitShape:
 
 def unit_shapes(vehicle: Vehicle) -> tuple[UnitShape, ...]:
     """Return the shapes of the units of a vehicle, in the order of the result's units."""
-    return (
+    return tuple(
         UnitShape(
-            nodes=vehicle.nodes,
-            anchors=vehicle.anchors,
-            quads=vehicle.quads,
-            zone_of_node=vehicle.zone_of_node,
-            zone_names=tuple(vehicle.zones),
-            wheels=vehicle.wheels,
-            height=vehicle.mass_center_height,
-        ),
+            nodes=unit.nodes,
+            anchors=unit.anchors,
+            quads=unit.quads,
+            zone_of_node=unit.zone_of_node,
+            zone_names=tuple(unit.zones),
+            wheels=unit.wheels,
+            height=unit.mass_center_height,
+        )
+        for unit in vehicle.units
     )

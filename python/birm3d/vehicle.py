@@ -331,8 +331,8 @@ class Vehicle:
         """Return the vehicle with a skin whose dents drag their surroundings along; at 0 that is left out.
 
         Beside a narrow obstacle (a bollard, a pole) the skin is drawn in with this slope, so that the dent is
-        ``2 * depth / dent_slope`` wider than the obstacle; the paper's trusses know nothing of each other, and between
-        them a narrow post passes to the rigid core. A flat wall makes no dent. [1], >= 0.
+        ``2 * depth / dent_slope`` wider than the obstacle; the paper's trusses know nothing of each other,
+        and between them a narrow post passes to the rigid core. A flat wall makes no dent. [1], >= 0.
         """
         return dataclasses.replace(self, dent_slope=float(dent_slope))
 
@@ -589,6 +589,7 @@ def _assemble(
         wheels=wheels,
         mass_center_height=float(center[2]),
         zones=zones if zones is not None else {zone.name: Zone._from_file(zone) for zone in file.zones},
+        dent_slope=0.0 if file.dents is None else file.dents.slope,
         _file=file,
         _mesh=mesh,
         _mesh_density=mesh_density,

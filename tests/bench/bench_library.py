@@ -48,9 +48,7 @@ def run(
     cases = list(product(BARRIERS, angles, speeds))
     with progress_bar(None, "library", len(vehicles) * len(cases)) as advance:
         for name in vehicles:
-            vehicle = Vehicle.preset(name, mesh_density=density)
-            if dent_slope:
-                vehicle = vehicle.with_dent_slope(dent_slope)
+            vehicle = Vehicle.preset(name, mesh_density=density).with_dent_slope(dent_slope)
             for barrier, angle, speed in cases:
                 rows.append(
                     (
@@ -104,7 +102,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--mesh-density", type=float, default=1.0, help="relative to the presets'")
     parser.add_argument(
-        "--dent-slope", type=float, default=0.0, help="of Vehicle.with_dent_slope; 0: as preset"
+        "--dent-slope", type=float, default=0.0, help="of Vehicle.with_dent_slope; 0: no coupling"
     )
     parser.add_argument("--quick", action="store_true", help="two vehicles, coarse, four scenes a barrier")
     parser.add_argument("--csv", type=Path, help="also write the table there")

@@ -81,7 +81,9 @@ def test_vehicles(monkeypatch, capsys):
     assert facts["passenger_car"]["mass"] == pytest.approx(1814.37)
     assert "bumper" in facts["pickup"]["zones"]
     assert birm3d(monkeypatch, "vehicles") == 0
-    assert "paper_pickup" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "paper_pickup" in out
+    assert "mass [kg]" in out
 
 
 @pytest.mark.parametrize(
@@ -174,7 +176,7 @@ def test_the_example_scene_is_read(monkeypatch, capsys):
         (('"45 deg"', '"45 m"'), 13, ["angle", "deg", "45 m"]),
         (('preset = "passenger_car"', ""), 2, ["preset or file"]),
         (("[barrier]", "[barrier"), 7, ["TOML"]),
-        (('"rigid_wall"', '"pole"'), 7, ["diameter_m", "pole"]),
+        (('"rigid_wall"', '"pole"\nwidth_m = 2.0'), 9, ["width_m", "rigid_wall", "pole"]),
     ],
 )
 def test_scene_file_errors(monkeypatch, capsys, tmp_path, wrong, line, parts):

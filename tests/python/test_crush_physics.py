@@ -135,7 +135,7 @@ def test_standoff_of_a_pole() -> None:
 @pytest.mark.parametrize(
     ("make", "naming"),
     [
-        (lambda: Barrier.pole(diameter=0.0), "diameter must be finite and > 0, got 0.0"),
+        (lambda: Barrier.pole(diameter=0.0), "diameter must be finite and > 0 m, got 0.0"),
         (lambda: Barrier.pole(diameter=math.nan), "diameter"),
         (lambda: Barrier.pole(friction=-0.1), "friction"),
         (lambda: Barrier.pole(origin=(0.0, 0.0)), "origin"),  # type: ignore[arg-type]

@@ -18,9 +18,11 @@ SCRIPTS = {
     "fit_truck_front.py": (["fit_truck_front.png"], "in the file"),
     "fragility.py": (["fragility.png", "sweep.png"], "dynamic_crush > 0.7 m"),
     "head_on_sedan.py": (["head_on_sedan.png", "head_on_sedan_overview.png"], "peak_normal_force_cfc60"),
+    "oblique_car.py": (["oblique_car.png", "oblique_car_plan.png"], "redirected at"),
     "own_vehicle.py": (["own_vehicle.png"], "trolley"),
     "paper_table_2.py": (["paper_table_2.png"], "force / (m a)"),
     "tire_reactions.py": (["tire_reactions.png"], "statics"),
+    "truck_on_wall_and_bollards.py": (["truck_on_wall_and_bollards.png"], "bollards, predicted"),
 }
 
 

@@ -243,7 +243,7 @@ def test_crush_figure_of_a_sound_side(head_on: Result) -> None:
 @pytest.mark.parametrize(
     ("barrier", "volume"),
     [
-        (Barrier.rigid_wall(width=3.0, height=1.2, heading=25.0, origin=(1.0, 2.0, 0.1)), 3.0 * 1.2 * 0.4),
+        (Barrier.rigid_wall(width=3.0, height=1.2, heading=25.0, origin=(1.0, 2.0, 0.1)), 3.0 * 1.2 * 0.5),
         (Barrier.pole(diameter=0.5, origin=(1.0, 0.0, 0.0)), np.pi * 0.25**2 * 1.8),
     ],
 )

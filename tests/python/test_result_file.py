@@ -123,9 +123,13 @@ def test_nothing_of_the_core_is_forgotten(original: Result) -> None:
     methods = {
         kind: {name for name in vars(kind) if not name.startswith("_")}
         - {name for name, value in vars(kind).items() if isinstance(value, property)}
-        for kind in (_core.History, _core.UnitHistory, _core.StepStatistics)
+        for kind in (
+            *(_core.History, _core.UnitHistory, _core.JointHistory, _core.ObstacleHistory),
+            _core.StepStatistics,
+        )
     }
-    assert methods == {_core.History: {"unit"}, _core.UnitHistory: set(), _core.StepStatistics: set()}
+    assert methods.pop(_core.History) == {"unit", "joint"}
+    assert all(names == set() for names in methods.values())
 
 
 def rewritten(path: Path, change: Callable[[dict[str, object]], None]) -> Path:
@@ -142,7 +146,7 @@ def rewritten(path: Path, change: Callable[[dict[str, object]], None]) -> Path:
 @pytest.mark.parametrize(
     ("change", "parts"),
     [
-        (lambda h: h.update(format_version=99), ["format_version must be 1", "99", "newer birm3d"]),
+        (lambda h: h.update(format_version=99), ["format_version must be 2", "99", "newer birm3d"]),
         (lambda h: h.update(format="other"), ["format must be 'birm3d result'", "other"]),
         (lambda h: h["scene"]["$Scene"].update(color=1), ["Scene has no 'color'", "newer"]),
         (lambda h: h["scene"]["$Scene"].update(barrier={"$Path": {}}), ["kind must be one of", "$Path"]),

@@ -21,7 +21,8 @@ bool within_reach(const PlacedShape& shape, const Box& box, double margin) {
 }  // namespace
 
 double member_margin(const TrussMesh& mesh, const Twist& motion, double dt) {
-    return bend(mesh, motion, dt) + dt * (motion.velocity.norm() + motion.angular_velocity.norm() * mesh.reach);
+    return bend(mesh, motion, dt) +
+           dt * (motion.velocity.norm() + motion.angular_velocity.norm() * mesh.reach);
 }
 
 void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyState& state,

@@ -18,7 +18,8 @@ Barrier::Barrier(std::vector<Element> elements_, double friction_, const Vec3& o
     if (elements.empty()) refuse("elements", "at least 1", 0.0);
     for (std::size_t i = 0; i < elements.size(); ++i) {
         const std::string name = "elements[" + std::to_string(i) + "] ";
-        if (!elements[i].position.allFinite()) refuse(name + "position", "finite", "a coordinate that is not");
+        if (!elements[i].position.allFinite())
+            refuse(name + "position", "finite", "a coordinate that is not");
         require_finite((name + "heading").c_str(), elements[i].heading);
     }
 }

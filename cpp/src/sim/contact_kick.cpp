@@ -90,9 +90,8 @@ void kick_by_contacts(const Scene& scene, std::vector<ContactBody>& bodies, Impu
 // `impulse` on the unit, friction included.
 void add_to_obstacle(const Scene& scene, const State& state, const RigidContact& contact, const Vec3& impulse,
                      std::vector<ObstacleImpulse>& sums) {
-    auto sum = std::find_if(sums.begin(), sums.end(), [&](const ObstacleImpulse& known) {
-        return known.obstacle == contact.obstacle;
-    });
+    auto sum = std::find_if(sums.begin(), sums.end(),
+                            [&](const ObstacleImpulse& known) { return known.obstacle == contact.obstacle; });
     if (sum == sums.end()) sum = sums.insert(sums.end(), {contact.obstacle, Vec3::Zero(), Vec3::Zero()});
     const Vec3 place = state.units[contact.body].body.position + contact.arm;
     sum->impulse += impulse;
@@ -181,8 +180,8 @@ ContactKick kick_towards_closed_joints(const Scene& scene, double dt, std::vecto
     return kicked;
 }
 
-void add_impulses(const Scene& scene, const State& state, const ContactKick& kicked, std::vector<ContactImpulses>& sums,
-                  std::vector<Wrench>& joints) {
+void add_impulses(const Scene& scene, const State& state, const ContactKick& kicked,
+                  std::vector<ContactImpulses>& sums, std::vector<Wrench>& joints) {
     if (kicked.contacts.empty()) return;
     for (std::size_t u = 0; u < sums.size(); ++u)
         sums[u].tire_friction += kicked.on_ground[u].force;

@@ -118,8 +118,8 @@ void kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial) 
     }
 }
 
-void book_forces(const Scene& scene, const std::vector<Twist>& before, const std::vector<Twist>& after, double half,
-                 State& state) {
+void book_forces(const Scene& scene, const std::vector<Twist>& before, const std::vector<Twist>& after,
+                 double half, State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u)
         for (const Touch& touch : state.units[u].touches)
             friction_of(scene, touch.obstacle, state.energies) -=

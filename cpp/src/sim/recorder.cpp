@@ -33,7 +33,12 @@ enum UnitOffset : std::size_t {
     at_tire_impulses = 40
 };
 // And in the numbers of an obstacle: force and torque on it, about its own point, world axes.
-enum ObstacleOffset : std::size_t { at_load = 0, at_load_impulse = 6, at_load_bend = 12, obstacle_width = 18 };
+enum ObstacleOffset : std::size_t {
+    at_load = 0,
+    at_load_impulse = 6,
+    at_load_bend = 12,
+    obstacle_width = 18
+};
 // Behind the units: for each joint force and moment impulse.
 constexpr std::size_t joint_width = 6;
 
@@ -153,8 +158,11 @@ void Recorder::add(const Scene& scene, const Trial& accepted) {
     const std::vector<BodyState> bodies = bodies_of(state);
     const Impact& end = accepted.at_end;
     add_row(scene, state.time, end.happened ? end.energies : state.energies,
-            end.happened ? end.bodies : bodies, {state.units, accepted.impulses, accepted.joint_impulses, true});
-    if (end.happened) add_row(scene, state.time, state.energies, bodies, {state.units, end.impulses, end.joint_impulses, false});
+            end.happened ? end.bodies : bodies,
+            {state.units, accepted.impulses, accepted.joint_impulses, true});
+    if (end.happened)
+        add_row(scene, state.time, state.energies, bodies,
+                {state.units, end.impulses, end.joint_impulses, false});
 }
 
 Recorder::ObstacleRow& Recorder::obstacle_row(std::size_t row, std::size_t obstacle) {
@@ -288,9 +296,9 @@ History Recorder::resample(const Scene& scene) const {
     };
     const bool still = rows() < 2;
 
-    Column* const energies[] = {&history.kinetic, &history.potential,        &history.stored,
-                                &history.crushed, &history.barrier_friction, &history.tire_friction,
-                                &history.ground_friction, &history.impacts, &history.joint_work};
+    Column* const energies[] = {&history.kinetic,         &history.potential,        &history.stored,
+                                &history.crushed,         &history.barrier_friction, &history.tire_friction,
+                                &history.ground_friction, &history.impacts,          &history.joint_work};
     for (std::size_t e = 0; e < std::size(energies); ++e) {
         energies[e]->resize(count);
         for (std::size_t k = 0; k < count; ++k) {
@@ -310,9 +318,9 @@ History Recorder::resample(const Scene& scene) const {
         UnitHistory unit;
         unit.tire_reaction.assign(wheels, Column(count, 0.0));
         unit.barrier_normal_force.resize(count);
-        for (auto* column : {&unit.position, &unit.velocity, &unit.angular_velocity, &unit.acceleration,
-                             &unit.barrier_force, &unit.ground_force, &unit.tire_friction_force,
-                             &unit.joint_force})
+        for (auto* column :
+             {&unit.position, &unit.velocity, &unit.angular_velocity, &unit.acceleration, &unit.barrier_force,
+              &unit.ground_force, &unit.tire_friction_force, &unit.joint_force})
             column->resize(count);
         unit.orientation.resize(count);
 
@@ -366,8 +374,7 @@ History Recorder::resample(const Scene& scene) const {
                 unit.tire_friction_force[k] = per * (now.tire_friction - previous.tire_friction);
                 unit.joint_force[k] = per * (now.joints - previous.joints);
                 Vec3 force = unit.barrier_force[k] + unit.ground_force[k] + unit.tire_friction_force[k] +
-                             unit.joint_force[k] +
-                             model.body.mass * gravity;
+                             unit.joint_force[k] + model.body.mass * gravity;
                 for (std::size_t w = 0; w < wheels; ++w) {
                     unit.tire_reaction[w][k] = per * (now.tire[w] - previous.tire[w]);
                     force.z() += unit.tire_reaction[w][k];
@@ -403,7 +410,8 @@ History Recorder::resample(const Scene& scene) const {
 
 // Forces and torques on the obstacles that were touched, as means over the output intervals.
 void Recorder::resample_obstacles(const std::vector<std::size_t>& step_of, History& history) const {
-    std::map<std::size_t, std::vector<const ObstacleRow*>> touched;  // obstacle -> (rows), null where untouched
+    std::map<std::size_t, std::vector<const ObstacleRow*>>
+        touched;  // obstacle -> (rows), null where untouched
     for (const ObstacleRow& row : obstacles_) {
         auto& rows_of = touched[row.obstacle];
         rows_of.resize(rows(), nullptr);
@@ -438,7 +446,8 @@ void Recorder::resample_obstacles(const std::vector<std::size_t>& step_of, Histo
                     before_step[i] += whole[i];
             }
             const StepView step = view(row);
-            std::array<double, 6> now = within(step, std::clamp(history.time[k] - time_at(row), 0.0, step.dt));
+            std::array<double, 6> now =
+                within(step, std::clamp(history.time[k] - time_at(row), 0.0, step.dt));
             std::array<double, 6> mean{};
             for (std::size_t i = 0; i < 6; ++i) {
                 now[i] += before_step[i];

@@ -108,7 +108,8 @@ void place(const Scene& scene, const Vec3& heading, State& state) {
     const Vec3 inward = heading.dot(barrier.normal()) < -1e-12 ? Vec3(-barrier.normal()) : heading;
     const double first = -extent(elements, -inward), last = extent(elements, inward);
     if (!std::isfinite(first))
-        refuse("impact_angle", "> 0 deg where the barrier has no end", scene.approach.angle);
+        refuse("impact_angle", "> 0 and < 180 deg where the barrier has no end",
+               scene.approach.angle * 180.0 / std::numbers::pi);
     double front = -infinity, rear = infinity;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const BodyState& body = state.units[u].body;
@@ -241,7 +242,10 @@ State Scene::initial_state() const {
     const double turn = yaw + approach.yaw;
     const Quat orientation = from_roll_pitch_yaw({approach.roll, 0.0, turn});
     const Unit& first = vehicle->units.front();
-    const Vec3 foot = Vec3(origin.x(), origin.y(), 0.0) + approach.offset * line;
+    // A path along the line never meets it: the offset is its distance, away from the traffic.
+    const bool meets_line = std::abs(std::sin(approach.angle)) > 1e-12;
+    const Vec3 away(std::cos(barrier_heading), std::sin(barrier_heading), 0.0);
+    const Vec3 foot = Vec3(origin.x(), origin.y(), 0.0) + approach.offset * (meets_line ? line : away);
     const Vec3 center = foot + from_roll_pitch_yaw({0.0, 0.0, turn}) * first.place();
     for (std::size_t u = 0; u < vehicle->units.size(); ++u) {
         BodyState& body = state.units[u].body;

@@ -8,6 +8,7 @@
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
+#include "birm3d/kernels/tires.hpp"
 #include "birm3d/sim/obstacles.hpp"
 #include "birm3d/sim/structure_course.hpp"
 
@@ -64,6 +65,27 @@ bool has_left(const Scene& scene, const State& state) {
         }
     }
     return true;
+}
+
+// Is the vehicle still lifting a wheel from the ground, or tipped over and not yet at rest?
+bool tips(const Scene& scene, const State& state) {
+    if (!scene.settings.ground || scene.settings.gravity == 0.0) return false;
+    constexpr double tipped = 0.7;  // cosine of the up axis to the vertical: about 45 degrees
+    std::vector<RigidContact> wheels;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const BodyState& body = state.units[u].body;
+        const Unit& unit = scene.vehicle->units[u];
+        if (unit.wheels.empty()) continue;
+        if ((body.orientation * Vec3::UnitZ()).z() < tipped) return true;
+        wheels.clear();
+        find_tire_contacts(unit, u, body, wheels);
+        const Twist motion = twist(unit.body, body);
+        for (const RigidContact& wheel : wheels)
+            if (wheel.gap > tolerance::lifted_wheel &&
+                (motion.velocity + motion.angular_velocity.cross(wheel.arm)).z() > 0.0)
+                return true;
+    }
+    return false;
 }
 
 // Mean velocity of the pushing nodes along their normals, weighted by their forces (m/s); negative =
@@ -188,7 +210,8 @@ void Simulation::take(Trial& trial) {
         throw std::runtime_error("the state is no longer finite at t = " + to_text(state_.time) +
                                  " s, step " + to_text(trial.dt) + " s");
     if (!state_.decided && scene_.barrier && state_.touched &&
-        ((!touches(state_) && has_left(scene_, state_)) || at_rest(scene_, state_))) {
+        ((!touches(state_) && has_left(scene_, state_) && !tips(scene_, state_)) ||
+         at_rest(scene_, state_))) {
         state_.decided = true;
         state_.decided_at = state_.time;
     }

@@ -1,19 +1,15 @@
 #include "birm3d/sim/skin_forces.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 #include <limits>
 #include <stdexcept>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/kernels/crush.hpp"
-#include "birm3d/kernels/dent.hpp"
-#include "birm3d/kernels/detect.hpp"
 #include "birm3d/kernels/friction.hpp"
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/sim/entered_face.hpp"
 #include "birm3d/sim/obstacles.hpp"
+#include "sim/skin.hpp"
 
 namespace birm3d {
 
@@ -23,9 +19,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Cosine above which the normals of two instants are of the same face.
 constexpr double same_face = 0.9;
-
-// In the stead of the place of a node's obstacle, for nodes that hang on others.
-constexpr std::size_t by_dent = lanes;
 
 Wrench turned(const Wrench& w, const Mat3& R) {
     return {R * w.force, R * w.torque};
@@ -44,123 +37,7 @@ Twist predicted_motion(const Unit& unit, const std::vector<Touch>& touches, doub
     return {R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
 }
 
-BIRM3D_LANE_LOOP void extent(const Lanes& values, double& low, double& high) {
-    alignas(64) Lanes least = values, most = values;
-    for (std::size_t half = lanes / 2; half > 0; half /= 2) {
-        BIRM3D_INDEPENDENT
-        for (std::size_t i = 0; i < half; ++i) {
-            least[i] = least[half + i] < least[i] ? least[half + i] : least[i];
-            most[i] = most[half + i] > most[i] ? most[half + i] : most[i];
-        }
-    }
-    low = least[0];
-    high = most[0];
-}
-
-Box box_around(const Lanes& x, const Lanes& y, const Lanes& z) {
-    Vec3 low, high;
-    extent(x, low[0], high[0]);
-    extent(y, low[1], high[1]);
-    extent(z, low[2], high[2]);
-    return {0.5 * (low + high), 0.5 * (high - low)};
-}
-
-// From a node to its anchor, unit.
-Vec3 inward(const TrussBlock& truss, const TrussBlockState& now, std::size_t i) {
-    return Vec3(truss.anchor_x[i] - now.x[i], truss.anchor_y[i] - now.y[i], truss.anchor_z[i] - now.z[i])
-        .normalized();
-}
-
-// One unit's skin within one step; body axes.
-class Skin {
-  public:
-    Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial);
-
-    void press_blocks();
-    void find_dents();
-    void hand_over();  // sums and touches, to the trial
-
-  private:
-    // Sums over blocks that saw one plane, or (by general detection) one obstacle.
-    struct PlaneSums {
-        std::size_t near;
-        FlatContact surface;
-        CrushSums sums;
-    };
-    struct ObstacleSums {
-        CrushSums sums;
-        Wrench by_trusses;  // of the paper's rule, in the stead of the projected force
-        Wrench contact;     // of blocks that saw several obstacles
-        double normal_force = 0.0;
-        SkinForces friction;
-    };
-
-    void press(std::size_t b);
-    bool look_about(std::size_t b);
-    void spring_back(std::size_t b);
-    const TrussBlockState& from(std::size_t b) const {
-        return sprung_back_ ? sprung_ : before_.trusses.block[b];
-    }
-    void draft(std::size_t b);
-    bool draw_in(std::size_t b);
-    void find_seen(const Box& box, double margin);
-    PlaneSums& sums_of_plane(std::size_t near, const HalfSpace& plane);
-    void press_plane(PlaneSums& plane, std::size_t b);
-    void press_shapes(std::size_t b);
-    const TrussBlockState& look(std::size_t b);
-    void turn_flat_faces();
-    void settle_in_corners(const TrussBlockState& block);
-    void find_entered_faces(const TrussBlockState& block);
-    const TrussBlockState& follow_with_leading(std::size_t b);
-    bool set_hanging(std::size_t b);
-    void note_drawn(TrussBlockState& next);
-    void load_drivers();
-    bool leads(std::size_t b, std::size_t lane) const {
-        return (before_.trusses.block[b].leading >> lane & 1U) != 0;
-    }
-    void share_out(std::size_t b, const TrussBlockState& next);
-    void rub(std::size_t near, std::size_t b, const TrussBlockState& next, const BlockContact& contact);
-    template <class Crush>
-    void crush_with_rate(const TrussBlockState& next, CrushSums& sums, const Crush& crush);
-
-    const Scene& scene_;
-    const Unit& unit_;
-    const TrussMesh& mesh_;
-    const UnitState& before_;
-    UnitState& now_;
-    Trial& trial_;
-    const std::size_t u_;
-    const Mat3 R_;
-    const bool along_;
-    double full_speed_;
-    double margin_;  // how far a held node can have come off its surface within the step (m)
-    Twist motion_;   // body axes; only friction and the rate of deflection ask for it
-
-    std::vector<NearObstacle>& near_;
-    std::vector<std::size_t> seen_;  // by the block at hand, places in near_
-    std::vector<PlaneSums> planes_;
-    std::vector<ObstacleSums> obstacles_;  // parallel to near_
-    CrushSums shared_;                     // of blocks that saw several obstacles
-    // Nodes pressed by obstacles that hold the skin, on which others may hang, with what these add to their pressure.
-    struct Driver {
-        std::size_t near, block, lane;
-        Vec3 normal;       // of the obstacle
-        double per_force;  // normal force for each unit of truss force
-        double extra = 0.0;
-    };
-    std::vector<Driver> drivers_;
-    std::vector<std::size_t> drafted_;  // blocks
-    TrussBlockState sprung_;            // the block at hand, if some of its nodes have sprung back
-    bool sprung_back_ = false;
-    TrussBlockState followed_;
-    std::vector<DentDriver> dent_;  // parallel to drivers_
-    Box dent_box_;                  // around all that can hang on them
-    Hanging hanging_;
-    Box box_;  // around the nodes of the block at hand
-    NodeFaces faces_;
-    BlockContact contact_;
-    std::array<std::size_t, lanes> nearest_;  // place in seen_ of each node's obstacle
-};
+}  // namespace
 
 Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
     : scene_(scene),
@@ -174,6 +51,7 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
       along_(scene.settings.contact_model == ContactModel::along_truss),
       full_speed_(std::max(tolerance::full_friction_speed * scene.reference_speed(),
                            trial.dt * before_.skin.friction_rate)),
+      held_(mesh_.dent_slope > 0.0 ? 0.1 : 0.5),
       margin_(trial.dt * std::max(fastest_point(unit_, before_.body), fastest_point(unit_, now_.body)) +
               tolerance::touching_gap),
       near_(trial.near) {
@@ -301,15 +179,19 @@ void Skin::press_plane(PlaneSums& plane, std::size_t b) {
     if (next.touching) rub(plane.near, b, next, contact_);
 }
 
+void Skin::crush_shapes(std::size_t b, const TrussBlockState& block, TrussBlockState& next, CrushSums& to) {
+    crush_with_rate(next, to, [&](const Lanes* factor, CrushSums& sums) {
+        crush(faces_, unit_.body, mesh_, b, factor, block, next, contact_, sums);
+    });
+}
+
 void Skin::press_shapes(std::size_t b) {
     TrussBlockState& next = now_.trusses.block[b];
     const TrussBlockState& block = look(b);
     const bool hangs = set_hanging(b);
     const bool alone = seen_.size() == 1 && !hangs;
     CrushSums& to = alone ? obstacles_[seen_[0]].sums : shared_;
-    crush_with_rate(next, to, [&](const Lanes* factor, CrushSums& sums) {
-        crush(faces_, unit_.body, mesh_, b, factor, block, next, contact_, sums);
-    });
+    crush_shapes(b, block, next, to);
     if (hangs) note_drawn(next);
     if (!next.touching) return;
     if (alone)
@@ -332,7 +214,7 @@ const TrussBlockState& Skin::look(std::size_t b) {
     for (std::size_t k = 0; k < seen_.size(); ++k) {
         const NearObstacle& obstacle = near_[seen_[k]];
         const Shape& shape = scene_.obstacles[obstacle.index].shape;
-        const double held = scene_.obstacles[obstacle.index].holds_skin ? 1.0 : 0.0;
+        const double held = scene_.obstacles[obstacle.index].holds_skin ? held_ : 0.0;
         nearest_of(shape, obstacle.now, obstacle.before, block.x, block.y, block.z, found);
         for (std::size_t i = 0; i < lanes; ++i) {
             if (k > 0 && !(found.gap[i] < faces_.gap[i])) continue;
@@ -435,169 +317,9 @@ void Skin::find_entered_faces(const TrussBlockState& block) {
         nearest_[i] = entered->seen;
         const Vec3 &n = entered->now.normal, &m = entered->normal_before;
         faces_.gap[i] = entered->now.gap;
-        faces_.held[i] = scene_.obstacles[near_[seen_[entered->seen]].index].holds_skin ? 1.0 : 0.0;
+        faces_.held[i] = scene_.obstacles[near_[seen_[entered->seen]].index].holds_skin ? held_ : 0.0;
         contact_.nx[i] = n.x(), contact_.ny[i] = n.y(), contact_.nz[i] = n.z();
         faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
-    }
-}
-
-// A node on which others hang stays at the surface while they press, though its own truss does not any more.
-const TrussBlockState& Skin::follow_with_leading(std::size_t b) {
-    const TrussBlock& truss = mesh_.block[b];
-    followed_ = from(b);
-    for (std::size_t i = 0; i < lanes; ++i) {
-        if (!leads(b, i) || followed_.force[i] > 0.0 || !(faces_.gap[i] > 0.0)) continue;
-        const Vec3 b_in = inward(truss, followed_, i);
-        const double cosine = b_in.dot(contact_.normal(i));
-        if (!(cosine > 0.0)) continue;
-        const Vec3 h = way_held(faces_.held[i], cosine, contact_.normal(i), b_in);
-        followed_.x[i] -= faces_.gap[i] * h.x();
-        followed_.y[i] -= faces_.gap[i] * h.y();
-        followed_.z[i] -= faces_.gap[i] * h.z();
-        faces_.gap[i] = 0.0;
-    }
-    return followed_;
-}
-
-// ---- dents: see kernels/dent.hpp --------------------------------------------------------------------------------
-
-// The nodes that narrow obstacles press, from a draft of this instant, and how far others can hang on them.
-void Skin::find_dents() {
-    const auto holds = [&](std::size_t k) { return scene_.obstacles[near_[k].index].holds_skin; };
-    if (mesh_.dent_slope == 0.0) return;
-    bool any = false;
-    for (std::size_t k = 0; k < near_.size(); ++k)
-        any = any || holds(k);
-    if (!any) return;
-    for (std::size_t b = 0; b < mesh_.blocks; ++b)
-        if (look_about(b) && std::any_of(seen_.begin(), seen_.end(), holds)) draft(b);
-    if (drivers_.empty()) return;
-    double deepest = 0.0;
-    for (const DentDriver& driver : dent_)
-        deepest = std::max(deepest, driver.deflection);
-    dent_box_ = Box::around(dent_.size(), [&](std::size_t i) { return dent_[i].place; });
-    dent_box_.half += Vec3::Constant(deepest / mesh_.dent_slope);
-}
-
-void Skin::draft(std::size_t b) {
-    TrussBlockState& next = now_.trusses.block[b];
-    const TrussBlockState& block = look(b);
-    hanging_.deflection.fill(-1.0);
-    set_hanging(b);
-    drafted_.push_back(b);
-    CrushSums ignored;
-    crush_with_rate(next, ignored, [&](const Lanes* factor, CrushSums& sums) {
-        crush(faces_, unit_.body, mesh_, b, factor, block, next, contact_, sums);
-    });
-    const TrussBlock& truss = mesh_.block[b];
-    for (std::size_t i = 0; i < lanes; ++i) {
-        const bool leads_on =
-            leads(b, i) && (faces_.gap[i] == 0.0 || (block.force[i] > 0.0 && nearest_[i] != by_dent));
-        if (!((contact_.pressure[i] > 0.0 || leads_on) && faces_.held[i] > 0.0)) continue;
-        const double cosine = inward(truss, next, i).dot(contact_.normal(i));
-        const double per_force = share_held(faces_.held[i], std::max(cosine, 0.0));
-        const Vec3 place(truss.node_x[i], truss.node_y[i], truss.node_z[i]);
-        const Vec3 anchor(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
-        drivers_.push_back({seen_[nearest_[i]], b, i, contact_.normal(i), per_force});
-        dent_.push_back({place, (place - anchor) / truss.length[i], next.deflection[i]});
-    }
-}
-
-// Does any node of the block hang on a driver, or has it done so?
-bool Skin::draw_in(std::size_t b) {
-    hanging_.deflection.fill(-1.0);
-    if (from(b).drawn == 0) {
-        if (drivers_.empty()) return false;
-        const Vec3 apart = (mesh_.node_box[b].center - dent_box_.center).cwiseAbs();
-        if (((mesh_.node_box[b].half + dent_box_.half - apart).array() < 0.0).any()) return false;
-    }
-    hang(mesh_.block[b], mesh_.dent_slope, dent_, hanging_);
-    return from(b).drawn != 0 || std::any_of(hanging_.deflection.begin(), hanging_.deflection.end(),
-                                             [](double d) { return d > 0.0; });
-}
-
-// Nodes that hang deeper than a surface would press them go by their driver; those that have lost theirs are let go.
-// Returns whether there are any of either kind.
-bool Skin::set_hanging(std::size_t b) {
-    const TrussBlock& truss = mesh_.block[b];
-    const TrussBlockState& block = from(b);
-    const bool drafted = std::binary_search(drafted_.begin(), drafted_.end(), b);
-    bool any = false;
-    for (std::size_t i = 0; i < lanes; ++i) {
-        const double drawn_to = hanging_.deflection[i];
-        const bool was_drawn = (block.drawn >> i & 1U) != 0;
-        const bool at_surface = faces_.gap[i] < 0.0 || (block.force[i] > 0.0 && !was_drawn);
-        if (!(drawn_to > 0.0) && !was_drawn) continue;
-        const Vec3 b_in = inward(truss, block, i);
-        if (at_surface) {
-            // Where the surface presses the node to: as drafted, or, free to slide, by the gap along its truss.
-            const double cosine = std::max(b_in.dot(contact_.normal(i)), 0.0);
-            const double pressed_to =
-                drafted ? now_.trusses.block[b].deflection[i] : block.deflection[i] - faces_.gap[i] * cosine;
-            if (drawn_to <= pressed_to) continue;
-        } else if (!was_drawn && drawn_to <= block.deflection[i]) {
-            continue;
-        }
-        any = true;
-        nearest_[i] = by_dent;
-        faces_.own_way[i] = 1.0;
-        const bool lost = !(drawn_to > 0.0);
-        faces_.gap[i] = lost ? 1.0 : block.deflection[i] - drawn_to;
-        const Vec3 n = lost ? Vec3(Vec3::Zero()) : b_in;
-        contact_.nx[i] = n.x(), contact_.ny[i] = n.y(), contact_.nz[i] = n.z();
-        faces_.bx[i] = n.x(), faces_.by[i] = n.y(), faces_.bz[i] = n.z();
-    }
-    return any;
-}
-
-// Hands what hangs over to its drivers.
-void Skin::note_drawn(TrussBlockState& next) {
-    next.drawn = 0;
-    next.touching = false;
-    for (std::size_t i = 0; i < lanes; ++i) {
-        if (!(next.force[i] > 0.0)) continue;
-        if (nearest_[i] != by_dent) {
-            next.touching = true;
-            continue;
-        }
-        next.drawn |= std::uint64_t{1} << i;
-        drivers_[hanging_.driver[i]].extra += next.force[i];
-    }
-    if (!next.touching) next.box = box_around(next.x, next.y, next.z);
-}
-
-// What hangs on a node presses with it on its obstacle.
-void Skin::load_drivers() {
-    TrussBlockState places{};  // places and normals of empty lanes are numbers, too
-    BlockContact contact{};
-    for (std::size_t k = 0; k < near_.size(); ++k) {
-        ObstacleSums& sums = obstacles_[k];
-        std::size_t count = 0;
-        const auto rub_some = [&] {
-            std::fill(contact.pressure.begin() + static_cast<std::ptrdiff_t>(count), contact.pressure.end(),
-                      0.0);
-            const double mu = scene_.obstacles[near_[k].index].friction;
-            if (mu > 0.0 && count > 0)
-                add_friction(unit_.body, mu, full_speed_, motion_, places, contact, sums.friction);
-            count = 0;
-        };
-        for (const Driver& driver : drivers_) {
-            if (driver.near != k || driver.extra == 0.0) continue;
-            TrussBlockState& block = now_.trusses.block[driver.block];
-            block.leading |= std::uint64_t{1} << driver.lane;
-            block.touching = true;
-            const Vec3 node(block.x[driver.lane], block.y[driver.lane], block.z[driver.lane]);
-            const double force = driver.extra * driver.per_force;
-            const Vec3 push = force * driver.normal;
-            sums.contact += {push, node.cross(push)};
-            sums.normal_force += force;
-            places.x[count] = node.x(), places.y[count] = node.y(), places.z[count] = node.z();
-            contact.nx[count] = driver.normal.x(), contact.ny[count] = driver.normal.y();
-            contact.nz[count] = driver.normal.z();
-            contact.pressure[count] = force;
-            if (++count == lanes) rub_some();
-        }
-        rub_some();
     }
 }
 
@@ -675,8 +397,6 @@ void Skin::hand_over() {
     }
     now_.touches = touches;
 }
-
-}  // namespace
 
 void skin_forces(const Scene& scene, std::size_t u, const State& from, Trial& trial) {
     Skin skin(scene, u, from, trial);

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import units
+from ..element_loads import touched_elements
 from ..filters import moving_average
 from ..plan_axes import PlanAxes
 from ..plotting.style import filtered
@@ -63,6 +64,13 @@ def _panels(result: Result) -> list[tuple[str, str, list[tuple[str, Floats]]]]:
         ]
         forces.append(("normal, unfiltered", normal))
         panels.append(("Barrier force", "kN", forces))
+        loads = touched_elements(result)
+        if len(loads) > 1:
+            on_each = [
+                (load.name, np.linalg.norm(filtered(load.force / 1e3, 60, interval)[0], axis=1))
+                for load in loads
+            ]
+            panels.append((f"Force on the barrier's elements, {forces[0][0].split(', ')[1]}", "kN", on_each))
     acceleration = [curve(axis, result.acceleration[:, i] / units.g, 60) for i, axis in enumerate("rst")]
     panels.append(("Acceleration of the mass centre, body axes", "g", acceleration))
     velocity = [(axis, result.velocity[:, i]) for i, axis in enumerate("xyz")]

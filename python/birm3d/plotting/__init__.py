@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from .comparisons import plot_comparison, plot_comparisons
 from .crush import plot_crush
+from .elements import plot_elements
 from .histories import plot_histories
 from .overview import plot_result
 from .plan import plot_plan
@@ -16,6 +17,7 @@ __all__ = [
     "plot_comparison",
     "plot_comparisons",
     "plot_crush",
+    "plot_elements",
     "plot_histories",
     "plot_plan",
     "plot_result",

@@ -13,6 +13,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
+from ..barrier_kinds import Jersey, RigidWall
 from ..plan_axes import PlanAxes, is_oblique
 from ..silhouette import silhouette
 from ..skin import skins_at
@@ -100,7 +101,7 @@ def _draw_barrier(axes: Axes, view: PlanAxes, world: Floats, drawn: list[Floats]
 
 def _redirected(result: Result) -> bool:
     scene = result.scene
-    flat = scene.barrier is not None and scene.barrier.diameter is None
+    flat = isinstance(scene.barrier, (RigidWall, Jersey))
     return is_oblique(result) and flat and "exit_angle" in result.metrics
 
 

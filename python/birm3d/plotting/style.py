@@ -22,6 +22,7 @@ __all__ = [
     "GREEN",
     "ORANGE",
     "RED",
+    "STYLES",
     "filtered",
     "fit",
     "legend",
@@ -36,14 +37,14 @@ Floats = npt.NDArray[np.float64]
 BLUE, ORANGE, GREEN, RED = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 CYCLE = (BLUE, RED, GREEN, "#CC79A7", ORANGE, "#56B4E9", "#000000", "#7F7F7F")
 _UNFILTERED = "_unfiltered"
-_STYLES = ("-", "--", "-.", ":", "-", "--", "-", "--")
+STYLES = ("-", "--", "-.", ":", "-", "--", "-", "--")
 
 
 def prepare(*panels: Axes) -> None:
     """Give panels the grid and the colours."""
     for axes in panels:
         axes.grid(alpha=0.3, lw=0.6)
-        axes.set_prop_cycle(cycler(color=CYCLE) + cycler(linestyle=_STYLES))
+        axes.set_prop_cycle(cycler(color=CYCLE) + cycler(linestyle=STYLES))
 
 
 def title(result: Result) -> str:

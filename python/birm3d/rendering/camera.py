@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..barrier_kinds import Bollards, Pole
 from ..barrier_surfaces import barrier_axes
 from ..plan_axes import is_oblique
 from ..skin import Skin
@@ -55,9 +56,9 @@ def outside_camera(result: Result, view: View, points: Floats, aspect: float, ta
     result
         Gives the directions of the path and of the barrier.
     view
-        ``"three_quarter"``: from above the side, behind in head-on impacts and ahead in those below 45
-        degrees; ``"side"``: square to the path, and ``"top"``: from above, the path going to the right,
-        both without perspective; ``"front"``: against the path, which a wall would hide.
+        ``"three_quarter"``: from above the side, ahead where the front can be seen, of posts and in impacts
+        below 45 degrees, else behind; ``"side"``: square to the path, and ``"top"``: from above, the path
+        going to the right, both without perspective; ``"front"``: against the path, which a wall would hide.
     points
         World axes [m].
     aspect
@@ -70,9 +71,9 @@ def outside_camera(result: Result, view: View, points: Floats, aspect: float, ta
     out = barrier_axes(result.scene.barrier)[1]
     # The side of the path that the barrier does not hide.
     side = left if left @ out >= -1e-9 else -left
-    oblique = is_oblique(result)
+    ahead_of_it = is_oblique(result) or isinstance(result.scene.barrier, (Bollards, Pole))
     look, up = {
-        "three_quarter": (side + (0.7 if oblique else -0.55) * ahead + 0.45 * _UP, _UP),
+        "three_quarter": (side + (0.7 if ahead_of_it else -0.55) * ahead + 0.45 * _UP, _UP),
         "side": (side, _UP),
         "top": (_UP, left),
         "front": (ahead + 0.25 * _UP, _UP),

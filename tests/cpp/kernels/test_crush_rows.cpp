@@ -55,8 +55,8 @@ TEST("every instruction set gives the same bits") {
         const bool changed = round % 2 == 1;
         const PressColumns columns = columns_of(mesh, 0, changed ? &factor : nullptr);
         const FlatPress flat{-0.96, 0.28, 0.0, -2.6, -0.95, 0.3, 0.01};
-        const CurvedPress curved{gap.data(), nx.data(), ny.data(), nz.data(),
-                                 nx.data(),  ny.data(), nz.data(), nx.data(), ny.data(), nz.data()};
+        const CurvedPress curved{gap.data(), nx.data(), ny.data(), nz.data(), nx.data(),
+                                 ny.data(),  nz.data(), nx.data(), ny.data(), nz.data()};
         Outcome first_flat, first_curved;
         for (std::size_t k = 0; k < functions.size(); ++k) {
             alignas(64) Lanes gaps;

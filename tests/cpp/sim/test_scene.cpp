@@ -17,7 +17,8 @@ double nearest_gap(const Scene& scene) {
     const TrussMesh& mesh = scene.vehicle->units[0].trusses;
     double least = 1e9;
     for (std::size_t i = 0; i < mesh.count; ++i)
-        least = std::min(least, laboratory::gap_to_barrier(scene, body.position + body.orientation * mesh.node(i)));
+        least = std::min(least,
+                         laboratory::gap_to_barrier(scene, body.position + body.orientation * mesh.node(i)));
     return least;
 }
 
@@ -54,7 +55,8 @@ TEST("the path of the mass centre meets the wall's line at the offset") {
     const Scene scene(laboratory::block(laboratory::w2_curve()), laboratory::wall(0.0, heading, origin),
                       Approach{20.0, angle, 1.25, 0.0}, laboratory::weightless(), {});
     const BodyState body = scene.initial_state().units[0].body;
-    const double t = (body.position - origin).dot(scene.barrier->normal()) / -scene.barrier->normal().dot(body.velocity);
+    const double t =
+        (body.position - origin).dot(scene.barrier->normal()) / -scene.barrier->normal().dot(body.velocity);
     const Vec3 line(-std::sin(heading), std::cos(heading), 0.0);
     CHECK_CLOSE((body.position + t * body.velocity - origin - 1.25 * line).norm(), 0.0, 1e-13, "rounding");
 }

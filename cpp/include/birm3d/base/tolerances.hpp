@@ -80,6 +80,10 @@ inline constexpr double joint_gap = 1e-12;
 // histories settle.
 inline constexpr double tail_duration = 0.02;
 
+// A vehicle of which a wheel is further than this above the ground and still rises has not shown its greatest roll and
+// pitch yet (m). Small: every hop after an impact makes the run longer.
+inline constexpr double lifted_wheel = 0.1;
+
 // A run without a duration ends here at the latest (s).
 inline constexpr double longest_event = 5.0;
 
@@ -93,6 +97,10 @@ inline constexpr double solid_volume = 1e-12;
 // Rounding that an inertia tensor may show, relative: of its symmetry, and of the rule that no principal
 // moment is above the sum of the other two.
 inline constexpr double symmetric_inertia = 1e-9;
+
+// A node leaves an obstacle for the dent beside it where that draws it in further by this (m): two nodes at one place,
+// on the border of two zones, are as deep as each other but for rounding.
+inline constexpr double drawn_further = 1e-9;
 
 // Points nearer than this to an edge or a corner of a shape take the normal of one of its faces (m): the
 // direction from the edge to such a point is rounding. Large: the corner's normal jumps by a visible amount.

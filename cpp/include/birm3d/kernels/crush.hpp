@@ -13,7 +13,8 @@
 // A narrow obstacle, such as a bollard, does not part the skin: sheet metal is drawn in with its neighbours, where
 // free nodes would slip round to either side and let the obstacle pass between them. There a node is held in line:
 // it goes towards its anchor, a by -b/(-b . n) for each unit of the normal's way, and the force on the vehicle is
-// F / (-b . n) * n, by virtual work. Where the truss stands across the normal (-b . n < c0) this share fades out.
+// F / (-b . n) * n, by virtual work. Where the truss stands across the normal (-b . n < c0) this share fades out, unless
+// dents (dent.hpp) draw such nodes in.
 // Both are cases of one rule: with h the way of the node, h . n = 1, the force is F * (-b . h) * n.
 //
 // Deviations from the paper: its Eq. 14 (left side P2) as printed moves away from the plane; the push-back
@@ -23,7 +24,7 @@
 #pragma once
 
 #include "birm3d/base/node_sums.hpp"
-#include "birm3d/geometry/surface.hpp"
+#include "birm3d/geometry/half_space.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 #include "birm3d/model/vehicle.hpp"
 #include "birm3d/state/contacts.hpp"
@@ -51,11 +52,11 @@ struct FlatContact {
     InverseMass inverse_mass;
 };
 
-// Share of a node's way that goes along its truss, over the cosine c = -b . n >= 0 of the truss to the normal. `held`:
-// 1 where the surface holds the skin in line, else 0.
+// Share of a node's way that goes along its truss, over the cosine c = -b . n >= 0 of the truss to the normal.
+// `held`: the cosine c0 below which the share fades out, where the surface holds the skin in line; else 0.
 BIRM3D_IN_LANE_LOOP double in_line(double held, double cosine) {
-    constexpr double c0 = 0.5;  // below it the share fades out
-    return held * (cosine < c0 ? cosine / (c0 * c0) : 1.0 / cosine);
+    const double faded = held > 0.0 ? cosine / (held * held) : 0.0;
+    return held > 0.0 && !(cosine < held) ? 1.0 / cosine : faded;
 }
 
 // Normal force for each unit of truss force, -b . h.
@@ -74,8 +75,8 @@ inline Vec3 way_held(double held, double cosine, const Vec3& normal, const Vec3&
 struct alignas(64) NodeFaces {
     Lanes gap;         // of the nearest surface (m)
     Lanes bx, by, bz;  // outward normal of the same surface at the instant before
-    Lanes own_way;    // 1 where n is the node's way itself, for nodes drawn in by a dent (dent.hpp), else 0
-    Lanes held;        // 1 where the surface holds the skin in line (see above), else 0
+    Lanes own_way;     // 1 where n is the node's way itself, for nodes drawn in by a dent (dent.hpp), else 0
+    Lanes held;        // see in_line
 };
 
 // What the blocks of a unit add up to.

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "birm3d/model/truss_mesh.hpp"
 
@@ -23,12 +24,23 @@ struct DentDriver {
     double deflection;  // m
 };
 
+// Some drivers that stand together, from `first` to before `last`.
+struct DentGroup {
+    std::size_t first, last;
+    Box box;         // around their places
+    double deepest;  // m
+};
+std::vector<DentGroup> grouped(std::span<const DentDriver> drivers);
+
 // What hangs on the drivers in one block.
 struct alignas(64) Hanging {
-    Lanes deflection;                     // that each node is drawn in to; below zero: none (m)
-    std::array<std::size_t, lanes> driver;  // on which each hangs
+    Lanes deflection;                       // that each node is drawn in to; below zero: none (m)
+    // On which each hangs, half on the one and half on the other where two draw it in alike.
+    std::array<std::size_t, lanes> driver, second;
 };
 
-void hang(const TrussBlock& trusses, double slope, std::span<const DentDriver> drivers, Hanging& hanging);
+// `box`: around the uncrushed nodes of the block.
+void hang(const TrussBlock& trusses, const Box& box, double slope, std::span<const DentDriver> drivers,
+          std::span<const DentGroup> groups, Hanging& hanging);
 
 }  // namespace birm3d

@@ -6,13 +6,11 @@
 #include "birm3d/base/lanes.hpp"
 #include "birm3d/geometry/placement.hpp"
 #include "birm3d/geometry/shape.hpp"
-#include "birm3d/geometry/surface.hpp"
 
 namespace birm3d {
 
-// Signed distances of the nodes x, y, z; face and nodes in the same axes (m).
-Lanes gaps(const Cylinder& face, const Lanes& x, const Lanes& y, const Lanes& z);
-Lanes gaps(const HalfSpace& face, const Lanes& x, const Lanes& y, const Lanes& z);
+// Around a block of nodes.
+Box box_around(const Lanes& x, const Lanes& y, const Lanes& z);
 
 // What Nearest says, for a block of nodes: signed distances (m) and outward unit normals in body axes.
 struct alignas(64) NearestLanes {

@@ -49,7 +49,7 @@ struct History {
     std::vector<UnitHistory> units;
     std::vector<ObstacleHistory> obstacles;  // of the elements that were touched
     std::vector<JointHistory> joints;
-    Column kinetic, potential, stored, crushed;                                        // J
+    Column kinetic, potential, stored, crushed;                                    // J
     Column barrier_friction, tire_friction, ground_friction, impacts, joint_work;  // J
     double momentum_residual = 0.0;  // max |m a - sum of forces| / max |force|, over all units
 };

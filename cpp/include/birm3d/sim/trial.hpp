@@ -20,12 +20,12 @@ struct ObstacleImpulse {
 struct ContactImpulses {
     explicit ContactImpulses(std::size_t wheels) : tire(wheels, 0.0) {}
 
-    Column tire;                        // (wheels) normal impulse (N s)
-    Vec3 tire_friction = Vec3::Zero();  // of all wheels, world axes (N s)
+    Column tire;                             // (wheels) normal impulse (N s)
+    Vec3 tire_friction = Vec3::Zero();       // of all wheels, world axes (N s)
     std::vector<ObstacleImpulse> obstacles;  // of closed trusses
     double barrier_normal = 0.0;             // their part along the normals, of the barrier's (N s)
-    std::size_t member_contacts = 0;    // closed trusses that carried load
-    Vec3 joints = Vec3::Zero();         // of all its joints, world axes (N s)
+    std::size_t member_contacts = 0;         // closed trusses that carried load
+    Vec3 joints = Vec3::Zero();              // of all its joints, world axes (N s)
 };
 
 // A rigid impact at one end of a step: an instant of its own, not spread over the step.
@@ -73,9 +73,9 @@ struct Trial {
     Impact at_start, at_end;
     std::vector<NearObstacle> near;  // for skin_forces: reused, so that a step allocates nothing
     std::vector<Touch> touches;
-    double error = 0.0;                     // estimated velocity error of this step (m/s)
-    double critical_step;                   // sqrt(3)/omega of the trusses in contact (s)
-    double impact_after;                    // a rigid impact begins this long after t (s)
+    double error = 0.0;    // estimated velocity error of this step (m/s)
+    double critical_step;  // sqrt(3)/omega of the trusses in contact (s)
+    double impact_after;   // a rigid impact begins this long after t (s)
 
     bool body_held() const;  // did the rigid body meet the barrier?
 };

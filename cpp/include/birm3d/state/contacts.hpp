@@ -32,9 +32,10 @@ struct SkinForces {
 
 // What one obstacle and a unit's skin do to each other, world axes.
 struct Load {
-    Wrench wrench;                         // on the unit, about its mass centre
-    Vec3 reaction_torque = Vec3::Zero();   // on the obstacle, about its own point (N m); its force is -wrench.force
-    double normal_force = 0.0;             // N
+    Wrench wrench;  // on the unit, about its mass centre
+    Vec3 reaction_torque =
+        Vec3::Zero();           // on the obstacle, about its own point (N m); its force is -wrench.force
+    double normal_force = 0.0;  // N
 
     Load& operator+=(const Load& o) {
         wrench += o.wrench;
