@@ -100,7 +100,7 @@ def prism_mesh(profile: Floats, length: float, pieces: int) -> tuple[Floats, npt
     last = pieces * n
     for i in range(1, n - 1):
         faces += [(0, i + 1, i), (last, last + i, last + i + 1)]
-    return np.concatenate(rings), np.array(faces)
+    return np.concatenate(rings), np.array(faces)[:, ::-1]  # outwards for a profile that turns from x to z
 
 
 def post_mesh(radius: float, height: float, sides: int = 32) -> tuple[Floats, npt.NDArray[np.int64]]:

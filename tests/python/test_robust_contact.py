@@ -99,7 +99,8 @@ def test_a_wall_of_triangles_is_the_same_wall() -> None:
             a, b = ring + i, ring + (i + 1) % 4
             faces += [(a, b, b + 4), (a, b + 4, a + 4)]
     exact = Simulation(car(), Barrier.rigid_wall(width=20.0, height=1.0), 25.0, 25.0, duration=0.25).run()
-    mesh = Simulation(car(), Barrier.from_mesh(vertices, faces), 25.0, 25.0, duration=0.25).run()
+    outwards = [face[::-1] for face in faces]
+    mesh = Simulation(car(), Barrier.from_mesh(vertices, outwards), 25.0, 25.0, duration=0.25).run()
     for metric in ("dynamic_crush", "peak_force_50ms", "exit_speed"):
         assert mesh.metrics[metric] == pytest.approx(exact.metrics[metric], rel=1e-3), metric
 
