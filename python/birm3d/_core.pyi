@@ -329,6 +329,10 @@ class Simulation:
         """
         (n,) m: greatest truss deflections so far
         """
+    def pose(self, unit: typing.SupportsInt | typing.SupportsIndex = 0) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Now: mass centre, (3,) m, world; rotation from body axes to the world's, (3, 3)
+        """
     def reset(self) -> None:
         ...
     def restore(self, snapshot: Snapshot) -> None:
@@ -350,6 +354,16 @@ class Simulation:
     def velocity(self, unit: typing.SupportsInt | typing.SupportsIndex = 0) -> numpy.typing.NDArray[numpy.float64]:
         """
         (3,) m/s, world, now
+        """
+    @property
+    def deepest_anchor(self) -> float:
+        """
+        m: depth of the deepest truss anchor inside the barrier now, 0 if none is
+        """
+    @property
+    def deepest_node(self) -> float:
+        """
+        m: depth of the deepest shell node inside the barrier now, 0 if none is
         """
     @property
     def end_reason(self) -> EndReason:

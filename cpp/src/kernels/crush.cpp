@@ -40,6 +40,8 @@ double release(const TrussBlock& truss, const TrussBlockState& before, const Lan
             d = d0 - share * way;
             spared += 0.5 * before.force[i] * (d - d1);
             if ((before.leading >> i & 1U) != 0) continue;  // what hangs on it keeps it at the surface
+        } else if (!(d < d1)) {
+            continue;  // drawn out beyond its length: back there it would be inside
         }
         const double length = truss.length[i] - d;
         const Vec3 place = anchor + (length > tolerance::truss_length ? length / b.norm() : 1.0) * b;
@@ -98,28 +100,59 @@ BIRM3D_LANE_LOOP void find_ways(const NodeFaces& faces, const BlockContact& cont
     for (std::size_t i = 0; i < lanes; ++i) {
         const double nx = contact.nx[i], ny = contact.ny[i], nz = contact.nz[i];
         const double cosine = nx * faces.bx[i] + ny * faces.by[i] + nz * faces.bz[i];
-        const bool follow = before.force[i] > 0.0 && cosine > sharp_turn;
-        const double mean = follow ? 1.0 / (1.0 + cosine) : 1.0;
-        const double part = follow ? mean : 0.0;
+        const bool pushes = before.force[i] > 0.0;
+        const bool follow = pushes && cosine > sharp_turn;
+        const double gap = pushes || faces.gap[i] < 0.0 ? faces.gap[i] : 0.0;
+        const double held = faces.held[i];
 
-        const double x = truss.anchor_x[i] - before.x[i], y = truss.anchor_y[i] - before.y[i],
-                     z = truss.anchor_z[i] - before.z[i];
-        const double size = std::sqrt(x * x + y * y + z * z);
-        const double per_size = size > tolerance::truss_length ? 1.0 / size : 0.0;
-        const double c = (x * nx + y * ny + z * nz) * per_size;
+        // The way at the instant before, w0.
+        const double mx = follow ? faces.bx[i] : nx, my = follow ? faces.by[i] : ny,
+                     mz = follow ? faces.bz[i] : nz;
+        const double x0 = truss.anchor_x[i] - before.x[i], y0 = truss.anchor_y[i] - before.y[i],
+                     z0 = truss.anchor_z[i] - before.z[i];
+        const double size0 = std::sqrt(x0 * x0 + y0 * y0 + z0 * z0);
+        const double per0 = size0 > tolerance::truss_length ? 1.0 / size0 : 0.0;
+        const double c0 = (x0 * mx + y0 * my + z0 * mz) * per0, aligned0 = c0 > 0.0 ? c0 : 0.0;
         // Share of the way that goes along the truss, over its cosine.
-        const double aligned = c > 0.0 ? c : 0.0;
-        const double line = in_line(faces.held[i], aligned);
-        const double free = 1.0 - line * aligned;
-        const double along = line * per_size;
+        const double line0 = in_line(held, aligned0), free0 = 1.0 - line0 * aligned0, along0 = line0 * per0;
+        const double w0x = free0 * mx + along0 * x0, w0y = free0 * my + along0 * y0,
+                     w0z = free0 * mz + along0 * z0;
+
+        // And now, w1, where w0 would take the node.
+        const double onto = w0x * nx + w0y * ny + w0z * nz;
+        const double step = gap / (onto > sharp_turn ? onto : 1.0);
+        const double x1 = x0 + step * w0x, y1 = y0 + step * w0y, z1 = z0 + step * w0z;
+        const double size1 = std::sqrt(x1 * x1 + y1 * y1 + z1 * z1);
+        const double per1 = size1 > tolerance::truss_length ? 1.0 / size1 : 0.0;
+        const double c1 = (x1 * nx + y1 * ny + z1 * nz) * per1, aligned1 = c1 > 0.0 ? c1 : 0.0;
+        const double line1 = in_line(held, aligned1), free1 = 1.0 - line1 * aligned1, along1 = line1 * per1;
+        const double w1x = free1 * nx + along1 * x1, w1y = free1 * ny + along1 * y1,
+                     w1z = free1 * nz + along1 * z1;
+
+        // Between them, second order; h . n = 1.
+        const double mean = 1.0 / (1.0 + (onto > sharp_turn ? onto : 1.0));
+        const bool both = onto > sharp_turn;
         const bool own = faces.own_way[i] > 0.0;
-        ways.hx[i] = own ? nx : free * (mean * nx + part * faces.bx[i]) + along * x;
-        ways.hy[i] = own ? ny : free * (mean * ny + part * faces.by[i]) + along * y;
-        ways.hz[i] = own ? nz : free * (mean * nz + part * faces.bz[i]) + along * z;
-        ways.sx[i] = own ? nx : free * nx + along * x;
-        ways.sy[i] = own ? ny : free * ny + along * y;
-        ways.sz[i] = own ? nz : free * nz + along * z;
+        ways.hx[i] = own ? nx : both ? mean * (w0x + w1x) : w1x;
+        ways.hy[i] = own ? ny : both ? mean * (w0y + w1y) : w1y;
+        ways.hz[i] = own ? nz : both ? mean * (w0z + w1z) : w1z;
+        ways.sx[i] = own ? nx : w1x;
+        ways.sy[i] = own ? ny : w1y;
+        ways.sz[i] = own ? nz : w1z;
     }
+}
+
+BIRM3D_LANE_LOOP double greatest_slack(const Lanes& force, const Lanes& deflection, const Lanes& residual) {
+    alignas(64) Lanes slack;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i)
+        slack[i] = force[i] > 0.0 ? 0.0 : residual[i] - deflection[i];
+    for (std::size_t half = lanes / 2; half > 0; half /= 2) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < half; ++i)
+            slack[i] = slack[half + i] > slack[i] ? slack[half + i] : slack[i];
+    }
+    return slack[0];
 }
 
 void finish(const TrussMesh& mesh, std::size_t b, double nodes, const TrussBlockState& before,
@@ -127,6 +160,7 @@ void finish(const TrussMesh& mesh, std::size_t b, double nodes, const TrussBlock
     if (nodes >= left) sums.released_work += release(mesh.block[b], before, gap, contact, now);
     now.touching = std::fmod(nodes, left) > 0.0;
     now.drawn = now.leading = 0;
+    now.slack = greatest_slack(now.force, now.deflection, now.residual) > tolerance::touching_gap;
     now.box = now.touching
                   ? before.box  // the block is looked at in any case while it touches
                   : Box::around(lanes, [&now](std::size_t i) { return Vec3(now.x[i], now.y[i], now.z[i]); });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/detect.hpp"
@@ -13,8 +14,20 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-Box everything(const TrussMesh& mesh) {
-    return {Vec3::Zero(), Vec3::Constant(mesh.reach)};
+// Around its nodes; that of the state is kept up only while nothing touches.
+Box box_of(const TrussBlockState& block) {
+    if (!block.touching) return block.box;
+    return Box::around(lanes, [&block](std::size_t i) { return Vec3(block.x[i], block.y[i], block.z[i]); });
+}
+
+Box everything(const TrussMesh& mesh, const TrussState& trusses) {
+    Box box{Vec3::Zero(), Vec3::Constant(mesh.reach)};
+    for (const TrussBlockState& block : trusses.block) {
+        if (!block.slack) continue;  // else no node is further away than where it was made
+        const Box around = box_of(block);
+        box.half = box.half.cwiseMax(around.center.cwiseAbs() + around.half);
+    }
+    return box;
 }
 
 // The least of `least` and the gaps of some points, of which a box can be left out that is further away.
@@ -24,7 +37,7 @@ double nearest_in_blocks(const Shape& shape, const Placement& seen, std::size_t 
     alignas(64) NearestLanes found;
     for (std::size_t b = 0; b < blocks; ++b) {
         const auto [box, x, y, z] = block(b);
-        if (!within_reach(shape, seen, *box, least)) continue;
+        if (!within_reach(shape, seen, box, least)) continue;
         nearest_of(shape, seen, seen, *x, *y, *z, found);
         least = std::min(least, *std::min_element(found.gap.begin(), found.gap.end()));
     }
@@ -39,16 +52,16 @@ Placement placement(const Obstacle& obstacle, const BodyState& seen_from) {
             to_own * (seen_from.position - obstacle.position)};
 }
 
-void find_near(const Scene& scene, std::size_t u, const BodyState& before, const BodyState& now,
+void find_near(const Scene& scene, std::size_t u, const UnitState& before, const BodyState& now,
                double margin, std::vector<NearObstacle>& near) {
     near.clear();
-    const Box box = everything(scene.vehicle->units[u].trusses);
+    const Box box = everything(scene.vehicle->units[u].trusses, before.trusses);
     for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
         if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
         const Obstacle& obstacle = scene.obstacles[i];
         const Placement seen = placement(obstacle, now);
         if (within_reach(obstacle.shape, seen, box, margin))
-            near.push_back({i, seen, placement(obstacle, before)});
+            near.push_back({i, seen, placement(obstacle, before.body)});
     }
 }
 
@@ -61,33 +74,80 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const UnitState& unit = state.units[u];
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
+        const Box all = everything(mesh, unit.trusses);
         for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
             if (i == scene.ground && !(what.ground && scene.skin_meets_ground[u])) continue;
             const Shape& shape = scene.obstacles[i].shape;
             const Placement seen = placement(scene.obstacles[i], unit.body);
-            if (!within_reach(shape, seen, everything(mesh), least)) continue;
+            if (!within_reach(shape, seen, all, least)) continue;
             struct Points {
-                const Box* box;
+                Box box;
                 const Lanes *x, *y, *z;
             };
-            least = nearest_in_blocks(
-                shape, seen, mesh.blocks,
-                [&](std::size_t b) {
-                    const TrussBlockState& block = unit.trusses.block[b];
-                    return Points{&block.box, &block.x, &block.y, &block.z};
-                },
-                least);
+            if (what.nodes)
+                least = nearest_in_blocks(
+                    shape, seen, mesh.blocks,
+                    [&](std::size_t b) {
+                        const TrussBlockState& block = unit.trusses.block[b];
+                        return Points{box_of(block), &block.x, &block.y, &block.z};
+                    },
+                    least);
             if (!what.anchors) continue;
             least = nearest_in_blocks(
                 shape, seen, mesh.blocks,
                 [&](std::size_t b) {
                     const TrussBlock& block = mesh.block[b];
-                    return Points{&mesh.anchor_box[b], &block.anchor_x, &block.anchor_y, &block.anchor_z};
+                    return Points{mesh.anchor_box[b], &block.anchor_x, &block.anchor_y, &block.anchor_z};
                 },
                 least);
         }
     }
     return least;
+}
+
+double untouched_step(const Scene& scene, const State& state) {
+    double longest = infinity;
+    std::vector<std::pair<const Shape*, Placement>> near;
+    alignas(64) NearestLanes found, nearest;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const UnitState& unit = state.units[u];
+        const Unit& model = scene.vehicle->units[u];
+        const double fastest = fastest_point(model, unit.body);
+        if (!(fastest > 0.0)) continue;
+        const Mat3 R = unit.body.orientation.toRotationMatrix();
+        const Vec3 v = R.transpose() * unit.body.velocity;
+        const Vec3 w = R.transpose() * angular_velocity(model.body, unit.body);
+        const Box all = everything(model.trusses, unit.trusses);
+        near.clear();
+        for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+            const Placement seen = placement(scene.obstacles[i], unit.body);
+            if (i != scene.ground && within_reach(scene.obstacles[i].shape, seen, all, longest * fastest))
+                near.emplace_back(&scene.obstacles[i].shape, seen);
+        }
+        for (const TrussBlockState& block : unit.trusses.block) {
+            const Box box = box_of(block);
+            nearest.gap.fill(infinity);
+            for (const auto& [shape, seen] : near) {
+                if (!within_reach(*shape, seen, box, longest * fastest)) continue;
+                nearest_of(*shape, seen, seen, block.x, block.y, block.z, found);
+                for (std::size_t k = 0; k < lanes; ++k) {
+                    if (!(found.gap[k] < nearest.gap[k])) continue;
+                    nearest.gap[k] = found.gap[k];
+                    nearest.nx[k] = found.nx[k], nearest.ny[k] = found.ny[k], nearest.nz[k] = found.nz[k];
+                }
+            }
+            for (std::size_t k = 0; k < lanes; ++k) {
+                const double gap = std::max(nearest.gap[k], 0.0);
+                if (!(gap < longest * fastest) || is_slack(block, k)) continue;
+                const Vec3 node(block.x[k], block.y[k], block.z[k]);
+                const double approach =
+                    -Vec3(nearest.nx[k], nearest.ny[k], nearest.nz[k]).dot(v + w.cross(node));
+                const double straight = approach > 0.0 ? gap / approach : infinity;
+                longest = std::min({longest, straight, (gap + tolerance::untouched_way) / fastest});
+            }
+        }
+    }
+    return longest;
 }
 
 double passing_step(const Scene& scene, const State& state) {
@@ -102,7 +162,7 @@ double passing_step(const Scene& scene, const State& state) {
             // Out of reach even after a step as long as this obstacle would allow.
             if (width < infinity && 0.25 * width < longest * speed &&
                 within_reach(scene.obstacles[i].shape, placement(scene.obstacles[i], body),
-                             everything(unit.trusses), 0.25 * width))
+                             everything(unit.trusses, state.units[u].trusses), 0.25 * width))
                 longest = 0.25 * width / speed;
         }
     }

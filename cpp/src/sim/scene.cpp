@@ -91,6 +91,12 @@ void raise_to_ground(const Scene& scene, State& state) {
     move(state, -lowest * Vec3::UnitZ());
 }
 
+// Does a segment of a wall go on where the one before it ends?
+bool continues(const Shape& shape) {
+    const auto* prism = std::get_if<Prism>(&shape);
+    return prism != nullptr && std::isfinite(prism->y_low()) && !prism->low_end_is_surface();
+}
+
 // Moves the vehicle of `state` along its path, forward or back, until its nearest point stands `standoff` before the
 // barrier. A path that leads past the barrier starts where the barrier begins.
 void place(const Scene& scene, const Vec3& heading, State& state) {
@@ -163,13 +169,15 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
         for (const Element& element : barrier->elements)
             obstacles.push_back({element.shape,
                                  Eigen::AngleAxisd(element.heading, Vec3::UnitZ()).toRotationMatrix(),
-                                 element.position, element.holds_skin, barrier->friction});
+                                 element.position, element.holds_skin, barrier->friction, 0});
+    for (std::size_t i = 0; i < obstacles.size(); ++i)
+        obstacles[i].structure = i > 0 && continues(obstacles[i].shape) ? obstacles[i - 1].structure : i;
     ground = obstacles.size();
     for (const Unit& unit : vehicle->units)
         skin_meets_ground.push_back(settings.ground && !unit.wheels.empty() && skin_above_ground(unit));
     if (std::any_of(skin_meets_ground.begin(), skin_meets_ground.end(), [](char meets) { return meets; }))
         obstacles.push_back(
-            {HalfSpace{Vec3::UnitZ(), 0.0}, Mat3::Identity(), Vec3::Zero(), false, settings.mu_body});
+            {HalfSpace{Vec3::UnitZ(), 0.0}, Mat3::Identity(), Vec3::Zero(), false, settings.mu_body, ground});
 }
 
 double Scene::reference_speed() const {

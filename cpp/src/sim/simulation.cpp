@@ -10,6 +10,7 @@
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/kernels/tires.hpp"
 #include "birm3d/sim/obstacles.hpp"
+#include "birm3d/sim/structure_course.hpp"
 
 namespace birm3d {
 
@@ -23,12 +24,26 @@ bool touches(const State& state) {
 }
 
 // From the nearest point of a convex body around the shape to `p`, own axes.
-Vec3 from_hull(const Shape& shape, const Vec3& p) {
+Vec3 from_hull(const Shape& shape, const Box& box, const Vec3& p) {
     if (const auto* plane = std::get_if<HalfSpace>(&shape))
         return std::max(0.0, plane->gap(p)) * plane->normal;
-    const Box box = bounds(shape);
     const Vec3 from = p - box.center;
     return from - from.cwiseMax(-box.half).cwiseMin(box.half);
+}
+
+// Around all that is joined to obstacle `i`, its own axes.
+Box box_of_structure(const Scene& scene, std::size_t i) {
+    const Obstacle& first = scene.obstacles[i];
+    Box box = bounds(first.shape);
+    for (std::size_t j = i + 1; j < scene.obstacles.size() && scene.obstacles[j].structure == i; ++j) {
+        // Segments follow each other along y.
+        const Box own = bounds(scene.obstacles[j].shape);
+        const double shift = first.rotation.col(1).dot(scene.obstacles[j].position - first.position);
+        const double low = std::min(box.center.y() - box.half.y(), shift + own.center.y() - own.half.y());
+        const double high = std::max(box.center.y() + box.half.y(), shift + own.center.y() + own.half.y());
+        box.center.y() = 0.5 * (low + high), box.half.y() = 0.5 * (high - low);
+    }
+    return box;
 }
 
 // Moving away from every element, and either faster than any turning could bring a point back or already out of its
@@ -40,8 +55,9 @@ bool has_left(const Scene& scene, const State& state) {
         const double turning = angular_velocity(unit.body, body).norm() * unit.trusses.reach;
         for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
             const Obstacle& element = scene.obstacles[i];
+            if (element.structure != i) continue;
             const Placement seen = placement(element, body);
-            const Vec3 from = from_hull(element.shape, seen.position);
+            const Vec3 from = from_hull(element.shape, box_of_structure(scene, i), seen.position);
             const double distance = from.norm();
             if (!(distance > 0.0)) return false;
             const double away = (element.rotation.transpose() * body.velocity).dot(from) / distance;
@@ -116,11 +132,14 @@ double time_to_release(const LoadCourse& course) {
 }
 
 // Of the last load.
-double time_to_release(const State& state) {
+double time_to_release(const Scene& scene, const State& state) {
     double latest = 0.0;
     for (const UnitState& unit : state.units)
-        for (const Touch& touch : unit.touches)
-            latest = std::max(latest, time_to_release(touch.course));
+        for (std::size_t i = 0; i < unit.touches.size();) {
+            const std::size_t structure = scene.obstacles[unit.touches[i].obstacle].structure;
+            latest = std::max(latest, time_to_release(course_of_structure(scene, unit.touches, structure)));
+            i = end_of_structure(scene, unit.touches, i);
+        }
     return latest;
 }
 
@@ -164,6 +183,14 @@ EndReason Simulation::end_reason() const {
     if (scene_.duration) return EndReason::duration;
     if (!state_.decided) return EndReason::longest;
     return has_left(scene_, state_) ? EndReason::separated : EndReason::stopped;
+}
+
+double Simulation::deepest_node() const {
+    return std::max(0.0, -nearest_gap(scene_, state_, {}));
+}
+
+double Simulation::deepest_anchor() const {
+    return std::max(0.0, -nearest_gap(scene_, state_, {.nodes = false, .anchors = true}));
 }
 
 double Simulation::remaining() const {
@@ -223,7 +250,8 @@ void Simulation::adaptive_step() {
         tolerance::step_error_per_tolerance * scene_.settings.tolerance * scene_.reference_speed();
     double dt =
         std::min({state_.next_step, tolerance::longest_step, remaining(), passing_step(scene_, state_)});
-    if (touches(state_)) dt = std::min(dt, std::max(time_to_release(state_), tolerance::release_resolution));
+    if (touches(state_))
+        dt = std::min(dt, std::max(time_to_release(scene_, state_), tolerance::release_resolution));
     for (;;) {
         if (dt < tolerance::shortest_step)
             throw UnstableError(dt, tolerance::shortest_step, state_.time,
@@ -254,11 +282,7 @@ void Simulation::adaptive_step() {
         std::min(dt * std::min(4.0, growth), 0.9 * tolerance::stable_fraction * trial_.critical_step));
     if (scene_.barrier && !touches(state_)) {
         // Free flight: up to the first instant at which a node can be at the barrier.
-        double fastest = 0.0;
-        for (std::size_t u = 0; u < state_.units.size(); ++u)
-            fastest = std::max(fastest, fastest_point(scene_.vehicle->units[u], state_.units[u].body));
-        next = std::max(tolerance::first_contact_step,
-                        std::min(next, fastest > 0.0 ? nearest_gap(scene_, state_, {}) / fastest : infinity));
+        next = std::max(tolerance::first_contact_step, std::min(next, untouched_step(scene_, state_)));
     }
     state_.next_step = next;
 }

@@ -12,6 +12,12 @@
 
 namespace birm3d {
 
+// From a node to its anchor, unit.
+inline Vec3 inward(const TrussBlock& truss, const TrussBlockState& now, std::size_t i) {
+    return Vec3(truss.anchor_x[i] - now.x[i], truss.anchor_y[i] - now.y[i], truss.anchor_z[i] - now.z[i])
+        .normalized();
+}
+
 // One unit's skin within one step; body axes.
 class Skin {
   public:
@@ -38,6 +44,10 @@ class Skin {
 
     void press(std::size_t b);
     bool look_about(std::size_t b);
+    void spring_back(std::size_t b);
+    const TrussBlockState& from(std::size_t b) const {
+        return sprung_back_ ? sprung_ : before_.trusses.block[b];
+    }
     void draft(std::size_t b);
     bool draw_in(std::size_t b);
     void find_seen(const Box& box, double margin);
@@ -46,6 +56,9 @@ class Skin {
     void press_shapes(std::size_t b);
     void crush_shapes(std::size_t b, const TrussBlockState& block, TrussBlockState& next, CrushSums& to);
     const TrussBlockState& look(std::size_t b);
+    void turn_flat_faces();
+    void settle_in_corners(const TrussBlockState& block);
+    void find_entered_faces(const TrussBlockState& block);
     const TrussBlockState& follow_with_leading(std::size_t b);
     bool set_hanging(std::size_t b);
     void note_drawn(TrussBlockState& next);
@@ -87,6 +100,8 @@ class Skin {
     };
     std::vector<Driver> drivers_;
     std::vector<std::size_t> drafted_;  // blocks
+    TrussBlockState sprung_;            // the block at hand, if some of its nodes have sprung back
+    bool sprung_back_ = false;
     TrussBlockState followed_;
     std::vector<DentDriver> dent_;  // parallel to drivers_
     std::vector<DentGroup> dent_groups_;

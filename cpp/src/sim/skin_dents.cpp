@@ -8,20 +8,10 @@
 
 namespace birm3d {
 
-namespace {
-
-// From a node to its anchor, unit.
-Vec3 inward(const TrussBlock& truss, const TrussBlockState& now, std::size_t i) {
-    return Vec3(truss.anchor_x[i] - now.x[i], truss.anchor_y[i] - now.y[i], truss.anchor_z[i] - now.z[i])
-        .normalized();
-}
-
-}  // namespace
-
 // A node on which others hang stays at the surface while they press, though its own truss does not any more.
 const TrussBlockState& Skin::follow_with_leading(std::size_t b) {
     const TrussBlock& truss = mesh_.block[b];
-    followed_ = before_.trusses.block[b];
+    followed_ = from(b);
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!leads(b, i) || followed_.force[i] > 0.0 || !(faces_.gap[i] > 0.0)) continue;
         const Vec3 b_in = inward(truss, followed_, i);
@@ -80,22 +70,21 @@ void Skin::draft(std::size_t b) {
 // Does any node of the block hang on a driver, or has it done so?
 bool Skin::draw_in(std::size_t b) {
     hanging_.deflection.fill(-1.0);
-    if (before_.trusses.block[b].drawn == 0) {
+    if (from(b).drawn == 0) {
         if (drivers_.empty()) return false;
         const Vec3 apart = (mesh_.node_box[b].center - dent_box_.center).cwiseAbs();
         if (((mesh_.node_box[b].half + dent_box_.half - apart).array() < 0.0).any()) return false;
     }
     hang(mesh_.block[b], mesh_.node_box[b], mesh_.dent_slope, dent_, dent_groups_, hanging_);
-    return before_.trusses.block[b].drawn != 0 ||
-           std::any_of(hanging_.deflection.begin(), hanging_.deflection.end(),
-                       [](double d) { return d > 0.0; });
+    return from(b).drawn != 0 || std::any_of(hanging_.deflection.begin(), hanging_.deflection.end(),
+                                             [](double d) { return d > 0.0; });
 }
 
 // Nodes that hang deeper than a surface would press them go by their driver; those that have lost theirs are let go.
 // Returns whether there are any of either kind.
 bool Skin::set_hanging(std::size_t b) {
     const TrussBlock& truss = mesh_.block[b];
-    const TrussBlockState& block = before_.trusses.block[b];
+    const TrussBlockState& block = from(b);
     const bool drafted = std::binary_search(drafted_.begin(), drafted_.end(), b);
     bool any = false;
     for (std::size_t i = 0; i < lanes; ++i) {

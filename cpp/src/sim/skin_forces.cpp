@@ -6,6 +6,7 @@
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/friction.hpp"
 #include "birm3d/kernels/integrate.hpp"
+#include "birm3d/sim/entered_face.hpp"
 #include "birm3d/sim/obstacles.hpp"
 #include "sim/skin.hpp"
 
@@ -14,6 +15,9 @@ namespace birm3d {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Cosine above which the normals of two instants are of the same face.
+constexpr double same_face = 0.9;
 
 Wrench turned(const Wrench& w, const Mat3& R) {
     return {R * w.force, R * w.torque};
@@ -63,7 +67,7 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
       margin_(trial.dt * std::max(fastest_point(unit_, before_.body), fastest_point(unit_, now_.body)) +
               tolerance::touching_gap),
       near_(trial.near) {
-    find_near(scene, u, before_.body, now_.body, before_.touches.empty() ? 0.0 : margin_, near_);
+    find_near(scene, u, before_, now_.body, before_.touches.empty() ? 0.0 : margin_, near_);
     add_touched(scene, before_, now_.body, near_);
     const bool rubs = std::any_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
         return scene.obstacles[obstacle.index].friction > 0.0;
@@ -75,7 +79,9 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
 
 void Skin::press_blocks() {
     trial_.active[u_].clear();
-    if (near_.empty() && before_.touches.empty()) return;
+    const bool slack = std::any_of(before_.trusses.block.begin(), before_.trusses.block.end(),
+                                   [](const TrussBlockState& block) { return block.slack; });
+    if (near_.empty() && before_.touches.empty() && !slack) return;
     find_dents();
     for (std::size_t b = 0; b < mesh_.blocks; ++b)
         press(b);
@@ -83,9 +89,36 @@ void Skin::press_blocks() {
     trial_.state.statistics.node_evaluations += trial_.active[u_].blocks().size() * lanes;
 }
 
+// Nodes that an obstacle has drawn out beyond the free length of their trusses return to it once their way is free.
+void Skin::spring_back(std::size_t b) {
+    sprung_back_ = false;
+    const TrussBlockState& block = before_.trusses.block[b];
+    if (!block.slack) return;
+    const TrussBlock& truss = mesh_.block[b];
+    sprung_ = block;
+    sprung_.slack = false;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!is_slack(block, i)) continue;
+        const Vec3 anchor(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
+        const Vec3 place = anchor - (truss.length[i] - block.residual[i]) * inward(truss, block, i);
+        const bool free = std::all_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
+            return nearest(scene_.obstacles[obstacle.index].shape, obstacle.now.to_own(place)).gap >= 0.0;
+        });
+        if (!free) {
+            sprung_.slack = true;
+            continue;
+        }
+        sprung_.x[i] = place.x(), sprung_.y[i] = place.y(), sprung_.z[i] = place.z();
+        sprung_.deflection[i] = block.residual[i];
+        sprung_back_ = true;
+    }
+    if (sprung_back_) sprung_.box = box_around(sprung_.x, sprung_.y, sprung_.z);
+}
+
 // Which obstacles can the nodes of the block meet? False where there are none.
 bool Skin::look_about(std::size_t b) {
-    const TrussBlockState& block = before_.trusses.block[b];
+    spring_back(b);
+    const TrussBlockState& block = from(b);
     // Where a flat surface is all there is, pushing nodes need no box.
     const bool flat_only =
         near_.size() == 1 && std::holds_alternative<HalfSpace>(scene_.obstacles[near_[0].index].shape);
@@ -104,9 +137,13 @@ bool Skin::look_about(std::size_t b) {
 void Skin::press(std::size_t b) {
     const bool sees = look_about(b);
     const bool drawn = draw_in(b);
-    if (!sees && !drawn) return;
+    if (!sees && !drawn && !sprung_back_) return;
     trial_.active[u_].add(b);
     trial_.stale[u_].add(b);
+    if (!sees && !drawn) {
+        now_.trusses.block[b] = sprung_;
+        return;
+    }
     if (seen_.size() == 1 && !drawn) {
         const NearObstacle& only = near_[seen_[0]];
         if (const auto plane = flat_part(scene_.obstacles[only.index].shape, only.now, box_)) {
@@ -152,7 +189,7 @@ void Skin::press_plane(PlaneSums& plane, std::size_t b) {
     TrussBlockState& next = now_.trusses.block[b];
     contact_.set_normal(plane.surface.face.normal);
     crush_with_rate(next, plane.sums, [&](const Lanes* factor, CrushSums& sums) {
-        crush(plane.surface, mesh_, b, factor, before_.trusses.block[b], next, contact_, sums);
+        crush(plane.surface, mesh_, b, factor, from(b), next, contact_, sums);
     });
     if (next.touching) rub(plane.near, b, next, contact_);
 }
@@ -180,7 +217,7 @@ void Skin::press_shapes(std::size_t b) {
 
 // What each node of a block sees: the nearest of the surfaces in its reach.
 const TrussBlockState& Skin::look(std::size_t b) {
-    const TrussBlockState& block = before_.trusses.block[b];
+    const TrussBlockState& block = from(b);
     alignas(64) NearestLanes found;
     faces_.own_way.fill(0.0);
     if (seen_.empty()) {  // nothing but what hangs on others
@@ -204,19 +241,101 @@ const TrussBlockState& Skin::look(std::size_t b) {
             contact_.nz[i] = faces_.bz[i] = found.nz[i];
         }
     }
-    if (!block.touching) return block;
-    for (std::size_t k = 0; k < seen_.size(); ++k) {
-        const NearObstacle& obstacle = near_[seen_[k]];
+    if (!block.touching) {
+        find_entered_faces(block);
+        settle_in_corners(block);
+        return block;
+    }
+    // Of all surfaces at that instant: segments of a wall take over from each other.
+    alignas(64) Lanes gap_before;
+    gap_before.fill(infinity);
+    for (const std::size_t k : seen_) {
+        const NearObstacle& obstacle = near_[k];
         nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.before, obstacle.before, block.x, block.y,
                    block.z, found);
         for (std::size_t i = 0; i < lanes; ++i) {
-            if (nearest_[i] != k) continue;
+            if (!(found.gap[i] < gap_before[i])) continue;
+            gap_before[i] = found.gap[i];
             faces_.bx[i] = found.nx[i];
             faces_.by[i] = found.ny[i];
             faces_.bz[i] = found.nz[i];
         }
     }
+    find_entered_faces(block);
+    turn_flat_faces();
+    settle_in_corners(block);
     return block.leading == 0 ? block : follow_with_leading(b);
+}
+
+// Where a node that leaves one surface would get into another, in the corner between a barrier and the ground or of two
+// slopes, it goes onto both: the corner pushes it straight there.
+void Skin::settle_in_corners(const TrussBlockState& block) {
+    const auto is_prism = [&](std::size_t k) {
+        return std::holds_alternative<Prism>(scene_.obstacles[near_[k].index].shape);
+    };
+    if (seen_.empty() || (seen_.size() == 1 && !is_prism(seen_[0]))) return;
+    const auto inside = [&](std::size_t i) { return faces_.gap[i] < -tolerance::touching_gap; };
+    alignas(64) Lanes x = block.x, y = block.y, z = block.z;
+    bool any = false;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!inside(i)) continue;
+        any = true;
+        x[i] -= faces_.gap[i] * contact_.nx[i];
+        y[i] -= faces_.gap[i] * contact_.ny[i];
+        z[i] -= faces_.gap[i] * contact_.nz[i];
+    }
+    if (!any) return;
+    constexpr double parallel = 0.01;  // square of the sine below which two faces make no corner
+    alignas(64) NearestLanes found;
+    for (const std::size_t k : seen_) {
+        const NearObstacle& obstacle = near_[k];
+        nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.now, obstacle.now, x, y, z, found);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            if (!inside(i) || !(found.gap[i] < -tolerance::touching_gap)) continue;
+            const Vec3 first = contact_.normal(i), second(found.nx[i], found.ny[i], found.nz[i]);
+            const Vec3 along = second - second.dot(first) * first;
+            const double square = along.squaredNorm();
+            if (square < parallel) continue;
+            const Vec3 way = -faces_.gap[i] * first - found.gap[i] / square * along;
+            const double length = way.norm();
+            const Vec3 n = way / length;
+            faces_.gap[i] = -length;
+            contact_.nx[i] = faces_.bx[i] = n.x();
+            contact_.ny[i] = faces_.by[i] = n.y();
+            contact_.nz[i] = faces_.bz[i] = n.z();
+        }
+    }
+}
+
+// A flat face, or an edge, had the same normal in its own axes an instant before, whatever was nearest then.
+void Skin::turn_flat_faces() {
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const NearObstacle& obstacle = near_[seen_[nearest_[i]]];
+        if (std::holds_alternative<Post>(scene_.obstacles[obstacle.index].shape)) continue;
+        const Vec3 m = obstacle.before.direction_from_own(obstacle.now.direction_to_own(contact_.normal(i)));
+        faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
+    }
+}
+
+// The nearest face can be the wrong one to nodes beside an edge: those that arrive, and those that seem to have changed
+// over to another face. Meshes do the like with all that come in.
+void Skin::find_entered_faces(const TrussBlockState& block) {
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!(faces_.gap[i] < 0.0)) continue;
+        const Shape& shape = scene_.obstacles[near_[seen_[nearest_[i]]].index].shape;
+        if (std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<TriangleMesh>(shape)) continue;
+        const double turn =
+            contact_.nx[i] * faces_.bx[i] + contact_.ny[i] * faces_.by[i] + contact_.nz[i] * faces_.bz[i];
+        if (block.force[i] > 0.0 && turn > same_face) continue;
+        const auto entered = entered_face(scene_, near_, seen_, {block.x[i], block.y[i], block.z[i]});
+        if (!entered) continue;
+        nearest_[i] = entered->seen;
+        const Vec3 &n = entered->now.normal, &m = entered->normal_before;
+        faces_.gap[i] = entered->now.gap;
+        faces_.held[i] = scene_.obstacles[near_[seen_[entered->seen]].index].holds_skin ? held_ : 0.0;
+        contact_.nx[i] = n.x(), contact_.ny[i] = n.y(), contact_.nz[i] = n.z();
+        faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
+    }
 }
 
 // Nodes of one block that push on several obstacles: to each its own.
@@ -278,9 +397,11 @@ void Skin::hand_over() {
         skin.normal_force += touch.normal_force;
         if (touch.normal_force > 0.0) touches.push_back(touch);
     }
-    // What was touched before and is not now ends its course in this step.
+    // What was touched before and is not now ends its course: at once, or, as part of a structure that is, in the
+    // steps by which the structure's course reaches back.
     for (const Touch& last : before_.touches) {
-        if (!(last.normal_force > 0.0)) continue;
+        const Load &rate = last.course.rate, &bend = last.course.bend;
+        if (!(last.normal_force > 0.0) && rate.normal_force == 0.0 && bend.normal_force == 0.0) continue;
         const auto place = std::lower_bound(
             touches.begin(), touches.end(), last.obstacle,
             [](const Touch& touch, std::size_t obstacle) { return touch.obstacle < obstacle; });

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/sim/half_kick.hpp"
 #include "birm3d/sim/skin_forces.hpp"
+#include "birm3d/sim/structure_course.hpp"
 
 namespace birm3d {
 
@@ -35,45 +38,71 @@ Load lead(const LoadCourse& before, double dt) {
 }
 
 // A wall does not pull: the parabola of the normal force stays above zero while its bend is at most
-// (sqrt(F0) + sqrt(F1))^2.
-Load within_push(const Load& correction, const LoadCourse& before, const LoadCourse& now, double dt) {
+// (sqrt(F0) + sqrt(F1))^2. Share of a correction that this allows.
+double share_that_pushes(const Load& correction, const LoadCourse& before, const LoadCourse& now, double dt) {
     const double bend = -6.0 / dt * correction.normal_force;
     const double root = std::sqrt(before.now.normal_force) + std::sqrt(now.now.normal_force);
-    return bend > root * root ? scaled(correction, root * root / bend) : correction;
+    return bend > root * root ? root * root / bend : 1.0;
 }
 
-// The load at the new instant, its course, and what the higher order adds to the trapezoid rule. Returns the
-// estimated error of the step's velocity (m/s).
-double load_and_correct(const Unit& unit, const BodyState& body, const LoadCourse& before, double dt,
-                        const Load& load, Touch& touch) {
-    LoadCourse& now = touch.course;
-    now = {};
+// The course after a step of dt to `load`.
+LoadCourse course_to(const Load& load, const LoadCourse& before, double dt) {
+    LoadCourse now;
     now.now = load;
-    touch.extra = {lead(before, dt), {}};
-    const Load rise = difference(now.now, before.now);
-    // Where nothing presses any more, the rate ends with the load: a straight line is the better course
-    // through the corner that a release makes.
-    if (touch.normal_force == 0.0) return error_of(unit, body, rise, dt);
-
-    const double span = dt + before.step;
     now.step = dt;
     now.step_before = before.step;
-    now.rate = scaled(rise, 1.0 / dt);
-    const Load departure = scaled(difference(now.rate, before.rate), dt);  // from a straight line
-    now.bend = scaled(departure, 1.0 / (dt * span));
-    touch.extra.correction = scaled(departure, -dt * dt / (6.0 * span));
+    now.rate = scaled(difference(load, before.now), 1.0 / dt);
+    now.bend = scaled(difference(now.rate, before.rate), 1.0 / (dt + before.step));
+    return now;
+}
 
-    // A cubic follows the change of the bend, where the bend lasts. At a corner it does not, and a bend of the
-    // last step that was a corner says nothing of this one.
-    const Load change = scaled(difference(now.bend, before.bend), dt * span);
+// How far the end of the step lies from a straight line, and from a parabola.
+Load departure(const LoadCourse& before, const LoadCourse& now) {
+    return scaled(difference(now.rate, before.rate), now.step);
+}
+Load change(const LoadCourse& before, const LoadCourse& now) {
+    return scaled(difference(now.bend, before.bend), now.step * (now.step + before.step));
+}
+
+// Of the whole step, impulses. A cubic follows the change of the bend, where the bend lasts. At a corner it does not,
+// and a bend of the last step that was a corner says nothing of this one.
+Load correction(const LoadCourse& before, const LoadCourse& now) {
+    const double dt = now.step, span = dt + before.step;
+    Load sum = scaled(departure(before, now), -dt * dt / (6.0 * span));
     if (before.bend_lasts)
-        touch.extra.correction +=
-            scaled(change, -cubic_weight(dt, before.step) / (span * (span + before.step_before)));
-    touch.extra.correction = within_push(touch.extra.correction, before, now, dt);
+        sum += scaled(change(before, now),
+                      -cubic_weight(dt, before.step) / (span * (span + before.step_before)));
+    return sum;
+}
 
-    const double by_departure = error_of(unit, body, departure, dt);
-    const double by_change = error_of(unit, body, change, dt);
+// The loads of the touches of one structure at the new instant, their courses, and what the higher order adds to the
+// trapezoid rule. Returns the estimated error of the step's velocity (m/s). What hangs on signs and sizes is decided by
+// the structure's load as a whole; the rest is linear in the load.
+double load_and_correct(const Unit& unit, const BodyState& body, const LoadCourse& before, double dt,
+                        std::span<const LoadCourse> befores, std::span<const Load> loads,
+                        std::span<Touch> touches) {
+    Load total;
+    for (std::size_t i = 0; i < touches.size(); ++i) {
+        total += loads[i];
+        touches[i].course = {};
+        touches[i].course.now = loads[i];
+        touches[i].extra = {lead(befores[i], dt), {}};
+    }
+    // Where nothing presses any more, the rate ends with the load: a straight line is the better course
+    // through the corner that a release makes.
+    if (total.normal_force == 0.0) return error_of(unit, body, difference(total, before.now), dt);
+
+    LoadCourse now = course_to(total, before, dt);
+    const double by_departure = error_of(unit, body, departure(before, now), dt);
+    const double by_change = error_of(unit, body, change(before, now), dt);
     now.bend_lasts = before.step > 0.0 && by_change < tolerance::lasting_bend * by_departure;
+    const double pushing = share_that_pushes(correction(before, now), before, now, dt);
+    for (std::size_t i = 0; i < touches.size(); ++i) {
+        touches[i].course = course_to(loads[i], befores[i], dt);
+        touches[i].course.bend_lasts = now.bend_lasts;
+        touches[i].extra.correction = correction(befores[i], touches[i].course);
+        if (pushing < 1.0) touches[i].extra.correction = scaled(touches[i].extra.correction, pushing);
+    }
     return std::min(by_departure, by_change);
 }
 
@@ -96,10 +125,24 @@ Load load_of(const Scene& scene, const BodyState& body, const Touch& touch) {
 // Returns the estimated error of the step's velocity (m/s).
 double correct(const Scene& scene, std::size_t u, const UnitState& from, double dt, UnitState& moved) {
     double error = 0.0;
-    for (Touch& touch : moved.touches)
-        error +=
-            load_and_correct(scene.vehicle->units[u], moved.body, course_at(from.touches, touch.obstacle), dt,
-                             load_of(scene, moved.body, touch), touch);
+    const std::span<Touch> touches(moved.touches);
+    std::vector<LoadCourse> befores;
+    std::vector<Load> loads;
+    for (std::size_t i = 0, end = 0; i < touches.size(); i = end) {
+        end = end_of_structure(scene, touches, i);
+        const LoadCourse before =
+            course_of_structure(scene, from.touches, scene.obstacles[touches[i].obstacle].structure);
+        befores.clear();
+        loads.clear();
+        for (const Touch& touch : touches.subspan(i, end - i)) {
+            LoadCourse own = course_at(from.touches, touch.obstacle);
+            own.step = before.step, own.step_before = before.step_before, own.bend_lasts = before.bend_lasts;
+            befores.push_back(own);
+            loads.push_back(load_of(scene, moved.body, touch));
+        }
+        error += load_and_correct(scene.vehicle->units[u], moved.body, before, dt, befores, loads,
+                                  touches.subspan(i, end - i));
+    }
     return error;
 }
 

@@ -41,6 +41,10 @@ inline constexpr double release_resolution = 2e-4;
 // First step of a contact (s); the error estimate corrects it at once.
 inline constexpr double first_contact_step = 2e-4;
 
+// Where nothing touches, a node that glides along a surface goes this far in a step at the most (m): beyond it another
+// surface may lie. Small: steps are short beside a wall. Large: steps that met something are done again.
+inline constexpr double untouched_way = 0.05;
+
 // Local velocity error allowed in one step, relative to the reference speed and per unit of
 // Settings::tolerance. Larger: the asked and the achieved error of the metrics part.
 inline constexpr double step_error_per_tolerance = 0.01;

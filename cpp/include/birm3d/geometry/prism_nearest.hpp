@@ -37,7 +37,10 @@ BIRM3D_IN_LANE_LOOP NearestEdge nearer_edge(const PrismEdge& edge, double x, dou
     const double along = dx * edge.tx + dz * edge.tz, ahead = dx * edge.tz - dz * edge.tx;
     const double not_below = along > edge.low ? along : edge.low;
     const double past = along - (not_below < edge.high ? not_below : edge.high);
-    const double square = ahead * ahead + past * past;
+    // On a corner the first of its two edges is the nearest, whatever rounding says.
+    constexpr double least = tolerance::edge_radius * tolerance::edge_radius;
+    const double exact = ahead * ahead + past * past;
+    const double square = exact > least ? exact : 0.0;
     const bool nearer = square < best.square;
     NearestEdge out;
     out.square = nearer ? square : best.square;

@@ -19,19 +19,24 @@ struct NearObstacle {
 Placement placement(const Obstacle& obstacle, const BodyState& seen_from);
 
 // Those that any node or anchor of the unit can be nearer to than `margin`, in their order.
-void find_near(const Scene& scene, std::size_t unit, const BodyState& before, const BodyState& now,
+void find_near(const Scene& scene, std::size_t unit, const UnitState& before, const BodyState& now,
                double margin, std::vector<NearObstacle>& near);
 
 // Fastest any point of the unit moves (m/s).
 double fastest_point(const Unit& unit, const BodyState& body);
 
-// Gap of the node that is nearest to an obstacle (m), infinite where there is none; exact, so that it does not hang on
-// how nodes are blocked. The ground counts only with `ground`; anchors only with `anchors`.
+// Gap of the point that is nearest to an obstacle (m), infinite where there is none; exact, so that it does not hang on
+// how nodes are blocked. The ground counts only with `ground`; of the points, nodes and anchors as asked.
 struct Nearness {
     bool ground = false;
+    bool nodes = true;
     bool anchors = false;
 };
 double nearest_gap(const Scene& scene, const State& state, const Nearness& what);
+
+// A step in which no node reaches an element of the barrier (s): straight on towards the surface that is nearest to it
+// now, and no further than another surface may lie.
+double untouched_step(const Scene& scene, const State& state);
 
 // A step in which no point of a unit goes further than a quarter through the thinnest obstacle in its reach (s): in a
 // longer one it could come out on the other side.

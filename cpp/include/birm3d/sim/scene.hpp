@@ -31,6 +31,8 @@ struct Obstacle {
     Vec3 position = Vec3::Zero();      // of the own axes' origin, world (m)
     bool holds_skin = false;
     double friction = 0.0;
+    std::size_t structure =
+        0;  // place of the first obstacle that this one is joined to, itself where it stands alone
 };
 
 struct Scene {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "birm3d/base/hash.hpp"
+#include "birm3d/base/tolerances.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 
 namespace birm3d {
@@ -17,7 +18,13 @@ struct alignas(64) TrussBlockState {
     std::uint64_t drawn;              // bit by bit: is the node drawn in by a dent beside it?
     std::uint64_t leading;            // the same: do nodes that are drawn in hang on it?
     bool touching;                    // does any node push on an obstacle?
+    bool slack;  // has an obstacle drawn any node out beyond the free length of its truss?
 };
+
+// Was the node drawn out beyond the free length of its truss? A truss does not pull.
+inline bool is_slack(const TrussBlockState& block, std::size_t i) {
+    return block.force[i] == 0.0 && block.residual[i] - block.deflection[i] > tolerance::touching_gap;
+}
 
 struct TrussState {
     explicit TrussState(const TrussMesh& mesh) : block(mesh.blocks) {
