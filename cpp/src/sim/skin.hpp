@@ -57,6 +57,7 @@ class Skin {
     void crush_shapes(std::size_t b, const TrussBlockState& block, TrussBlockState& next, CrushSums& to);
     const TrussBlockState& look(std::size_t b);
     void turn_flat_faces();
+    void find_places_on_lines(std::size_t b, const TrussBlockState& block);
     void settle_in_corners(const TrussBlockState& block);
     void find_entered_faces(const TrussBlockState& block);
     const TrussBlockState& follow_with_leading(std::size_t b);

@@ -243,6 +243,7 @@ const TrussBlockState& Skin::look(std::size_t b) {
     }
     if (!block.touching) {
         find_entered_faces(block);
+        find_places_on_lines(b, block);
         settle_in_corners(block);
         return block;
     }
@@ -263,8 +264,43 @@ const TrussBlockState& Skin::look(std::size_t b) {
     }
     find_entered_faces(block);
     turn_flat_faces();
+    find_places_on_lines(b, block);
     settle_in_corners(block);
     return block.leading == 0 ? block : follow_with_leading(b);
+}
+
+// A node that is held in line meets the surface on its own truss's line: there is its normal. Newton's steps along the
+// line; where they lead past the obstacle the nearest surface remains.
+void Skin::find_places_on_lines(std::size_t b, const TrussBlockState& block) {
+    const TrussBlock& truss = mesh_.block[b];
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const double held = faces_.held[i];
+        if (held == 0.0 || !(faces_.gap[i] < 0.0 || block.force[i] > 0.0)) continue;
+        const NearObstacle& obstacle = near_[seen_[nearest_[i]]];
+        const Shape& shape = scene_.obstacles[obstacle.index].shape;
+        const Vec3 b_in = inward(truss, block, i);
+        Vec3 n = contact_.normal(i);
+        double gap = faces_.gap[i], way = 0.0;
+        bool found = false;
+        constexpr int most_steps = 8;
+        for (int step = 0; step < most_steps && !found; ++step) {
+            const double cosine = b_in.dot(n);
+            if (!(cosine > held)) break;
+            way -= gap / cosine;
+            const Vec3 place = Vec3(block.x[i], block.y[i], block.z[i]) + way * b_in;
+            const Nearest there = nearest(shape, obstacle.now.to_own(place));
+            gap = there.gap;
+            n = obstacle.now.direction_from_own(there.normal);
+            found = std::abs(gap) < 1e-12;
+        }
+        if (!found || !(b_in.dot(n) > held)) continue;
+        faces_.gap[i] = -way * b_in.dot(n);
+        contact_.nx[i] = n.x(), contact_.ny[i] = n.y(), contact_.nz[i] = n.z();
+        const Vec3 place = Vec3(block.x[i], block.y[i], block.z[i]) + way * b_in;
+        const Vec3 m =
+            obstacle.before.direction_from_own(nearest(shape, obstacle.before.to_own(place)).normal);
+        faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
+    }
 }
 
 // Where a node that leaves one surface would get into another, in the corner between a barrier and the ground or of two
