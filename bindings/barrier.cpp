@@ -11,16 +11,9 @@ namespace birm3d::bindings {
 
 namespace {
 
-// Where an element stands, and whether the skin is held in line there.
-struct Stand {
-    Stand(const InputArray& position_, double heading_, bool holds_skin_)
-        : position(vector(position_, "position")), heading(heading_), holds_skin(holds_skin_) {}
-    Vec3 position;
-    double heading;
-    bool holds_skin;
-
-    Element element(Shape shape) const { return {std::move(shape), position, heading, holds_skin}; }
-};
+Element element(Shape shape, const InputArray& position, double heading) {
+    return {std::move(shape), vector(position, "position"), heading};
+}
 
 Prism::Profile profile_points(const InputArray& array) {
     if (array.ndim() != 2 || array.shape(1) != 2) refuse("profile shape", "(n, 2)", shape_text(array));
@@ -36,42 +29,40 @@ void register_barrier(py::module_& m) {
     py::class_<Element>(m, "Element", "A piece of a barrier: own axes at position, turned by heading (rad).")
         .def_static(
             "plane",
-            [](const InputArray& position, double heading, bool holds_skin) {
-                return Stand(position, heading, holds_skin).element(HalfSpace{});
+            [](const InputArray& position, double heading) {
+                return element(HalfSpace{}, position, heading);
             },
-            py::kw_only(), py::arg("position"), py::arg("heading"), py::arg("holds_skin"),
+            py::kw_only(), py::arg("position"), py::arg("heading"),
             "A flat face without end; at heading 0 it looks to -x.")
         .def_static(
             "post",
-            [](double radius, double height, const InputArray& position, double heading, bool holds_skin) {
-                return Stand(position, heading, holds_skin).element(Post(radius, height));
+            [](double radius, double height, const InputArray& position, double heading) {
+                return element(Post(radius, height), position, heading);
             },
             py::kw_only(), py::arg("radius"), py::arg("height"), py::arg("position"), py::arg("heading"),
-            py::arg("holds_skin"), "Upright and round, foot of the axis at position; m.")
+            "Upright and round, foot of the axis at position; m.")
         .def_static(
             "prism",
             [](const InputArray& profile, double y_low, double y_high,
                const std::vector<std::size_t>& covered_edges, bool covered_low_end, bool covered_high_end,
-               const InputArray& position, double heading, bool holds_skin) {
-                return Stand(position, heading, holds_skin)
-                    .element(Prism(profile_points(profile), y_low, y_high,
-                                   {covered_edges, covered_low_end, covered_high_end}));
+               const InputArray& position, double heading) {
+                return element(Prism(profile_points(profile), y_low, y_high,
+                                     {covered_edges, covered_low_end, covered_high_end}),
+                               position, heading);
             },
             py::kw_only(), py::arg("profile"), py::arg("y_low"), py::arg("y_high"), py::arg("covered_edges"),
             py::arg("covered_low_end"), py::arg("covered_high_end"), py::arg("position"), py::arg("heading"),
-            py::arg("holds_skin"),
             "profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered faces "
             "are "
             "no surface.")
         .def_static(
             "mesh",
             [](const InputArray& vertices, const std::vector<TriangleMesh::Face>& faces,
-               const InputArray& position, double heading, bool holds_skin) {
-                return Stand(position, heading, holds_skin)
-                    .element(TriangleMesh(points(vertices, "vertices"), faces));
+               const InputArray& position, double heading) {
+                return element(TriangleMesh(points(vertices, "vertices"), faces), position, heading);
             },
             py::kw_only(), py::arg("vertices"), py::arg("faces"), py::arg("position"), py::arg("heading"),
-            py::arg("holds_skin"), "vertices (n, 3) m, faces (m, 3), counter-clockwise seen from outside.");
+            "vertices (n, 3) m, faces (m, 3), counter-clockwise seen from outside.");
 
     py::class_<Barrier, std::shared_ptr<Barrier>>(m, "Barrier",
                                                   "Elements that stand on the ground. Immutable.")

@@ -62,22 +62,22 @@ class Element:
     A piece of a barrier: own axes at position, turned by heading (rad).
     """
     @staticmethod
-    def mesh(*, vertices: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], faces: collections.abc.Sequence[typing.Annotated[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(3)"]], position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, holds_skin: bool) -> Element:
+    def mesh(*, vertices: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], faces: collections.abc.Sequence[typing.Annotated[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(3)"]], position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
         """
         vertices (n, 3) m, faces (m, 3), counter-clockwise seen from outside.
         """
     @staticmethod
-    def plane(*, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, holds_skin: bool) -> Element:
+    def plane(*, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
         """
         A flat face without end; at heading 0 it looks to -x.
         """
     @staticmethod
-    def post(*, radius: typing.SupportsFloat | typing.SupportsIndex, height: typing.SupportsFloat | typing.SupportsIndex, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, holds_skin: bool) -> Element:
+    def post(*, radius: typing.SupportsFloat | typing.SupportsIndex, height: typing.SupportsFloat | typing.SupportsIndex, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
         """
         Upright and round, foot of the axis at position; m.
         """
     @staticmethod
-    def prism(*, profile: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], y_low: typing.SupportsFloat | typing.SupportsIndex, y_high: typing.SupportsFloat | typing.SupportsIndex, covered_edges: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], covered_low_end: bool, covered_high_end: bool, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, holds_skin: bool) -> Element:
+    def prism(*, profile: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], y_low: typing.SupportsFloat | typing.SupportsIndex, y_high: typing.SupportsFloat | typing.SupportsIndex, covered_edges: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], covered_low_end: bool, covered_high_end: bool, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
         """
         profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered faces are no surface.
         """

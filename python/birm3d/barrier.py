@@ -235,7 +235,6 @@ class Barrier:
         vertices: npt.ArrayLike,
         faces: npt.ArrayLike,
         *,
-        narrow: bool = False,
         friction: float = 0.2,
         origin: Sequence[float] = (0.0, 0.0, 0.0),
         heading: float = 0.0,
@@ -248,8 +247,6 @@ class Barrier:
             Shape (n, 3), in axes that stand at ``origin``, turned by ``heading``, z up [m].
         faces
             Shape (m, 3), indices into the vertices, counter-clockwise seen from outside.
-        narrow
-            Whether the skin is held in line there, as at a bollard (see :class:`Bollards`).
         friction, origin, heading
             See :class:`Barrier`.
 
@@ -267,7 +264,6 @@ class Barrier:
             float(heading),
             vertices=np.array(vertices, float),
             faces=np.array(faces),
-            narrow=narrow,
         )
 
     # ---- for the core -------------------------------------------------------------------------------------

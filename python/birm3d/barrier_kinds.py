@@ -57,7 +57,7 @@ class RigidWall(Barrier):
         if math.isinf(self.width) and self.segments > 1:
             raise ValueError(f"segments must be 1 for a wall of infinite width, got {self.segments}")
         if math.isinf(self.width) and math.isinf(self.height):
-            return [_core.Element.plane(position=self.place(0.0, 0.0), heading=heading, holds_skin=False)]
+            return [_core.Element.plane(position=self.place(0.0, 0.0), heading=heading)]
         top = self.height if math.isfinite(self.height) else _HIGH
         corners = [(0.0, -_FOOT), (self.thickness, -_FOOT), (self.thickness, top), (0.0, top)]
         return _along_line(self, np.array(corners), 0.0, self.width, self.segments)
@@ -83,7 +83,6 @@ class Pole(Barrier):
                 height=math.inf,
                 position=self.place(0.0, 0.0),
                 heading=math.radians(self.heading),
-                holds_skin=True,
             )
         ]
 
@@ -97,8 +96,7 @@ class Pole(Barrier):
 class Bollards(Barrier):
     """Rigid bollards in rows.
 
-    A bollard is narrow: sheet metal is drawn in with its neighbours and held in line, where free nodes would
-    slip round to either side and let it pass between them.
+    A bollard draws in the skin beside it, see :meth:`birm3d.Vehicle.with_dent_slope`.
     """
 
     count: int = 5
@@ -129,7 +127,6 @@ class Bollards(Barrier):
                 height=self.height,
                 position=self.place(across, along),
                 heading=math.radians(self.heading),
-                holds_skin=True,
             )
             for across, along in self.places()
         ]
@@ -231,7 +228,6 @@ class MeshBarrier(Barrier):
 
     vertices: Floats = field(default_factory=lambda: np.empty((0, 3)))
     faces: npt.NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 3), np.int64))
-    narrow: bool = False
 
     def __post_init__(self) -> None:
         if self.vertices.ndim != 2 or self.vertices.shape[1] != 3:
@@ -267,7 +263,6 @@ class MeshBarrier(Barrier):
                 faces=self.faces.tolist(),
                 position=self.place(0.0, 0.0),
                 heading=math.radians(self.heading),
-                holds_skin=self.narrow,
             )
         ]
 
@@ -280,14 +275,13 @@ class MeshBarrier(Barrier):
         if not isinstance(other, MeshBarrier):
             return NotImplemented
         return (
-            (self.friction, self.origin, self.heading, self.narrow)
-            == (other.friction, other.origin, other.heading, other.narrow)
+            (self.friction, self.origin, self.heading) == (other.friction, other.origin, other.heading)
             and np.array_equal(self.vertices, other.vertices)
             and np.array_equal(self.faces, other.faces)
         )
 
     def __hash__(self) -> int:
-        return hash((self.friction, self.origin, self.heading, self.narrow, self.vertices.tobytes()))
+        return hash((self.friction, self.origin, self.heading, self.vertices.tobytes()))
 
     def __repr__(self) -> str:
         return f"MeshBarrier({len(self.vertices)} vertices, {len(self.faces)} faces)"
@@ -312,7 +306,6 @@ def _along_line(
                 covered_high_end=i < segments - 1,
                 position=barrier.place(across, middle),
                 heading=math.radians(barrier.heading),
-                holds_skin=False,
             )
         )
     return elements

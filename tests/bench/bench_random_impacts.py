@@ -136,7 +136,7 @@ def draw(seed: int) -> tuple[Case, Barrier]:
             count=int(random.integers(1, 6)), diameter=size, height=1.0, spacing=size + 1.0, friction=friction
         )
     elif kind == "mesh post":
-        barrier = Barrier.from_mesh(*post_mesh(0.5 * size, 1.0), narrow=True, friction=friction)
+        barrier = Barrier.from_mesh(*post_mesh(0.5 * size, 1.0), friction=friction)
     elif kind == "profile":
         barrier = Barrier.jersey(profile=profile, length=20.0, segments=pieces, friction=friction)
     elif kind == "mesh profile":

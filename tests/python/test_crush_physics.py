@@ -106,18 +106,14 @@ def test_a_pole_leaves_a_round_dent_and_nothing_passes() -> None:
     assert (np.abs(gap) < 0.01).sum() > 20
 
 
-@pytest.mark.parametrize(
-    ("dent_slope", "alike"),
-    # With dents nodes change drivers one by one, each a small jump of the load: rounding grows there.
-    [(0.0, 1e-6), (1.0, 5e-3)],
-)
-def test_offset_poles_turn_the_vehicle_and_mirror(dent_slope: float, alike: float) -> None:
+@pytest.mark.parametrize("dent_slope", [0.0, 1.0])
+def test_offset_poles_turn_the_vehicle_and_mirror(dent_slope: float) -> None:
     car = Vehicle.preset("passenger_car", mesh_density=0.5).with_dent_slope(dent_slope)
     left = Simulation(car, Barrier.pole(diameter=0.3), 12.0, 90.0, 0.5, duration=0.3).run()
     right = Simulation(car, Barrier.pole(diameter=0.3), 12.0, 90.0, -0.5, duration=0.3).run()
     assert abs(left.yaw[-1]) > 5.0
-    assert left.yaw[-1] == pytest.approx(-right.yaw[-1], rel=alike)
-    assert left.metrics["dynamic_crush"] == pytest.approx(right.metrics["dynamic_crush"], rel=alike)
+    assert left.yaw[-1] == pytest.approx(-right.yaw[-1], rel=1e-6)
+    assert left.metrics["dynamic_crush"] == pytest.approx(right.metrics["dynamic_crush"], rel=1e-6)
 
 
 def test_a_pole_that_is_passed_by_is_not_touched() -> None:

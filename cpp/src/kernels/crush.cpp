@@ -21,9 +21,11 @@ Vec3 holding_direction(const Vec3& n, const Vec3& m) {
 
 // Nodes whose truss ceased to push. One that follows a receding surface stops where its truss reaches zero
 // force; one that the truss pushes off the surface springs to that length at once, and what the truss had
-// stored is lost. Few nodes a step do. Returns what the first kind takes from the work on the trusses (J).
-double release(const TrussBlock& truss, const TrussBlockState& before, const Lanes& gap,
-               const BlockContact& contact, TrussBlockState& now) {
+// stored is lost, which a dent keeps at its surface all the same. Few nodes a step do. Returns what the first kind
+// takes from the work on the trusses (J).
+template <class Share>
+double release(const TrussBlock& truss, const TrussBlockState& before, const Lanes& gap, const Share& share,
+               TrussBlockState& now) {
     double spared = 0.0;
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!(before.force[i] > 0.0 && now.force[i] == 0.0)) continue;
@@ -32,14 +34,16 @@ double release(const TrussBlock& truss, const TrussBlockState& before, const Lan
         const double d0 = before.deflection[i], d1 = now.deflection[i];
         Vec3 b = to - anchor;
         double d = before.residual[i];
-        if (b.dot(contact.normal(i)) < 0.0) {
+        if (b.dot(share.direction(i)) < 0.0) {
             if (!(gap[i] > 0.0)) continue;
             const double way = d0 - d1;
-            const double share = way > 0.0 ? std::clamp((d0 - d) / way, 0.0, 1.0) : 0.0;
-            b = from + share * (to - from) - anchor;
-            d = d0 - share * way;
+            const double part = way > 0.0 ? std::clamp((d0 - d) / way, 0.0, 1.0) : 0.0;
+            b = from + part * (to - from) - anchor;
+            d = d0 - part * way;
             spared += 0.5 * before.force[i] * (d - d1);
-            if ((before.leading >> i & 1U) != 0) continue;  // what hangs on it keeps it at the surface
+        } else if (share.drawn(i)) {
+            now.residual[i] = std::max(d, d1);
+            continue;
         } else if (!(d < d1)) {
             continue;  // drawn out beyond its length: back there it would be inside
         }
@@ -81,7 +85,7 @@ double contact_stiffness(const RigidBody& body, const TrussBlock& truss, const T
     double sum = 0.0;
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!(now.force[i] > 0.0)) continue;
-        const Vec3 c = Vec3(now.x[i], now.y[i], now.z[i]).cross(contact.normal(i));
+        const Vec3 c = contact.torque(i);
         const double share = contact.pressure[i] / now.force[i];
         sum += std::max(1.0, share * share) * truss.k_unloading[i] *
                (body.inverse_mass + c.dot(body.inverse_inertia * c));
@@ -94,51 +98,22 @@ struct alignas(64) Ways {
     Lanes hx, hy, hz, sx, sy, sz;
 };
 
-BIRM3D_LANE_LOOP void find_ways(const NodeFaces& faces, const BlockContact& contact, const TrussBlock& truss,
-                                const TrussBlockState& before, Ways& ways) {
+BIRM3D_LANE_LOOP void find_ways(const NodeFaces& faces, const BlockContact& contact,
+                                const Lanes& force_before, Ways& ways) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
         const double nx = contact.nx[i], ny = contact.ny[i], nz = contact.nz[i];
-        const double cosine = nx * faces.bx[i] + ny * faces.by[i] + nz * faces.bz[i];
-        const bool pushes = before.force[i] > 0.0;
-        const bool follow = pushes && cosine > sharp_turn;
-        const double gap = pushes || faces.gap[i] < 0.0 ? faces.gap[i] : 0.0;
-        const double held = faces.held[i];
-
-        // The way at the instant before, w0.
-        const double mx = follow ? faces.bx[i] : nx, my = follow ? faces.by[i] : ny,
-                     mz = follow ? faces.bz[i] : nz;
-        const double x0 = truss.anchor_x[i] - before.x[i], y0 = truss.anchor_y[i] - before.y[i],
-                     z0 = truss.anchor_z[i] - before.z[i];
-        const double size0 = std::sqrt(x0 * x0 + y0 * y0 + z0 * z0);
-        const double per0 = size0 > tolerance::truss_length ? 1.0 / size0 : 0.0;
-        const double c0 = (x0 * mx + y0 * my + z0 * mz) * per0, aligned0 = c0 > 0.0 ? c0 : 0.0;
-        // Share of the way that goes along the truss, over its cosine.
-        const double line0 = in_line(held, aligned0), free0 = 1.0 - line0 * aligned0, along0 = line0 * per0;
-        const double w0x = free0 * mx + along0 * x0, w0y = free0 * my + along0 * y0,
-                     w0z = free0 * mz + along0 * z0;
-
-        // And now, w1, where w0 would take the node.
-        const double onto = w0x * nx + w0y * ny + w0z * nz;
-        const double step = gap / (onto > sharp_turn ? onto : 1.0);
-        const double x1 = x0 + step * w0x, y1 = y0 + step * w0y, z1 = z0 + step * w0z;
-        const double size1 = std::sqrt(x1 * x1 + y1 * y1 + z1 * z1);
-        const double per1 = size1 > tolerance::truss_length ? 1.0 / size1 : 0.0;
-        const double c1 = (x1 * nx + y1 * ny + z1 * nz) * per1, aligned1 = c1 > 0.0 ? c1 : 0.0;
-        const double line1 = in_line(held, aligned1), free1 = 1.0 - line1 * aligned1, along1 = line1 * per1;
-        const double w1x = free1 * nx + along1 * x1, w1y = free1 * ny + along1 * y1,
-                     w1z = free1 * nz + along1 * z1;
-
-        // Between them, second order; h . n = 1.
-        const double mean = 1.0 / (1.0 + (onto > sharp_turn ? onto : 1.0));
-        const bool both = onto > sharp_turn;
-        const bool own = faces.own_way[i] > 0.0;
-        ways.hx[i] = own ? nx : both ? mean * (w0x + w1x) : w1x;
-        ways.hy[i] = own ? ny : both ? mean * (w0y + w1y) : w1y;
-        ways.hz[i] = own ? nz : both ? mean * (w0z + w1z) : w1z;
-        ways.sx[i] = own ? nx : w1x;
-        ways.sy[i] = own ? ny : w1y;
-        ways.sz[i] = own ? nz : w1z;
+        const double bx = faces.bx[i], by = faces.by[i], bz = faces.bz[i];
+        const double cosine = nx * bx + ny * by + nz * bz;
+        const bool drawn = faces.per_force[i] > 0.0;
+        const bool follows = force_before[i] > 0.0 && cosine > sharp_turn;
+        const double mean = 1.0 / (follows ? 1.0 + cosine : 1.0);
+        ways.hx[i] = drawn ? bx : (follows ? nx + bx : nx) * mean;
+        ways.hy[i] = drawn ? by : (follows ? ny + by : ny) * mean;
+        ways.hz[i] = drawn ? bz : (follows ? nz + bz : nz) * mean;
+        ways.sx[i] = drawn ? bx * faces.per_force[i] : nx;
+        ways.sy[i] = drawn ? by * faces.per_force[i] : ny;
+        ways.sz[i] = drawn ? bz * faces.per_force[i] : nz;
     }
 }
 
@@ -155,11 +130,24 @@ BIRM3D_LANE_LOOP double greatest_slack(const Lanes& force, const Lanes& deflecti
     return slack[0];
 }
 
+// The direction along which each truss must point to push (CurvedPress), at a plane and at shapes.
+struct PlaneShare {
+    const Vec3& normal;
+    const Vec3& direction(std::size_t) const { return normal; }
+    static bool drawn(std::size_t) { return false; }
+};
+struct NodeShares {
+    const Ways& ways;
+    const NodeFaces& faces;
+    Vec3 direction(std::size_t i) const { return {ways.sx[i], ways.sy[i], ways.sz[i]}; }
+    bool drawn(std::size_t i) const { return faces.per_force[i] > 0.0; }
+};
+
+template <class Share>
 void finish(const TrussMesh& mesh, std::size_t b, double nodes, const TrussBlockState& before,
-            const Lanes& gap, const BlockContact& contact, TrussBlockState& now, CrushSums& sums) {
-    if (nodes >= left) sums.released_work += release(mesh.block[b], before, gap, contact, now);
+            const Lanes& gap, const Share& share, TrussBlockState& now, CrushSums& sums) {
+    if (nodes >= left) sums.released_work += release(mesh.block[b], before, gap, share, now);
     now.touching = std::fmod(nodes, left) > 0.0;
-    now.drawn = now.leading = 0;
     now.slack = greatest_slack(now.force, now.deflection, now.residual) > tolerance::touching_gap;
     now.box = now.touching
                   ? before.box  // the block is looked at in any case while it touches
@@ -183,7 +171,7 @@ void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, con
                                          {n.x(), n.y(), n.z(), surface.face.offset, h.x(), h.y(), h.z()},
                                          columns_of<const double>(before), columns_of<double>(now),
                                          gap.data(), contact.pressure.data(), sums.nodes);
-    finish(mesh, b, nodes, before, gap, contact, now, sums);
+    finish(mesh, b, nodes, before, gap, PlaneShare{n}, now, sums);
     if (now.touching) sums.stiffness += contact_stiffness(surface, mesh, b, now, std::fmod(nodes, left));
 }
 
@@ -191,15 +179,17 @@ void crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh,
            const Lanes* factor, const TrussBlockState& before, TrussBlockState& now, BlockContact& contact,
            CrushSums& sums) {
     alignas(64) Ways ways;
-    find_ways(faces, contact, mesh.block[b], before, ways);
+    find_ways(faces, contact, before.force, ways);
     alignas(64) Lanes gap;
-    const double nodes = press_rows.curved(
-        columns_of(mesh, b, factor),
-        {faces.gap.data(), contact.nx.data(), contact.ny.data(), contact.nz.data(), ways.hx.data(),
-         ways.hy.data(), ways.hz.data(), ways.sx.data(), ways.sy.data(), ways.sz.data()},
-        columns_of<const double>(before), columns_of<double>(now), gap.data(), contact.pressure.data(),
-        sums.nodes);
-    finish(mesh, b, nodes, before, gap, contact, now, sums);
+    const double nodes =
+        press_rows.curved(columns_of(mesh, b, factor),
+                          {faces.gap.data(), contact.nx.data(), contact.ny.data(), contact.nz.data(),
+                           ways.hx.data(), ways.hy.data(), ways.hz.data(), ways.sx.data(), ways.sy.data(),
+                           ways.sz.data(), faces.per_force.data(), contact.px.data(), contact.py.data(),
+                           contact.pz.data(), contact.tx.data(), contact.ty.data(), contact.tz.data()},
+                          columns_of<const double>(before), columns_of<double>(now), gap.data(),
+                          contact.pressure.data(), sums.nodes);
+    finish(mesh, b, nodes, before, gap, NodeShares{ways, faces}, now, sums);
     if (now.touching) sums.stiffness += contact_stiffness(body, mesh.block[b], now, contact);
 }
 
@@ -229,17 +219,17 @@ Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const 
     return sum;
 }
 
-void set_rate_factor(double rate_sensitivity, const TrussBlockState& now, const Twist& motion,
+void set_rate_factor(double rate_sensitivity, const Lanes& force, const Twist& motion, const Places& places,
                      const BlockContact& contact, Lanes& factor) {
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!(contact.pressure[i] > 0.0)) {
             factor[i] = 1.0;
             continue;
         }
-        const Vec3 node(now.x[i], now.y[i], now.z[i]);
         // The truss shortens by the approach along n times -b . h, which is what pressure and truss force differ by.
-        const double approach = -contact.normal(i).dot(motion.velocity + motion.angular_velocity.cross(node));
-        const double rate = rate_sensitivity * std::max(0.0, approach * contact.pressure[i] / now.force[i]);
+        const double approach =
+            -contact.normal(i).dot(motion.velocity + motion.angular_velocity.cross(places[i]));
+        const double rate = rate_sensitivity * std::max(0.0, approach * contact.pressure[i] / force[i]);
         factor[i] = 1.0 + rate * rate;
     }
 }

@@ -49,6 +49,20 @@ struct Curved {
                 way,
                 {Row::load(s.sx + i), Row::load(s.sy + i), Row::load(s.sz + i)}};
     }
+    // Of a unit of normal force; keeps it, and the place, for later.
+    BIRM3D_IN_LANE_LOOP Vector torque(std::size_t i, const Vector& node, const Vector& n) const {
+        const Row drawn = Row::load(s.drawn + i), zero = Row::of(0.0);
+        const auto keep = [&](double* column, const Row& found) {
+            const Row kept = where_above(drawn, zero, Row::load(column + i), found);
+            kept.store(column + i);
+            return kept;
+        };
+        keep(s.px, node.x);
+        keep(s.py, node.y);
+        keep(s.pz, node.z);
+        return {keep(s.tx, node.y * n.z - node.z * n.y), keep(s.ty, node.z * n.x - node.x * n.z),
+                keep(s.tz, node.x * n.y - node.y * n.x)};
+    }
     const CurvedPress& s;
 };
 
@@ -109,8 +123,9 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
         } else {
             const Vector f{pressure * place.n.x, pressure * place.n.y, pressure * place.n.z};
             push = {push.x + f.x, push.y + f.y, push.z + f.z};
-            moment = {moment.x + (node.y * f.z - node.z * f.y), moment.y + (node.z * f.x - node.x * f.z),
-                      moment.z + (node.x * f.y - node.y * f.x)};
+            const Vector torque = surface.torque(i, node, place.n);
+            moment = {moment.x + pressure * torque.x, moment.y + pressure * torque.y,
+                      moment.z + pressure * torque.z};
         }
         work = work + (F0 + F) * (d - Row::load(before.deflection + i));
         stored = stored + F * F * compliance;

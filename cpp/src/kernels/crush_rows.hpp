@@ -36,6 +36,9 @@ struct CurvedPress {
     const double *nx, *ny, *nz;
     const double *hx, *hy, *hz;
     const double *sx, *sy, *sz;
+    // Where friction acts and the torque of a unit of normal force: given where `drawn` is above zero, else found.
+    const double* drawn;
+    double *px, *py, *pz, *tx, *ty, *tz;
 };
 
 // What a node whose truss ceased to push counts in the result of Press; one that pushes counts 1.

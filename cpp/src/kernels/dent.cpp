@@ -8,134 +8,158 @@ namespace birm3d {
 
 namespace {
 
-// Cosine above which two trusses belong to one panel.
-constexpr double same_panel = 0.9;
+// Slope of a post's flank where a panel ends on it: beyond it small motions would make great forces.
+constexpr double steepest = 5.0;
 
-// Deflections and heights that differ by less are the same (m): rounding of places a few metres away is 1e-15.
-constexpr double alike = 1e-11;
+// Nodes nearer to a panel's edge are on it (m).
+constexpr double on_edge = 1e-9;
 
-struct alignas(64) Directions {
-    Lanes x, y, z;
+// A rim's highest place, sine * radius above the middle of the top, is rounded off below this sine: at a corner there the
+// torque would jump.
+constexpr double rounded = 0.05;
+
+// Sine of the angle between a post's axis and a panel beyond which it does not begin to dent it, or ceases to.
+constexpr double most_tilted = 0.5, overturned = 0.95;
+
+// A dent for the lane loop: plain numbers, and the flank from where it is steepest.
+struct Numbers {
+    double ex, ey, ez, wx, wy, wz, lx, ly, lz, ox, oy, oz;
+    double low, high, low_at, high_at, top, top_rate, tilt, radius, stretch, arc, slope;
+    double steep_arc, steep, rise_there;
 };
 
-BIRM3D_LANE_LOOP void directions_of(const TrussBlock& truss, Directions& to) {
-    BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
-        const double per = 1.0 / truss.length[i];
-        to.x[i] = (truss.node_x[i] - truss.anchor_x[i]) * per;
-        to.y[i] = (truss.node_y[i] - truss.anchor_y[i]) * per;
-        to.z[i] = (truss.node_z[i] - truss.anchor_z[i]) * per;
-    }
+Numbers numbers_of(const Dent& d) {
+    const double steep = std::max(steepest, d.slope), share = steep / d.stretch;
+    const double sine = share / std::sqrt(1.0 + share * share);
+    const Vec3 &e = d.into, &w = d.across, &l = d.along, &o = d.foot;
+    return {e.x(),     e.y(),
+            e.z(),     w.x(),
+            w.y(),     w.z(),
+            l.x(),     l.y(),
+            l.z(),     o.x(),
+            o.y(),     o.z(),
+            d.low,     d.high,
+            d.low_at,  d.high_at,
+            d.top,     d.top_rate,
+            d.tilt,    d.radius,
+            d.stretch, d.arc,
+            d.slope,   sine * d.radius,
+            steep,     d.stretch * d.radius * std::sqrt(1.0 - sine * sine)};
 }
 
-struct Driver {
-    double x, y, z, bx, by, bz, deflection, number;
+// Depth of the post's surface over that of its axis, at `a` across: itself, and for each unit across and of stretch.
+struct Rise {
+    double rise, across, stretch;
 };
-
-// How many nodes would the driver draw in further?
-BIRM3D_LANE_LOOP double count_drawn(const TrussBlock& truss, const Directions& b, double per_slope,
-                                    const Driver& d, const Lanes& deflection) {
-    alignas(64) Lanes count;
-    BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
-        const double x = truss.node_x[i] - d.x, y = truss.node_y[i] - d.y, z = truss.node_z[i] - d.z;
-        const double along = b.x[i] * d.bx + b.y[i] * d.by + b.z[i] * d.bz;
-        const double reach = (d.deflection - deflection[i] + alike) * per_slope;
-        count[i] = along > same_panel && reach > 0.0 && x * x + y * y + z * z < reach * reach ? 1.0 : 0.0;
-    }
-    return lane_sum(count);
+BIRM3D_IN_LANE_LOOP Rise rise_at(const Numbers& d, double a) {
+    const double far = a < 0.0 ? -a : a;
+    const bool round = far <= d.steep_arc;
+    const double on = round ? far : d.steep_arc;
+    const double root = std::sqrt(d.radius * d.radius - on * on);
+    return {round ? d.stretch * root : d.rise_there - d.steep * (far - d.steep_arc),
+            round ? -d.stretch * a / root : (a < 0.0 ? d.steep : -d.steep), root};
 }
 
-// Hangs nodes on the driver; returns the least deflection that any of the block hangs to.
-// What the nodes of a block hang on so far.
-struct alignas(64) Chosen {
-    Lanes deflection;      // m
-    Lanes number, second;  // of the drivers; below zero: none
-    Lanes height;          // of the first driver (m)
-};
-
-// Hangs nodes on the driver; returns the least deflection that any of the block hangs to. Drivers that draw a node in
-// alike are told apart by their height, or share it: which of them comes first would else turn the vehicle.
-BIRM3D_LANE_LOOP double hang_on(const TrussBlock& truss, const Directions& b, double slope, const Driver& d,
-                                Chosen& chosen) {
-    alignas(64) Lanes least;
+BIRM3D_LANE_LOOP void dent_of_block(const Numbers& d, const Lanes& x, const Lanes& y, const Lanes& z,
+                                    DentLanes& out) {
+    const double ex = d.ex, ey = d.ey, ez = d.ez, wx = d.wx, wy = d.wy, wz = d.wz, lx = d.lx, ly = d.ly,
+                 lz = d.lz, ox = d.ox, oy = d.oy, oz = d.oz;
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
-        const double x = truss.node_x[i] - d.x, y = truss.node_y[i] - d.y, z = truss.node_z[i] - d.z;
-        const double along = b.x[i] * d.bx + b.y[i] * d.by + b.z[i] * d.bz;
-        const double drawn = d.deflection - slope * std::sqrt(x * x + y * y + z * z);
-        const double more = drawn - chosen.deflection[i], higher = d.z - chosen.height[i];
-        const bool same_way = along > same_panel && drawn > 0.0;
-        const bool tie = more <= alike && more >= -alike;
-        const bool first = same_way && (more > alike || (tie && higher < -alike));
-        const bool shares = same_way && tie && higher <= alike && higher >= -alike;
-        chosen.second[i] = first ? -1.0 : (shares ? d.number : chosen.second[i]);
-        chosen.number[i] = first ? d.number : chosen.number[i];
-        chosen.height[i] = first ? d.z : chosen.height[i];
-        chosen.deflection[i] = first && more > 0.0 ? drawn : chosen.deflection[i];
-        least[i] = chosen.deflection[i];
+        const double rx = x[i] - ox, ry = y[i] - oy, rz = z[i] - oz;
+        const double e = ex * rx + ey * ry + ez * rz;
+        const double w = wx * rx + wy * ry + wz * rz;
+        const double l = lx * rx + ly * ry + lz * rz;
+        // The nearest place of the post that falls off no more steeply than the dent, within the panel.
+        const double on_arc = w > d.arc ? d.arc : (w < -d.arc ? -d.arc : w);
+        const double a = on_arc > d.high ? d.high : (on_arc < d.low ? d.low : on_arc);
+        const Rise rise = rise_at(d, a);
+        const bool above = l > d.top;
+        const double up = above ? d.top : l;
+        const double at = d.tilt * up + rise.rise;
+        const double beside = w > a ? w - a : a - w;
+        out.gap[i] = e - (at - d.slope * beside - d.slope * (l - up));
+
+        const double rises = above ? -d.slope : d.tilt;
+        const double nx = ex - rise.across * wx - rises * lx, ny = ey - rise.across * wy - rises * ly,
+                     nz = ez - rise.across * wz - rises * lz;
+        const double size = std::sqrt(nx * nx + ny * ny + nz * nz), per = 1.0 / size;
+        out.nx[i] = nx * per;
+        out.ny[i] = ny * per;
+        out.nz[i] = nz * per;
+        out.per_force[i] = size;
+        out.px[i] = ox + (at * ex + a * wx + up * lx);
+        out.py[i] = oy + (at * ey + a * wy + up * ly);
+        out.pz[i] = oz + (at * ez + a * wz + up * lz);
+
+        // How the depth changes as the post turns about e, with the dent, and as its axis leans along e.
+        const double edge_at = on_arc > d.high ? d.high_at : (on_arc < d.low ? d.low_at : l);
+        // Nodes on the edge itself lie on neither side of it: rounding would choose one.
+        const double side = beside > on_edge ? (w > a ? d.slope : -d.slope) : 0.0;
+        const double about = side * (l - edge_at) - rise.across * edge_at + rises * w;
+        const double leaning = d.stretch * d.stretch * (up + d.tilt * rise.stretch / d.stretch) +
+                               (above ? (d.tilt + d.slope) * d.top_rate / d.stretch : 0.0);
+        const double qx = about * (d.tilt * lx - ex) + leaning * wx,
+                     qy = about * (d.tilt * ly - ey) + leaning * wy,
+                     qz = about * (d.tilt * lz - ez) + leaning * wz;
+        out.tx[i] = per * (oy * nz - oz * ny + qx);
+        out.ty[i] = per * (oz * nx - ox * nz + qy);
+        out.tz[i] = per * (ox * ny - oy * nx + qz);
     }
-    for (std::size_t half = lanes / 2; half > 0; half /= 2) {
-        BIRM3D_INDEPENDENT
-        for (std::size_t i = 0; i < half; ++i)
-            least[i] = least[half + i] < least[i] ? least[half + i] : least[i];
-    }
-    return least[0];
 }
 
 }  // namespace
 
-std::vector<DentGroup> grouped(std::span<const DentDriver> drivers) {
-    constexpr std::size_t size = 16;
-    std::vector<DentGroup> groups;
-    for (std::size_t first = 0; first < drivers.size(); first += size) {
-        DentGroup group{first, std::min(first + size, drivers.size()), {}, 0.0};
-        group.box = Box::around(group.last - first, [&](std::size_t i) { return drivers[first + i].place; });
-        for (std::size_t k = first; k < group.last; ++k)
-            group.deepest = std::max(group.deepest, drivers[k].deflection);
-        groups.push_back(group);
-    }
-    return groups;
+Dent::Dent(const Post& post, const Placement& stands, const Panel& panel, double slope_)
+    : into(panel.inward), foot(stands.from_own(Vec3::Zero())), radius(post.radius), slope(slope_) {
+    const Vec3 axis_up = stands.direction_from_own(Vec3::UnitZ());
+    const double leaning = axis_up.dot(into), upright = axis_up.cross(into).norm();
+    across = axis_up.cross(into) / upright;
+    along = (axis_up - leaning * into) / upright;
+    // The middles of the edges at either side. Corners of the box would change places with every sway of the post.
+    Eigen::Index side = 0;
+    across.cwiseAbs().maxCoeff(&side);
+    const Vec3 edge = std::copysign(panel.box.half[side], across[side]) * Vec3::Unit(side);
+    const Vec3 least = panel.box.center - edge - foot, most = panel.box.center + edge - foot;
+    low = least.dot(across);
+    high = most.dot(across);
+    low_at = least.dot(along);
+    high_at = most.dot(along);
+    tilt = leaning / upright;
+    stretch = 1.0 / upright;
+    const double rim = std::hypot(leaning, rounded);
+    top = post.height * upright + radius * rim;
+    top_rate = radius * leaning / rim - post.height * tilt;
+    const double share = slope / stretch;
+    arc = radius * share / std::sqrt(1.0 + share * share);
 }
 
-void hang(const TrussBlock& trusses, const Box& box, double slope, std::span<const DentDriver> drivers,
-          std::span<const DentGroup> groups, Hanging& hanging) {
-    alignas(64) Directions directions;
-    directions_of(trusses, directions);
-    alignas(64) Chosen chosen;
-    for (Lanes* column : {&chosen.deflection, &chosen.number, &chosen.second})
-        column->fill(-1.0);
-    chosen.height.fill(0.0);
-    // Groups that may draw in furthest come first: what they leave to the others is soon seen.
-    std::vector<std::pair<double, std::size_t>> order;  // most that a group can draw in, its place
-    const auto most = [&](double deflection, const Box& around) {
-        return deflection -
-               slope *
-                   ((around.center - box.center).cwiseAbs() - box.half - around.half).cwiseMax(0.0).norm();
+bool Dent::overlaps(const Panel& panel) const {
+    return low < radius && high > -radius &&
+           top > (panel.box.center - foot).dot(along) - panel.box.half.dot(along.cwiseAbs());
+}
+
+bool stands_across(const Placement& post, const Panel& panel, bool dents) {
+    const double sine = std::abs(post.direction_from_own(Vec3::UnitZ()).dot(panel.inward));
+    return sine < (dents ? overturned : most_tilted);
+}
+
+double most_inside(const Dent& d, const Box& box) {
+    const auto range = [&](const Vec3& way) {
+        const double middle = (box.center - d.foot).dot(way), half = box.half.dot(way.cwiseAbs());
+        return std::pair(middle - half, middle + half);
     };
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        const double drawn = most(groups[g].deepest, groups[g].box);
-        if (drawn > 0.0) order.emplace_back(-drawn, g);
-    }
-    std::sort(order.begin(), order.end());
-    double least = 0.0;
-    for (const auto& [minus_drawn, g] : order) {
-        if (-minus_drawn < least - alike) break;
-        for (std::size_t k = groups[g].first; k < groups[g].last; ++k) {
-            const DentDriver& d = drivers[k];
-            if (most(d.deflection, {d.place, Vec3::Zero()}) < least - alike) continue;
-            const Driver driver{d.place.x(),     d.place.y(),     d.place.z(),  d.direction.x(),
-                                d.direction.y(), d.direction.z(), d.deflection, static_cast<double>(k)};
-            if (count_drawn(trusses, directions, 1.0 / slope, driver, chosen.deflection) == 0.0) continue;
-            least = std::max(0.0, hang_on(trusses, directions, slope, driver, chosen));
-        }
-    }
-    hanging.deflection = chosen.deflection;
-    for (std::size_t i = 0; i < lanes; ++i) {
-        hanging.driver[i] = static_cast<std::size_t>(std::max(chosen.number[i], 0.0));
-        hanging.second[i] =
-            chosen.second[i] < 0.0 ? hanging.driver[i] : static_cast<std::size_t>(chosen.second[i]);
-    }
+    const double outermost = range(d.into).first;
+    const auto [w0, w1] = range(d.across);
+    const auto [l0, l1] = range(d.along);
+    const double beside = std::max({w0 - d.arc, -d.arc - w1, 0.0});
+    const double deepest =
+        d.stretch * d.radius + std::max(d.tilt * std::min(l0, d.top), d.tilt * std::min(l1, d.top));
+    return deepest - d.slope * (beside + std::max(l0 - d.top, 0.0)) - outermost;
+}
+
+void dent_of(const Dent& dent, const TrussBlockState& nodes, DentLanes& out) {
+    dent_of_block(numbers_of(dent), nodes.x, nodes.y, nodes.z, out);
 }
 
 }  // namespace birm3d

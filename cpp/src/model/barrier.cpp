@@ -31,7 +31,7 @@ Barrier Barrier::wall(double friction, const Vec3& origin, double heading) {
 Barrier Barrier::pole(double friction, const Vec3& origin, double heading, double radius) {
     require_positive("radius", radius);
     const Post post{radius, std::numeric_limits<double>::infinity()};
-    return {{{post, origin, heading, true}}, friction, origin, heading};
+    return {{{post, origin, heading}}, friction, origin, heading};
 }
 
 Vec3 Barrier::normal() const {

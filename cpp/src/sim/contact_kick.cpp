@@ -23,11 +23,17 @@ bool slides(const ContactKick& kicked) {
            std::any_of(kicked.on_members.begin(), kicked.on_members.end(), is_there);
 }
 
-double normal_impulse(const std::vector<RigidContact>& contacts) {
-    double sum = 0.0;
-    for (const RigidContact& contact : contacts)
-        if (!contact.held) sum += contact.impulse;
-    return sum;
+// Have the normal impulses stayed since the last round? Remembers them.
+bool stayed(const std::vector<RigidContact>& contacts, Column& last) {
+    last.resize(contacts.size(), -1.0);
+    double sum = 0.0, change = 0.0;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        if (contacts[i].held) continue;
+        sum += contacts[i].impulse;
+        change = std::max(change, std::abs(contacts[i].impulse - last[i]));
+        last[i] = contacts[i].impulse;
+    }
+    return change <= tolerance::friction_settled * sum;
 }
 
 // Normal impulses of the tyres by wheel.
@@ -55,14 +61,11 @@ void kick_by_contacts(const Scene& scene, std::vector<ContactBody>& bodies, Impu
         tire_impulses(scene, kicked.contacts, tire);
     };
     solve();
-    // Friction follows from the normal impulses and tips the body, which changes them: to and fro, until their
-    // sum stays. Where only gravity and the ground act it does at once; at impacts it takes some rounds.
+    // Friction follows from the normal impulses and tips the body, which changes them: to and fro, until they stay.
     constexpr int most_rounds = 30;
-    double carried = -1.0;
+    Column last;
     for (int round = 0; round < most_rounds; ++round) {
-        const double now = normal_impulse(kicked.contacts);
-        if (std::abs(now - carried) <= 1e-12 * now) break;
-        carried = now;
+        if (stayed(kicked.contacts, last)) break;
         for (std::size_t u = 0; u < units; ++u) {
             const Unit& unit = scene.vehicle->units[u];
             BodyState& body = state.units[u].body;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "birm3d/base/tolerances.hpp"
+#include "birm3d/kernels/dent.hpp"
 #include "birm3d/kernels/detect.hpp"
 #include "birm3d/kernels/integrate.hpp"
 
@@ -105,6 +106,39 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
     return least;
 }
 
+namespace {
+
+// A step in which no post comes to dent a panel (s). Those that stand beside it or within come from the side.
+double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
+                     double longest) {
+    const double rate = fastest_growth(mesh.dent_slope) * fastest;
+    alignas(64) DentLanes found;
+    for (const Obstacle& obstacle : scene.obstacles) {
+        const Post* post = std::get_if<Post>(&obstacle.shape);
+        if (post == nullptr) continue;
+        const Placement seen = placement(obstacle, unit.body);
+        for (std::size_t p = 0; p < panels; ++p) {
+            if (!mesh.panel[p].any || !stands_across(seen, mesh.panel[p], false)) continue;
+            Dent dent(*post, seen, mesh.panel[p], mesh.dent_slope);
+            dent.low = -infinity;
+            dent.high = infinity;
+            double gap = infinity;
+            for (std::size_t b = 0; b < mesh.blocks; ++b) {
+                const TrussBlockState& block = unit.trusses.block[b];
+                if ((mesh.panels_of[b] >> p & 1U) == 0) continue;
+                if (-most_inside(dent, box_of(block)) > longest * rate) continue;
+                dent_of(dent, block, found);
+                for (std::size_t i = 0; i < lanes; ++i)
+                    if (mesh.block[b].panel[i] == static_cast<double>(p)) gap = std::min(gap, found.gap[i]);
+            }
+            if (gap > 0.0) longest = std::min(longest, (gap + tolerance::untouched_way) / rate);
+        }
+    }
+    return longest;
+}
+
+}  // namespace
+
 double untouched_step(const Scene& scene, const State& state) {
     double longest = infinity;
     std::vector<std::pair<const Shape*, Placement>> near;
@@ -146,6 +180,8 @@ double untouched_step(const Scene& scene, const State& state) {
                 longest = std::min({longest, straight, (gap + tolerance::untouched_way) / fastest});
             }
         }
+        if (model.trusses.dent_slope > 0.0)
+            longest = undented_step(scene, unit, model.trusses, fastest, longest);
     }
     return longest;
 }

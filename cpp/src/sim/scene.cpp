@@ -169,7 +169,7 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
         for (const Element& element : barrier->elements)
             obstacles.push_back({element.shape,
                                  Eigen::AngleAxisd(element.heading, Vec3::UnitZ()).toRotationMatrix(),
-                                 element.position, element.holds_skin, barrier->friction, 0});
+                                 element.position, barrier->friction, 0});
     for (std::size_t i = 0; i < obstacles.size(); ++i)
         obstacles[i].structure = i > 0 && continues(obstacles[i].shape) ? obstacles[i - 1].structure : i;
     ground = obstacles.size();
@@ -177,7 +177,7 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
         skin_meets_ground.push_back(settings.ground && !unit.wheels.empty() && skin_above_ground(unit));
     if (std::any_of(skin_meets_ground.begin(), skin_meets_ground.end(), [](char meets) { return meets; }))
         obstacles.push_back(
-            {HalfSpace{Vec3::UnitZ(), 0.0}, Mat3::Identity(), Vec3::Zero(), false, settings.mu_body, ground});
+            {HalfSpace{Vec3::UnitZ(), 0.0}, Mat3::Identity(), Vec3::Zero(), settings.mu_body, ground});
 }
 
 double Scene::reference_speed() const {
@@ -224,7 +224,6 @@ std::uint64_t Scene::fingerprint() const {
             std::visit([&](const auto& shape) { add_to(hash, shape); }, element.shape);
             hash.add(element.position);
             hash.add(element.heading);
-            hash.add(element.holds_skin ? 1.0 : 0.0);
         }
     }
     return hash.value();

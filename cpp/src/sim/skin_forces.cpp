@@ -63,7 +63,6 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
       along_(scene.settings.contact_model == ContactModel::along_truss),
       full_speed_(std::max(tolerance::full_friction_speed * scene.reference_speed(),
                            trial.dt * before_.skin.friction_rate)),
-      held_(mesh_.dent_slope > 0.0 ? 0.1 : 0.5),
       margin_(trial.dt * std::max(fastest_point(unit_, before_.body), fastest_point(unit_, now_.body)) +
               tolerance::touching_gap),
       near_(trial.near) {
@@ -79,13 +78,13 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
 
 void Skin::press_blocks() {
     trial_.active[u_].clear();
+    now_.dented.clear();
     const bool slack = std::any_of(before_.trusses.block.begin(), before_.trusses.block.end(),
                                    [](const TrussBlockState& block) { return block.slack; });
     if (near_.empty() && before_.touches.empty() && !slack) return;
     find_dents();
     for (std::size_t b = 0; b < mesh_.blocks; ++b)
         press(b);
-    load_drivers();
     trial_.state.statistics.node_evaluations += trial_.active[u_].blocks().size() * lanes;
 }
 
@@ -100,7 +99,8 @@ void Skin::spring_back(std::size_t b) {
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!is_slack(block, i)) continue;
         const Vec3 anchor(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
-        const Vec3 place = anchor - (truss.length[i] - block.residual[i]) * inward(truss, block, i);
+        const Vec3 place = anchor - (truss.length[i] - block.residual[i]) *
+                                        (anchor - Vec3(block.x[i], block.y[i], block.z[i])).normalized();
         const bool free = std::all_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
             return nearest(scene_.obstacles[obstacle.index].shape, obstacle.now.to_own(place)).gap >= 0.0;
         });
@@ -115,8 +115,8 @@ void Skin::spring_back(std::size_t b) {
     if (sprung_back_) sprung_.box = box_around(sprung_.x, sprung_.y, sprung_.z);
 }
 
-// Which obstacles can the nodes of the block meet? False where there are none.
-bool Skin::look_about(std::size_t b) {
+// Which obstacles can the nodes of the block meet?
+void Skin::look_about(std::size_t b) {
     spring_back(b);
     const TrussBlockState& block = from(b);
     // Where a flat surface is all there is, pushing nodes need no box.
@@ -131,16 +131,15 @@ bool Skin::look_about(std::size_t b) {
     if (block.touching && seen_.empty())
         for (std::size_t k = 0; k < near_.size(); ++k)
             seen_.push_back(k);
-    return !seen_.empty();
 }
 
 void Skin::press(std::size_t b) {
-    const bool sees = look_about(b);
-    const bool drawn = draw_in(b);
-    if (!sees && !drawn && !sprung_back_) return;
+    look_about(b);
+    const bool drawn = find_dents_of_block(b);
+    if (seen_.empty() && !sprung_back_) return;
     trial_.active[u_].add(b);
     trial_.stale[u_].add(b);
-    if (!sees && !drawn) {
+    if (seen_.empty()) {
         now_.trusses.block[b] = sprung_;
         return;
     }
@@ -173,7 +172,8 @@ Skin::PlaneSums& Skin::sums_of_plane(std::size_t near, const HalfSpace& plane) {
 
 // The rate of deflection is taken where the nodes will be, so that a rate-sensitive block is first crushed without it.
 template <class Crush>
-void Skin::crush_with_rate(const TrussBlockState& next, CrushSums& sums, const Crush& crush) {
+void Skin::crush_with_rate(const TrussBlockState& next, const Places& places, CrushSums& sums,
+                           const Crush& crush) {
     if (mesh_.rate_sensitivity == 0.0) {
         crush(nullptr, sums);
         return;
@@ -181,72 +181,65 @@ void Skin::crush_with_rate(const TrussBlockState& next, CrushSums& sums, const C
     CrushSums without;
     crush(nullptr, without);
     alignas(64) Lanes factor;
-    set_rate_factor(mesh_.rate_sensitivity, next, motion_, contact_, factor);
+    set_rate_factor(mesh_.rate_sensitivity, next.force, motion_, places, contact_, factor);
     crush(&factor, sums);
 }
 
 void Skin::press_plane(PlaneSums& plane, std::size_t b) {
     TrussBlockState& next = now_.trusses.block[b];
     contact_.set_normal(plane.surface.face.normal);
-    crush_with_rate(next, plane.sums, [&](const Lanes* factor, CrushSums& sums) {
+    const Places places{next.x, next.y, next.z};
+    crush_with_rate(next, places, plane.sums, [&](const Lanes* factor, CrushSums& sums) {
         crush(plane.surface, mesh_, b, factor, from(b), next, contact_, sums);
     });
-    if (next.touching) rub(plane.near, b, next, contact_);
-}
-
-void Skin::crush_shapes(std::size_t b, const TrussBlockState& block, TrussBlockState& next, CrushSums& to) {
-    crush_with_rate(next, to, [&](const Lanes* factor, CrushSums& sums) {
-        crush(faces_, unit_.body, mesh_, b, factor, block, next, contact_, sums);
-    });
+    if (next.touching) rub(plane.near, b, next, places, contact_);
 }
 
 void Skin::press_shapes(std::size_t b) {
     TrussBlockState& next = now_.trusses.block[b];
-    const TrussBlockState& block = look(b);
-    const bool hangs = set_hanging(b);
-    const bool alone = seen_.size() == 1 && !hangs;
+    look(b);
+    const bool alone = seen_.size() == 1;
     CrushSums& to = alone ? obstacles_[seen_[0]].sums : shared_;
-    crush_shapes(b, block, next, to);
-    if (hangs) note_drawn(next);
+    crush_with_rate(next, contact_.places(), to, [&](const Lanes* factor, CrushSums& sums) {
+        crush(faces_, unit_.body, mesh_, b, factor, from(b), next, contact_, sums);
+    });
     if (!next.touching) return;
     if (alone)
-        rub(seen_[0], b, next, contact_);
+        rub(seen_[0], b, next, contact_.places(), contact_);
     else
         share_out(b, next);
 }
 
 // What each node of a block sees: the nearest of the surfaces in its reach.
-const TrussBlockState& Skin::look(std::size_t b) {
+void Skin::look(std::size_t b) {
     const TrussBlockState& block = from(b);
+    faces_.gap.fill(infinity);
+    faces_.per_force.fill(0.0);
+    contact_.set_normal(Vec3::UnitX());
+    nearest_.fill(0);
+    look_at(b, block);
+    find_entered_faces(block);
+    if (block.touching) turn_flat_faces();
+    settle_in_corners(block);
+    draw_in(b, block);
+}
+
+void Skin::look_at(std::size_t b, const TrussBlockState& block) {
     alignas(64) NearestLanes found;
-    faces_.own_way.fill(0.0);
-    if (seen_.empty()) {  // nothing but what hangs on others
-        faces_.gap.fill(infinity);
-        faces_.held.fill(0.0);
-        contact_.set_normal(Vec3::UnitX());
-        faces_.bx = contact_.nx, faces_.by = contact_.ny, faces_.bz = contact_.nz;
-    }
     for (std::size_t k = 0; k < seen_.size(); ++k) {
         const NearObstacle& obstacle = near_[seen_[k]];
         const Shape& shape = scene_.obstacles[obstacle.index].shape;
-        const double held = scene_.obstacles[obstacle.index].holds_skin ? held_ : 0.0;
         nearest_of(shape, obstacle.now, obstacle.before, block.x, block.y, block.z, found);
+        leave_to_dents(b, seen_[k], found);
         for (std::size_t i = 0; i < lanes; ++i) {
-            if (k > 0 && !(found.gap[i] < faces_.gap[i])) continue;
+            if (!(found.gap[i] < faces_.gap[i])) continue;
             nearest_[i] = k;
             faces_.gap[i] = found.gap[i];
-            faces_.held[i] = held;
-            contact_.nx[i] = faces_.bx[i] = found.nx[i];
-            contact_.ny[i] = faces_.by[i] = found.ny[i];
-            contact_.nz[i] = faces_.bz[i] = found.nz[i];
+            contact_.nx[i] = found.nx[i], contact_.ny[i] = found.ny[i], contact_.nz[i] = found.nz[i];
         }
     }
-    if (!block.touching) {
-        find_entered_faces(block);
-        find_places_on_lines(b, block);
-        settle_in_corners(block);
-        return block;
-    }
+    faces_.bx = contact_.nx, faces_.by = contact_.ny, faces_.bz = contact_.nz;
+    if (!block.touching) return;
     // Of all surfaces at that instant: segments of a wall take over from each other.
     alignas(64) Lanes gap_before;
     gap_before.fill(infinity);
@@ -254,6 +247,7 @@ const TrussBlockState& Skin::look(std::size_t b) {
         const NearObstacle& obstacle = near_[k];
         nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.before, obstacle.before, block.x, block.y,
                    block.z, found);
+        leave_to_dents(b, k, found);
         for (std::size_t i = 0; i < lanes; ++i) {
             if (!(found.gap[i] < gap_before[i])) continue;
             gap_before[i] = found.gap[i];
@@ -261,45 +255,6 @@ const TrussBlockState& Skin::look(std::size_t b) {
             faces_.by[i] = found.ny[i];
             faces_.bz[i] = found.nz[i];
         }
-    }
-    find_entered_faces(block);
-    turn_flat_faces();
-    find_places_on_lines(b, block);
-    settle_in_corners(block);
-    return block.leading == 0 ? block : follow_with_leading(b);
-}
-
-// A node that is held in line meets the surface on its own truss's line: there is its normal. Newton's steps along the
-// line; where they lead past the obstacle the nearest surface remains.
-void Skin::find_places_on_lines(std::size_t b, const TrussBlockState& block) {
-    const TrussBlock& truss = mesh_.block[b];
-    for (std::size_t i = 0; i < lanes; ++i) {
-        const double held = faces_.held[i];
-        if (held == 0.0 || !(faces_.gap[i] < 0.0 || block.force[i] > 0.0)) continue;
-        const NearObstacle& obstacle = near_[seen_[nearest_[i]]];
-        const Shape& shape = scene_.obstacles[obstacle.index].shape;
-        const Vec3 b_in = inward(truss, block, i);
-        Vec3 n = contact_.normal(i);
-        double gap = faces_.gap[i], way = 0.0;
-        bool found = false;
-        constexpr int most_steps = 8;
-        for (int step = 0; step < most_steps && !found; ++step) {
-            const double cosine = b_in.dot(n);
-            if (!(cosine > held)) break;
-            way -= gap / cosine;
-            const Vec3 place = Vec3(block.x[i], block.y[i], block.z[i]) + way * b_in;
-            const Nearest there = nearest(shape, obstacle.now.to_own(place));
-            gap = there.gap;
-            n = obstacle.now.direction_from_own(there.normal);
-            found = std::abs(gap) < 1e-12;
-        }
-        if (!found || !(b_in.dot(n) > held)) continue;
-        faces_.gap[i] = -way * b_in.dot(n);
-        contact_.nx[i] = n.x(), contact_.ny[i] = n.y(), contact_.nz[i] = n.z();
-        const Vec3 place = Vec3(block.x[i], block.y[i], block.z[i]) + way * b_in;
-        const Vec3 m =
-            obstacle.before.direction_from_own(nearest(shape, obstacle.before.to_own(place)).normal);
-        faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
     }
 }
 
@@ -368,7 +323,6 @@ void Skin::find_entered_faces(const TrussBlockState& block) {
         nearest_[i] = entered->seen;
         const Vec3 &n = entered->now.normal, &m = entered->normal_before;
         faces_.gap[i] = entered->now.gap;
-        faces_.held[i] = scene_.obstacles[near_[seen_[entered->seen]].index].holds_skin ? held_ : 0.0;
         contact_.nx[i] = n.x(), contact_.ny[i] = n.y(), contact_.nz[i] = n.z();
         faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
     }
@@ -384,19 +338,20 @@ void Skin::share_out(std::size_t b, const TrussBlockState& next) {
             part.pressure[i] = nearest_[i] == k ? contact_.pressure[i] : 0.0;
             if (!(part.pressure[i] > 0.0)) continue;
             const Vec3 push = part.pressure[i] * part.normal(i);
-            sums.contact += {push, Vec3(next.x[i], next.y[i], next.z[i]).cross(push)};
+            sums.contact += {push, part.pressure[i] * contact_.torque(i)};
             force += part.pressure[i];
         }
         sums.normal_force += force;
-        if (force > 0.0) rub(seen_[k], b, next, part);
+        if (force > 0.0) rub(seen_[k], b, next, contact_.places(), part);
     }
 }
 
-void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, const BlockContact& contact) {
+void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, const Places& places,
+               const BlockContact& contact) {
     ObstacleSums& sums = obstacles_[near];
     if (along_) sums.by_trusses += along_trusses(mesh_.block[b], next, contact);
     const double mu = scene_.obstacles[near_[near].index].friction;
-    if (mu > 0.0) add_friction(unit_.body, mu, full_speed_, motion_, next, contact, sums.friction);
+    if (mu > 0.0) add_friction(unit_.body, mu, full_speed_, motion_, places, contact, sums.friction);
 }
 
 void Skin::hand_over() {

@@ -60,6 +60,10 @@ inline constexpr double slowest_reference_speed = 0.1;
 // becomes stiff and the steps short. Larger: what should stick creeps at up to this speed.
 inline constexpr double full_friction_speed = 0.01;
 
+// Friction and normal impulses of rigid contacts are found in turns until these change by less than this share of their
+// sum. Large: which turn is the last hangs on rounding, and left and right do not mirror each other.
+inline constexpr double friction_settled = 1e-9;
+
 // Rigid contacts: how fast a point found inside a surface is pushed out at the most (m/s).
 inline constexpr double recovery_speed = 0.5;
 
@@ -97,10 +101,6 @@ inline constexpr double solid_volume = 1e-12;
 // Rounding that an inertia tensor may show, relative: of its symmetry, and of the rule that no principal
 // moment is above the sum of the other two.
 inline constexpr double symmetric_inertia = 1e-9;
-
-// A node leaves an obstacle for the dent beside it where that draws it in further by this (m): two nodes at one place,
-// on the border of two zones, are as deep as each other but for rounding.
-inline constexpr double drawn_further = 1e-9;
 
 // Points nearer than this to an edge or a corner of a shape take the normal of one of its faces (m): the
 // direction from the edge to such a point is rounding. Large: the corner's normal jumps by a visible amount.

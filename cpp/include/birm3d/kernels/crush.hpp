@@ -10,12 +10,8 @@
 // A truss that has turned so far that it would push its node off the surface (b . n > 0) does not push: the node
 // springs to its residual length.
 //
-// A narrow obstacle, such as a bollard, does not part the skin: sheet metal is drawn in with its neighbours, where
-// free nodes would slip round to either side and let the obstacle pass between them. There a node is held in line:
-// it goes towards its anchor, a by -b/(-b . n) for each unit of the normal's way, and the force on the vehicle is
-// F / (-b . n) * n, by virtual work. Where the truss stands across the normal (-b . n < c0) this share fades out, unless
-// dents (dent.hpp) draw such nodes in.
-// Both are cases of one rule: with h the way of the node, h . n = 1, the force is F * (-b . h) * n.
+// Both are cases of one rule: with h the way of the node, h . n = 1, the force is F * (-b . h) * n. Nodes that a dent
+// draws in have their own h and n (dent.hpp).
 //
 // Deviations from the paper: its Eq. 14 (left side P2) as printed moves away from the plane; the push-back
 // is p - gap*n. The force is projected on the normal, because the node is free to slide: along the truss it
@@ -52,31 +48,13 @@ struct FlatContact {
     InverseMass inverse_mass;
 };
 
-// Share of a node's way that goes along its truss, over the cosine c = -b . n >= 0 of the truss to the normal.
-// `held`: the cosine c0 below which the share fades out, where the surface holds the skin in line; else 0.
-BIRM3D_IN_LANE_LOOP double in_line(double held, double cosine) {
-    const double faded = held > 0.0 ? cosine / (held * held) : 0.0;
-    return held > 0.0 && !(cosine < held) ? 1.0 / cosine : faded;
-}
-
-// Normal force for each unit of truss force, -b . h.
-inline double share_held(double held, double cosine) {
-    const double along = in_line(held, cosine);
-    return cosine + along * (1.0 - cosine * cosine);
-}
-
-// The way h for each unit of the normal's way; `inward`: from the node to its anchor, unit.
-inline Vec3 way_held(double held, double cosine, const Vec3& normal, const Vec3& inward) {
-    const double along = in_line(held, cosine);
-    return (1.0 - along * cosine) * normal + along * inward;
-}
-
 // What each node of a block sees of surfaces of any shape (body axes); its normals now are in the BlockContact.
 struct alignas(64) NodeFaces {
     Lanes gap;         // of the nearest surface (m)
     Lanes bx, by, bz;  // outward normal of the same surface at the instant before
-    Lanes own_way;     // 1 where n is the node's way itself, for nodes drawn in by a dent (dent.hpp), else 0
-    Lanes held;        // see in_line
+    // Of nodes that a dent draws in: b is the way itself, and a truss force along it that much greater as a normal force,
+    // which acts at the place that the BlockContact says. Zero for others.
+    Lanes per_force;
 };
 
 // What the blocks of a unit add up to.
@@ -104,7 +82,7 @@ Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const 
 
 // The factor on the loading envelopes of a block by its rate of deflection (TrussInput), from the motion of the body
 // against the surface at that instant (body axes) and the block as it is without that factor.
-void set_rate_factor(double rate_sensitivity, const TrussBlockState& now, const Twist& motion,
+void set_rate_factor(double rate_sensitivity, const Lanes& force, const Twist& motion, const Places& places,
                      const BlockContact& contact, Lanes& factor);
 
 }  // namespace birm3d

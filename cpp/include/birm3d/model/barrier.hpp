@@ -14,7 +14,6 @@ struct Element {
     Shape shape;                   // own axes, z up
     Vec3 position = Vec3::Zero();  // of the own axes' origin, the element's foot, world (m)
     double heading = 0.0;          // turn of the own axes about z (rad)
-    bool holds_skin = false;       // narrow: skin is held in line there (kernels/crush.hpp)
 };
 
 struct Barrier {

@@ -29,7 +29,6 @@ struct Obstacle {
     Shape shape;                       // own axes
     Mat3 rotation = Mat3::Identity();  // own axes to the world
     Vec3 position = Vec3::Zero();      // of the own axes' origin, world (m)
-    bool holds_skin = false;
     double friction = 0.0;
     std::size_t structure =
         0;  // place of the first obstacle that this one is joined to, itself where it stands alone

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -10,12 +11,24 @@
 
 namespace birm3d {
 
+// Where the forces on a block of nodes act, body axes (m).
+struct Places {
+    const Lanes &x, &y, &z;
+
+    Vec3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+};
+
 // One block of nodes beside a surface, body axes.
 struct alignas(64) BlockContact {
     Lanes pressure;    // normal force of each node (N)
     Lanes nx, ny, nz;  // outward normal at each
+    // Where friction acts (m), and the torque of a unit of normal force about the mass centre (m): not kept up at flat
+    // surfaces, where they are the node and its own.
+    Lanes px, py, pz, tx, ty, tz;
 
     Vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
+    Places places() const { return {px, py, pz}; }
+    Vec3 torque(std::size_t i) const { return {tx[i], ty[i], tz[i]}; }
     void set_normal(const Vec3& n) { nx.fill(n.x()), ny.fill(n.y()), nz.fill(n.z()); }
 };
 
@@ -77,6 +90,13 @@ struct Touch {
     double normal_force = 0.0;  // N
     LoadCourse course;          // of contact and friction together
     HigherOrder extra;          // of the step that led here
+};
+
+// Which panels of a unit an obstacle dents (kernels/dent.hpp), bit by bit. Those it has come into from the side it never
+// does until it has been in front of them again: their skin is not before it.
+struct Dented {
+    std::size_t obstacle = 0;
+    std::uint8_t panels = 0, passed = 0;
 };
 
 enum class ContactSource { tire, member, joint };

@@ -18,6 +18,7 @@ struct UnitMotion {
     BodyState body;
     SkinForces skin;             // at this instant
     std::vector<Touch> touches;  // in the order of the obstacles
+    std::vector<Dented> dented;  // the same
 };
 
 struct UnitState : UnitMotion {
@@ -85,6 +86,8 @@ struct State : Progress {
             hash.add(unit.body.velocity);
             hash.add(unit.body.angular_momentum);
             unit.trusses.add_to(hash);
+            for (const Dented& dented : unit.dented)
+                hash.add(Vec3(static_cast<double>(dented.obstacle), dented.panels, dented.passed));
         }
         hash.add(energies.total());
         return hash.value();

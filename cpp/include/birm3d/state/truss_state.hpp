@@ -1,7 +1,6 @@
 // What a crash changes in a unit's skin: blocks parallel to TrussMesh's.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "birm3d/base/hash.hpp"
@@ -15,8 +14,6 @@ struct alignas(64) TrussBlockState {
     Lanes deflection, force;          // of the truss, now (m, N)
     Lanes peak_deflection, residual;  // greatest so far; where the unloading line meets zero force (m)
     Box box;                          // around the nodes where they were last let go, body axes
-    std::uint64_t drawn;              // bit by bit: is the node drawn in by a dent beside it?
-    std::uint64_t leading;            // the same: do nodes that are drawn in hang on it?
     bool touching;                    // does any node push on an obstacle?
     bool slack;  // has an obstacle drawn any node out beyond the free length of its truss?
 };
@@ -44,10 +41,6 @@ struct TrussState {
             for (const Lanes* column :
                  {&b.x, &b.y, &b.z, &b.deflection, &b.force, &b.peak_deflection, &b.residual})
                 hash.add(*column);
-        for (const TrussBlockState& b : block)
-            if ((b.drawn | b.leading) != 0)
-                hash.add(Vec3(static_cast<double>(b.drawn >> 32), static_cast<double>(b.drawn & 0xffffffffU),
-                              static_cast<double>(b.leading)));
     }
 };
 
