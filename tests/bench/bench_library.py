@@ -1,6 +1,6 @@
 """Every vehicle against every barrier, watched step by step.
 
-    python tests/bench/bench_library.py [--mesh-density 1.0] [--dent-slope S] [--save] [--csv FILE]
+    python tests/bench/bench_library.py [--mesh-density 1.0] [--save] [--csv FILE]
     python tests/bench/bench_library.py --quick
 
 Vehicle presets x barriers (endless and finite wall, five bollards, Jersey barrier of 32 in) x angles 10, 25,
@@ -42,13 +42,12 @@ def run(
     angles: Sequence[float],
     speeds: Sequence[float],
     density: float,
-    dent_slope: float,
 ) -> list[Row]:
     rows: list[Row] = []
     cases = list(product(BARRIERS, angles, speeds))
     with progress_bar(None, "library", len(vehicles) * len(cases)) as advance:
         for name in vehicles:
-            vehicle = Vehicle.preset(name, mesh_density=density).with_dent_slope(dent_slope)
+            vehicle = Vehicle.preset(name, mesh_density=density)
             for barrier, angle, speed in cases:
                 rows.append(
                     (
@@ -101,18 +100,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--mesh-density", type=float, default=1.0, help="relative to the presets'")
-    parser.add_argument(
-        "--dent-slope", type=float, default=0.0, help="of Vehicle.with_dent_slope; 0: no coupling"
-    )
     parser.add_argument("--quick", action="store_true", help="two vehicles, coarse, four scenes a barrier")
     parser.add_argument("--csv", type=Path, help="also write the table there")
     parser.add_argument("--save", action="store_true", help="also write tests/bench/results/robustness")
     asked = parser.parse_args(arguments)
     try:
         if asked.quick:
-            rows = run(("passenger_car", "cargo_truck"), (25.0, 90.0), (15.0, 40.0), 0.25, asked.dent_slope)
+            rows = run(("passenger_car", "cargo_truck"), (25.0, 90.0), (15.0, 40.0), 0.25)
         else:
-            rows = run(Vehicle.presets(), ANGLES, SPEEDS, asked.mesh_density, asked.dent_slope)
+            rows = run(Vehicle.presets(), ANGLES, SPEEDS, asked.mesh_density)
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)
         return 130

@@ -170,7 +170,7 @@ def test_penetration_of_a_turned_body_is_its_corner() -> None:
     """Every pose of a tumbling flight is asked for all anchors, in full."""
     car = Vehicle.preset("passenger_car", mesh_density=0.2)
     post = Barrier.bollards(count=1, friction=0.4)
-    result = Simulation(car, post, 20.0, 90.0, 0.85, duration=0.6, impact_roll=8.0).run()
+    result = Simulation(car, post, 30.0, 90.0, 0.85, duration=0.6, impact_roll=8.0).run()
     assert np.abs(result.yaw).max() > 5.0
     centers, turns = result.pose(result.time)
     anchors = centers[:, None, :] + np.einsum("kij,nj->kni", turns, car.anchors)

@@ -178,10 +178,10 @@ class TestTruckAtBollards:
         assert result.metrics["energy_residual"] < 0.005
 
     def test_pitch_is_known_to_be_too_great(self, result: Result) -> None:
-        """A prediction that misses: 32.6 deg with the assumed row. Held so that a change of it is seen."""
-        assert result.metrics["max_pitch"] == pytest.approx(32.6, abs=2.0)
+        """A prediction that misses: 36.7 deg with the assumed row. Held so that a change of it is seen."""
+        assert result.metrics["max_pitch"] == pytest.approx(36.7, abs=2.0)
 
     def test_lower_bollards_pitch_more(self, result: Result) -> None:
         """Couple about the mass centre, 1.28 m high: the lower the force, the more it turns."""
-        low, high = (scenes.truck_at_bollards(height=height).run() for height in (0.75, 1.5))
+        low, high = (scenes.truck_at_bollards(height=height).run() for height in (0.9, 1.2))
         assert low.metrics["max_pitch"] > result.metrics["max_pitch"] > high.metrics["max_pitch"]

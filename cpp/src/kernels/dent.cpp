@@ -11,8 +11,9 @@ namespace {
 // Slope of a post's flank where a panel ends on it: beyond it small motions would make great forces.
 constexpr double steepest = 5.0;
 
-// Nodes nearer to a panel's edge are on it (m).
-constexpr double on_edge = 1e-9;
+// Where a panel ends, the way in which its nodes hang on a post that stands beside it changes over within this (m): the
+// outermost stand on the edge itself, and rounding would choose.
+constexpr double edge_width = 1e-3;
 
 // A rim's highest place, sine * radius above the middle of the top, is rounded off below this sine: at a corner there the
 // torque would jump.
@@ -72,7 +73,8 @@ BIRM3D_LANE_LOOP void dent_of_block(const Numbers& d, const Lanes& x, const Lane
         const double l = lx * rx + ly * ry + lz * rz;
         // The nearest place of the post that falls off no more steeply than the dent, within the panel.
         const double on_arc = w > d.arc ? d.arc : (w < -d.arc ? -d.arc : w);
-        const double a = on_arc > d.high ? d.high : (on_arc < d.low ? d.low : on_arc);
+        const double highest = w > d.high ? w : d.high, lowest = w < d.low ? w : d.low;
+        const double a = on_arc > highest ? highest : (on_arc < lowest ? lowest : on_arc);
         const Rise rise = rise_at(d, a);
         const bool above = l > d.top;
         const double up = above ? d.top : l;
@@ -93,10 +95,13 @@ BIRM3D_LANE_LOOP void dent_of_block(const Numbers& d, const Lanes& x, const Lane
         out.pz[i] = oz + (at * ez + a * wz + up * lz);
 
         // How the depth changes as the post turns about e, with the dent, and as its axis leans along e.
-        const double edge_at = on_arc > d.high ? d.high_at : (on_arc < d.low ? d.low_at : l);
-        // Nodes on the edge itself lie on neither side of it: rounding would choose one.
-        const double side = beside > on_edge ? (w > a ? d.slope : -d.slope) : 0.0;
-        const double about = side * (l - edge_at) - rise.across * edge_at + rises * w;
+        const bool by_high = on_arc > highest, by_low = on_arc < lowest;
+        const double within = by_high ? d.high - w : (by_low ? w - d.low : 0.0);
+        const double share = 0.5 + 0.5 * within / edge_width;
+        const double at_edge = by_high || by_low ? (share < 0.0 ? 0.0 : (share > 1.0 ? 1.0 : share)) : 0.0;
+        const double edge = by_high ? d.high_at : d.low_at, side = by_high ? -d.slope : d.slope;
+        const double about = at_edge * (side * (l - edge) - rise.across * edge) -
+                             (1.0 - at_edge) * rise.across * l + rises * w;
         const double leaning = d.stretch * d.stretch * (up + d.tilt * rise.stretch / d.stretch) +
                                (above ? (d.tilt + d.slope) * d.top_rate / d.stretch : 0.0);
         const double qx = about * (d.tilt * lx - ex) + leaning * wx,

@@ -18,8 +18,8 @@
 
 #include "birm3d/geometry/placement.hpp"
 #include "birm3d/geometry/post.hpp"
-#include "birm3d/kernels/crush.hpp"
 #include "birm3d/model/truss_mesh.hpp"
+#include "birm3d/state/truss_state.hpp"
 
 namespace birm3d {
 
