@@ -26,6 +26,8 @@ void register_history(py::module_& m) {
     add_view(unit, "angular_velocity", &UnitHistory::angular_velocity, "(n, 3) rad/s, body axes");
     add_view(unit, "acceleration", &UnitHistory::acceleration, "(n, 3) m/s^2, interval means, body axes");
     add_view(unit, "barrier_force", &UnitHistory::barrier_force, "(n, 3) N, interval means, world");
+    add_view(unit, "ground_force", &UnitHistory::ground_force,
+             "(n, 3) N, of the ground on the skin, interval means, world");
     add_view(unit, "tire_friction_force", &UnitHistory::tire_friction_force,
              "(n, 3) N, interval means, world");
     add_view(unit, "barrier_normal_force", &UnitHistory::barrier_normal_force, "(n,) N, interval means");
@@ -60,6 +62,31 @@ void register_history(py::module_& m) {
         },
         "(n, wheels) N, interval means");
 
+    py::class_<ObstacleHistory> obstacle(m, "ObstacleHistory", "What an element of the barrier feels.");
+    obstacle.def_readonly("element", &ObstacleHistory::obstacle, "place among the barrier's elements");
+    add_view(obstacle, "force", &ObstacleHistory::force, "(n, 3) N, interval means, world");
+    add_view(obstacle, "moment", &ObstacleHistory::moment,
+             "(n, 3) N m about the element's foot, interval means, world");
+    add_view(unit, "joint_force", &UnitHistory::joint_force,
+             "(n, 3) N, of all joints, interval means, world");
+
+    py::class_<JointHistory> joint(m, "JointHistory", "What a joint carries and how it stands.");
+    add_view(joint, "force", &JointHistory::force, "(n, 3) N on the leading unit, interval means, world");
+    add_view(joint, "moment", &JointHistory::moment, "(n, 3) N m on the leading unit about the joint, world");
+    joint.def_property_readonly(
+        "roll_pitch_yaw",
+        [](const JointHistory& history) {
+            py::array_t<double> angles({static_cast<py::ssize_t>(history.angles.size()), py::ssize_t{3}});
+            auto at = angles.mutable_unchecked<2>();
+            py::ssize_t row = 0;
+            for (const JointAngles& a : history.angles) {
+                at(row, 0) = a.roll, at(row, 1) = a.pitch, at(row, 2) = a.yaw;
+                ++row;
+            }
+            return angles;
+        },
+        "(n, 3) rad, of the trailing unit from the leading one");
+
     py::class_<History> history(m, "History", "Evenly spaced output of a run; read-only views.");
     add_view(history, "time", &History::time, "(n,) s");
     add_view(history, "kinetic", &History::kinetic, "(n,) J");
@@ -68,13 +95,28 @@ void register_history(py::module_& m) {
     add_view(history, "crushed", &History::crushed, "(n,) J");
     add_view(history, "barrier_friction", &History::barrier_friction, "(n,) J");
     add_view(history, "tire_friction", &History::tire_friction, "(n,) J");
+    add_view(history, "ground_friction", &History::ground_friction, "(n,) J");
     add_view(history, "impacts", &History::impacts, "(n,) J");
+    add_view(history, "joint_work", &History::joint_work, "(n,) J");
     history.def_readonly("momentum_residual", &History::momentum_residual,
                          "max |m a - sum of forces| / max |force|");
+    history.def_property_readonly(
+        "elements",
+        [](const py::object& self) {
+            py::typing::List<ObstacleHistory> list;
+            for (const ObstacleHistory& of : self.cast<const History&>().obstacles)
+                list.append(py::cast(of, py::return_value_policy::reference_internal, self));
+            return list;
+        },
+        "Of the elements of the barrier that were touched, in their order.");
     history.def(
         "unit",
         [](const History& self, std::size_t index) -> const UnitHistory& { return self.units.at(index); },
         py::return_value_policy::reference_internal, py::arg("index"), "Of one unit of the vehicle.");
+    history.def(
+        "joint",
+        [](const History& self, std::size_t index) -> const JointHistory& { return self.joints.at(index); },
+        py::return_value_policy::reference_internal, py::arg("index"), "Of one joint of the vehicle.");
 }
 
 }  // namespace birm3d::bindings

@@ -67,13 +67,14 @@ void register_simulation(py::module_& m) {
     py::class_<Simulation>(m, "Simulation", "A run of one scene (SI, rad).")
         .def(py::init([](std::shared_ptr<Vehicle> vehicle,
                          const std::vector<std::shared_ptr<Barrier>>& barriers, double speed, double angle,
-                         double offset, double standoff, const Settings& settings,
+                         double offset, double standoff, double yaw, double roll, const Settings& settings,
                          std::optional<double> duration) {
-                 return Simulation(Scene(std::move(vehicle), only(barriers), {speed, angle, offset, standoff},
-                                         settings, duration));
+                 return Simulation(Scene(std::move(vehicle), only(barriers),
+                                         {speed, angle, offset, standoff, yaw, roll}, settings, duration));
              }),
              py::kw_only(), py::arg("vehicle"), py::arg("barriers"), py::arg("speed"), py::arg("angle"),
-             py::arg("offset"), py::arg("standoff"), py::arg("settings"), py::arg("duration"))
+             py::arg("offset"), py::arg("standoff"), py::arg("yaw"), py::arg("roll"), py::arg("settings"),
+             py::arg("duration"))
         .def("step", &Simulation::step, py::call_guard<py::gil_scoped_release>(),
              "One accepted step; False when the run is over.")
         .def(
@@ -97,6 +98,10 @@ void register_simulation(py::module_& m) {
             "time", [](const Simulation& s) { return s.state().time; }, "s")
         .def_property_readonly("end_reason", &Simulation::end_reason)
         .def_property_readonly("touched", [](const Simulation& s) { return s.state().touched; })
+        .def_property_readonly("deepest_node", &Simulation::deepest_node,
+                               "m: depth of the deepest shell node inside the barrier now, 0 if none is")
+        .def_property_readonly("deepest_anchor", &Simulation::deepest_anchor,
+                               "m: depth of the deepest truss anchor inside the barrier now, 0 if none is")
         .def_property_readonly("statistics", [](const Simulation& s) { return s.state().statistics; })
         .def(
             "velocity",
@@ -104,6 +109,14 @@ void register_simulation(py::module_& m) {
                 return copy(s.state().units.at(unit).body.velocity);
             },
             py::arg("unit") = 0, "(3,) m/s, world, now")
+        .def(
+            "pose",
+            [](const Simulation& s, std::size_t unit) {
+                const BodyState& body = s.state().units.at(unit).body;
+                return std::pair(copy(body.position), copy(Mat3(body.orientation.toRotationMatrix())));
+            },
+            py::arg("unit") = 0,
+            "Now: mass centre, (3,) m, world; rotation from body axes to the world's, (3, 3)")
         .def("nodes", &nodes_in_input_order, py::arg("unit") = 0, "(n, 3) m: shell nodes now, body axes")
         .def(
             "deflection",

@@ -17,36 +17,57 @@ void register_vehicle(py::module_& m) {
         .def(py::init([](double mass, const InputArray& inertia, const InputArray& nodes,
                          const InputArray& anchors, const std::vector<TrussCurve>& curves,
                          const std::vector<std::size_t>& curve_of, const InputArray& scale,
-                         const InputArray& wheels, double mass_center_height, double rate_sensitivity) {
+                         const InputArray& wheels, double mass_center_height, double rate_sensitivity,
+                         double dent_slope, const InputArray& offset) {
                  TrussInput trusses{points(nodes, "nodes"), points(anchors, "anchors"), curves, curve_of,
                                     numbers(scale, "scale")};
                  trusses.rate_sensitivity = rate_sensitivity;
+                 trusses.dent_slope = dent_slope;
                  if (wheels.ndim() != 2 || wheels.shape(1) != 4)
                      refuse("wheels shape", "(w, 4)", shape_text(wheels));
                  std::vector<Wheel> discs;
                  for (py::ssize_t i = 0; i < wheels.shape(0); ++i)
                      discs.push_back({{wheels.at(i, 0), wheels.at(i, 1), wheels.at(i, 2)}, wheels.at(i, 3)});
                  const RigidBody body(mass, matrix(inertia, "inertia"));
-                 return Unit(body, trusses, std::move(discs), mass_center_height);
+                 return Unit(body, trusses, std::move(discs), mass_center_height, vector(offset, "offset"));
              }),
              py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("nodes"), py::arg("anchors"),
              py::arg("curves"), py::arg("curve_of"), py::arg("scale"), py::arg("wheels"),
-             py::arg("mass_center_height"), py::arg("rate_sensitivity") = 0.0,
+             py::arg("mass_center_height"), py::arg("rate_sensitivity"), py::arg("dent_slope"),
+             py::arg("offset"),
              "mass kg; inertia (3, 3) kg m^2; nodes, anchors (n, 3) m; curves for the trusses with curve_of "
              "(n,) and scale (n,);\n"
              "wheels (w, 4): centre and radius, m; mass_center_height m above the ground;\n"
-             "rate_sensitivity s/m.")
+             "rate_sensitivity s/m; dent_slope: of the skin beside a dent, 0: none; offset (3,) m of the "
+             "mass centre from the vehicle's reference point along "
+             "the ground.")
         .def_property_readonly("n_trusses", [](const Unit& unit) { return unit.trusses.count; })
         .def_property_readonly(
             "input_index", [](const Unit& unit) { return unit.trusses.input_index; },
             "The caller's number of each truss in the order of the state's columns.");
-    py::class_<Vehicle, std::shared_ptr<Vehicle>>(m, "Vehicle", "One or more units. Immutable.")
-        .def(py::init([](std::vector<Unit> units) {
-                 auto vehicle = std::make_shared<Vehicle>();
-                 vehicle->units = std::move(units);
-                 return vehicle;
+    py::enum_<JointKind>(m, "JointKind")
+        .value("fifth_wheel", JointKind::fifth_wheel)
+        .value("welded", JointKind::welded);
+    py::class_<Joint>(m, "Joint", "Two units joined at a point. Immutable.")
+        .def(py::init([](JointKind kind, std::size_t leading, std::size_t trailing,
+                         const InputArray& place_on_leading, const InputArray& place_on_trailing,
+                         double roll_limit) {
+                 return Joint{kind,
+                              leading,
+                              trailing,
+                              vector(place_on_leading, "place_on_leading"),
+                              vector(place_on_trailing, "place_on_trailing"),
+                              roll_limit};
              }),
-             py::arg("units"));
+             py::kw_only(), py::arg("kind"), py::arg("leading"), py::arg("trailing"),
+             py::arg("place_on_leading"), py::arg("place_on_trailing"), py::arg("roll_limit"),
+             "leading, trailing: numbers of the units; places (3,) m, body axes of each; roll_limit rad.");
+    py::class_<Vehicle, std::shared_ptr<Vehicle>>(m, "Vehicle",
+                                                  "One or more units and the joints between them. Immutable.")
+        .def(py::init([](std::vector<Unit> units, std::vector<Joint> joints) {
+                 return std::make_shared<Vehicle>(joined(std::move(units), std::move(joints)));
+             }),
+             py::arg("units"), py::arg("joints"));
 }
 
 }  // namespace birm3d::bindings

@@ -41,7 +41,7 @@ int main() {
     settings.gravity = 0.0;
     settings.ground = false;
     Simulation simulation(Scene(std::make_shared<const Vehicle>(std::move(block)),
-                                std::make_shared<const Barrier>(0.0, Vec3::Zero(), 0.0),
+                                std::make_shared<const Barrier>(Barrier::wall(0.0, Vec3::Zero(), 0.0)),
                                 Approach{speed, 0.5 * std::numbers::pi, 0.0, 0.0}, settings, {}));
     simulation.run([] {});  // the function is called now and then: a place to look for an interruption
 

@@ -9,15 +9,18 @@ from __future__ import annotations
 from . import calibration, scenes, units
 from ._core import UnstableError
 from ._version import __version__
+from .articulated import ArticulatedVehicle, Joint
 from .barrier import Barrier
 from .calibration import calibrate
 from .channel import Channel
 from .channel_checks import check_channel
 from .comparison import CurveComparison, compare_curves
+from .element_loads import ElementLoad
 from .fragility import fragility
 from .impact_point import critical_impact_point
 from .monte_carlo import monte_carlo
 from .result import Result
+from .result_file import load
 from .runs import StudyInterrupted, StudyStoppedError
 from .settings import Settings
 from .simulation import Scene, Simulation
@@ -28,9 +31,12 @@ from .test_data import read_csv_channels, read_iso_mme, read_nhtsa
 from .vehicle import Vehicle, Zone
 
 __all__ = [
+    "ArticulatedVehicle",
     "Barrier",
     "Channel",
     "CurveComparison",
+    "ElementLoad",
+    "Joint",
     "Result",
     "Scene",
     "Settings",
@@ -48,6 +54,7 @@ __all__ = [
     "compare_curves",
     "critical_impact_point",
     "fragility",
+    "load",
     "monte_carlo",
     "read_csv_channels",
     "read_iso_mme",

@@ -6,19 +6,14 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Barrier', 'ContactModel', 'EndReason', 'History', 'MassProperties', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tumble']
+__all__: list[str] = ['Barrier', 'ContactModel', 'Element', 'EndReason', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tumble']
 class Barrier:
     """
-    A flat rigid wall or a pole, fixed to the ground. Immutable.
+    Elements that stand on the ground. Immutable.
     """
-    @staticmethod
-    def pole(*, friction: typing.SupportsFloat | typing.SupportsIndex, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, radius: typing.SupportsFloat | typing.SupportsIndex) -> Barrier:
+    def __init__(self, *, elements: collections.abc.Sequence[Element], friction: typing.SupportsFloat | typing.SupportsIndex, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> None:
         """
-        An upright cylinder; origin (3,) m at the foot of its axis, radius m.
-        """
-    def __init__(self, *, friction: typing.SupportsFloat | typing.SupportsIndex, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, width: typing.SupportsFloat | typing.SupportsIndex, height: typing.SupportsFloat | typing.SupportsIndex) -> None:
-        """
-        friction: Coulomb coefficient; origin (3,) m on the face; heading of the barrier's line about z, rad.
+        friction: Coulomb coefficient; origin (3,) m on the barrier's line; heading of it about z, rad.
         """
     @property
     def normal(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -62,6 +57,30 @@ class ContactModel:
     @property
     def value(self) -> int:
         ...
+class Element:
+    """
+    A piece of a barrier: own axes at position, turned by heading (rad).
+    """
+    @staticmethod
+    def mesh(*, vertices: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], faces: collections.abc.Sequence[typing.Annotated[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(3)"]], position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
+        """
+        vertices (n, 3) m, faces (m, 3), counter-clockwise seen from outside.
+        """
+    @staticmethod
+    def plane(*, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
+        """
+        A flat face without end; at heading 0 it looks to -x.
+        """
+    @staticmethod
+    def post(*, radius: typing.SupportsFloat | typing.SupportsIndex, height: typing.SupportsFloat | typing.SupportsIndex, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
+        """
+        Upright and round, foot of the axis at position; m.
+        """
+    @staticmethod
+    def prism(*, profile: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], y_low: typing.SupportsFloat | typing.SupportsIndex, y_high: typing.SupportsFloat | typing.SupportsIndex, covered_edges: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], covered_low_end: bool, covered_high_end: bool, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
+        """
+        profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered faces are no surface.
+        """
 class EndReason:
     """
     Members:
@@ -112,6 +131,10 @@ class History:
     """
     Evenly spaced output of a run; read-only views.
     """
+    def joint(self, index: typing.SupportsInt | typing.SupportsIndex) -> JointHistory:
+        """
+        Of one joint of the vehicle.
+        """
     def unit(self, index: typing.SupportsInt | typing.SupportsIndex) -> UnitHistory:
         """
         Of one unit of the vehicle.
@@ -127,7 +150,22 @@ class History:
         (n,) J
         """
     @property
+    def elements(self) -> list[ObstacleHistory]:
+        """
+        Of the elements of the barrier that were touched, in their order.
+        """
+    @property
+    def ground_friction(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) J
+        """
+    @property
     def impacts(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) J
+        """
+    @property
+    def joint_work(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) J
         """
@@ -161,6 +199,70 @@ class History:
         """
         (n,) J
         """
+class Joint:
+    """
+    Two units joined at a point. Immutable.
+    """
+    def __init__(self, *, kind: JointKind, leading: typing.SupportsInt | typing.SupportsIndex, trailing: typing.SupportsInt | typing.SupportsIndex, place_on_leading: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], place_on_trailing: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], roll_limit: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        """
+        leading, trailing: numbers of the units; places (3,) m, body axes of each; roll_limit rad.
+        """
+class JointHistory:
+    """
+    What a joint carries and how it stands.
+    """
+    @property
+    def force(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) N on the leading unit, interval means, world
+        """
+    @property
+    def moment(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) N m on the leading unit about the joint, world
+        """
+    @property
+    def roll_pitch_yaw(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) rad, of the trailing unit from the leading one
+        """
+class JointKind:
+    """
+    Members:
+    
+      fifth_wheel
+    
+      welded
+    """
+    __members__: typing.ClassVar[dict[str, JointKind]]  # value = {'fifth_wheel': <JointKind.fifth_wheel: 0>, 'welded': <JointKind.welded: 1>}
+    fifth_wheel: typing.ClassVar[JointKind]  # value = <JointKind.fifth_wheel: 0>
+    welded: typing.ClassVar[JointKind]  # value = <JointKind.welded: 1>
+    def __eq__(self, other: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> int:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __index__(self) -> int:
+        ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None:
+        ...
+    def __int__(self) -> int:
+        ...
+    def __ne__(self, other: typing.Any) -> bool:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None:
+        ...
+    def __str__(self) -> str:
+        ...
+    @property
+    def name(self) -> str:
+        ...
+    @property
+    def value(self) -> int:
+        ...
 class MassProperties:
     """
     Mass, mass centre and inertia about it (paper Eq. 2-7).
@@ -180,17 +282,36 @@ class MassProperties:
         """
         kg
         """
+class ObstacleHistory:
+    """
+    What an element of the barrier feels.
+    """
+    @property
+    def element(self) -> int:
+        """
+        place among the barrier's elements
+        """
+    @property
+    def force(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) N, interval means, world
+        """
+    @property
+    def moment(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) N m about the element's foot, interval means, world
+        """
 class Settings:
     """
     How a scene is computed (SI). Immutable.
     """
-    def __init__(self, *, time_step: typing.SupportsFloat | typing.SupportsIndex | None, tolerance: typing.SupportsFloat | typing.SupportsIndex, output_interval: typing.SupportsFloat | typing.SupportsIndex, gravity: typing.SupportsFloat | typing.SupportsIndex, ground: bool, mu_tire: typing.SupportsFloat | typing.SupportsIndex, cornering_stiffness: typing.SupportsFloat | typing.SupportsIndex, restitution: typing.SupportsFloat | typing.SupportsIndex, contact_model: ContactModel, tire_model: TireModel) -> None:
+    def __init__(self, *, time_step: typing.SupportsFloat | typing.SupportsIndex | None, tolerance: typing.SupportsFloat | typing.SupportsIndex, output_interval: typing.SupportsFloat | typing.SupportsIndex, gravity: typing.SupportsFloat | typing.SupportsIndex, ground: bool, mu_tire: typing.SupportsFloat | typing.SupportsIndex, mu_body: typing.SupportsFloat | typing.SupportsIndex, braking: typing.SupportsFloat | typing.SupportsIndex, cornering_stiffness: typing.SupportsFloat | typing.SupportsIndex, restitution: typing.SupportsFloat | typing.SupportsIndex, contact_model: ContactModel, tire_model: TireModel) -> None:
         ...
 class Simulation:
     """
     A run of one scene (SI, rad).
     """
-    def __init__(self, *, vehicle: Vehicle, barriers: collections.abc.Sequence[Barrier], speed: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, offset: typing.SupportsFloat | typing.SupportsIndex, standoff: typing.SupportsFloat | typing.SupportsIndex, settings: Settings, duration: typing.SupportsFloat | typing.SupportsIndex | None) -> None:
+    def __init__(self, *, vehicle: Vehicle, barriers: collections.abc.Sequence[Barrier], speed: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, offset: typing.SupportsFloat | typing.SupportsIndex, standoff: typing.SupportsFloat | typing.SupportsIndex, yaw: typing.SupportsFloat | typing.SupportsIndex, roll: typing.SupportsFloat | typing.SupportsIndex, settings: Settings, duration: typing.SupportsFloat | typing.SupportsIndex | None) -> None:
         ...
     def deflection(self, unit: typing.SupportsInt | typing.SupportsIndex = 0) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -207,6 +328,10 @@ class Simulation:
     def peak_deflection(self, unit: typing.SupportsInt | typing.SupportsIndex = 0) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) m: greatest truss deflections so far
+        """
+    def pose(self, unit: typing.SupportsInt | typing.SupportsIndex = 0) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Now: mass centre, (3,) m, world; rotation from body axes to the world's, (3, 3)
         """
     def reset(self) -> None:
         ...
@@ -229,6 +354,16 @@ class Simulation:
     def velocity(self, unit: typing.SupportsInt | typing.SupportsIndex = 0) -> numpy.typing.NDArray[numpy.float64]:
         """
         (3,) m/s, world, now
+        """
+    @property
+    def deepest_anchor(self) -> float:
+        """
+        m: depth of the deepest truss anchor inside the barrier now, 0 if none is
+        """
+    @property
+    def deepest_node(self) -> float:
+        """
+        m: depth of the deepest shell node inside the barrier now, 0 if none is
         """
     @property
     def end_reason(self) -> EndReason:
@@ -350,11 +485,11 @@ class Unit:
     """
     A rigid body with its crushable skin and wheels; body axes r, s, t, origin at the mass centre.
     """
-    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> None:
+    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex, dent_slope: typing.SupportsFloat | typing.SupportsIndex, offset: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
         """
         mass kg; inertia (3, 3) kg m^2; nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,);
         wheels (w, 4): centre and radius, m; mass_center_height m above the ground;
-        rate_sensitivity s/m.
+        rate_sensitivity s/m; dent_slope: of the skin beside a dent, 0: none; offset (3,) m of the mass centre from the vehicle's reference point along the ground.
         """
     @property
     def input_index(self) -> list[int]:
@@ -389,6 +524,16 @@ class UnitHistory:
         (n,) N, interval means
         """
     @property
+    def ground_force(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) N, of the ground on the skin, interval means, world
+        """
+    @property
+    def joint_force(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) N, of all joints, interval means, world
+        """
+    @property
     def position(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n, 3) m, world
@@ -417,9 +562,9 @@ class UnstableError(ValueError):
     pass
 class Vehicle:
     """
-    One or more units. Immutable.
+    One or more units and the joints between them. Immutable.
     """
-    def __init__(self, units: collections.abc.Sequence[Unit]) -> None:
+    def __init__(self, units: collections.abc.Sequence[Unit], joints: collections.abc.Sequence[Joint]) -> None:
         ...
 def collide(mass_a: typing.SupportsFloat | typing.SupportsIndex, inertia_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_b: typing.SupportsFloat | typing.SupportsIndex, inertia_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arm_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arm_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], restitution: typing.SupportsFloat | typing.SupportsIndex) -> tuple[float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """

@@ -4,80 +4,103 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _core
 
+if TYPE_CHECKING:
+    from .barrier_kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
+
 __all__ = ["Barrier"]
+
+Point = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class Barrier:
-    """A barrier fixed to the ground. Make one with :meth:`rigid_wall` or :meth:`pole`.
+    """A barrier that stands on the ground; immutable. Make one with :meth:`rigid_wall`, :meth:`bollards`, ...
 
-    Its line runs along +y at heading 0 and its traffic face looks to -x; the vehicle comes from there.
+    Its line runs along +y at heading 0 and its traffic face looks to -x; the vehicle comes from there. It has
+    one or more elements (a post, a segment of a wall): loads are reported element by element, see
+    :attr:`birm3d.Result.element_loads`.
 
     Parameters
     ----------
     friction
-        Coulomb coefficient between vehicle and barrier.
+        Coulomb coefficient between vehicle and barrier; 0.15 to 0.20 for steel on concrete (paper 5.4).
     origin
-        A point of the foot of the traffic face, of a pole the foot of its axis, world axes [m], shape (3,).
+        A point of the barrier's line, at the foot of its traffic face, of posts of their axes; world axes,
+        shape (3,) [m].
     heading
         Turn of the barrier's line about the vertical [deg].
-    width, height
-        Of the wall, its middle at the origin [m]; may be infinite.
-    diameter
-        Of a pole [m]; ``None``: a flat wall.
     """
 
     friction: float = 0.2
-    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    origin: Point = (0.0, 0.0, 0.0)
     heading: float = 0.0
-    width: float = math.inf
-    height: float = math.inf
-    diameter: float | None = None
+
+    _counts: ClassVar[tuple[str, ...]] = ()  # fields that are whole numbers
 
     def __post_init__(self) -> None:
+        if np.shape(self.origin) != (3,):
+            raise ValueError(f"origin must have shape (3,), got {np.shape(self.origin)}")
+        x, y, z = (float(value) for value in self.origin)
+        object.__setattr__(self, "origin", (x, y, z))
+        for name in self._counts:
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 1 and int(value) == value):
+                raise ValueError(f"{name} must be a whole number >= 1, got {value}")
+            object.__setattr__(self, name, int(value))  # a sweep gives 3.0
+        if not math.isfinite(self.heading):
+            raise ValueError(f"heading must be finite, got {self.heading}")
         _ = self.core
+
+    # ---- making barriers ----------------------------------------------------------------------------------
 
     @staticmethod
     def rigid_wall(
         *,
         width: float | None = None,
         height: float | None = None,
+        thickness: float = 0.5,
+        segments: int = 1,
         friction: float = 0.2,
         origin: Sequence[float] = (0.0, 0.0, 0.0),
         heading: float = 0.0,
-    ) -> Barrier:
-        """Return a flat, rigid, vertical wall.
+    ) -> RigidWall:
+        """Return a flat, rigid, vertical wall; see :class:`birm3d.barrier_kinds.RigidWall`.
 
         Parameters
         ----------
         width, height
-            Of the wall, its middle at the origin [m]; ``None``: without end. The ends and the top are not
-            modelled: a vehicle that meets the wall's plane beyond them is refused while running.
-        friction
-            Coulomb coefficient vehicle-wall, 0.15 to 0.20 for steel on concrete (paper 5.4).
-        origin
-            A point of the foot of the face, world axes [m], shape (3,).
-        heading
-            Turn of the wall about the vertical [deg]; at 0 the face looks to -x.
+            Of the wall, its middle at the origin [m]; ``None``: without end.
+        thickness
+            Of a wall that has an end or a top [m].
+        segments
+            Elements of equal width that a wall of finite width is made of.
+        friction, origin, heading
+            See :class:`Barrier`.
 
         Raises
         ------
         ValueError
-            If a number is not finite, friction is negative, or width or height is not above 0.
+            If a number is out of range; the message names argument, limit and value.
         """
-        return Barrier(
-            friction=float(friction),
-            origin=_point(origin),
-            heading=float(heading),
+        from .barrier_kinds import RigidWall
+
+        return RigidWall(
+            float(friction),
+            _point(origin),
+            float(heading),
             width=math.inf if width is None else float(width),
             height=math.inf if height is None else float(height),
+            thickness=float(thickness),
+            segments=segments,
         )
 
     @staticmethod
@@ -87,57 +110,197 @@ class Barrier:
         friction: float = 0.2,
         origin: Sequence[float] = (0.0, 0.0, 0.0),
         heading: float = 0.0,
-    ) -> Barrier:
+    ) -> Pole:
         """Return one rigid, upright cylinder, taller than any vehicle.
 
         Parameters
         ----------
         diameter
             [m], > 0.
-        friction
-            Coulomb coefficient vehicle-pole.
-        origin
-            Foot of the axis, world axes [m], shape (3,); the barrier's line runs through it.
-        heading
-            Turn of the barrier's line about the vertical [deg], from which impact angles are counted.
+        friction, origin, heading
+            See :class:`Barrier`.
 
         Raises
         ------
         ValueError
-            If a number is not finite, friction is negative, or the diameter is not above 0.
+            If a number is out of range; the message names argument, limit and value.
         """
-        return Barrier(
-            friction=float(friction), origin=_point(origin), heading=float(heading), diameter=float(diameter)
+        from .barrier_kinds import Pole
+
+        return Pole(float(friction), _point(origin), float(heading), diameter=float(diameter))
+
+    @staticmethod
+    def bollards(
+        *,
+        count: int = 5,
+        diameter: float = 0.32,
+        height: float = 1.0,
+        spacing: float = 1.2,
+        rows: int = 1,
+        row_spacing: float = 1.2,
+        row_offset: float = 0.0,
+        friction: float = 0.2,
+        origin: Sequence[float] = (0.0, 0.0, 0.0),
+        heading: float = 0.0,
+    ) -> Bollards:
+        """Return rigid bollards in one or more rows along the barrier's line.
+
+        Parameters
+        ----------
+        count
+            In each row; the row's middle is at the origin.
+        diameter, height
+            [m], > 0.
+        spacing
+            Of neighbours in a row, centre to centre [m]; more than the diameter.
+        rows, row_spacing
+            Further rows stand behind the first, this far from axis to axis [m]; more than the diameter.
+        row_offset
+            By which each row is shifted along the line from the one before it [m].
+        friction, origin, heading
+            See :class:`Barrier`.
+
+        Raises
+        ------
+        ValueError
+            If a number is out of range; the message names argument, limit and value.
+        """
+        from .barrier_kinds import Bollards
+
+        return Bollards(
+            float(friction),
+            _point(origin),
+            float(heading),
+            count=count,
+            diameter=float(diameter),
+            height=float(height),
+            spacing=float(spacing),
+            rows=rows,
+            row_spacing=float(row_spacing),
+            row_offset=float(row_offset),
         )
+
+    @staticmethod
+    def jersey(
+        *,
+        profile: str | Sequence[Sequence[float]] = "new_jersey",
+        height: float | None = None,
+        length: float | None = None,
+        segments: int = 1,
+        friction: float = 0.2,
+        origin: Sequence[float] = (0.0, 0.0, 0.0),
+        heading: float = 0.0,
+    ) -> Jersey:
+        """Return a concrete barrier with sloped faces; see :class:`birm3d.barrier_kinds.Jersey`.
+
+        Parameters
+        ----------
+        profile
+            ``"new_jersey"``, ``"f_shape"``, ``"single_slope"``, or points (half width, height) [m] from the
+            foot to the top, shape (n, 2).
+        height
+            The named profiles' upper face is cut or drawn out to it [m]; ``None``: 0.81 m (32 in), of the
+            single slope 1.07 m (42 in).
+        length
+            Along the line, its middle at the origin [m]; ``None``: without end.
+        segments
+            Elements of equal length that a barrier of finite length is made of.
+        friction, origin, heading
+            See :class:`Barrier`.
+
+        Raises
+        ------
+        ValueError
+            If a number is out of range; the message names argument, limit and value.
+        """
+        from .barrier_kinds import Jersey
+
+        points: Any = profile
+        if not isinstance(profile, str):
+            if np.ndim(profile) != 2 or np.shape(profile)[1] != 2:
+                raise ValueError(f"profile must have shape (n, 2), got {np.shape(profile)}")
+            points = tuple((float(x), float(z)) for x, z in profile)
+        return Jersey(
+            float(friction),
+            _point(origin),
+            float(heading),
+            profile=points,
+            height=None if height is None else float(height),
+            length=math.inf if length is None else float(length),
+            segments=segments,
+        )
+
+    @staticmethod
+    def from_mesh(
+        vertices: npt.ArrayLike,
+        faces: npt.ArrayLike,
+        *,
+        friction: float = 0.2,
+        origin: Sequence[float] = (0.0, 0.0, 0.0),
+        heading: float = 0.0,
+    ) -> MeshBarrier:
+        """Return a barrier of triangles, met by the paper's vertex-to-face algorithm (Eq. 8-15).
+
+        Parameters
+        ----------
+        vertices
+            Shape (n, 3), in axes that stand at ``origin``, turned by ``heading``, z up [m].
+        faces
+            Shape (m, 3), indices into the vertices, counter-clockwise seen from outside.
+        friction, origin, heading
+            See :class:`Barrier`.
+
+        Raises
+        ------
+        ValueError
+            If shapes or indices are wrong, the triangles are no surface, or a closed surface is inside out;
+            the message names the culprit.
+        """
+        from .barrier_kinds import MeshBarrier
+
+        return MeshBarrier(
+            float(friction),
+            _point(origin),
+            float(heading),
+            vertices=np.array(vertices, float),
+            faces=np.array(faces),
+        )
+
+    # ---- for the core -------------------------------------------------------------------------------------
+
+    def elements(self) -> list[_core.Element]:
+        """Return the elements for the core; a kind of barrier says which."""
+        raise TypeError("a Barrier is made with rigid_wall, pole, bollards, jersey or from_mesh")
+
+    @property
+    def element_names(self) -> tuple[str, ...]:
+        """What the elements are called in tables and plots, in their order."""
+        return tuple(f"element {i + 1}" for i in range(len(self.elements())))
 
     @cached_property
     def core(self) -> _core.Barrier:
         """The same barrier for the core."""
-        if self.diameter is not None:
-            if not (math.isfinite(self.diameter) and self.diameter > 0.0):
-                raise ValueError(f"diameter must be finite and > 0, got {self.diameter}")
-            for name in ("width", "height"):
-                if getattr(self, name) != math.inf:
-                    raise ValueError(f"{name} must be inf for a pole, got {getattr(self, name)}")
-            return _core.Barrier.pole(
-                friction=self.friction,
-                origin=np.asarray(self.origin, float),
-                heading=math.radians(self.heading),
-                radius=0.5 * self.diameter,
-            )
         return _core.Barrier(
+            elements=self.elements(),
             friction=self.friction,
             origin=np.asarray(self.origin, float),
             heading=math.radians(self.heading),
-            width=self.width,
-            height=self.height,
         )
 
+    def place(self, across: float, along: float) -> npt.NDArray[np.float64]:
+        """Return a point at the foot of the barrier, world axes, shape (3,) [m].
+
+        ``across`` is counted from the line, away from the traffic, ``along`` from the origin.
+        """
+        angle = math.radians(self.heading)
+        turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+        return np.asarray(np.asarray(self.origin) + np.array([*(turn @ [across, along]), 0.0]))
+
     def __getstate__(self) -> dict[str, object]:
-        return {name: value for name, value in self.__dict__.items() if name != "core"}
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
-def _point(origin: Sequence[float]) -> tuple[float, float, float]:
+def _point(origin: Sequence[float]) -> Point:
     if np.shape(origin) != (3,):
         raise ValueError(f"origin must have shape (3,), got {np.shape(origin)}")
     x, y, z = (float(value) for value in origin)

@@ -14,11 +14,15 @@ from .cli_calibrate import calibrate_file
 from .cli_scene import scene_options, simulation_of
 from .cli_sweep import sweep
 from .cli_table import print_table
+from .outcome import ELEMENT_COLUMNS, element_rows, elements_in_si, outcome_rows
 
 if TYPE_CHECKING:
     from .result import Result
 
 __all__ = ["main"]
+
+
+_FILE = click.Path(dir_okay=False, path_type=Path)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -32,22 +36,22 @@ _cli.add_command(calibrate_file)
 
 @_cli.command()
 @scene_options
-@click.option("--json", "as_json", is_flag=True, help="Metrics as JSON on stdout.")
+@click.option("--json", "as_json", is_flag=True, help="Metrics and loads on elements as JSON on stdout.")
 @click.option("--report", "with_report", is_flag=True, help="Also what was computed and what was left out.")
-@click.option(
-    "--plot",
-    type=click.Path(dir_okay=False, path_type=Path),
-    help="Write figures to this file (.png, .pdf, .svg).",
-)
-@click.option(
-    "--csv", "csv_path", type=click.Path(dir_okay=False, path_type=Path), help="Write histories to this file."
-)
+@click.option("--plot", type=_FILE, help="Write figures to this file (.png, .pdf, .svg).")
+@click.option("--csv", "csv_path", type=_FILE, help="Write histories to this file.")
+@click.option("--save", type=_FILE, help="Write the result to this file; birm3d.load() reads it.")
+@click.option("--html", type=_FILE, help="Write an interactive page that needs no network to this file.")
+@click.option("--movie", type=_FILE, help="Write a movie to this file (.mp4, .gif, ...).")
 def run(
     scene: Path | None,
     as_json: bool,
     with_report: bool,
     plot: Path | None,
     csv_path: Path | None,
+    save: Path | None,
+    html: Path | None,
+    movie: Path | None,
     **options: Any,
 ) -> None:
     """Run one crash: a SCENE file, or the options --vehicle and --speed."""
@@ -65,12 +69,22 @@ def run(
     if plot is not None:
         result.plot().savefig(plot, dpi=150)
         click.echo(f"figures: {plot}", err=True)
+    if save is not None:
+        result.save(save)
+        click.echo(f"result: {save}", err=True)
+    if html is not None:
+        result.write_html(html)
+        click.echo(f"page: {html}", err=True)
+    if movie is not None:
+        result.animate(movie)
+        click.echo(f"movie: {movie}", err=True)
 
 
 @_cli.command()
 @click.option("--json", "as_json", is_flag=True, help="As JSON on stdout.")
 def vehicles(as_json: bool) -> None:
     """List the vehicles that come with the package."""
+    from rich.markup import escape
     from rich.table import Table
 
     from .vehicle import Vehicle
@@ -92,7 +106,10 @@ def vehicles(as_json: bool) -> None:
         return
     table = Table(
         "vehicle",
-        *(f"{name}" for name in ("mass [kg]", "CG height [m]", "Ixx, Iyy, Izz [kg m²]", "elements", "zones")),
+        *(
+            escape(name)
+            for name in ("mass [kg]", "CG height [m]", "Ixx, Iyy, Izz [kg m²]", "elements", "zones")
+        ),
     )
     for name, v in rows.items():
         inertia = ", ".join(f"{value:,.0f}" for value in v.inertia.diagonal())
@@ -111,34 +128,15 @@ def _as_json(result: Result) -> dict[str, Any]:
         "end_reason": result.end_reason,
         "state_hash": f"{result.state_hash:016x}",
         "metrics": dict(result.metrics),
+        "elements": elements_in_si(result),
     }
 
 
 _cli.add_command(sweep)
 
 
-_ROWS = (
-    ("dynamic_crush", "dynamic crush (greatest truss shortening)", "m", 1.0, ".3f"),
-    ("residual_crush", "residual crush", "m", 1.0, ".3f"),
-    ("max_displacement", "travel of the mass centre towards the barrier", "m", 1.0, ".3f"),
-    ("vehicle_penetration", "penetration past the barrier's face", "m", 1.0, ".3f"),
-    ("time_of_zero_velocity", "time of zero normal velocity", "ms", 1e-3, ".1f"),
-    ("peak_normal_force_cfc60", "peak normal force, CFC 60", "kN", 1e3, ".0f"),
-    ("peak_force_50ms", "peak 50-ms mean of the normal force", "kN", 1e3, ".0f"),
-    ("peak_deceleration_cfc60", "peak deceleration along r, CFC 60", "g", units.g, ".1f"),
-    ("delta_v", "change of velocity", "m/s", 1.0, ".2f"),
-    ("restitution", "restitution along the normal", "", 1.0, ".2f"),
-    ("exit_speed", "exit speed", "m/s", 1.0, ".2f"),
-    ("exit_angle", "exit angle from the barrier's line", "deg", 1.0, ".1f"),
-    ("max_roll", "greatest roll", "deg", 1.0, ".1f"),
-    ("max_pitch", "greatest pitch", "deg", 1.0, ".1f"),
-    ("max_yaw", "greatest yaw", "deg", 1.0, ".1f"),
-    ("energy_residual", "energy residual / initial kinetic energy", "", 1.0, ".1e"),
-    ("momentum_residual", "momentum residual / greatest force", "", 1.0, ".1e"),
-)
-
-
 def _print_outcome(result: Result) -> None:
+    from rich.markup import escape
     from rich.table import Table
 
     scene = result.scene
@@ -151,10 +149,18 @@ def _print_outcome(result: Result) -> None:
         caption=f"{result.end_reason} after {result.time[-1] * 1e3:.0f} ms; {result.statistics.steps} steps "
         f"in {result.run_time * 1e3:.1f} ms of computing",
     )
-    for name, label, unit, size, form in _ROWS:
-        if name in result.metrics:
-            table.add_row(label, format(result.metrics[name] / size, form), unit)
+    for row in outcome_rows(result):
+        table.add_row(*row)
     print_table(table)
+    elements = element_rows(result)
+    if scene.barrier is None or len(scene.barrier.element_names) < 2 or not elements:
+        return  # the loads on the only element are in the first table
+    loads = Table(
+        *(escape(name) for name in ELEMENT_COLUMNS), title="elements of the barrier that were touched"
+    )
+    for numbers in elements:
+        loads.add_row(*numbers)
+    print_table(loads)
 
 
 def main() -> None:
@@ -174,6 +180,6 @@ def main() -> None:
     except StudyStoppedError as error:
         click.echo(f"birm3d: {error}", err=True)
         sys.exit(1)
-    except (ValueError, UnstableError) as error:
+    except (ValueError, UnstableError, ImportError) as error:  # the last: an extra is missing
         click.echo(f"birm3d: {error}", err=True)
         sys.exit(2)

@@ -34,6 +34,14 @@ class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]
             self.fail(str(error), param, ctx)
 
 
+# Kind of barrier -> the options that give its sizes.
+_SIZES = {
+    "rigid_wall": ("width", "height", "thickness", "segments"),
+    "pole": ("diameter",),
+    "bollards": ("count", "diameter", "height", "spacing", "rows", "row_spacing", "row_offset"),
+    "jersey": ("profile", "height", "length", "segments"),
+}
+
 _OPTIONS = (
     click.argument("scene", required=False, type=click.Path(exists=True, dir_okay=False, path_type=Path)),
     click.option("--vehicle", help="Preset (see `birm3d vehicles`) or vehicle file (.toml)."),
@@ -43,20 +51,45 @@ _OPTIONS = (
     ),
     click.option(
         "--barrier",
-        type=click.Choice(["rigid_wall", "pole", "none"]),
+        type=click.Choice([*_SIZES, "none"]),
         default="rigid_wall",
         show_default=True,
     ),
+    click.option("--width", type=Quantity("length"), help="Of the wall.  [default: without end]"),
+    click.option("--height", type=Quantity("length"), help="Of wall, bollards or Jersey barrier."),
+    click.option("--thickness", type=Quantity("length"), help="Of a wall with an end or a top."),
+    click.option("--diameter", type=Quantity("length"), help="Of pole or bollards."),
+    click.option("--count", type=int, help="Bollards in a row."),
+    click.option("--spacing", type=Quantity("length"), help="Of bollards, centre to centre."),
+    click.option("--rows", type=int, help="Of bollards."),
+    click.option("--row-spacing", type=Quantity("length"), help="Of rows of bollards, axis to axis."),
+    click.option("--row-offset", type=Quantity("length"), help="Shift of each row from the one before it."),
     click.option(
-        "--diameter", type=Quantity("length"), default=0.3, show_default=True, help="Of the pole, m."
+        "--profile", type=click.Choice(["new_jersey", "f_shape", "single_slope"]), help="Of a Jersey barrier."
     ),
+    click.option("--length", type=Quantity("length"), help="Of a Jersey barrier.  [default: without end]"),
+    click.option("--segments", type=int, help="Of a wall or Jersey barrier that has ends."),
     click.option("--friction", type=float, default=0.2, show_default=True, help="Vehicle on barrier."),
     click.option("--speed", type=Quantity("speed"), help="Such as 50mph, 57.09km/h or 15.9 (m/s)."),
     click.option(
         "--angle", type=Quantity("angle"), default=90.0, show_default=True, help="Path to barrier line, deg."
     ),
     click.option(
-        "--offset", type=Quantity("length"), default=0.0, show_default=True, help="Along the barrier, m."
+        "--offset",
+        type=Quantity("length"),
+        default=0.0,
+        show_default=True,
+        help="Along the barrier, m; at angle 0 behind its line.",
+    ),
+    click.option(
+        "--yaw",
+        type=Quantity("angle"),
+        default=0.0,
+        show_default=True,
+        help="Nose to the left of the path, deg.",
+    ),
+    click.option(
+        "--roll", type=Quantity("angle"), default=0.0, show_default=True, help="To the right at impact, deg."
     ),
     click.option("--duration", type=Quantity("time"), help="Default: until the outcome is decided."),
     click.option("--tolerance", type=float, help="Wanted relative error.  [default: 0.001]"),
@@ -95,14 +128,16 @@ def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
             raise click.UsageError(f"give a scene file, or --vehicle and --speed: --{name} is missing")
     make = Vehicle.from_file if options["vehicle"].endswith(".toml") else Vehicle.preset
     vehicle = make(options["vehicle"], gvw=options["gvw"], mesh_density=options["mesh_density"])
-    if options["barrier"] != "pole" and "--diameter" in given:
-        raise click.UsageError(f"--diameter: only a pole has one, not {options['barrier']}")
-    friction = options["friction"]
+    kind = options["barrier"]
+    known = dict.fromkeys(name for names in _SIZES.values() for name in names)
+    sizes = {name: options[name] for name in known if options[name] is not None}
+    for name in sizes:
+        if name not in _SIZES.get(kind, ()):
+            kinds = " or ".join(other for other, names in _SIZES.items() if name in names)
+            raise click.UsageError(f"--{name.replace('_', '-')}: of {kinds}, not of {kind}")
     barrier = None
-    if options["barrier"] == "rigid_wall":
-        barrier = Barrier.rigid_wall(friction=friction)
-    elif options["barrier"] == "pole":
-        barrier = Barrier.pole(diameter=options["diameter"], friction=friction)
+    if kind != "none":
+        barrier = getattr(Barrier, kind)(friction=options["friction"], **sizes)
     settings = {name: options[name] for name in ("tolerance", "time_step") if options[name] is not None}
     return Simulation(
         vehicle,
@@ -110,6 +145,8 @@ def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
         options["speed"],
         options["angle"],
         options["offset"],
+        impact_yaw=options["yaw"],
+        impact_roll=options["roll"],
         duration=options["duration"],
         settings=Settings(**settings),
     )

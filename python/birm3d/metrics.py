@@ -15,12 +15,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from .element_loads import touched_elements
 from .filters import cfc, moving_average
 
 if TYPE_CHECKING:
     from .result import Result
 
-__all__ = ["METRIC_UNITS", "compute_metrics"]
+__all__ = ["JOINT_METRICS", "METRIC_UNITS", "compute_metrics"]
 
 METRIC_UNITS: Mapping[str, str] = MappingProxyType(
     {
@@ -29,10 +30,15 @@ METRIC_UNITS: Mapping[str, str] = MappingProxyType(
         "peak_normal_force": "N",
         "peak_normal_force_cfc60": "N",
         "peak_force_50ms": "N",
+        "peak_element_force": "N",
+        "peak_element_force_50ms": "N",
+        "peak_overturning_moment": "N m",
+        "peak_overturning_moment_50ms": "N m",
         "dynamic_crush": "m",
         "residual_crush": "m",
         "max_displacement": "m",
         "vehicle_penetration": "m",
+        "contact_overlap": "m",
         "time_of_zero_velocity": "s",
         "restitution": "",
         "delta_v": "m/s",
@@ -42,6 +48,8 @@ METRIC_UNITS: Mapping[str, str] = MappingProxyType(
         "max_roll": "deg",
         "max_pitch": "deg",
         "max_yaw": "deg",
+        "max_articulation_angle": "deg",
+        "peak_joint_force": "N",
         "energy_residual": "",
         "momentum_residual": "",
         "steps": "",
@@ -51,8 +59,13 @@ METRIC_UNITS: Mapping[str, str] = MappingProxyType(
 )
 """Every scalar that a run may have -> its unit; "" for a pure number."""
 
+JOINT_METRICS = ("max_articulation_angle", "peak_joint_force")
+"""Those that only a vehicle of two units has."""
+
 # Below this speed a direction of travel means nothing, m/s.
 _SLOWEST = 1e-3
+# Below this sine of its angle a path runs along the barrier's line.
+_ALONG = 1e-9
 # Residuals of a vehicle that stands are judged against the energy it has at this speed, m/s.
 _STANDSTILL = 0.1
 
@@ -65,13 +78,27 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     ``energy_residual`` (greatest magnitude relative to the initial kinetic energy), ``momentum_residual``,
     ``steps``, ``run_time`` [s], ``end_time`` [s].
 
-    With a barrier: ``peak_normal_force``, ``peak_force_50ms`` [N], ``dynamic_crush``, ``residual_crush``
-    (greatest truss shortening, during the run and at its end) [m], ``max_displacement`` (of the mass centre
-    towards the barrier since t = 0 less the standoff) [m], ``vehicle_penetration`` (of any point past the
-    face) [m], ``impact_severity`` (1/2 m (v sin angle)^2) [J], ``delta_v`` (greatest change of velocity)
-    [m/s]; where the motion towards the barrier ends: ``time_of_zero_velocity`` (since the first touch) [s],
-    ``restitution`` (normal separation over approach speed); where the vehicle has left: ``exit_angle`` (of
-    its path from the barrier's line) [deg].
+    With a barrier: ``peak_normal_force``, ``peak_force_50ms`` [N]; greatest of all its elements:
+    ``peak_element_force``, ``peak_element_force_50ms`` [N], ``peak_overturning_moment`` and
+    ``peak_overturning_moment_50ms`` [N m] (see :class:`birm3d.element_loads.ElementLoad`);
+    ``dynamic_crush``, ``residual_crush`` (greatest truss shortening, during the run and at its end) [m],
+    ``max_displacement`` (of the mass centre towards the barrier since t = 0 less the standoff; on a path
+    along the barrier's line, towards its end) [m], ``contact_overlap`` (of the rigid body inside the barrier,
+    what the steps leave) [m], ``impact_severity`` (1/2 m (v sin angle)^2) [J], ``delta_v`` (greatest change
+    of velocity) [m/s]; where the motion towards the barrier ends: ``time_of_zero_velocity`` (since the first
+    touch) [s], ``restitution`` (normal separation over approach speed); where the vehicle has left:
+    ``exit_angle`` (of its path from the barrier's line) [deg].
+
+    With a barrier that is not met along its line (angles 0 and 180): ``vehicle_penetration`` [m], how far
+    the rigid body got past the barrier's line: the greatest distance of any anchor behind the line over the
+    run, at the output instants, 0 if none passed it. The line is the foot of the traffic face of walls and
+    Jersey barriers and runs through the axes of posts (of the first row). An anchor is where the rigid body
+    begins behind the crush zone; crushed skin in front of it does not count. A body beside the end of a
+    barrier counts like one that went through. ASTM F2656 counts otherwise: a stated point of the vehicle
+    (of trucks the lower leading edge of the cargo bed) from the barrier's protected side.
+
+    With two units: ``max_articulation_angle`` (greatest magnitude) [deg], ``peak_joint_force`` (greatest
+    magnitude) [N]. Scalars of motion are those of the leading unit, crushes the greatest of both.
 
     At sampling rates that allow it: ``peak_deceleration_cfc60``, ``peak_normal_force_cfc60``.
 
@@ -102,6 +129,9 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     filtered = interval * 60.0 <= 0.1
     if filtered and (names is None or "peak_deceleration_cfc60" in names):
         metrics["peak_deceleration_cfc60"] = float(cfc(deceleration, 60, interval).max())
+    if scene.vehicle.joint is not None:
+        metrics["max_articulation_angle"] = float(np.abs(result.articulation_angle).max())
+        metrics["peak_joint_force"] = float(np.linalg.norm(result.joint_force, axis=1).max())
     if scene.barrier is None:
         return metrics
 
@@ -110,14 +140,63 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     if filtered and (names is None or "peak_normal_force_cfc60" in names):
         metrics["peak_normal_force_cfc60"] = float(cfc(force, 60, interval).max())
     metrics["peak_force_50ms"] = float(moving_average(force, 0.05, interval).max())
-    metrics["dynamic_crush"] = float(result.peak_deflection.max())
-    metrics["residual_crush"] = float(max(0.0, result.deflection.max()))
-    metrics.update(_motion(result, -np.asarray(scene.barrier.core.normal)))
+    loads = touched_elements(result)
+    for metric, value in (
+        ("peak_element_force", "peak_force"),
+        ("peak_element_force_50ms", "peak_force_50ms"),
+        ("peak_overturning_moment", "peak_overturning_moment"),
+        ("peak_overturning_moment_50ms", "peak_overturning_moment_50ms"),
+    ):
+        metrics[metric] = max((getattr(load, value) for load in loads), default=0.0)
+    metrics["dynamic_crush"] = _greatest(result, "peak_deflection")
+    metrics["residual_crush"] = max(0.0, _greatest(result, "deflection"))
+    metrics["contact_overlap"] = statistics.deepest_point
+    past = -np.asarray(scene.barrier.core.normal)
+    along = abs(math.sin(math.radians(scene.impact_angle))) < _ALONG
+    if not along and (names is None or "vehicle_penetration" in names):
+        metrics["vehicle_penetration"] = _penetration(result, past)
+    path = result.velocity[0] / max(float(np.linalg.norm(result.velocity[0])), _SLOWEST)
+    metrics.update(_motion(result, path if along else past, past))
     return metrics
 
 
-def _motion(result: Result, inward: npt.NDArray[np.float64]) -> dict[str, float]:
-    """Scalars of the motion towards the barrier; `inward` is the unit vector into its face."""
+def _penetration(result: Result, past: npt.NDArray[np.float64]) -> float:
+    """Greatest distance of an anchor past the barrier's line [m], see compute_metrics()."""
+    barrier, vehicle = result.scene.barrier, result.scene.vehicle
+    assert barrier is not None  # asked for with a barrier only
+    greatest = 0.0
+    for u, unit in enumerate(vehicle.units):
+        rows = result._history.unit(u)
+        center = (rows.position - np.asarray(barrier.origin)) @ past
+        # No anchor is further past the line than this.
+        near = np.flatnonzero(center + np.linalg.norm(unit.anchors, axis=1).max() > greatest)
+        roll, pitch, yaw = rows.roll_pitch_yaw[near].T
+        # The direction in body axes: R^T past, with R = Rz(yaw) Ry(pitch) Rx(roll) and past level.
+        ahead = np.cos(yaw) * past[0] + np.sin(yaw) * past[1]
+        left = np.cos(yaw) * past[1] - np.sin(yaw) * past[0]
+        up = np.sin(pitch) * ahead
+        direction = np.stack(
+            [
+                np.cos(pitch) * ahead,
+                np.cos(roll) * left + np.sin(roll) * up,
+                np.cos(roll) * up - np.sin(roll) * left,
+            ]
+        )
+        reach = center[near] + (unit.anchors @ direction).max(axis=0)
+        greatest = max(greatest, float(reach.max(initial=0.0)))
+    return greatest
+
+
+def _greatest(result: Result, name: str) -> float:
+    """Greatest deflection of all units [m]."""
+    units = range(len(result.scene.vehicle.units))
+    return max(float(getattr(result.unit(u), name).max()) for u in units)
+
+
+def _motion(
+    result: Result, inward: npt.NDArray[np.float64], past: npt.NDArray[np.float64]
+) -> dict[str, float]:
+    """Scalars of the motion towards the barrier along `inward`; `past` is square to its line."""
     scene = result.scene
     approach = result.velocity @ inward
     travel = (result.position - result.position[0]) @ inward - scene.standoff
@@ -125,11 +204,10 @@ def _motion(result: Result, inward: npt.NDArray[np.float64]) -> dict[str, float]
     angle = math.radians(scene.impact_angle)
     motion = {
         "max_displacement": float(travel.max()),
-        "vehicle_penetration": result.statistics.deepest_point,
         "impact_severity": 0.5 * scene.vehicle.mass * (scene.impact_speed * math.sin(angle)) ** 2,
         "delta_v": float(velocity_change.max()),
     }
-    touched = result.peak_deflection.max() > 0.0
+    touched = _greatest(result, "peak_deflection") > 0.0
     turned = np.flatnonzero(approach <= 0.0)
     if touched and len(turned) and turned[0] > 0:
         i = int(turned[0])
@@ -140,8 +218,8 @@ def _motion(result: Result, inward: npt.NDArray[np.float64]) -> dict[str, float]
         motion["restitution"] = float(max(0.0, -(result.final_velocity @ inward)) / approach[0])
     horizontal = result.final_velocity[:2]
     speed = float(np.hypot(*horizontal))
-    away = float(-(result.final_velocity @ inward))
+    away = float(-(result.final_velocity @ past))
     if touched and speed > _SLOWEST and away > 0.0 and result.barrier_normal_force[-1] == 0.0:
-        along = float(np.hypot(*(horizontal + away * inward[:2])))
+        along = float(np.hypot(*(horizontal + away * past[:2])))
         motion["exit_angle"] = math.degrees(math.atan2(away, along))
     return motion

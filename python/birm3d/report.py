@@ -5,19 +5,22 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from . import units
+from .element_loads import touched_elements
 
 if TYPE_CHECKING:
+    from .barrier import Barrier
     from .result import Result
 
-__all__ = ["report"]
+__all__ = ["END_REASONS", "report"]
 
-_ENDS = {
+END_REASONS = {
     "separated": "the vehicle has left the barrier and can not come back",
     "stopped": "the vehicle stands still at the barrier",
     "duration": "the duration asked for is over",
     "longest": "the longest event without a duration is over; the outcome is not decided",
     "running": "the run is not over yet",
 }
+"""Why a run ended, in words."""
 
 
 def report(result: Result) -> str:
@@ -28,8 +31,8 @@ def report(result: Result) -> str:
         f"{vehicle.name}, {vehicle.mass:.1f} kg, {vehicle.n_nodes} shell nodes, {len(vehicle.wheels)} wheels",
         f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph) "
         f"at {scene.impact_angle:g} deg "
-        + (f"to a rigid wall, friction {scene.barrier.friction:g}" if scene.barrier else "without a barrier"),
-        f"ended at {result.time[-1]:.4f} s: {_ENDS[result.end_reason]}",
+        + (_barrier(scene.barrier) if scene.barrier else "without a barrier"),
+        f"ended at {result.time[-1]:.4f} s: {END_REASONS[result.end_reason]}",
         "",
         "computed",
         f"  {statistics.steps} steps of {statistics.shortest_step:.2e} to {statistics.longest_step:.2e} s "
@@ -46,11 +49,30 @@ def report(result: Result) -> str:
     lines += [
         f"  contact model: {settings.contact_model}; energy residual {metrics['energy_residual']:.1e} of the "
         f"initial kinetic energy, momentum residual {metrics['momentum_residual']:.1e}",
+    ]
+    if vehicle.joint is not None:
+        lines.append(
+            f"  {vehicle.joint.kind}: peak force {metrics['peak_joint_force']:.3g} N, greatest articulation "
+            f"angle {metrics['max_articulation_angle']:.1f} deg"
+        )
+    for load in touched_elements(result):
+        lines.append(
+            f"  {load.name}: peak 50-ms mean of the force {load.peak_force_50ms / 1e3:.3g} kN at "
+            f"{load.height_at_peak:.2f} m, of the overturning moment "
+            f"{load.peak_overturning_moment_50ms / 1e3:.3g} kN m"
+        )
+    lines += [
         "",
         "left out",
         *(f"  {line}" for line in _left_out(result)),
     ]
     return "\n".join(lines)
+
+
+def _barrier(barrier: Barrier) -> str:
+    names = barrier.element_names
+    count = f"{len(names)} elements" if len(names) > 1 else names[0]
+    return f"to the line of a {type(barrier).__name__} ({count}), friction {barrier.friction:g}"
 
 
 def _left_out(result: Result) -> list[str]:
@@ -64,7 +86,8 @@ def _left_out(result: Result) -> list[str]:
         lines.append(
             f"{max(0.0, share):.1%} of the node tests: blocks of nodes that could not reach the barrier"
         )
-        touched = int((result.peak_deflection > 0.0).sum())
+        units = [result.unit(u) for u in range(len(vehicle.units))]
+        touched = sum(int((unit.peak_deflection > 0.0).sum()) for unit in units)
         lines.append(f"the crush of {vehicle.n_nodes - touched} nodes that never touched the barrier")
         if scene.barrier.friction == 0.0:
             lines.append("barrier friction: its coefficient is 0")
@@ -81,5 +104,7 @@ def _left_out(result: Result) -> list[str]:
         lines.append("gravity: it is 0")
     if result.end_reason == "separated":
         lines.append("everything after the vehicle had left the barrier, but for a short tail")
-    lines.append("suspension, occupants, ground contact of the body: not part of the model")
+    if vehicle.joint is not None:
+        lines.append("contact of the two units with each other, but through their joint")
+    lines.append("suspension, occupants: not part of the model")
     return lines

@@ -2,29 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import copy
+from collections.abc import Mapping, Sequence
 from functools import cached_property
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _core, pictures, result_table
+from ._version import __version__
+from .element_loads import ElementLoad, element_loads
+from .frames import Frames, capture, pose
 from .metrics import compute_metrics
 from .report import report
+from .unit_result import UnitResult, read_only
 
 if TYPE_CHECKING:
-    import pandas as pd
-    from matplotlib.figure import Figure
-
+    from .result_file import Stored, StoredHistory
     from .simulation import Scene
 
 __all__ = ["Result"]
 
 Floats = npt.NDArray[np.float64]
 
-_ENERGIES = ("kinetic", "potential", "stored", "crushed", "barrier_friction", "tire_friction", "impacts")
+_ENERGIES = (
+    "kinetic",
+    "potential",
+    "stored",
+    "crushed",
+    "barrier_friction",
+    "tire_friction",
+    "ground_friction",
+    "impacts",
+)
 
 
 class Result:
@@ -47,47 +60,74 @@ class Result:
         Wall time of the stepping [s].
     nodes, deflection, peak_deflection : ndarray
         Shell nodes in body axes (k, 3), truss deflections (k,) at the end and their peaks [m].
+    frames : Frames or None
+        Places of the shell nodes over time, see :meth:`with_frames`.
+    version : str
+        Of the package that made the result.
+
+    Motions, ``nodes`` and deflections are those of unit 0, the leading one; forces of the barrier and of the
+    ground are those on all units together. :meth:`unit` has both for each unit.
     """
+
+    plot = pictures.plot
+    plot_histories = pictures.plot_histories
+    plot_plan = pictures.plot_plan
+    plot_crush = pictures.plot_crush
+    plot_elements = pictures.plot_elements
+    render = pictures.render
+    animate = pictures.animate
+    show = pictures.show
+    write_html = pictures.write_html
+    to_dataframe = result_table.to_dataframe
 
     def __init__(
         self,
         *,
         scene: Scene,
-        history: _core.History,
-        statistics: _core.StepStatistics,
+        history: _core.History | StoredHistory,
+        statistics: _core.StepStatistics | Stored,
         end_reason: str,
         state_hash: int,
         run_time: float,
-        nodes: Floats,
-        deflection: Floats,
-        peak_deflection: Floats,
-        final_velocity: Floats,
+        units: tuple[UnitResult, ...],
+        frames: Frames | None = None,
+        version: str = __version__,
     ) -> None:
         self.scene = scene
         self.statistics = statistics
         self.end_reason = end_reason
         self.state_hash = state_hash
         self.run_time = run_time
-        self.nodes = nodes
-        self.deflection = deflection
-        self.peak_deflection = peak_deflection
-        self.final_velocity = final_velocity
+        self.nodes = units[0].nodes
+        self.deflection = units[0].deflection
+        self.peak_deflection = units[0].peak_deflection
+        self.final_velocity = units[0].final_velocity
+        self.frames = frames
+        self.version = version
         self._history = history
-        self._unit = history.unit(0)
+        self._units = units
 
     @classmethod
     def _of(cls, scene: Scene, simulation: _core.Simulation, run_time: float) -> Result:
+        history = simulation.history()
+        units = tuple(
+            UnitResult(
+                history.unit(u),
+                nodes=simulation.nodes(u),
+                deflection=simulation.deflection(u),
+                peak_deflection=simulation.peak_deflection(u),
+                final_velocity=simulation.velocity(u),
+            )
+            for u in range(len(scene.vehicle.units))
+        )
         return cls(
             scene=scene,
-            history=simulation.history(),
+            history=history,
             statistics=simulation.statistics,
             end_reason=simulation.end_reason.name,
             state_hash=simulation.state_hash,
             run_time=run_time,
-            nodes=simulation.nodes(),
-            deflection=simulation.deflection(),
-            peak_deflection=simulation.peak_deflection(),
-            final_velocity=simulation.velocity(),
+            units=units,
         )
 
     @property
@@ -95,80 +135,150 @@ class Result:
         """Shape (n,) [s]."""
         return self._history.time
 
+    def unit(self, index: int) -> UnitResult:
+        """Return the histories of one rigid body: 0 the leading one (or the only one), 1 the trailing one.
+
+        Raises
+        ------
+        ValueError
+            If the vehicle has no such unit.
+        """
+        if not 0 <= index < len(self._units):
+            raise ValueError(f"index must be >= 0 and < {len(self._units)}, the number of units, got {index}")
+        return self._units[index]
+
     @property
     def position(self) -> Floats:
-        """Mass centre, world axes, shape (n, 3) [m]."""
-        return self._unit.position
+        """Mass centre of unit 0, world axes, shape (n, 3) [m]."""
+        return self._units[0].position
 
     @property
     def velocity(self) -> Floats:
-        """Of the mass centre, world axes, shape (n, 3) [m/s]."""
-        return self._unit.velocity
+        """Of the mass centre of unit 0, world axes, shape (n, 3) [m/s]."""
+        return self._units[0].velocity
 
     @property
     def acceleration(self) -> Floats:
-        """Of the mass centre, body axes r, s, t, shape (n, 3) [m/s^2]; interval means."""
-        return self._unit.acceleration
+        """Of the mass centre of unit 0, body axes r, s, t, shape (n, 3) [m/s^2]; interval means."""
+        return self._units[0].acceleration
 
     @property
     def angular_velocity(self) -> Floats:
-        """Body axes r, s, t, shape (n, 3) [deg/s]."""
-        return _read_only(np.degrees(self._unit.angular_velocity))
-
-    @cached_property
-    def _angles(self) -> Floats:
-        angles = np.unwrap(self._unit.roll_pitch_yaw, axis=0)
-        angles[:, 2] -= angles[0, 2]
-        return _read_only(np.degrees(angles))
+        """Of unit 0, body axes r, s, t, shape (n, 3) [deg/s]."""
+        return self._units[0].angular_velocity
 
     @property
     def roll(self) -> Floats:
-        """About r, shape (n,) [deg]."""
-        return self._angles[:, 0]
+        """Of unit 0 about r, shape (n,) [deg]."""
+        return self._units[0].roll
 
     @property
     def pitch(self) -> Floats:
-        """About s, positive nose-down, shape (n,) [deg]."""
-        return self._angles[:, 1]
+        """Of unit 0 about s, positive nose-down, shape (n,) [deg]."""
+        return self._units[0].pitch
 
     @property
     def yaw(self) -> Floats:
-        """About t, from the initial heading, positive to the left, shape (n,) [deg]."""
-        return self._angles[:, 2]
+        """Of unit 0 about t, from the initial heading, positive to the left, shape (n,) [deg]."""
+        return self._units[0].yaw
 
-    @property
+    @cached_property
     def barrier_force(self) -> Floats:
-        """Of the barrier on the vehicle, world axes, shape (n, 3) [N]; interval means."""
-        return self._unit.barrier_force
+        """Of the barrier on the vehicle, all units, world axes, shape (n, 3) [N]; interval means."""
+        return self._sum("barrier_force")
 
-    @property
+    @cached_property
     def barrier_normal_force(self) -> Floats:
-        """Sum of the normal forces of all nodes, shape (n,) [N]; interval means."""
-        return self._unit.barrier_normal_force
+        """Sum of the normal forces of all nodes of all units, shape (n,) [N]; interval means."""
+        return self._sum("barrier_normal_force")
 
-    @property
+    @cached_property
+    def element_loads(self) -> tuple[ElementLoad, ...]:
+        """Force, moment and resultant height of every element of the barrier; () without a barrier.
+
+        See :class:`birm3d.element_loads.ElementLoad` for frames and signs.
+        """
+        return element_loads(self)
+
+    @cached_property
     def tire_reaction(self) -> Floats:
-        """Normal force under each wheel, shape (n, wheels) [N]; interval means."""
-        return self._unit.tire_reaction
+        """Normal force under each wheel of all units, shape (n, wheels) [N]; interval means."""
+        if len(self._units) == 1:
+            return self._units[0].tire_reaction
+        return read_only(np.concatenate([unit.tire_reaction for unit in self._units], axis=1))
 
-    @property
+    @cached_property
+    def ground_force(self) -> Floats:
+        """Of the ground on the bodies, not the tyres, world axes, shape (n, 3) [N]; interval means."""
+        return self._sum("ground_force")
+
+    @cached_property
     def tire_friction_force(self) -> Floats:
         """Of the ground on the vehicle, tangential, world axes, shape (n, 3) [N]; interval means."""
-        return self._unit.tire_friction_force
+        return self._sum("tire_friction_force")
+
+    def _sum(self, name: str) -> Floats:
+        if len(self._units) == 1:
+            values: Floats = getattr(self._units[0], name)
+            return values
+        return read_only(np.sum([getattr(unit, name) for unit in self._units], axis=0))
+
+    @property
+    def joint_force(self) -> Floats:
+        """Of the joint on the leading unit, world axes, shape (n, 3) [N]; interval means."""
+        return self._joint.force
+
+    @property
+    def joint_moment(self) -> Floats:
+        """Of the joint on the leading unit about the joint, world axes, shape (n, 3) [N m]; means."""
+        return self._joint.moment
+
+    @property
+    def articulation_angle(self) -> Floats:
+        """Yaw of the trailing unit from the leading one, positive to the left, shape (n,) [deg].
+
+        The jackknife angle: the turn of the kingpin in the fifth wheel. Pitch, roll and this yaw follow each
+        other as in a Cardan joint, see ``joint_pitch`` and ``joint_roll``.
+        """
+        return self._joint_angles[:, 2]
+
+    @property
+    def joint_roll(self) -> Floats:
+        """Roll of the trailing unit from the leading one, shape (n,) [deg]."""
+        return self._joint_angles[:, 0]
+
+    @property
+    def joint_pitch(self) -> Floats:
+        """Pitch of the trailing unit from the leading one, positive nose-down, shape (n,) [deg]."""
+        return self._joint_angles[:, 1]
+
+    @property
+    def _joint(self) -> _core.JointHistory | Stored:
+        if self.scene.vehicle.joint is None:
+            raise ValueError(f"a joint needs a vehicle of two units, got {self.scene.vehicle.name!r} of one")
+        return self._history.joint(0)
+
+    @cached_property
+    def _joint_angles(self) -> Floats:
+        return read_only(np.degrees(np.unwrap(self._joint.roll_pitch_yaw, axis=0)))
 
     @cached_property
     def energy(self) -> Mapping[str, Floats]:
         """Energy ledger, name -> shape (n,) [J].
 
         ``kinetic`` and ``potential`` of the body, ``stored`` (elastic) and ``crushed`` (plastic) in trusses,
-        ``barrier_friction``, ``tire_friction`` and ``impacts`` (lost in rigid contacts); their ``total``; and
-        ``residual``, total now less total at the start: no work enters from outside.
+        ``barrier_friction``, ``tire_friction``, ``ground_friction`` (of the body on the ground) and
+        ``impacts`` (lost in rigid contacts); their ``total``; and ``residual``, total now less total at the
+        start: no work enters from outside.
+        Where units are joined also ``joints``: what the joint's held directions took, zero but for the error
+        of the steps; it has a term of its own so that this error shows and is not mistaken for a loss. What
+        the stops of a fifth wheel take is in ``impacts``.
         """
         terms = {name: getattr(self._history, name) for name in _ENERGIES}
+        if self.scene.vehicle.joint is not None:
+            terms["joints"] = self._history.joint_work
         total = np.sum(list(terms.values()), axis=0)
-        return MappingProxyType(
-            {**terms, "total": _read_only(total), "residual": _read_only(total - total[0])}
-        )
+        return MappingProxyType({**terms, "total": read_only(total), "residual": read_only(total - total[0])})
 
     @property
     def momentum_residual(self) -> float:
@@ -182,44 +292,60 @@ class Result:
 
     def report(self) -> str:
         """Return what was computed, what was left out, and how the ledgers close, as text."""
+        return self._report
+
+    @cached_property
+    def _report(self) -> str:
         return report(self)
 
-    def to_dataframe(self) -> pd.DataFrame:
-        """Return the histories as a table, one row an output instant, indexed by time [s]."""
-        try:
-            import pandas as pd
-        except ImportError as error:
-            raise ImportError("to_dataframe() needs pandas: pip install 'birm3d[table]'") from error
-        columns: dict[str, Floats] = {}
-        for name, unit, axes in (
-            ("position", "m", "xyz"),
-            ("velocity", "m/s", "xyz"),
-            ("acceleration", "m/s^2", "rst"),
-            ("barrier_force", "N", "xyz"),
-        ):
-            for i, axis in enumerate(axes):
-                columns[f"{name}_{axis} [{unit}]"] = getattr(self, name)[:, i]
-        for name in ("roll", "pitch", "yaw"):
-            columns[f"{name} [deg]"] = getattr(self, name)
-        columns["barrier_normal_force [N]"] = self.barrier_normal_force
-        for i in range(self.tire_reaction.shape[1]):
-            columns[f"tire_reaction_{i} [N]"] = self.tire_reaction[:, i]
-        for name, values in self.energy.items():
-            columns[f"energy_{name} [J]"] = values
-        return pd.DataFrame(columns, index=pd.Index(self.time, name="time [s]"))
+    def final_nodes(self, unit: int = 0) -> Floats:
+        """Return the shell nodes of one unit at the end, body axes, shape (k, 3) [m]."""
+        return self.unit(unit).nodes
 
-    def plot(self) -> Figure:
-        """Return a figure of force, motion, angles and energies against time; see :mod:`birm3d.plotting`."""
-        from .plotting import plot_result
+    def pose(self, time: npt.ArrayLike, unit: int = 0) -> tuple[Floats, Floats]:
+        """Return mass centres (k, 3) [m] and rotation matrices body to world (k, 3, 3) at instants (k,) [s].
 
-        return plot_result(self)
+        Positions are linear between the rows, orientations turn at a constant rate.
+        """
+        rows = self._history.unit(unit)
+        return pose(self.time, rows.position, rows.roll_pitch_yaw, time)
+
+    def with_frames(self, frames: int | Sequence[float] = 61) -> Result:
+        """Return the same result with places of the shell nodes over time, for pictures.
+
+        The scene is run once more, which must end in the same bits.
+
+        Parameters
+        ----------
+        frames
+            A number of instants, spread over the run and among its rows, or the instants [s].
+
+        Raises
+        ------
+        ValueError
+            If the instants are outside the run, or the scene does not run the same way again.
+        """
+        other = copy.copy(self)
+        other.frames = capture(self, frames)
+        return other
+
+    def save(self, path: str | Path) -> None:
+        """Write everything to one file (npz, see :mod:`birm3d.result_file`); :func:`birm3d.load` reads it.
+
+        Raises
+        ------
+        ValueError
+            If the path is a folder or lies in none.
+        """
+        from .result_file import save
+
+        save(self, path)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        from .result_file import from_bytes, to_bytes
+
+        return (from_bytes, (to_bytes(self),))
 
     def __repr__(self) -> str:
         rows, steps = len(self.time), self.statistics.steps
         return f"Result({rows} rows to {self.time[-1]:g} s, {self.end_reason}, {steps} steps)"
-
-
-def _read_only(array: Any) -> Floats:
-    result: Floats = np.asarray(array, float)
-    result.setflags(write=False)
-    return result

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from functools import partial
 from numbers import Real
 from pathlib import Path
@@ -14,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._version import __version__
-from .metrics import METRIC_UNITS
+from .metrics import JOINT_METRICS, METRIC_UNITS
+from .progress import progress_bar
 from .scene_parameters import value_of, varied
 from .simulation import Simulation
 from .study import Study
@@ -102,7 +101,8 @@ def run_study(
     from .run_store import RunStore
 
     names = tuple(names)
-    wanted = _checked_metrics(metrics)
+    joined = simulation.scene.vehicle.joint is not None or "vehicle" in names
+    wanted = _checked_metrics(metrics, joined)
     table = [tuple(_plain(value) for value in row) for row in rows]
     _check_rows(simulation, names, table)
     units = {name: METRIC_UNITS[name] for name in wanted}
@@ -116,7 +116,7 @@ def run_study(
     try:
         if kept is not None:
             outcomes.update(kept.finished())
-        with _progress(progress, title, len(table), len(outcomes)) as advance:
+        with progress_bar(progress, title, len(table), len(outcomes)) as advance:
 
             def finish(finished: Finished) -> None:
                 new = dict(finished)
@@ -145,8 +145,10 @@ def run_study(
     return study(outcomes, grid=grid)
 
 
-def _checked_metrics(metrics: Sequence[str] | None) -> tuple[str, ...]:
-    wanted = _STUDY_METRICS if metrics is None else tuple(dict.fromkeys(metrics))
+def _checked_metrics(metrics: Sequence[str] | None, joined: bool) -> tuple[str, ...]:
+    """Return the metrics of a study; those of joints by themselves only where a vehicle may have one."""
+    usual = tuple(name for name in _STUDY_METRICS if joined or name not in JOINT_METRICS)
+    wanted = usual if metrics is None else tuple(dict.fromkeys(metrics))
     if not wanted:
         raise ValueError("metrics must name at least one, got none")
     for name in wanted:
@@ -174,25 +176,3 @@ def _check_rows(simulation: Simulation, names: tuple[str, ...], rows: Sequence[t
         for name, value in zip(names, row, strict=True):
             if isinstance(value, float) and math.isnan(value):
                 raise ValueError(f"{name} must be a number, got nan in run {run}")
-
-
-@contextmanager
-def _progress(wanted: bool | None, title: str, total: int, done: int) -> Iterator[Callable[[int], None]]:
-    """Show a bar on stderr; yields what moves it on."""
-    if wanted is None:
-        wanted = sys.stderr.isatty()
-    if not wanted:
-        yield lambda runs: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    # No refreshing thread: a process pool may fork while it holds a lock.
-    with Progress(*columns, console=Console(stderr=True), auto_refresh=False) as bar:
-        task = bar.add_task(title, total=total, completed=done)
-
-        def advance(runs: int) -> None:
-            bar.update(task, advance=runs, refresh=True)
-
-        yield advance

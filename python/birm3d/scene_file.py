@@ -36,17 +36,67 @@ class _Vehicle(Strict):
         return self
 
 
+# Kind of barrier -> keys of the file and the arguments of Barrier.<kind> that they are.
+_BARRIERS: dict[str, dict[str, str]] = {
+    "rigid_wall": {
+        "width_m": "width",
+        "height_m": "height",
+        "thickness_m": "thickness",
+        "segments": "segments",
+    },
+    "pole": {"diameter_m": "diameter"},
+    "bollards": {
+        "count": "count",
+        "diameter_m": "diameter",
+        "height_m": "height",
+        "spacing_m": "spacing",
+        "rows": "rows",
+        "row_spacing_m": "row_spacing",
+        "row_offset_m": "row_offset",
+    },
+    "jersey": {"profile": "profile", "height_m": "height", "length_m": "length", "segments": "segments"},
+}
+
+
 class _Barrier(Strict):
-    kind: Literal["rigid_wall", "pole"]
+    """One of the kinds of :class:`birm3d.Barrier`; what is not given has that kind's default."""
+
+    kind: Literal["rigid_wall", "pole", "bollards", "jersey"]
     friction: Annotated[float, Field(ge=0.0)] = 0.2
     heading_deg: float = 0.0
-    diameter_m: Annotated[float, Field(gt=0.0)] | None = None
+    width_m: float | None = None
+    height_m: float | None = None
+    thickness_m: float | None = None
+    segments: int | None = None
+    diameter_m: float | None = None
+    count: int | None = None
+    spacing_m: float | None = None
+    rows: int | None = None
+    row_spacing_m: float | None = None
+    row_offset_m: float | None = None
+    profile: str | tuple[tuple[float, float], ...] | None = None
+    length_m: float | None = None
 
     @model_validator(mode="after")
     def _check(self) -> _Barrier:
-        if (self.diameter_m is not None) != (self.kind == "pole"):
-            reject("diameter_m", "must be given for a pole and for nothing else")
+        for key in self.model_fields_set - {"kind", "friction", "heading_deg"}:
+            if key not in _BARRIERS[self.kind]:
+                kinds = [kind for kind, keys in _BARRIERS.items() if key in keys]
+                reject(key, f"belongs to {' or '.join(kinds)}, not to {self.kind}")
+        self.made()  # refuses what the kind can not have
         return self
+
+    def made(self) -> Barrier:
+        """Return the barrier."""
+        given = {
+            argument: getattr(self, key)
+            for key, argument in _BARRIERS[self.kind].items()
+            if key in self.model_fields_set
+        }
+        barrier: Barrier = getattr(Barrier, self.kind)(
+            friction=self.friction, heading=self.heading_deg, **given
+        )
+        return barrier
 
 
 class _Impact(Strict):
@@ -56,6 +106,8 @@ class _Impact(Strict):
     angle: str = "90 deg"
     offset: str = "0 m"
     standoff: str = "0 m"
+    yaw: str = "0 deg"
+    roll: str = "0 deg"
     duration: str | None = None
 
     @field_validator("*")
@@ -70,7 +122,15 @@ class _Impact(Strict):
         return units.parse(getattr(self, name), _QUANTITY[name])
 
 
-_QUANTITY = {"speed": "speed", "angle": "angle", "offset": "length", "standoff": "length", "duration": "time"}
+_QUANTITY = {
+    "speed": "speed",
+    "angle": "angle",
+    "offset": "length",
+    "standoff": "length",
+    "yaw": "angle",
+    "roll": "angle",
+    "duration": "time",
+}
 
 
 class _Settings(Strict):
@@ -80,6 +140,8 @@ class _Settings(Strict):
     gravity: float = Settings.gravity
     ground: bool = Settings.ground
     mu_tire: float = Settings.mu_tire
+    mu_body: float = Settings.mu_body
+    braking: float = Settings.braking
     cornering_stiffness: float = Settings.cornering_stiffness
     restitution: float = Settings.restitution
     contact_model: Literal["projected", "along_truss"] = Settings.contact_model
@@ -116,13 +178,7 @@ def read_scene_file(path: str | Path) -> Simulation:
         vehicle = Vehicle.from_file(
             path.parent / scene.vehicle.file, gvw=gvw, mesh_density=scene.vehicle.mesh_density
         )
-    barrier = None
-    if scene.barrier is not None:
-        friction, heading = scene.barrier.friction, scene.barrier.heading_deg
-        if scene.barrier.diameter_m is None:
-            barrier = Barrier.rigid_wall(friction=friction, heading=heading)
-        else:
-            barrier = Barrier.pole(diameter=scene.barrier.diameter_m, friction=friction, heading=heading)
+    barrier = None if scene.barrier is None else scene.barrier.made()
     impact = scene.impact
     return Simulation(
         vehicle,
@@ -131,6 +187,8 @@ def read_scene_file(path: str | Path) -> Simulation:
         impact.si("angle"),
         impact.si("offset"),
         standoff=impact.si("standoff"),
+        impact_yaw=impact.si("yaw"),
+        impact_roll=impact.si("roll"),
         duration=None if impact.duration is None else impact.si("duration"),
         settings=Settings(**dict(scene.settings)),
     )

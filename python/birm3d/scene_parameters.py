@@ -5,12 +5,13 @@ name                           value
 =============================  ========================================================================
 ``impact_speed`` ...           an argument of :class:`birm3d.Simulation` (``impact_angle``, ``impact_offset``,
                                ``standoff``, ``duration``, ``vehicle``, ``barrier``, ``settings``)
-``barrier.<field>``            a field of :class:`birm3d.Barrier`, as ``barrier.friction``
+``barrier.<field>``            a field of the barrier, as ``barrier.friction`` or ``barrier.spacing``
 ``settings.<field>``           a field of :class:`birm3d.Settings`, as ``settings.tolerance``
 ``vehicle.gvw``                mass [kg], see :meth:`birm3d.Vehicle.with_gvw`
 ``vehicle.mass_center_height`` above the ground at rest [m]
 ``vehicle.mesh_density``       relative number of shell elements
 ``vehicle.rate_sensitivity``   [s/m], see :meth:`birm3d.Vehicle.with_rate_sensitivity`
+``vehicle.dent_slope``         see :meth:`birm3d.Vehicle.with_dent_slope`
 ``zone.<zone>.<number>``       ``k_initial``, ``knee``, ``k_hardening``, ``f_max`` or ``k_unloading`` of
                                :class:`birm3d.Zone`
 ``zone.<zone>.stress[i]``      stress of point i of the zone's envelope [N per m^2]
@@ -30,14 +31,13 @@ from difflib import get_close_matches
 from functools import lru_cache
 from typing import Any
 
-from .barrier import Barrier
 from .settings import Settings
 from .simulation import Scene, Simulation
 from .vehicle import TRUSS_LAW, Vehicle, Zone
 
 __all__ = ["parameter_names", "unit_of", "value_of", "varied"]
 
-_VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity")
+_VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity", "dent_slope")
 _UNITS = {
     "impact_speed": "m/s",
     "impact_angle": "deg",
@@ -49,6 +49,11 @@ _UNITS = {
     "barrier.width": "m",
     "barrier.height": "m",
     "barrier.diameter": "m",
+    "barrier.thickness": "m",
+    "barrier.spacing": "m",
+    "barrier.row_spacing": "m",
+    "barrier.row_offset": "m",
+    "barrier.length": "m",
     "settings.time_step": "s",
     "settings.output_interval": "s",
     "settings.gravity": "m/s^2",
@@ -87,12 +92,11 @@ def unit_of(name: str) -> str:
 def _names(scene: Scene) -> tuple[str, ...]:
     names = [f.name for f in dataclasses.fields(Scene) if f.name not in ("vehicle", "barrier", "settings")]
     if scene.barrier is not None:
-        other = ("diameter",) if scene.barrier.diameter is None else ("width", "height")
-        names += [f"barrier.{f.name}" for f in dataclasses.fields(Barrier) if f.name not in other]
+        names += [f"barrier.{f.name}" for f in dataclasses.fields(scene.barrier)]
     names += [f"settings.{f.name}" for f in dataclasses.fields(Settings)]
     vehicle = scene.vehicle
     names += [f"vehicle.{name}" for name in _VEHICLE if name != "mesh_density" or vehicle.has_file]
-    if not vehicle.zones:
+    if not vehicle.zones and vehicle.joint is None:
         names += [f"truss.{name}" for name in TRUSS_LAW]
     for zone, law in vehicle.zones.items():
         names += [f"zone.{zone}.{number}" for number in _zone_numbers(law)]
@@ -165,7 +169,9 @@ _preset = lru_cache(maxsize=16)(Vehicle.preset)
 
 
 def _build(given: Mapping[str, Any]) -> Simulation:
-    keywords = {name: given[name] for name in ("standoff", "duration", "settings")}
+    keywords = {
+        name: given[name] for name in ("standoff", "impact_yaw", "impact_roll", "duration", "settings")
+    }
     return Simulation(
         given["vehicle"],
         given["barrier"],
@@ -193,6 +199,8 @@ def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -
         changed = changed.with_mesh_density(numbers["mesh_density"])
     if "rate_sensitivity" in numbers:
         changed = changed.with_rate_sensitivity(numbers["rate_sensitivity"])
+    if "dent_slope" in numbers:
+        changed = changed.with_dent_slope(numbers["dent_slope"])
     if "gvw" in numbers:
         changed = changed.with_gvw(numbers["gvw"])
     if "mass_center_height" in numbers:

@@ -11,7 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import units
+from .articulated import ArticulatedVehicle, Joint
 from .barrier import Barrier
+from .reference import NhtsaTest, nhtsa_tests
 from .settings import Settings
 from .simulation import Simulation
 from .vehicle import Vehicle
@@ -20,11 +22,18 @@ __all__ = [
     "TABLE_2",
     "elastic_block",
     "laboratory_block",
+    "laboratory_semi",
     "nhtsa_10146",
+    "nhtsa_frontal",
     "oblique",
+    "oblique_car",
     "paper_table_2",
     "parked",
+    "pickup_at_bollards",
+    "preset_for",
     "rolling",
+    "truck_at_bollards",
+    "truck_at_wall",
     "w1",
     "w2",
     "w2_force",
@@ -64,6 +73,64 @@ def laboratory_block(
         knee=knee,
         k_hardening=k_hardening / n,
         k_unloading=k_unloading / n,
+    )
+
+
+def laboratory_semi(*, front: float = 4e6, side: float = 2e6) -> ArticulatedVehicle:
+    """Return a 72,000-lb tractor and semi-trailer, both boxes: a laboratory, not a model of a truck.
+
+    Three axles and 8,633 kg in front, two axles and 24,026 kg behind, fifth wheel 1.2 m above the ground.
+    Mass and layout are those of common trucks, rounded; inertia is that of the boxes; stiffness is even.
+
+    Parameters
+    ----------
+    front, side
+        Stiffness of the tractor's front face, and of each side of both units, all trusses together [N/m].
+    """
+    tractor = _box("tractor", 8633.0, 1.0, (2.2, -4.2), 2.4, (0.4, 2.8), front, side, axles=(0.9, -2.7, -4.0))
+    trailer = _box("trailer", 24025.7, 1.95, (6.8, -6.8), 2.5, (1.2, 4.0), front, side, axles=(-3.9, -5.2))
+    return Vehicle.articulated([tractor, trailer], Joint((-3.1, 0.0, 1.2), (5.9, 0.0, 1.2)))
+
+
+def _box(
+    name: str,
+    mass: float,
+    height: float,
+    ends: tuple[float, float],
+    width: float,
+    heights: tuple[float, float],
+    front: float,
+    side: float,
+    axles: tuple[float, ...],
+) -> Vehicle:
+    """Return a box with a crushable front and sides and tyres of 0.5 m radius below its sides.
+
+    `ends` from the mass centre, which stands `height` above the ground [m].
+    """
+    length, depth = ends[0] - ends[1], heights[1] - heights[0]
+    levels = np.linspace(*heights, 4) - height
+    y, z = np.meshgrid(np.linspace(-0.5, 0.5, 7) * width, levels)
+    faces = [np.column_stack([np.full(y.size, ends[0]), y.ravel(), z.ravel()])]
+    inward = [np.tile([-1.8, 0.0, 0.0], (y.size, 1))]
+    # The sides begin where the front's trusses end: a closed side truss would be the rigid body at the wall.
+    x, z = np.meshgrid(np.linspace(ends[0] - 1.8, ends[1], 12), levels)
+    for left in (0.5, -0.5):
+        faces.append(np.column_stack([x.ravel(), np.full(x.size, left * width), z.ravel()]))
+        inward.append(np.tile([0.0, -1.6 * left, 0.0], (x.size, 1)))
+    nodes = np.concatenate(faces)
+    k_initial = np.repeat([front / y.size, side / x.size, side / x.size], [len(face) for face in faces])
+    return Vehicle.from_arrays(
+        name=name,
+        mass=mass,
+        inertia=mass / 12.0 * np.diag([width**2 + depth**2, length**2 + depth**2, length**2 + width**2]),
+        nodes=nodes,
+        anchors=nodes + np.concatenate(inward),
+        k_initial=k_initial,
+        knee=0.3,
+        k_hardening=k_initial,
+        k_unloading=20.0 * k_initial,
+        mass_center_height=height,
+        wheels=[(axle, 0.4 * left * width, 0.5 - height, 0.5) for axle in axles for left in (1.0, -1.0)],
     )
 
 
@@ -139,12 +206,105 @@ def nhtsa_10146(settings: Settings | None = None, mesh_density: float = 1.0) -> 
     return Simulation(vehicle, Barrier.rigid_wall(), units.km_h(57.09), settings=settings)
 
 
+def preset_for(test: NhtsaTest) -> str:
+    """Name of the preset that stands for the vehicle of a test.
+
+    The one of its class; for a class that has none, of those whose front was fitted to the same kind of
+    structure (a unit body), the one whose test vehicle is nearest in mass: a sport utility vehicle below
+    1,996 kg is a passenger car, above it a minivan.
+    """
+    if test.vehicle_class.startswith("pickup"):
+        return "pickup"
+    if test.vehicle_class == "car":
+        return "passenger_car"
+    if test.vehicle_class == "minivan":
+        return "minivan"
+    fitted = {"passenger_car": 1719.0, "minivan": 2273.0}
+    return min(fitted, key=lambda name: abs(fitted[name] - test.mass))
+
+
+def nhtsa_frontal(number: str, settings: Settings | None = None, mesh_density: float = 1.0) -> Simulation:
+    """Return a full-width rigid-wall test of NHTSA, by its number in :func:`birm3d.reference.nhtsa_tests`.
+
+    The preset of :func:`preset_for`, scaled to the mass of the vehicle tested.
+    """
+    tests = nhtsa_tests()
+    if number not in tests or tests[number].kind != "frontal":
+        known = ", ".join(name for name, test in tests.items() if test.kind == "frontal")
+        raise ValueError(f"number must be one of {known}; got {number!r}")
+    test = tests[number]
+    vehicle = Vehicle.preset(preset_for(test), mesh_density=mesh_density).scaled_to(test.mass)
+    return Simulation(vehicle, Barrier.rigid_wall(), test.speed, settings=settings)
+
+
+def truck_at_wall(settings: Settings | None = None, mesh_density: float = 1.0) -> Simulation:
+    """Paper, case 4: a 15,000-lb truck at 50 mph head-on into a rigid wall.
+
+    Film of a test of the Texas Transportation Institute showed a greatest pitch of 27 deg, which the front
+    of the preset is fitted to. The rear wheels are in the air for more than a second.
+    """
+    truck = Vehicle.preset("cargo_truck", mesh_density=mesh_density)
+    return Simulation(truck, Barrier.rigid_wall(), units.mph(50.0), duration=1.5, settings=settings)
+
+
+def truck_at_bollards(
+    settings: Settings | None = None,
+    mesh_density: float = 1.0,
+    *,
+    diameter: float = 0.32,
+    height: float = 1.0,
+    spacing: float = 1.2,
+    offset: float = 0.0,
+) -> Simulation:
+    """Paper, case 4: the truck of :func:`truck_at_wall` head-on into five bollards; nothing is fitted to it.
+
+    Film showed a greatest pitch of 23 deg, the paper computed 22. The sizes of the tested array were not
+    found published: these are common ones, the middle bollard meets the middle of the truck. `diameter`,
+    `height`, `spacing` centre to centre and `offset` of the truck along the row in m.
+    """
+    truck = Vehicle.preset("cargo_truck", mesh_density=mesh_density)
+    row = Barrier.bollards(count=5, diameter=diameter, height=height, spacing=spacing)
+    return Simulation(truck, row, units.mph(50.0), 90.0, offset, duration=1.5, settings=settings)
+
+
+def pickup_at_bollards(
+    clear_spacing: float,
+    offset: float = 0.0,
+    settings: Settings | None = None,
+    mesh_density: float = 1.0,
+    *,
+    diameter: float = 0.22,
+    height: float = 0.9,
+) -> Simulation:
+    """Pickup at 30 mph head-on into a long row of rigid bollards; a designer's question, no test.
+
+    `clear_spacing` between neighbours, `offset` of the pickup's middle from that of a bollard along the row,
+    `diameter` and `height` in m. The row has as many bollards as the pickup can meet.
+    """
+    pickup = Vehicle.preset("pickup", mesh_density=mesh_density)
+    row = Barrier.bollards(count=7, diameter=diameter, height=height, spacing=clear_spacing + diameter)
+    return Simulation(pickup, row, units.mph(30.0), 90.0, offset, duration=1.0, settings=settings)
+
+
 def oblique(angle: float, friction: float = 0.0, settings: Settings | None = None) -> Simulation:
     """Passenger car of 4,500 lb at 59.8 mph (paper, case 3, at 24 deg) against a rigid wall."""
     vehicle = Vehicle.preset("passenger_car", gvw=units.lb(4500))
     return Simulation(
         vehicle, Barrier.rigid_wall(friction=friction), units.mph(59.8), angle, settings=settings
     )
+
+
+def oblique_car(
+    friction: float = 0.175, settings: Settings | None = None, mesh_density: float = 1.0
+) -> Simulation:
+    """Paper, case 3: a 4,500-lb car at 59.8 mph and 24 deg into an instrumented rigid wall.
+
+    The test (1975 Plymouth Fury, Texas Transportation Institute) is known by its conditions only: the angles
+    that the paper compares are a figure without numbers. Friction of 0.15 to 0.20 is the paper's range.
+    """
+    vehicle = Vehicle.preset("passenger_car", gvw=units.lb(4500), mesh_density=mesh_density)
+    wall = Barrier.rigid_wall(friction=friction)
+    return Simulation(vehicle, wall, units.mph(59.8), 24.0, settings=settings)
 
 
 def rolling(duration: float = 2.0, settings: Settings | None = None) -> Simulation:

@@ -26,9 +26,14 @@ class Settings:
     gravity
         [m/s^2].
     ground
-        Whether the tyres meet the ground z = 0.
+        Whether tyres and body meet the ground z = 0. The body of a vehicle without wheels, or with skin below
+        the ground from the start, does not.
     mu_tire
         Tyre-pavement friction coefficient.
+    mu_body
+        Friction coefficient of the vehicle's body sliding on the ground.
+    braking
+        Share of the tyre-pavement friction that brakes, 0 to 1: 0 wheels roll, 1 they are locked and slide.
     cornering_stiffness
         Lateral tyre force per normal load and radian of slip, at small slip [1/rad].
     restitution
@@ -51,6 +56,8 @@ class Settings:
     gravity: float = 9.80665
     ground: bool = True
     mu_tire: float = 0.8
+    mu_body: float = 0.4
+    braking: float = 0.0
     cornering_stiffness: float = 10.0
     restitution: float = 0.1
     contact_model: Literal["projected", "along_truss"] = "projected"
@@ -77,6 +84,8 @@ class Settings:
             gravity=self.gravity,
             ground=self.ground,
             mu_tire=self.mu_tire,
+            mu_body=self.mu_body,
+            braking=self.braking,
             cornering_stiffness=self.cornering_stiffness,
             restitution=self.restitution,
             contact_model=contact_models[self.contact_model],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from . import _core
@@ -25,6 +26,8 @@ class Scene:
     impact_angle: float
     impact_offset: float
     standoff: float
+    impact_yaw: float
+    impact_roll: float
     duration: float | None
     settings: Settings
 
@@ -32,7 +35,8 @@ class Scene:
 class Simulation:
     """A vehicle that runs into a barrier.
 
-    The vehicle comes along a straight path with its nose ahead and stands before the barrier at t = 0.
+    The vehicle comes along a straight path, its nose ahead unless stated, and stands before the barrier at
+    t = 0.
 
     Parameters
     ----------
@@ -43,11 +47,18 @@ class Simulation:
     impact_speed
         [m/s], >= 0.
     impact_angle
-        Between the vehicle's path and the barrier's line [deg], above 0 and below 180; 90 is head-on.
+        Between the vehicle's path and the barrier's line [deg], 0 to 180; 90 is head-on. At 0 and 180 the
+        barrier must have an end to meet.
     impact_offset
-        Where the path of the mass centre meets the barrier's line, from its origin [m].
+        Where the path of the mass centre (of the leading unit) meets the barrier's line, from its origin [m].
+        At angles 0 and 180 the distance of the path from the line, positive behind it: half the thickness
+        leads to the middle of a wall's end.
     standoff
         Distance of the nearest node from the barrier at t = 0 [m], >= 0.
+    impact_yaw
+        By which the nose points to the left of the path at t = 0 [deg]; at 90 the right side goes ahead.
+    impact_roll
+        At t = 0 [deg], positive to the right.
     duration
         [s]; ``None``: until the outcome is decided.
     settings
@@ -68,6 +79,8 @@ class Simulation:
         impact_offset: float = 0.0,
         *,
         standoff: float = 0.0,
+        impact_yaw: float = 0.0,
+        impact_roll: float = 0.0,
         duration: float | None = None,
         settings: Settings | None = None,
     ) -> None:
@@ -82,6 +95,8 @@ class Simulation:
             float(impact_angle),
             float(impact_offset),
             float(standoff),
+            float(impact_yaw),
+            float(impact_roll),
             duration,
             settings if settings is not None else Settings(),
         )
@@ -92,10 +107,28 @@ class Simulation:
             angle=math.radians(self._scene.impact_angle),
             offset=self._scene.impact_offset,
             standoff=self._scene.standoff,
+            yaw=math.radians(self._scene.impact_yaw),
+            roll=math.radians(self._scene.impact_roll),
             settings=self._scene.settings.core,
             duration=duration,
         )
         self._run_time = 0.0
+
+    @staticmethod
+    def from_scene(scene: Scene) -> Simulation:
+        """Return the simulation of a scene, such as that of a loaded result."""
+        return Simulation(
+            scene.vehicle,
+            scene.barrier,
+            scene.impact_speed,
+            scene.impact_angle,
+            scene.impact_offset,
+            standoff=scene.standoff,
+            impact_yaw=scene.impact_yaw,
+            impact_roll=scene.impact_roll,
+            duration=scene.duration,
+            settings=scene.settings,
+        )
 
     @property
     def scene(self) -> Scene:
@@ -107,20 +140,29 @@ class Simulation:
         """Present time of the state [s]."""
         return self._core.time
 
-    def run(self) -> Result:
+    def run(self, *, frames: int | Sequence[float] | None = None) -> Result:
         """Run from the present state to the end; a run that is over starts anew. Ctrl-C stops it.
+
+        Parameters
+        ----------
+        frames
+            Number or instants [s] of the skin's positions that the result keeps for pictures, see
+            :meth:`birm3d.Result.with_frames`; ``None``: none, at no cost.
 
         Raises
         ------
         UnstableError
             If a fixed time step is beyond what the scene allows; the message names one that would do.
+        ValueError
+            If the frames are more than the result's rows or outside the run.
         """
         if self._core.end_reason != _core.EndReason.running:
             self.reset()
         start = time.perf_counter()
         self._core.run()
         self._run_time += time.perf_counter() - start
-        return self.result()
+        result = self.result()
+        return result if frames is None else result.with_frames(frames)
 
     def step(self) -> bool:
         """Take one accepted step; return ``False`` when the run is over and nothing was done."""
@@ -151,7 +193,7 @@ class Simulation:
         self._core.restore(snapshot)
 
     def __reduce__(self) -> tuple[object, ...]:
-        return (_rebuild, (self._scene,))
+        return (Simulation.from_scene, (self._scene,))
 
     def __repr__(self) -> str:
         scene = self._scene
@@ -159,16 +201,3 @@ class Simulation:
             f"Simulation({scene.vehicle.name}, {scene.barrier}, {scene.impact_speed:g} m/s, "
             f"{scene.impact_angle:g} deg)"
         )
-
-
-def _rebuild(scene: Scene) -> Simulation:
-    return Simulation(
-        scene.vehicle,
-        scene.barrier,
-        scene.impact_speed,
-        scene.impact_angle,
-        scene.impact_offset,
-        standoff=scene.standoff,
-        duration=scene.duration,
-        settings=scene.settings,
-    )

@@ -10,16 +10,33 @@ silently: unknown keys, NaN and text where a number belongs are errors.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Iterator, Mapping
 from importlib import resources
-from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from .toml_document import Document, DocumentError, KeyPath, Strict, frozen, received, reject
+from .vehicle_blocks import (
+    Block,
+    CoreBox,
+    Dents,
+    Dimensions,
+    End,
+    Exterior,
+    Name,
+    Positive,
+    Solid,
+    Source,
+    Target,
+    Text,
+    Upper,
+    Wheel,
+    Zone,
+    check_known,
+    check_unique,
+)
 
 __all__ = [
     "Block",
@@ -38,378 +55,36 @@ __all__ = [
     "preset_names",
     "preset_path",
     "read_vehicle_file",
+    "unit_paths",
 ]
 
-Point: TypeAlias = tuple[float, float, float]
-Range: TypeAlias = tuple[float, float]
-Positive: TypeAlias = Annotated[float, Field(gt=0.0)]
-NonNegative: TypeAlias = Annotated[float, Field(ge=0.0)]
-Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
-EnvelopePoint: TypeAlias = tuple[NonNegative, NonNegative]
-Panel: TypeAlias = Literal["front", "rear", "side", "top", "bottom"]
-# Text that may be broken over several lines of the file.
-Text: TypeAlias = Annotated[str, Field(min_length=1), AfterValidator(lambda text: " ".join(text.split()))]
-Status: TypeAlias = Literal["measured", "published", "calibrated", "estimated"]
-
-# Relative slack of comparisons that decimal numbers typed by hand can miss by rounding only.
-_ROUNDING = 1e-9
-# A face of a solid counts as plane (paper §4.2) when its fourth corner is within this share of its size.
-_PLANE = 1e-6
 # The solids must add up to the stated vehicle weight within this share; the rest is a typing error.
 _MASS = 0.01
-
-# Fig. 4: an 8-node solid as six tetrahedra around the diagonal 0-6.
-_TETRAHEDRA = ((0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6))
-_FACES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
 
 
 class VehicleFileError(DocumentError):
     """A vehicle file that can not be used; the message gives file, line, key, limit and value."""
 
 
-def _check_order(key: str, values: Sequence[float], rule: str, sign: float = 1.0) -> None:
-    """Require values that increase (sign 1) or decrease (sign -1)."""
-    for a, b in pairwise(values):
-        if not sign * a < sign * b:
-            reject(key, f"{rule}, got {a:g} followed by {b:g}")
-
-
-def _check_unique(key: str, names: list[str]) -> None:
-    for i, name in enumerate(names):
-        if name in names[:i]:
-            reject(key, f"names must differ, got '{name}' twice")
-
-
-def _check_known(key: str, names: tuple[str, ...], known: set[str]) -> None:
-    for name in names:
-        if name not in known:
-            reject(key, f"must be one of {', '.join(sorted(known))}; got '{name}'")
-
-
-def _minus(a: Point, b: Point) -> Point:
-    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
-
-
-def _triple(a: Point, b: Point, c: Point) -> float:
-    """Return a . (b x c)."""
-    return (
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-        + a[1] * (b[2] * c[0] - b[0] * c[2])
-        + a[2] * (b[0] * c[1] - b[1] * c[0])
-    )
-
-
-class Block(Strict):
-    """A block of numbers with the sources they come from."""
-
-    source: Annotated[tuple[str, ...], Field(min_length=1)]
-    status: Status
-
-
-class Source(Strict):
-    """One source of numbers: where it is published and how far it can be trusted."""
-
-    id: Annotated[str, Field(min_length=1)]
-    text: Text
-    status: Status
-
-
-class Dimensions(Block):
-    """Overall dimensions in m, for information and for checking the exterior."""
-
-    length_m: Positive
-    width_m: Positive
-    height_m: Positive
-    wheelbase_m: Positive
-    front_overhang_m: Positive
-
-
-class Target(Block):
-    """A measured or estimated mass property that the solids have to meet; it is checked, never used."""
-
-    quantity: Literal[
-        "mass_kg", "cg_behind_front_axle_m", "cg_height_m", "Ixx_kg_m2", "Iyy_kg_m2", "Izz_kg_m2"
-    ]
-    at_gvw_kg: Positive
-    value: float
-    tolerance: Positive
-
-
-class Solid(Block):
-    """An 8-node solid of uniform density: a box, or eight corners.
-
-    Corners in m, file axes: 0-3 counter-clockwise seen from above, 4-7 above them. Faces are plane.
-    """
-
-    name: Name
-    box_m: tuple[Range, Range, Range] | None = None
-    corners_m: Annotated[tuple[Point, ...], Field(min_length=8, max_length=8)] | None = None
-    mass_kg: Positive | None = None
-    density_kg_per_m3: Positive | None = None
-    payload: bool = False
-
-    @model_validator(mode="after")
-    def _check(self) -> Solid:
-        if (self.box_m is None) == (self.corners_m is None):
-            reject("name", f"solid '{self.name}' must have either box_m or corners_m")
-        if (self.mass_kg is None) == (self.density_kg_per_m3 is None):
-            reject("name", f"solid '{self.name}' must have either mass_kg or density_kg_per_m3")
-        for low, high in self.box_m or ():
-            if not low < high:
-                reject("box_m", f"each range must be increasing, got [{low}, {high}]")
-        self._check_shape()
-        return self
-
-    def _check_shape(self) -> None:
-        corners = self.corners
-        for face in _FACES:
-            a, b, c, d = (corners[i] for i in face)
-            u, v, w = _minus(b, a), _minus(c, a), _minus(d, a)
-            size = max(abs(x) for x in (*u, *v, *w))
-            if abs(_triple(u, v, w)) > _PLANE * size**3:
-                reject("corners_m", f"corners {face} must lie in one plane")
-        for i, j, k, m in _TETRAHEDRA:
-            o = corners[i]
-            if _triple(*(_minus(corners[n], o) for n in (j, k, m))) <= 0.0:
-                message = "corners must go counter-clockwise seen from above, upper four last, and be convex"
-                reject("corners_m", f"{message}; the part {i}, {j}, {k}, {m} has no positive volume")
-
-    @cached_property
-    def corners(self) -> tuple[Point, ...]:
-        """Eight corners in m, file axes."""
-        if self.corners_m is not None:
-            return self.corners_m
-        assert self.box_m is not None  # one of the two is given, see _check
-        (x0, x1), (y0, y1), (z0, z1) = self.box_m
-        base = ((x0, y0), (x1, y0), (x1, y1), (x0, y1))
-        return tuple((x, y, z) for z in (z0, z1) for x, y in base)
-
-    @cached_property
-    def volume(self) -> float:
-        """Volume in m^3 (Eq. 3, six tetrahedra)."""
-        total = 0.0
-        for i, j, k, m in _TETRAHEDRA:
-            o = self.corners[i]
-            total += _triple(*(_minus(self.corners[n], o) for n in (j, k, m))) / 6.0
-        return total
-
-    @property
-    def density(self) -> float:
-        """Density in kg/m^3."""
-        if self.density_kg_per_m3 is not None:
-            return self.density_kg_per_m3
-        return self.mass / self.volume
-
-    @property
-    def mass(self) -> float:
-        """Mass in kg."""
-        if self.mass_kg is not None:
-            return self.mass_kg
-        assert self.density_kg_per_m3 is not None  # one of the two is given, see _check
-        return self.density_kg_per_m3 * self.volume
-
-
-class Wheel(Block):
-    """A wheel: centre in m (file axes), rolling radius and width in m. It stands on the ground at rest."""
-
-    name: Name
-    center_m: Point
-    radius_m: Positive
-    width_m: Positive
-
-    @model_validator(mode="after")
-    def _check(self) -> Wheel:
-        if abs(self.center_m[2] - self.radius_m) > 1e-6:
-            reject("center_m", f"height must equal radius_m = {self.radius_m}, got {self.center_m[2]}")
-        return self
-
-
-class End(Strict):
-    """Plan and side shape of the front or rear end of the body.
-
-    bow_m: how much further back the corners are than the centre line, a parabola in y.
-    profile_m: setback over height, rows [z, setback]; setback 0 is the outermost line.
-    blend_m: length over which both fade out along the body.
-    """
-
-    bow_m: NonNegative = 0.0
-    profile_m: tuple[tuple[float, NonNegative], ...] = ()
-    blend_m: Positive = 1.0
-
-    @model_validator(mode="after")
-    def _check(self) -> End:
-        _check_order("profile_m", [row[0] for row in self.profile_m], "z must increase")
-        setback = self.bow_m + max((row[1] for row in self.profile_m), default=0.0)
-        if setback > 0.75 * self.blend_m:  # columns of the mesh would fold over each other
-            limit = setback / 0.75
-            reject("blend_m", f"must be at least {limit:g}, (bow + profile) / 0.75, got {self.blend_m}")
-        return self
-
-
-class Upper(Strict):
-    """A block standing on the body: greenhouse, cab, cargo box.
-
-    base_x_m: front and rear end of its base on the body's upper edge.
-    roof_m: rows [x, half width, z] from front to rear.
-    """
-
-    name: Name
-    base_x_m: Range
-    roof_m: Annotated[tuple[tuple[float, Positive, Positive], ...], Field(min_length=2)]
-
-    @model_validator(mode="after")
-    def _check(self) -> Upper:
-        if not self.base_x_m[0] > self.base_x_m[1]:
-            reject("base_x_m", f"must go from front to rear (falling x), got {list(self.base_x_m)}")
-        _check_order("roof_m", [row[0] for row in self.roof_m], "x must fall from front to rear", -1.0)
-        return self
-
-
-class Exterior(Block):
-    """The exterior shell: a body lofted through stations, with upper blocks on it.
-
-    element_size_m: edge length of a shell element at mesh density 1.
-    stations_m: rows [x, half width, z of underside, z of upper edge] from front to rear.
-    """
-
-    element_size_m: Annotated[float, Field(ge=0.01, le=1.0)]
-    stations_m: Annotated[tuple[tuple[float, Positive, NonNegative, Positive], ...], Field(min_length=2)]
-    front: End = End()
-    rear: End = End()
-    upper: tuple[Upper, ...] = ()
-
-    @model_validator(mode="after")
-    def _check(self) -> Exterior:
-        x = [row[0] for row in self.stations_m]
-        _check_order("stations_m", x, "x must fall from front to rear", -1.0)
-        for i, (_, _, bottom, top) in enumerate(self.stations_m):
-            if not bottom < top:
-                reject(f"stations_m.{i}", f"underside must be below upper edge, got {bottom} and {top}")
-        limit = x[0]
-        for i, upper in enumerate(self.upper):
-            front, rear = upper.base_x_m
-            if not (front <= limit and rear >= x[-1]):
-                key = f"upper.{i}.base_x_m"
-                reject(key, f"must lie on the body, between {limit} and {x[-1]}, got [{front}, {rear}]")
-            limit = rear
-        _check_unique("upper", [upper.name for upper in self.upper])
-        if any(upper.name == "body" for upper in self.upper):
-            reject("upper", "the name 'body' is taken by the lofted body itself")
-        return self
-
-
-class CoreBox(Block):
-    """A box of the rigid core, symmetric about y = 0; trusses run from it to the exterior."""
-
-    name: Name
-    x_m: Range
-    half_width_m: Positive
-    z_m: Range
-
-    @model_validator(mode="after")
-    def _check(self) -> CoreBox:
-        _check_order("x_m", self.x_m, "must increase")
-        _check_order("z_m", self.z_m, "must increase")
-        return self
-
-
-class Zone(Block):
-    """Stiffness of the exterior per unit of area, and the part of the exterior it holds for.
-
-    The part: panels, and optionally blocks ("body" or the name of an upper block) and ranges of x and z of
-    the element's middle (m, file axes). Zones are tried in the order of the file; the first match wins.
-    Trusses start from the nearest point of the named core boxes, or of all.
-
-    The law (Fig. 3): either k_initial, knee, k_hardening, f_max, or a general envelope with rows
-    [deflection in m, stress in Pa] from [0, 0]; the stress stays constant after its last point.
-    """
-
-    name: Name
-    panels: Annotated[tuple[Panel, ...], Field(min_length=1)]
-    blocks: tuple[Name, ...] = ()
-    x_m: Range | None = None
-    z_m: Range | None = None
-    core: tuple[Name, ...] = ()
-    k_initial_Pa_per_m: Positive | None = None  # noqa: N815
-    knee_m: Positive | None = None
-    k_hardening_Pa_per_m: NonNegative | None = None  # noqa: N815
-    f_max_Pa: Positive | None = None  # noqa: N815
-    envelope_m_Pa: Annotated[tuple[EnvelopePoint, ...], Field(min_length=2)] | None = None  # noqa: N815
-    k_unloading_Pa_per_m: Positive  # noqa: N815
-
-    @model_validator(mode="after")
-    def _check(self) -> Zone:
-        for key, limits in (("x_m", self.x_m), ("z_m", self.z_m)):
-            if limits is not None:
-                _check_order(key, limits, "must increase")
-        self._check_law()
-        points = self.envelope
-        steepest = max((b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(points))
-        if self.k_unloading_Pa_per_m < steepest * (1.0 - _ROUNDING):
-            reject(
-                "k_unloading_Pa_per_m",
-                f"must be at least the steepest slope of the envelope, {steepest:g}, "
-                f"or unloading would create energy; got {self.k_unloading_Pa_per_m:g}",
-            )
-        return self
-
-    def _check_law(self) -> None:
-        segments = {
-            "k_initial_Pa_per_m": self.k_initial_Pa_per_m,
-            "knee_m": self.knee_m,
-            "k_hardening_Pa_per_m": self.k_hardening_Pa_per_m,
-            "f_max_Pa": self.f_max_Pa,
-        }
-        if self.envelope_m_Pa is not None:
-            for key, value in segments.items():
-                if value is not None:
-                    reject(key, f"must not be given together with envelope_m_Pa, got {value:g}")
-            if self.envelope_m_Pa[0] != (0.0, 0.0):
-                reject("envelope_m_Pa", f"must start at [0, 0], got {list(self.envelope_m_Pa[0])}")
-            _check_order("envelope_m_Pa", [row[0] for row in self.envelope_m_Pa], "deflections must increase")
-            return
-        for key, value in segments.items():
-            if value is None:
-                reject(key, f"{key} is missing: give all of {', '.join(segments)}, or envelope_m_Pa")
-        assert self.k_initial_Pa_per_m is not None
-        assert self.knee_m is not None
-        assert self.f_max_Pa is not None
-        at_knee = self.k_initial_Pa_per_m * self.knee_m
-        if self.f_max_Pa < at_knee * (1.0 - _ROUNDING):
-            message = f"must be at least the stress at the knee, {at_knee:g}, got {self.f_max_Pa:g}"
-            reject("f_max_Pa", message)
-
-    @property
-    def envelope(self) -> tuple[tuple[float, float], ...]:
-        """Loading envelope, rows (deflection in m, stress in Pa), starting at (0, 0)."""
-        if self.envelope_m_Pa is not None:
-            return self.envelope_m_Pa
-        assert self.k_initial_Pa_per_m is not None
-        assert self.knee_m is not None
-        assert self.k_hardening_Pa_per_m is not None
-        assert self.f_max_Pa is not None
-        at_knee = self.k_initial_Pa_per_m * self.knee_m
-        points = ((0.0, 0.0), (self.knee_m, at_knee))
-        if self.k_hardening_Pa_per_m == 0.0 or self.f_max_Pa <= at_knee * (1.0 + _ROUNDING):
-            return points
-        crushed = self.knee_m + (self.f_max_Pa - at_knee) / self.k_hardening_Pa_per_m
-        return (*points, (crushed, self.f_max_Pa))
-
-
 class VehicleFile(Strict):
-    """A vehicle as its file describes it: SI units, file axes, immutable."""
+    """A vehicle as its file describes it: SI units, file axes, immutable.
+
+    zones_at_kg: mass of the vehicle that the stiffness of the zones holds for; without it, gvw_kg.
+    """
 
     format_version: Literal[1]
     name: Name
     title: Text
     description: Text
     gvw_kg: Positive
+    zones_at_kg: Positive | None = None
     sources: Annotated[tuple[Source, ...], Field(alias="source", min_length=1)]
     dimensions: Dimensions
     targets: Annotated[tuple[Target, ...], Field(alias="target")] = ()
     solids: Annotated[tuple[Solid, ...], Field(alias="solid", min_length=1)]
     wheels: Annotated[tuple[Wheel, ...], Field(alias="wheel")] = ()
     exterior: Exterior
+    dents: Dents | None = None
     core: Annotated[tuple[CoreBox, ...], Field(min_length=1)]
     zones: Annotated[tuple[Zone, ...], Field(alias="zone", min_length=1)]
 
@@ -417,7 +92,7 @@ class VehicleFile(Strict):
     @classmethod
     def _names_differ(cls, items: tuple[Any, ...]) -> tuple[Any, ...]:
         names = [item.id if isinstance(item, Source) else item.name for item in items]
-        _check_unique("", names)
+        check_unique("", names)
         return items
 
     @model_validator(mode="after")
@@ -428,16 +103,18 @@ class VehicleFile(Strict):
         blocks = {"body", *(upper.name for upper in self.exterior.upper)}
         boxes = {box.name for box in self.core}
         for zone in self.zones:
-            _check_known(f"zone.{zone.name}.blocks", zone.blocks, blocks)
-            _check_known(f"zone.{zone.name}.core", zone.core, boxes)
+            check_known(f"zone.{zone.name}.blocks", zone.blocks, blocks)
+            check_known(f"zone.{zone.name}.core", zone.core, boxes)
         known = {source.id for source in self.sources}
         for key, block in self._blocks():
-            _check_known(f"{key}.source", block.source, known)
+            check_known(f"{key}.source", block.source, known)
         return self
 
     def _blocks(self) -> Iterator[tuple[str, Block]]:
         yield "dimensions", self.dimensions
         yield "exterior", self.exterior
+        if self.dents is not None:
+            yield "dents", self.dents
         groups: Mapping[str, tuple[Block, ...]] = {
             "target": self.targets,
             "solid": self.solids,
@@ -454,6 +131,22 @@ class VehicleFile(Strict):
     def solids_mass(self) -> float:
         """Sum of the solids' masses in kg, before they are scaled to a gross vehicle weight."""
         return sum(solid.mass for solid in self.solids)
+
+    @property
+    def zones_mass(self) -> float:
+        """Mass of the vehicle that the zones' stiffness holds for [kg]."""
+        return self.gvw_kg if self.zones_at_kg is None else self.zones_at_kg
+
+    def scaled_to(self, mass: float) -> VehicleFile:
+        """Return the file of a vehicle of another mass [kg]: solids and zones heavier in proportion."""
+        weight, strength = mass / self.gvw_kg, mass / self.zones_mass
+        solids = tuple(
+            solid.model_copy(update={"mass_kg": weight * solid.mass, "density_kg_per_m3": None})
+            for solid in self.solids
+        )
+        zones = tuple(zone.scaled(strength) for zone in self.zones)
+        changes = {"gvw_kg": mass, "zones_at_kg": mass, "solids": solids, "zones": zones, "targets": ()}
+        return self.model_copy(update=changes)
 
     @property
     def zone_names(self) -> tuple[str, ...]:
@@ -541,10 +234,15 @@ def read_vehicle_file(path: str | Path) -> VehicleFile:
     return document.validate(VehicleFile, document.zones_in_order())
 
 
+# By weight, then the replication target.
+_ORDER = ("passenger_car", "minivan", "pickup", "cargo_truck", "semi_truck", "paper_pickup")
+
+
 def preset_names() -> tuple[str, ...]:
-    """Names of the vehicle files that come with the package, sorted."""
+    """Names of the vehicle files that come with the package, the library's five first, by weight."""
     folder = resources.files("birm3d") / "data"
-    return tuple(sorted(f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")))
+    names = {f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")}
+    return (*(name for name in _ORDER if name in names), *sorted(names.difference(_ORDER)))
 
 
 def preset_path(name: str) -> Path:
@@ -552,3 +250,11 @@ def preset_path(name: str) -> Path:
     if name not in preset_names():
         raise ValueError(f"preset must be one of {', '.join(preset_names())}; got {name!r}")
     return Path(str(resources.files("birm3d") / "data" / f"{name}.toml"))
+
+
+def unit_paths() -> dict[str, Path]:
+    """Files of one unit that come with the package, by their names: presets, and the units of the others."""
+    folder = Path(str(resources.files("birm3d") / "data"))
+    units = {path.stem: path for path in sorted((folder / "units").glob("*.toml"))}
+    single = {name: preset_path(name) for name in preset_names() if name != "semi_truck"}
+    return {**single, **units}

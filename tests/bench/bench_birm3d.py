@@ -46,7 +46,7 @@ SEDAN_ERROR = 0.01
 FASTER_THAN_NUMPY = 50.0
 
 # Below these two values of a metric are the same: rounding of what is zero by symmetry (deg, m).
-FLOORS = {"max_roll": 1e-6, "max_pitch": 1e-6, "max_yaw": 1e-6, "vehicle_penetration": 1e-9}
+FLOORS = {"max_roll": 1e-6, "max_pitch": 1e-6, "max_yaw": 1e-6, "contact_overlap": 1e-9}
 # Not part of the answer: how it was found, and two residuals that are errors themselves.
 BOOKKEEPING = {"steps", "run_time", "end_time", "energy_residual", "momentum_residual"}
 

@@ -1,6 +1,7 @@
 // Bodies and scenes with known answers, shared by the tests.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -74,7 +75,18 @@ inline Settings weightless(double tolerance = 1e-3) {
 
 inline std::shared_ptr<const Barrier> wall(double friction = 0.0, double heading = 0.0,
                                            const Vec3& origin = Vec3::Zero()) {
-    return std::make_shared<const Barrier>(friction, origin, heading);
+    return std::make_shared<const Barrier>(Barrier::wall(friction, origin, heading));
+}
+
+// Signed distance of a place in the world from the nearest element of the scene's barrier (m).
+inline double gap_to_barrier(const Scene& scene, const Vec3& place) {
+    double least = infinity;
+    for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
+        const Obstacle& element = scene.obstacles[i];
+        const Vec3 own = element.rotation.transpose() * (place - element.position);
+        least = std::min(least, nearest(element.shape, own).gap);
+    }
+    return least;
 }
 
 // 50 mph straight at the wall unless stated.

@@ -33,6 +33,8 @@ SCENES: Mapping[str, Callable[[], Simulation]] = MappingProxyType(
         "w2": scenes.w2,
         **{f"table_2_{mph}_mph": lambda mph=mph: scenes.paper_table_2(mph) for mph in scenes.TABLE_2},
         "nhtsa_10146": scenes.nhtsa_10146,
+        "oblique_car": scenes.oblique_car,
+        "truck_at_bollards": scenes.truck_at_bollards,
         **{f"oblique_{angle}": lambda angle=angle: scenes.oblique(angle) for angle in (10, 24, 45, 66)},
         **{f"oblique_{a}_friction": lambda a=a: scenes.oblique(a, friction=0.2) for a in (10, 24, 45, 66)},
         "rolling": scenes.rolling,

@@ -85,3 +85,16 @@ def test_committed_results_are_small_and_name_no_place(path: Path) -> None:
     rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
     assert {"case", "error", "time_ms"} <= set(rows[0])
     assert all(float(row["error"]) < 0.01 for row in rows)
+
+
+@pytest.mark.parametrize("program", ["bench_library.py", "bench_random_impacts.py"])
+def test_quick_robustness(program: str) -> None:
+    """No scene of the quick choice has a fault; the program would end with 1."""
+    done = subprocess.run(
+        [sys.executable, "-W", "error", PROGRAM.parent / program, "--quick"],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert " 0 with a fault" in done.stdout

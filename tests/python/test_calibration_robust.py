@@ -223,7 +223,7 @@ class TestKeeping:
         ("text", "message"),
         [
             ("{", "must be JSON"),
-            ("[]", "format must be 'birm3d calibration', got list"),
+            ("[]", "format must be 'birm3d calibration', got 'list'"),
             ('{"format": "other"}', "format must be 'birm3d calibration', got 'other'"),
             (json.dumps({"format": "birm3d calibration", "format_version": 99}), "must be 1, got 99"),
         ],

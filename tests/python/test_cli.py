@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from birm3d import Study, units
+from birm3d import Result, Study, load, units
 from birm3d.cli import main
 
 SEDAN = [
@@ -55,13 +56,34 @@ def test_run_as_json_with_files(monkeypatch, capsys, tmp_path):
     assert "left out" in err
 
 
+def test_run_with_result_page_and_movie(monkeypatch, capsys, tmp_path):
+    animate = Result.animate  # smaller and shorter
+    monkeypatch.setattr(Result, "animate", lambda self, path: animate(self, path, frames=3, size=(160, 90)))
+    kept, page, movie = (tmp_path / name for name in ("crash.npz", "crash.html", "crash.gif"))
+    files = ["--save", str(kept), "--html", str(page), "--movie", str(movie)]
+    assert birm3d(monkeypatch, *SEDAN, "--json", *files) == 0
+    out, err = capsys.readouterr()
+    assert load(kept).metrics == json.loads(out)["metrics"]
+    assert page.read_text(encoding="utf-8").endswith("</html>\n")
+    assert movie.read_bytes().startswith(b"GIF89a")
+    assert [line.split(":")[0] for line in err.splitlines()] == ["result", "page", "movie"]
+
+
+def test_missing_extra_is_one_line(monkeypatch, capsys, tmp_path):
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    assert birm3d(monkeypatch, *SEDAN, "--movie", str(tmp_path / "crash.gif")) == 2
+    assert capsys.readouterr().err == "birm3d: 3-D pictures need pyvista: pip install 'birm3d[render]'\n"
+
+
 def test_vehicles(monkeypatch, capsys):
     assert birm3d(monkeypatch, "vehicles", "--json") == 0
     facts = json.loads(capsys.readouterr().out)
     assert facts["passenger_car"]["mass"] == pytest.approx(1814.37)
     assert "bumper" in facts["pickup"]["zones"]
     assert birm3d(monkeypatch, "vehicles") == 0
-    assert "paper_pickup" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "paper_pickup" in out
+    assert "mass [kg]" in out
 
 
 @pytest.mark.parametrize(
@@ -154,7 +176,7 @@ def test_the_example_scene_is_read(monkeypatch, capsys):
         (('"45 deg"', '"45 m"'), 13, ["angle", "deg", "45 m"]),
         (('preset = "passenger_car"', ""), 2, ["preset or file"]),
         (("[barrier]", "[barrier"), 7, ["TOML"]),
-        (('"rigid_wall"', '"pole"'), 7, ["diameter_m", "pole"]),
+        (('"rigid_wall"', '"pole"\nwidth_m = 2.0'), 9, ["width_m", "rigid_wall", "pole"]),
     ],
 )
 def test_scene_file_errors(monkeypatch, capsys, tmp_path, wrong, line, parts):

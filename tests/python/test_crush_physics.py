@@ -106,8 +106,9 @@ def test_a_pole_leaves_a_round_dent_and_nothing_passes() -> None:
     assert (np.abs(gap) < 0.01).sum() > 20
 
 
-def test_offset_poles_turn_the_vehicle_and_mirror() -> None:
-    car = Vehicle.preset("passenger_car", mesh_density=0.5)
+@pytest.mark.parametrize("dent_slope", [0.0, 1.0])
+def test_offset_poles_turn_the_vehicle_and_mirror(dent_slope: float) -> None:
+    car = Vehicle.preset("passenger_car", mesh_density=0.5).with_dent_slope(dent_slope)
     left = Simulation(car, Barrier.pole(diameter=0.3), 12.0, 90.0, 0.5, duration=0.3).run()
     right = Simulation(car, Barrier.pole(diameter=0.3), 12.0, 90.0, -0.5, duration=0.3).run()
     assert abs(left.yaw[-1]) > 5.0
@@ -135,7 +136,7 @@ def test_standoff_of_a_pole() -> None:
 @pytest.mark.parametrize(
     ("make", "naming"),
     [
-        (lambda: Barrier.pole(diameter=0.0), "diameter must be finite and > 0, got 0.0"),
+        (lambda: Barrier.pole(diameter=0.0), "diameter must be finite and > 0 m, got 0.0"),
         (lambda: Barrier.pole(diameter=math.nan), "diameter"),
         (lambda: Barrier.pole(friction=-0.1), "friction"),
         (lambda: Barrier.pole(origin=(0.0, 0.0)), "origin"),  # type: ignore[arg-type]

@@ -13,12 +13,16 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 # Script -> figures that it writes when asked, and a word of its table.
 SCRIPTS = {
     "contact_models.py": (["contact_models.png"], "along_truss"),
+    "fit_fronts.py": (["fit_fronts.png"], "in the file"),
     "fit_sedan_front.py": (["fit_sedan_front.png"], "in the file"),
+    "fit_truck_front.py": (["fit_truck_front.png"], "in the file"),
     "fragility.py": (["fragility.png", "sweep.png"], "dynamic_crush > 0.7 m"),
     "head_on_sedan.py": (["head_on_sedan.png", "head_on_sedan_overview.png"], "peak_normal_force_cfc60"),
+    "oblique_car.py": (["oblique_car.png", "oblique_car_plan.png"], "redirected at"),
     "own_vehicle.py": (["own_vehicle.png"], "trolley"),
     "paper_table_2.py": (["paper_table_2.png"], "force / (m a)"),
     "tire_reactions.py": (["tire_reactions.png"], "statics"),
+    "truck_on_wall_and_bollards.py": (["truck_on_wall_and_bollards.png"], "bollards, predicted"),
 }
 
 

@@ -7,7 +7,8 @@ import math
 
 import numpy as np
 import pytest
-from birm3d import Vehicle, _core
+from birm3d import Vehicle, _core, scenes
+from birm3d.vehicle_file import unit_paths
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
@@ -230,7 +231,11 @@ def test_gvw_is_met_exactly(name: str) -> None:
         assert direct == heavy
 
 
-@pytest.mark.parametrize("name", Vehicle.presets())
+WITHOUT_LOAD_SPACE = ("passenger_car", "minivan", "pickup", "paper_pickup")
+LOAD_SPACE = ("cargo_truck", "semi_trailer")
+
+
+@pytest.mark.parametrize("name", WITHOUT_LOAD_SPACE)
 def test_payload_takes_what_is_added(name: str) -> None:
     vehicle = Vehicle.preset(name, mesh_density=0.1)
     full = moments_about_origin(vehicle)
@@ -252,9 +257,9 @@ def test_payload_takes_what_is_added(name: str) -> None:
     close(payload, masses @ middles / masses.sum(), 1e-9)
 
 
-@pytest.mark.parametrize("name", Vehicle.presets())
+@pytest.mark.parametrize("name", [*WITHOUT_LOAD_SPACE, *LOAD_SPACE])
 def test_below_the_unladen_mass_the_structure_is_rescaled(name: str) -> None:
-    vehicle = Vehicle.preset(name, mesh_density=0.1)
+    vehicle = Vehicle.from_file(unit_paths()[name], mesh_density=0.1)
     unladen = sum(solid.mass for solid in vehicle._file.solids if not solid.payload)
     empty, half = vehicle.with_gvw(unladen), vehicle.with_gvw(0.5 * unladen)
     close(half.center_of_mass, empty.center_of_mass)
@@ -272,6 +277,115 @@ def test_what_hangs_on_the_mass_centre_follows_it(name: str) -> None:
     ):
         close(light_part + vehicle.center_of_mass, heavy_part + heavy.center_of_mass)
     assert heavy.mass_center_height == heavy.center_of_mass[2]
+
+
+# ---- load spaces -------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(params=LOAD_SPACE)
+def truck(request: pytest.FixtureRequest) -> Vehicle:
+    return Vehicle.from_file(unit_paths()[request.param], mesh_density=0.1)
+
+
+def unladen(vehicle: Vehicle) -> float:
+    return sum(solid.mass for solid in vehicle._file.solids if not solid.payload)
+
+
+def goods(vehicle: Vehicle, payload: float, height: float) -> np.ndarray:
+    """Mass, first and second moments of a box of goods on the floor of the load space, from formulas."""
+    (solid,) = (solid for solid in vehicle._file.solids if solid.payload)
+    low, high = np.array(solid.box_m).T
+    high[2] = low[2] + height
+    center, size = 0.5 * (low + high), high - low
+    moments = np.diag(size**2 / 12.0) + np.outer(center, center)
+    return np.concatenate([[payload], payload * center, payload * inertia_of(moments).ravel()])
+
+
+@pytest.mark.parametrize("share", [0.01, 0.3, 1.0, 1.2])
+def test_goods_stand_on_the_floor_at_their_density(truck: Vehicle, share: float) -> None:
+    empty = moments_about_origin(truck.with_payload(0.0))
+    payload = share * (truck.mass - unladen(truck))
+    (solid,) = (solid for solid in truck._file.solids if solid.payload)
+    height = share * (solid.box_m[2][1] - solid.box_m[2][0])
+    loaded = truck.with_payload(payload)
+    assert loaded.mass == pytest.approx(unladen(truck) + payload, rel=1e-12)
+    close(moments_about_origin(loaded), empty + goods(truck, payload, height), 1e-11)
+    close(moments_about_origin(truck.with_gvw(loaded.mass)), moments_about_origin(loaded))
+
+
+def test_the_mass_centre_rises_with_the_load(truck: Vehicle) -> None:
+    payload = truck.mass - unladen(truck)
+    empty, *heights = (truck.with_payload(s * payload).mass_center_height for s in (0.0, 0.5, 1.0, 1.3, 3.0))
+    assert empty < heights[1]
+    assert (np.diff(heights) > 0.0).all()
+    # More than by weight alone: half the goods as high as all of them stand higher than half the goods.
+    as_high = truck.with_payload(0.5 * payload, height=truck_height(truck)).mass_center_height
+    assert heights[0] < as_high < heights[1]
+
+
+def test_next_to_no_goods_are_no_error(truck: Vehicle) -> None:
+    empty = truck.with_payload(0.0)
+    for payload in (1e-12, 1e-6, 1e-3):
+        loaded = truck.with_payload(payload)
+        assert loaded.mass_center_height == pytest.approx(empty.mass_center_height, abs=1e-6)
+        assert loaded.inertia == pytest.approx(empty.inertia, rel=1e-5, abs=1e-6)
+
+
+def truck_height(truck: Vehicle) -> float:
+    (solid,) = (solid for solid in truck._file.solids if solid.payload)
+    return solid.box_m[2][1] - solid.box_m[2][0]
+
+
+def test_a_full_space_takes_denser_goods(truck: Vehicle) -> None:
+    (solid,) = (solid for solid in truck._file.solids if solid.payload)
+    space = solid.fills_to_m - solid.box_m[2][0]
+    payload = 5.0 * (truck.mass - unladen(truck))
+    empty = moments_about_origin(truck.with_payload(0.0))
+    close(moments_about_origin(truck.with_payload(payload)), empty + goods(truck, payload, space), 1e-11)
+
+
+def test_density_and_height_of_goods(truck: Vehicle) -> None:
+    empty = moments_about_origin(truck.with_payload(0.0))
+    dense, high = truck.with_payload(1500.0, density=800.0), truck.with_payload(1500.0, height=1.1)
+    (solid,) = (solid for solid in truck._file.solids if solid.payload)
+    floor = solid.volume / truck_height(truck)
+    close(moments_about_origin(dense), empty + goods(truck, 1500.0, 1500.0 / (800.0 * floor)), 1e-11)
+    close(moments_about_origin(high), empty + goods(truck, 1500.0, 1.1), 1e-11)
+    # The density stays with later weights and meshes.
+    more = dense.with_gvw(dense.mass + 1500.0)
+    close(moments_about_origin(more), empty + goods(truck, 3000.0, 3000.0 / (800.0 * floor)), 1e-11)
+    close(more.with_mesh_density(0.2).inertia, more.inertia)
+    assert more != truck.with_gvw(more.mass)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"payload": -1.0}, r"payload must be finite and >= 0, got -1"),
+        ({"payload": math.nan}, r"payload must be finite and >= 0, got nan"),
+        ({"payload": 100.0, "density": 0.0}, r"density must be finite and > 0, got 0"),
+        ({"payload": 100.0, "height": 0.0}, r"height must be > 0 and at most .* m; got 0"),
+        ({"payload": 100.0, "height": 9.0}, r"height must be > 0 and at most .*, [1-3]\.\d+ m; got 9"),
+        ({"payload": 9e4, "density": 100.0}, r"density must be at least .* for 90000 kg to fit, got 100"),
+        (
+            {"payload": 100.0, "density": 1.0, "height": 1.0},
+            r"density must not be given together with height",
+        ),
+    ],
+)
+def test_bad_loads_are_refused(truck: Vehicle, arguments: dict[str, float], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        truck.with_payload(**arguments)
+
+
+def test_loads_need_a_place() -> None:
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    heavier = car.with_payload(400.0)
+    close(moments_about_origin(heavier), moments_about_origin(car.with_gvw(heavier.mass)))
+    with pytest.raises(ValueError, match="density of a payload needs a vehicle with a load space"):
+        car.with_payload(400.0, density=300.0)
+    with pytest.raises(ValueError, match="payload needs a vehicle whose file names one"):
+        scenes.elastic_block(100).with_payload(100.0)
 
 
 # ---- free tumbling -----------------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from birm3d import Result, Settings, Vehicle, scenes, units
+from birm3d import Result, Settings, Vehicle, lateral_load, scenes, units
 
 
 @pytest.mark.parametrize(("mph", "peak"), scenes.TABLE_2.items())
@@ -74,7 +74,7 @@ FLOOR = {
     "max_roll": 0.1,
     "max_yaw": 0.1,
     "max_pitch": 0.1,
-    "vehicle_penetration": 1e-5,
+    "contact_overlap": 1e-5,
     "residual_crush": 1e-3,
 }
 NOT_PHYSICS = {"energy_residual", "momentum_residual", "steps", "run_time"}
@@ -90,3 +90,98 @@ def test_metrics_are_within_a_percent_of_their_fine_step_answers(result_of: Call
         for name in set(fine) - NOT_PHYSICS
     }
     assert {name: error for name, error in errors.items() if error > 0.0} == {}
+
+
+class TestObliqueCar:
+    """Paper, case 3: 4,500-lb car, 59.8 mph, 24 deg, rigid wall; of the test only these are known."""
+
+    @pytest.fixture
+    def result(self, result_of: Callable[[str], Result]) -> Result:
+        return result_of("oblique_car")
+
+    def test_redirected(self, result: Result) -> None:
+        assert result.scene.vehicle.mass == pytest.approx(units.lb(4500), rel=1e-9)
+        assert 0.0 < result.metrics["exit_angle"] < 24.0  # not steeper than it came
+        assert result.final_velocity[1] > 0.5 * result.velocity[0, 1]  # nor stopped
+        assert result.yaw[-1] > 24.0  # turned past the wall's line
+        assert result.metrics["max_roll"] < 45.0  # upright
+
+    def test_normal_impulse(self, result: Result) -> None:
+        """m v sin a times 1 to 1.3 when the car has turned parallel; the rear's blow comes on top."""
+        momentum = lateral_load.normal_momentum(units.lb(4500), units.mph(59.8), 24.0)
+        assert momentum == pytest.approx(22.19e3, rel=1e-3)
+        interval = result.scene.settings.output_interval
+        share = np.cumsum(result.barrier_normal_force) * interval / momentum
+        low, high = lateral_load.NORMAL_IMPULSE
+        assert low < share[np.argmax(result.yaw >= 24.0)] < high
+        # Newton: wall and tyres together change the velocity along the wall's normal, x.
+        tires = result.tire_friction_force[1:, 0].sum() * interval / momentum
+        # v / (v sin a) there, with both signs turned: the wall pushes to -x.
+        change = (result.velocity[0, 0] - result.final_velocity[0]) / result.velocity[0, 0]
+        assert share[-1] - tires == pytest.approx(change, rel=1e-3)
+        # With the rear's blow it bounces off by 0.35 of its approach, above the usual 0.3: known, the sides'
+        # stiffness and unloading are estimates. Half the approach would be elastic beyond any test.
+        assert high < share[-1] < 1.5
+
+    def test_force(self, result: Result) -> None:
+        """Above Olson's lower bound and the TL-3 design force, below a stop in half that way."""
+        nodes = result.scene.vehicle.nodes
+        impact = (units.lb(4500), units.mph(59.8), 24.0)
+        peak = lateral_load.olson_peak_force(
+            *impact, front=float(nodes[:, 0].max()), half_width=float(nodes[:, 1].max())
+        )
+        assert peak < lateral_load.TL_3_FORCE  # the order that the closed forms are known to have
+        assert lateral_load.TL_3_FORCE < result.metrics["peak_force_50ms"] < 2.0 * peak
+
+    def test_friction_slows(self, result: Result) -> None:
+        low, high = (scenes.oblique_car(friction).run().metrics for friction in (0.15, 0.20))
+        assert low["exit_speed"] > result.metrics["exit_speed"] > high["exit_speed"]
+        assert low["exit_angle"] > high["exit_angle"]
+
+
+def test_olson_of_the_fury() -> None:
+    """4,500 lb, 59.8 mph, 24 deg, 2.66 m to the front, 0.99 m half width: 6.1 g mean (worked by hand)."""
+    size = {"front": 2.66, "half_width": 0.99}
+    mean = lateral_load.olson_mean_force(2041.2, 26.733, 24.0, **size)
+    assert mean / (2041.2 * units.g) == pytest.approx(6.1, abs=0.1)
+    assert lateral_load.olson_peak_force(2041.2, 26.733, 24.0, **size) == pytest.approx(np.pi / 2 * mean)
+    with pytest.raises(ValueError, match=r"way .* must be > 0 m"):
+        lateral_load.olson_mean_force(2041.2, 26.733, 24.0, front=0.1, half_width=0.99)
+
+
+class TestTruckAtWall:
+    """Paper, case 4: 15,000-lb diesel truck, 50 mph head-on, Texas Transportation Institute."""
+
+    def test_pitch(self) -> None:
+        """Film: 27 deg, which the front is fitted to."""
+        result = scenes.truck_at_wall().run()
+        assert result.scene.vehicle.mass == pytest.approx(units.lb(15000), rel=1e-5)
+        assert result.metrics["max_pitch"] == pytest.approx(27.0, abs=2.0)
+        assert result.pitch.max() == result.metrics["max_pitch"]  # nose down: the rear wheels rise
+        assert result.time[np.argmax(result.pitch)] < 0.9 * result.time[-1]  # the run saw it come down again
+        # A front that grows in proportion to mass: 0.97 m; 1 MN/m: 1.84 m.
+        assert 0.97 < result.metrics["max_displacement"] < 1.84
+
+
+class TestTruckAtBollards:
+    """Paper, case 4: the same truck into a row of bollards; film showed 23 deg, the paper computed 22."""
+
+    @pytest.fixture
+    def result(self, result_of: Callable[[str], Result]) -> Result:
+        return result_of("truck_at_bollards")
+
+    def test_same_truck(self, result: Result) -> None:
+        assert result.scene.vehicle == scenes.truck_at_wall().scene.vehicle
+
+    def test_stopped(self, result: Result) -> None:
+        assert result.metrics["max_displacement"] < 2.0  # in front of the cab's back
+        assert result.metrics["energy_residual"] < 0.005
+
+    def test_pitch_is_known_to_be_too_great(self, result: Result) -> None:
+        """A prediction that misses: 36.7 deg with the assumed row. Held so that a change of it is seen."""
+        assert result.metrics["max_pitch"] == pytest.approx(36.7, abs=2.0)
+
+    def test_lower_bollards_pitch_more(self, result: Result) -> None:
+        """Couple about the mass centre, 1.28 m high: the lower the force, the more it turns."""
+        low, high = (scenes.truck_at_bollards(height=height).run() for height in (0.9, 1.2))
+        assert low.metrics["max_pitch"] > result.metrics["max_pitch"] > high.metrics["max_pitch"]

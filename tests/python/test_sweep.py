@@ -113,7 +113,7 @@ def test_a_run_that_fails_is_a_row_with_its_reason(study: Study) -> None:
     bad = np.flatnonzero(study["impact_angle"] == 190.0)
     assert list(study.failed) == bad.tolist()
     for row in bad:
-        assert study.error[row] == "ValueError: impact_angle must be > 0 and < 180 deg, got 190"
+        assert study.error[row] == "ValueError: impact_angle must be within 0 and 180 deg, got 190"
         assert all(math.isnan(values[row]) for values in study.metrics.values())
         assert study.state_hash[row] == study.end_reason[row] == ""
     good = np.flatnonzero(study["impact_angle"] != 190.0)

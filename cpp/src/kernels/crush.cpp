@@ -10,6 +10,9 @@ namespace birm3d {
 
 namespace {
 
+// Cosine above which the normals of two instants are one surface's.
+constexpr double sharp_turn = 0.5;
+
 // Held nodes move along n + m, m the normal of the instant before, so that a path is followed to second order
 // while the body turns.
 Vec3 holding_direction(const Vec3& n, const Vec3& m) {
@@ -18,9 +21,11 @@ Vec3 holding_direction(const Vec3& n, const Vec3& m) {
 
 // Nodes whose truss ceased to push. One that follows a receding surface stops where its truss reaches zero
 // force; one that the truss pushes off the surface springs to that length at once, and what the truss had
-// stored is lost. Few nodes a step do. Returns what the first kind takes from the work on the trusses (J).
-double release(const TrussBlock& truss, const TrussBlockState& before, const Lanes& gap,
-               const BlockContact& contact, TrussBlockState& now) {
+// stored is lost, which a dent keeps at its surface all the same. Few nodes a step do. Returns what the first kind
+// takes from the work on the trusses (J).
+template <class Share>
+double release(const TrussBlock& truss, const TrussBlockState& before, const Lanes& gap, const Share& share,
+               TrussBlockState& now) {
     double spared = 0.0;
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!(before.force[i] > 0.0 && now.force[i] == 0.0)) continue;
@@ -29,13 +34,18 @@ double release(const TrussBlock& truss, const TrussBlockState& before, const Lan
         const double d0 = before.deflection[i], d1 = now.deflection[i];
         Vec3 b = to - anchor;
         double d = before.residual[i];
-        if (b.dot(contact.normal(i)) < 0.0) {
+        if (b.dot(share.direction(i)) < 0.0) {
             if (!(gap[i] > 0.0)) continue;
             const double way = d0 - d1;
-            const double share = way > 0.0 ? std::clamp((d0 - d) / way, 0.0, 1.0) : 0.0;
-            b = from + share * (to - from) - anchor;
-            d = d0 - share * way;
+            const double part = way > 0.0 ? std::clamp((d0 - d) / way, 0.0, 1.0) : 0.0;
+            b = from + part * (to - from) - anchor;
+            d = d0 - part * way;
             spared += 0.5 * before.force[i] * (d - d1);
+        } else if (share.drawn(i)) {
+            now.residual[i] = std::max(d, d1);
+            continue;
+        } else if (!(d < d1)) {
+            continue;  // drawn out beyond its length: back there it would be inside
         }
         const double length = truss.length[i] - d;
         const Vec3 place = anchor + (length > tolerance::truss_length ? length / b.norm() : 1.0) * b;
@@ -61,7 +71,7 @@ BIRM3D_LANE_LOOP double stiffness_of_pushing(const TrussBlock& truss, const Lane
 
 // Sum of k_unloading times inverse effective mass over the nodes that push (1/s^2).
 double contact_stiffness(const FlatContact& surface, const TrussMesh& mesh, std::size_t b,
-                         const TrussBlockState& now, const BlockContact&, double pushing) {
+                         const TrussBlockState& now, double pushing) {
     const InverseMass& inverse_mass = surface.inverse_mass;
     const Mat3& q = inverse_mass.form;
     if (pushing == mesh.pushable[b])
@@ -70,69 +80,78 @@ double contact_stiffness(const FlatContact& surface, const TrussMesh& mesh, std:
                                 2.0 * q(0, 1), 2.0 * q(0, 2), 2.0 * q(1, 2));
 }
 
-double contact_stiffness(const CurvedContact& surface, const TrussMesh& mesh, std::size_t b,
-                         const TrussBlockState& now, const BlockContact& contact, double) {
+double contact_stiffness(const RigidBody& body, const TrussBlock& truss, const TrussBlockState& now,
+                         const BlockContact& contact) {
     double sum = 0.0;
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!(now.force[i] > 0.0)) continue;
-        const Vec3 c = Vec3(now.x[i], now.y[i], now.z[i]).cross(contact.normal(i));
-        sum += mesh.block[b].k_unloading[i] *
-               (surface.body.inverse_mass + c.dot(surface.body.inverse_inertia * c));
+        const Vec3 c = contact.torque(i);
+        const double share = contact.pressure[i] / now.force[i];
+        sum += std::max(1.0, share * share) * truss.k_unloading[i] *
+               (body.inverse_mass + c.dot(body.inverse_inertia * c));
     }
     return sum;
 }
 
-double press(const FlatContact& surface, const PressColumns& truss, const TrussBlockState& before,
-             TrussBlockState& now, Lanes& gap, BlockContact& contact, NodeSums& sums) {
-    const Vec3& n = surface.face.normal;
-    const Vec3 h = holding_direction(n, surface.normal_before);
-    return press_rows.flat(truss, {n.x(), n.y(), n.z(), surface.face.offset, h.x(), h.y(), h.z()},
-                           columns_of<const double>(before), columns_of<double>(now), gap.data(),
-                           contact.pressure.data(), sums);
-}
+// Ways and shares of CurvedPress. Where normals part sharply, at an edge, the one before says nothing of the path.
+struct alignas(64) Ways {
+    Lanes hx, hy, hz, sx, sy, sz;
+};
 
-double press(const CurvedContact& surface, const PressColumns& truss, const TrussBlockState& before,
-             TrussBlockState& now, Lanes& gap, BlockContact& contact, NodeSums& sums) {
-    alignas(64) Lanes hx, hy, hz;
+BIRM3D_LANE_LOOP void find_ways(const NodeFaces& faces, const BlockContact& contact,
+                                const Lanes& force_before, Ways& ways) {
+    BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
-        const Vec3 node(before.x[i], before.y[i], before.z[i]);
-        const Vec3 n = surface.face.normal_at(node);
-        const Vec3 h = holding_direction(n, surface.before.normal_at(node));
-        gap[i] = surface.face.gap(node);
-        contact.nx[i] = n.x(), contact.ny[i] = n.y(), contact.nz[i] = n.z();
-        hx[i] = h.x(), hy[i] = h.y(), hz[i] = h.z();
-    }
-    return press_rows.curved(truss,
-                             {gap.data(), contact.nx.data(), contact.ny.data(), contact.nz.data(), hx.data(),
-                              hy.data(), hz.data()},
-                             columns_of<const double>(before), columns_of<double>(now), gap.data(),
-                             contact.pressure.data(), sums);
-}
-
-template <class Contact>
-void crush_block(const Contact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
-                 const TrussBlockState& before, TrussBlockState& now, BlockContact& contact,
-                 CrushSums& sums) {
-    alignas(64) Lanes gap;
-    const double nodes = press(surface, columns_of(mesh, b, factor), before, now, gap, contact, sums.nodes);
-    if (nodes >= left) sums.released_work += release(mesh.block[b], before, gap, contact, now);
-    const double pushing = std::fmod(nodes, left);
-    now.touching = pushing > 0.0;
-    if (now.touching) {
-        sums.stiffness += contact_stiffness(surface, mesh, b, now, contact, pushing);
-        now.box = before.box;  // the block is looked at in any case while it touches
-    } else {
-        now.box = Box::around(lanes, [&now](std::size_t i) { return Vec3(now.x[i], now.y[i], now.z[i]); });
+        const double nx = contact.nx[i], ny = contact.ny[i], nz = contact.nz[i];
+        const double bx = faces.bx[i], by = faces.by[i], bz = faces.bz[i];
+        const double cosine = nx * bx + ny * by + nz * bz;
+        const bool drawn = faces.per_force[i] > 0.0;
+        const bool follows = force_before[i] > 0.0 && cosine > sharp_turn;
+        const double mean = 1.0 / (follows ? 1.0 + cosine : 1.0);
+        ways.hx[i] = drawn ? bx : (follows ? nx + bx : nx) * mean;
+        ways.hy[i] = drawn ? by : (follows ? ny + by : ny) * mean;
+        ways.hz[i] = drawn ? bz : (follows ? nz + bz : nz) * mean;
+        ways.sx[i] = drawn ? bx * faces.per_force[i] : nx;
+        ways.sy[i] = drawn ? by * faces.per_force[i] : ny;
+        ways.sz[i] = drawn ? bz * faces.per_force[i] : nz;
     }
 }
 
-SkinForces without_wrench(const CrushSums& sums) {
-    SkinForces skin;
-    skin.normal_force = row_sum(sums.nodes.force);
-    skin.work = 0.5 * row_sum(sums.nodes.twice_work) + sums.released_work;
-    skin.stored = 0.5 * row_sum(sums.nodes.twice_stored);
-    skin.stiffness = sums.stiffness;
-    return skin;
+BIRM3D_LANE_LOOP double greatest_slack(const Lanes& force, const Lanes& deflection, const Lanes& residual) {
+    alignas(64) Lanes slack;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i)
+        slack[i] = force[i] > 0.0 ? 0.0 : residual[i] - deflection[i];
+    for (std::size_t half = lanes / 2; half > 0; half /= 2) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < half; ++i)
+            slack[i] = slack[half + i] > slack[i] ? slack[half + i] : slack[i];
+    }
+    return slack[0];
+}
+
+// The direction along which each truss must point to push (CurvedPress), at a plane and at shapes.
+struct PlaneShare {
+    const Vec3& normal;
+    const Vec3& direction(std::size_t) const { return normal; }
+    static bool drawn(std::size_t) { return false; }
+};
+struct NodeShares {
+    const Ways& ways;
+    const NodeFaces& faces;
+    Vec3 direction(std::size_t i) const { return {ways.sx[i], ways.sy[i], ways.sz[i]}; }
+    bool drawn(std::size_t i) const { return faces.per_force[i] > 0.0; }
+};
+
+template <class Share>
+void finish(const TrussMesh& mesh, std::size_t b, double nodes, const TrussBlockState& before,
+            const Lanes& gap, const Share& share, TrussBlockState& now, CrushSums& sums) {
+    if (nodes >= left) sums.released_work += release(mesh.block[b], before, gap, share, now);
+    now.touching = std::fmod(nodes, left) > 0.0;
+    now.slack = greatest_slack(now.force, now.deflection, now.residual) > tolerance::touching_gap;
+    now.box = now.touching
+                  ? before.box  // the block is looked at in any case while it touches
+                  : Box::around(lanes, [&now](std::size_t i) { return Vec3(now.x[i], now.y[i], now.z[i]); });
 }
 
 }  // namespace
@@ -145,28 +164,45 @@ InverseMass::InverseMass(const RigidBody& body, const Vec3& n) : constant(body.i
 
 void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
            const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums) {
-    crush_block(surface, mesh, b, factor, before, now, contact, sums);
+    alignas(64) Lanes gap;
+    const Vec3& n = surface.face.normal;
+    const Vec3 h = holding_direction(n, surface.normal_before);
+    const double nodes = press_rows.flat(columns_of(mesh, b, factor),
+                                         {n.x(), n.y(), n.z(), surface.face.offset, h.x(), h.y(), h.z()},
+                                         columns_of<const double>(before), columns_of<double>(now),
+                                         gap.data(), contact.pressure.data(), sums.nodes);
+    finish(mesh, b, nodes, before, gap, PlaneShare{n}, now, sums);
+    if (now.touching) sums.stiffness += contact_stiffness(surface, mesh, b, now, std::fmod(nodes, left));
 }
 
-void crush(const CurvedContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
-           const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums) {
-    crush_block(surface, mesh, b, factor, before, now, contact, sums);
+void crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh, std::size_t b,
+           const Lanes* factor, const TrussBlockState& before, TrussBlockState& now, BlockContact& contact,
+           CrushSums& sums) {
+    alignas(64) Ways ways;
+    find_ways(faces, contact, before.force, ways);
+    alignas(64) Lanes gap;
+    const double nodes =
+        press_rows.curved(columns_of(mesh, b, factor),
+                          {faces.gap.data(), contact.nx.data(), contact.ny.data(), contact.nz.data(),
+                           ways.hx.data(), ways.hy.data(), ways.hz.data(), ways.sx.data(), ways.sy.data(),
+                           ways.sz.data(), faces.per_force.data(), contact.px.data(), contact.py.data(),
+                           contact.pz.data(), contact.tx.data(), contact.ty.data(), contact.tz.data()},
+                          columns_of<const double>(before), columns_of<double>(now), gap.data(),
+                          contact.pressure.data(), sums.nodes);
+    finish(mesh, b, nodes, before, gap, NodeShares{ways, faces}, now, sums);
+    if (now.touching) sums.stiffness += contact_stiffness(body, mesh.block[b], now, contact);
 }
 
-SkinForces total(const FlatContact& surface, const CrushSums& sums) {
-    SkinForces skin = without_wrench(sums);
+Wrench total_wrench(const FlatContact& surface, const CrushSums& sums) {
     const NodeSums& nodes = sums.nodes;
     const Vec3 moment(row_sum(nodes.moment_x), row_sum(nodes.moment_y), row_sum(nodes.moment_z));
-    skin.contact = {skin.normal_force * surface.face.normal, moment.cross(surface.face.normal)};
-    return skin;
+    return {row_sum(nodes.force) * surface.face.normal, moment.cross(surface.face.normal)};
 }
 
-SkinForces total(const CurvedContact&, const CrushSums& sums) {
-    SkinForces skin = without_wrench(sums);
+Wrench total_wrench(const CrushSums& sums) {
     const NodeSums& nodes = sums.nodes;
-    skin.contact = {Vec3(row_sum(nodes.push_x), row_sum(nodes.push_y), row_sum(nodes.push_z)),
-                    Vec3(row_sum(nodes.moment_x), row_sum(nodes.moment_y), row_sum(nodes.moment_z))};
-    return skin;
+    return {Vec3(row_sum(nodes.push_x), row_sum(nodes.push_y), row_sum(nodes.push_z)),
+            Vec3(row_sum(nodes.moment_x), row_sum(nodes.moment_y), row_sum(nodes.moment_z))};
 }
 
 Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const BlockContact& contact) {
@@ -183,21 +219,19 @@ Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const 
     return sum;
 }
 
-Lanes rate_factor(const TrussMesh& mesh, std::size_t b, const TrussBlockState& now, const Twist& motion,
-                  const BlockContact& contact) {
-    const TrussBlock& truss = mesh.block[b];
-    Lanes factor;
+void set_rate_factor(double rate_sensitivity, const Lanes& force, const Twist& motion, const Places& places,
+                     const BlockContact& contact, Lanes& factor) {
     for (std::size_t i = 0; i < lanes; ++i) {
-        const Vec3 node(now.x[i], now.y[i], now.z[i]);
-        const Vec3 to_anchor = Vec3(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]) - node;
-        const Vec3 n = contact.normal(i);
-        // The node slides along the surface: the truss shortens by the approach along n times b . n.
-        const double approach = -n.dot(motion.velocity + motion.angular_velocity.cross(node));
-        const double share = to_anchor.dot(n) / std::max(to_anchor.norm(), tolerance::truss_length);
-        const double rate = mesh.rate_sensitivity * std::max(0.0, approach * share);
+        if (!(contact.pressure[i] > 0.0)) {
+            factor[i] = 1.0;
+            continue;
+        }
+        // The truss shortens by the approach along n times -b . h, which is what pressure and truss force differ by.
+        const double approach =
+            -contact.normal(i).dot(motion.velocity + motion.angular_velocity.cross(places[i]));
+        const double rate = rate_sensitivity * std::max(0.0, approach * contact.pressure[i] / force[i]);
         factor[i] = 1.0 + rate * rate;
     }
-    return factor;
 }
 
 }  // namespace birm3d

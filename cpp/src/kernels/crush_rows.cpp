@@ -20,19 +20,20 @@ BIRM3D_IN_LANE_LOOP Row dot(const Vector& a, const Vector& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+// `arriving`, `held`: ways of a node for each unit of gap; `share`: see crush_rows.hpp.
 struct Place {
     Row gap;
-    Vector n, h;
+    Vector n, arriving, held, share;
 };
 
-// Both surfaces give gap, normal and direction of the eight nodes from i on.
+// Both give the places of the eight nodes from i on. A flat surface takes arriving nodes along n.
 struct Flat {
     BIRM3D_IN_LANE_LOOP explicit Flat(const FlatPress& s)
         : n{Row::of(s.nx), Row::of(s.ny), Row::of(s.nz)},
           h{Row::of(s.hx), Row::of(s.hy), Row::of(s.hz)},
           offset(Row::of(s.offset)) {}
     BIRM3D_IN_LANE_LOOP Place at(std::size_t, const Vector& node) const {
-        return {dot(n, node) - offset, n, h};
+        return {dot(n, node) - offset, n, n, h, n};
     }
     Vector n, h;
     Row offset;
@@ -41,9 +42,26 @@ struct Flat {
 struct Curved {
     BIRM3D_IN_LANE_LOOP explicit Curved(const CurvedPress& press) : s(press) {}
     BIRM3D_IN_LANE_LOOP Place at(std::size_t i, const Vector&) const {
+        const Vector way{Row::load(s.hx + i), Row::load(s.hy + i), Row::load(s.hz + i)};
         return {Row::load(s.gap + i),
                 {Row::load(s.nx + i), Row::load(s.ny + i), Row::load(s.nz + i)},
-                {Row::load(s.hx + i), Row::load(s.hy + i), Row::load(s.hz + i)}};
+                way,
+                way,
+                {Row::load(s.sx + i), Row::load(s.sy + i), Row::load(s.sz + i)}};
+    }
+    // Of a unit of normal force; keeps it, and the place, for later.
+    BIRM3D_IN_LANE_LOOP Vector torque(std::size_t i, const Vector& node, const Vector& n) const {
+        const Row drawn = Row::load(s.drawn + i), zero = Row::of(0.0);
+        const auto keep = [&](double* column, const Row& found) {
+            const Row kept = where_above(drawn, zero, Row::load(column + i), found);
+            kept.store(column + i);
+            return kept;
+        };
+        keep(s.px, node.x);
+        keep(s.py, node.y);
+        keep(s.pz, node.z);
+        return {keep(s.tx, node.y * n.z - node.z * n.y), keep(s.ty, node.z * n.x - node.x * n.z),
+                keep(s.tz, node.x * n.y - node.y * n.x)};
     }
     const CurvedPress& s;
 };
@@ -61,17 +79,17 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
         const Row F0 = Row::load(before.force + i);
         const Place place = surface.at(i, from);
 
-        // Nodes at the surface go onto it: along n where they arrive, along h where it held them already.
+        // Nodes at the surface go onto it.
         const Row way = where_above(zero, place.gap, place.gap, where_above(F0, zero, place.gap, zero));
-        const Vector node{from.x - way * where_above(F0, zero, place.h.x, place.n.x),
-                          from.y - way * where_above(F0, zero, place.h.y, place.n.y),
-                          from.z - way * where_above(F0, zero, place.h.z, place.n.z)};
+        const Vector node{from.x - way * where_above(F0, zero, place.held.x, place.arriving.x),
+                          from.y - way * where_above(F0, zero, place.held.y, place.arriving.y),
+                          from.z - way * where_above(F0, zero, place.held.z, place.arriving.z)};
 
         // From the node to its anchor. A closed truss has no direction of its own any more: it presses along n.
         const Vector b{Row::load(truss.anchor_x + i) - node.x, Row::load(truss.anchor_y + i) - node.y,
                        Row::load(truss.anchor_z + i) - node.z};
         const Row length = square_root(dot(b, b));
-        const Row share = where_above(length, least, greater(dot(b, place.n), zero) / length, one);
+        const Row share = where_above(length, least, greater(dot(b, place.share), zero) / length, one);
         const Row d = Row::load(truss.length + i) - length;
 
         // Fig. 3: the loading envelope by the changes of slope at its hinges, and the unloading line below it.
@@ -105,8 +123,9 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
         } else {
             const Vector f{pressure * place.n.x, pressure * place.n.y, pressure * place.n.z};
             push = {push.x + f.x, push.y + f.y, push.z + f.z};
-            moment = {moment.x + (node.y * f.z - node.z * f.y), moment.y + (node.z * f.x - node.x * f.z),
-                      moment.z + (node.x * f.y - node.y * f.x)};
+            const Vector torque = surface.torque(i, node, place.n);
+            moment = {moment.x + pressure * torque.x, moment.y + pressure * torque.y,
+                      moment.z + pressure * torque.z};
         }
         work = work + (F0 + F) * (d - Row::load(before.deflection + i));
         stored = stored + F * F * compliance;

@@ -29,11 +29,16 @@ struct FlatPress {
     double hx, hy, hz;
 };
 
-// The same for a curved surface, node by node.
+// The same for surfaces of any shape, node by node: way h of a node at the surface for each unit of gap, and the
+// direction s by which the truss force becomes a normal force (see crush.hpp).
 struct CurvedPress {
     const double* gap;
     const double *nx, *ny, *nz;
     const double *hx, *hy, *hz;
+    const double *sx, *sy, *sz;
+    // Where friction acts and the torque of a unit of normal force: given where `drawn` is above zero, else found.
+    const double* drawn;
+    double *px, *py, *pz, *tx, *ty, *tz;
 };
 
 // What a node whose truss ceased to push counts in the result of Press; one that pushes counts 1.

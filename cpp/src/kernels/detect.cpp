@@ -4,26 +4,27 @@ namespace birm3d {
 
 namespace {
 
-BIRM3D_LANE_LOOP void plane_gaps(double nx, double ny, double nz, double offset, const Lanes& x,
-                                 const Lanes& y, const Lanes& z, Lanes& gap) {
-    BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i)
-        gap[i] = nx * x[i] + ny * y[i] + nz * z[i] - offset;
+BIRM3D_LANE_LOOP void extent(const Lanes& values, double& low, double& high) {
+    alignas(64) Lanes least = values, most = values;
+    for (std::size_t half = lanes / 2; half > 0; half /= 2) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < half; ++i) {
+            least[i] = least[half + i] < least[i] ? least[half + i] : least[i];
+            most[i] = most[half + i] > most[i] ? most[half + i] : most[i];
+        }
+    }
+    low = least[0];
+    high = most[0];
 }
 
 }  // namespace
 
-Lanes gaps(const Cylinder& face, const Lanes& x, const Lanes& y, const Lanes& z) {
-    Lanes gap;
-    for (std::size_t i = 0; i < lanes; ++i)
-        gap[i] = face.gap({x[i], y[i], z[i]});
-    return gap;
-}
-
-Lanes gaps(const HalfSpace& face, const Lanes& x, const Lanes& y, const Lanes& z) {
-    Lanes gap;
-    plane_gaps(face.normal.x(), face.normal.y(), face.normal.z(), face.offset, x, y, z, gap);
-    return gap;
+Box box_around(const Lanes& x, const Lanes& y, const Lanes& z) {
+    Vec3 low, high;
+    extent(x, low[0], high[0]);
+    extent(y, low[1], high[1]);
+    extent(z, low[2], high[2]);
+    return {0.5 * (low + high), 0.5 * (high - low)};
 }
 
 }  // namespace birm3d

@@ -17,12 +17,11 @@ struct Sum {
     double fx, fy, fz, tx, ty, tz, rate;
 };
 
-BIRM3D_LANE_LOOP Sum friction_of_block(const Sliding& s, const TrussBlockState& now,
-                                       const BlockContact& contact) {
+BIRM3D_LANE_LOOP Sum friction_of_block(const Sliding& s, const Places& at, const BlockContact& contact) {
     alignas(64) Lanes fx, fy, fz, tx, ty, tz, rate;
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
-        const double x = now.x[i], y = now.y[i], z = now.z[i];
+        const double x = at.x[i], y = at.y[i], z = at.z[i];
         const double nx = contact.nx[i], ny = contact.ny[i], nz = contact.nz[i];
         // Sliding velocity u = v + w x r, without its normal part.
         const double ux = s.vx + s.wy * z - s.wz * y, uy = s.vy + s.wz * x - s.wx * z,
@@ -53,7 +52,7 @@ BIRM3D_LANE_LOOP Sum friction_of_block(const Sliding& s, const TrussBlockState& 
 }  // namespace
 
 void add_friction(const RigidBody& body, double mu, double full_speed, const Twist& motion,
-                  const TrussBlockState& now, const BlockContact& contact, SkinForces& forces) {
+                  const Places& places, const BlockContact& contact, SkinForces& forces) {
     const Vec3& v = motion.velocity;
     const Vec3& w = motion.angular_velocity;
     const Mat3& W = body.inverse_inertia;
@@ -61,7 +60,7 @@ void add_friction(const RigidBody& body, double mu, double full_speed, const Twi
         mu,           full_speed,        v.x(),   v.y(),   v.z(),   w.x(),         w.y(),
         w.z(),        body.inverse_mass, W(0, 0), W(1, 1), W(2, 2), 2.0 * W(0, 1), 2.0 * W(0, 2),
         2.0 * W(1, 2)};
-    const Sum sum = friction_of_block(sliding, now, contact);
+    const Sum sum = friction_of_block(sliding, places, contact);
     forces.friction += {Vec3(sum.fx, sum.fy, sum.fz), Vec3(sum.tx, sum.ty, sum.tz)};
     forces.friction_rate += sum.rate;
 }

@@ -1,9 +1,10 @@
 #include "birm3d/kernels/impulse.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
-#include <vector>
+#include <string>
 
 #include "birm3d/base/tolerances.hpp"
 
@@ -11,147 +12,259 @@ namespace birm3d {
 
 namespace {
 
-// Velocity change of `body` at `arm` for a unit impulse along `normal` at `at`.
-Vec3 velocity_change(const ContactBody& body, const Vec3& arm, const Vec3& at, const Vec3& normal) {
-    const Vec3 spin = body.inverse_inertia * at.cross(normal);
-    return body.inverse_mass * normal + spin.cross(arm);
-}
+using Eigen::Index;
 
-// A_ij: separation velocity at contact i per unit impulse at contact j.
-double influence(const RigidContact& i, const RigidContact& j, std::span<const ContactBody> bodies) {
-    double sum = 0.0;
-    const auto add = [&](int body_i, const Vec3& arm_i, double sign_i, int body_j, const Vec3& arm_j,
-                         double sign_j) {
-        if (body_i < 0 || body_i != body_j) return;
-        sum +=
-            sign_i * sign_j *
-            i.normal.dot(velocity_change(bodies[static_cast<std::size_t>(body_i)], arm_i, arm_j, j.normal));
-    };
-    const int bi = static_cast<int>(i.body), bj = static_cast<int>(j.body);
-    add(bi, i.arm, 1.0, bj, j.arm, 1.0);
-    add(bi, i.arm, 1.0, j.other, j.other_arm, -1.0);
-    add(i.other, i.other_arm, -1.0, bj, j.arm, 1.0);
-    add(i.other, i.other_arm, -1.0, j.other, j.other_arm, -1.0);
-    return sum;
-}
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
-void apply(const RigidContact& contact, double impulse, std::span<ContactBody> bodies) {
-    const auto push = [&](ContactBody& body, const Vec3& arm, const Vec3& j) {
-        body.motion.velocity += body.inverse_mass * j;
-        body.motion.angular_velocity += body.inverse_inertia * arm.cross(j);
-    };
-    push(bodies[contact.body], contact.arm, impulse * contact.normal);
-    if (contact.other >= 0)
-        push(bodies[static_cast<std::size_t>(contact.other)], contact.other_arm, -impulse * contact.normal);
+// Lower triangle; zero for a body that can not be turned.
+Mat3 root_of(const Mat3& inverse_inertia) {
+    if (inverse_inertia.isZero(0.0)) return Mat3::Zero();
+    return inverse_inertia.llt().matrixL();
 }
 
 }  // namespace
 
 double separation_velocity(const RigidContact& contact, std::span<const ContactBody> bodies) {
-    const auto point_velocity = [](const ContactBody& body, const Vec3& arm) -> Vec3 {
-        return body.motion.velocity + body.motion.angular_velocity.cross(arm);
+    const auto velocity = [&contact](const ContactBody& body, const Vec3& arm) -> Vec3 {
+        const Twist& motion = body.motion;
+        if (contact.about_axis) return motion.angular_velocity;
+        return motion.velocity + motion.angular_velocity.cross(arm);
     };
-    Vec3 velocity = point_velocity(bodies[contact.body], contact.arm);
+    Vec3 relative = velocity(bodies[contact.body], contact.arm);
     if (contact.other >= 0)
-        velocity -= point_velocity(bodies[static_cast<std::size_t>(contact.other)], contact.other_arm);
-    return velocity.dot(contact.normal);
+        relative -= velocity(bodies[static_cast<std::size_t>(contact.other)], contact.other_arm);
+    return relative.dot(contact.normal);
 }
 
 double inverse_effective_mass(const RigidContact& contact, std::span<const ContactBody> bodies) {
-    return influence(contact, contact, bodies);
+    const auto of = [&contact](const ContactBody& body, const Vec3& arm) {
+        const Wrench wrench = unit_wrench(contact, arm);
+        return body.inverse_mass * wrench.force.squaredNorm() +
+               wrench.torque.dot(body.inverse_inertia * wrench.torque);
+    };
+    double sum = of(bodies[contact.body], contact.arm);
+    if (contact.other >= 0) sum += of(bodies[static_cast<std::size_t>(contact.other)], contact.other_arm);
+    return sum;
+}
+
+ImpulseSolver::ImpulseSolver(std::span<const RigidContact> contacts, std::span<const ContactBody> bodies,
+                             double speed_scale)
+    : tolerance_(tolerance::contact_velocity * speed_scale),
+      motion_(Eigen::VectorXd::Zero(6 * static_cast<Index>(bodies.size()))) {
+    roots_.reserve(bodies.size());
+    for (const ContactBody& body : bodies)
+        roots_.push_back({std::sqrt(body.inverse_mass), root_of(body.inverse_inertia)});
+    rows_.reserve(contacts.size());
+    for (const RigidContact& contact : contacts) {
+        Row row{contact.body, contact.other, {}, Vec6::Zero()};
+        row.held = contact.held;
+        row.g = in_unit_mass(unit_wrench(contact, contact.arm), row.body);
+        if (row.other >= 0) {
+            row.g_other =
+                -in_unit_mass(unit_wrench(contact, contact.other_arm), static_cast<std::size_t>(row.other));
+        }
+        row.own = influence(row, row);
+        row.give = std::max(contact.compliance * bodies[row.body].inverse_mass,
+                            tolerance::body_compliance * row.own);
+        rows_.push_back(row);
+    }
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+        if (rows_[i].held && rows_[i].own > 0.0) activate(i);
+}
+
+void ImpulseSolver::solve(std::span<RigidContact> contacts, std::span<ContactBody> bodies) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        rows_[i].lack = contacts[i].target - separation_velocity(contacts[i], bodies);
+        rows_[i].before = 0.0;
+    }
+    constexpr int most_passes = 10;
+    double given = infinity;
+    for (int pass = 0; pass < most_passes && given > 0.1 * tolerance_; ++pass) {
+        for (Row& row : rows_)
+            row.wanted = row.lack + row.give * row.before;
+        find_impulses();
+        given = 0.0;
+        for (Row& row : rows_) {
+            given = std::max(given, row.give * std::abs(row.impulse - row.before));
+            row.before = row.impulse;
+        }
+    }
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+        contacts[i].impulse = rows_[i].impulse;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const auto u = motion_.segment<6>(6 * static_cast<Index>(b));
+        bodies[b].motion.velocity += roots_[b].mass * u.head<3>();
+        bodies[b].motion.angular_velocity += roots_[b].inertia * u.tail<3>();
+    }
+}
+
+ImpulseSolver::Vec6 ImpulseSolver::in_unit_mass(const Wrench& wrench, std::size_t body) const {
+    Vec6 g;
+    g.head<3>() = roots_[body].mass * wrench.force;
+    g.tail<3>() = roots_[body].inertia.transpose() * wrench.torque;
+    return g;
+}
+
+double ImpulseSolver::along(const Row& row, const Eigen::VectorXd& motion) {
+    double sum = row.g.dot(motion.segment<6>(6 * static_cast<Index>(row.body)));
+    if (row.other >= 0) sum += row.g_other.dot(motion.segment<6>(6 * row.other));
+    return sum;
+}
+
+void ImpulseSolver::push(const Row& row, double impulse, Eigen::VectorXd& motion) {
+    motion.segment<6>(6 * static_cast<Index>(row.body)) += impulse * row.g;
+    if (row.other >= 0) motion.segment<6>(6 * row.other) += impulse * row.g_other;
+}
+
+// A_ij.
+double ImpulseSolver::influence(const Row& i, const Row& j) {
+    const int bi = static_cast<int>(i.body), bj = static_cast<int>(j.body);
+    double sum = 0.0;
+    if (bi == bj) sum += i.g.dot(j.g);
+    if (bi == j.other) sum += i.g.dot(j.g_other);
+    if (i.other == bj) sum += i.g_other.dot(j.g);
+    if (i.other >= 0 && i.other == j.other) sum += i.g_other.dot(j.g_other);
+    return sum;
+}
+
+void ImpulseSolver::activate(std::size_t row) {
+    rows_[row].active = true;
+    active_.push_back(row);
+    factorised_ = false;
+}
+
+// From the impulses there are, which may be those of the last solution.
+void ImpulseSolver::find_impulses() {
+    for (Row& row : rows_)
+        row.settled = row.own == 0.0;  // nothing there can be moved
+    if (active_.empty())
+        motion_.setZero();
+    else
+        settle_active();
+
+    // Joining together is fast but may go in circles, joining one by one may not.
+    constexpr std::size_t first_alone = 1, last_together = 5;
+    const std::size_t most_rounds = 1000 + rows_.size();
+    for (std::size_t round = 0;; ++round) {
+        const bool together = round >= first_alone && round <= last_together;
+        std::size_t worst = rows_.size();
+        double largest = tolerance_;
+        for (std::size_t i = 0; i < rows_.size(); ++i) {
+            if (rows_[i].settled || rows_[i].active) continue;
+            const double lack = shortfall(rows_[i]);
+            if (!(lack > tolerance_)) continue;
+            if (lack > largest) largest = lack, worst = i;
+            if (together) activate(i);
+        }
+        if (worst == rows_.size()) break;
+        if (round == most_rounds)
+            throw std::runtime_error("rigid contacts: no set of impulses found in " +
+                                     std::to_string(most_rounds) + " rounds");
+        if (!together) activate(worst);
+        settle_active();
+        if (!together && !rows_[worst].active) rows_[worst].settled = true;
+    }
+}
+
+// Moves from the present impulses towards the solution of the active rows; those that would pull leave where
+// their impulse reaches zero.
+void ImpulseSolver::settle_active() {
+    for (bool done = false; !done;) {
+        solve_active();
+        double step = 1.0;
+        for (const std::size_t i : active_) {
+            const Row& row = rows_[i];
+            if (!row.held && row.next <= 0.0) step = std::min(step, row.impulse / (row.impulse - row.next));
+        }
+        done = !(step < 1.0);
+        kept_.clear();
+        for (const std::size_t i : active_) {
+            Row& row = rows_[i];
+            row.active = done || row.held || row.next > 0.0 || row.impulse / (row.impulse - row.next) > step;
+            if (row.active) kept_.push_back(i);
+            row.impulse = !row.active ? 0.0 : done ? row.next : row.impulse + step * (row.next - row.impulse);
+        }
+        if (kept_.size() < active_.size()) factorised_ = false;
+        std::swap(active_, kept_);
+    }
+    move_by(&Row::impulse, motion_);
+}
+
+// What the active rows would take, with their give.
+void ImpulseSolver::solve_active() {
+    if (!factorised_) factorise();
+    for (const std::size_t i : active_)
+        rows_[i].residual = rows_[i].wanted, rows_[i].next = 0.0;
+    add_solution(&Row::next);
+    const int refinements = by_bodies_ ? 3 : 0;
+    for (int pass = 0; pass < refinements; ++pass) {
+        move_by(&Row::next, working_);
+        for (const std::size_t i : active_) {
+            Row& row = rows_[i];
+            row.residual = row.wanted - along(row, working_) - row.give * row.next;
+        }
+        add_solution(&Row::next);
+    }
+}
+
+void ImpulseSolver::factorise() {
+    const auto rows = static_cast<Index>(active_.size());
+    factorised_ = true;
+    by_bodies_ = rows > motion_.size();
+    if (!by_bodies_) {
+        system_.resize(rows, rows);
+        for (Index r = 0; r < rows; ++r) {
+            const Row& row = rows_[active_[static_cast<std::size_t>(r)]];
+            for (Index c = 0; c < r; ++c)
+                system_(r, c) = influence(row, rows_[active_[static_cast<std::size_t>(c)]]);
+            system_(r, r) = row.own + row.give;
+        }
+    } else {
+        system_.setIdentity(motion_.size(), motion_.size());
+        for (const std::size_t i : active_) {
+            const Row& row = rows_[i];
+            const auto a = 6 * static_cast<Index>(row.body);
+            system_.block<6, 6>(a, a) += row.g / row.give * row.g.transpose();
+            if (row.other < 0) continue;
+            const auto b = Index{6} * row.other;
+            system_.block<6, 6>(b, b) += row.g_other / row.give * row.g_other.transpose();
+            // The lower triangle is what the factors are made of.
+            if (a > b)
+                system_.block<6, 6>(a, b) += row.g / row.give * row.g_other.transpose();
+            else
+                system_.block<6, 6>(b, a) += row.g_other / row.give * row.g.transpose();
+        }
+    }
+    factors_.compute(system_);
+}
+
+// Adds to the active rows' impulses what (A + C) j = residual asks for.
+void ImpulseSolver::add_solution(double Row::* impulses) {
+    if (by_bodies_) {
+        unknown_.setZero(motion_.size());
+        for (const std::size_t i : active_)
+            push(rows_[i], rows_[i].residual / rows_[i].give, unknown_);
+        factors_.solveInPlace(unknown_);
+        for (const std::size_t i : active_)
+            rows_[i].*impulses += (rows_[i].residual - along(rows_[i], unknown_)) / rows_[i].give;
+    } else {
+        unknown_.resize(static_cast<Index>(active_.size()));
+        for (std::size_t k = 0; k < active_.size(); ++k)
+            unknown_[static_cast<Index>(k)] = rows_[active_[k]].residual;
+        factors_.solveInPlace(unknown_);
+        for (std::size_t k = 0; k < active_.size(); ++k)
+            rows_[active_[k]].*impulses += unknown_[static_cast<Index>(k)];
+    }
+}
+
+void ImpulseSolver::move_by(double Row::* impulses, Eigen::VectorXd& motion) const {
+    motion.setZero(motion_.size());
+    for (const std::size_t i : active_)
+        push(rows_[i], rows_[i].*impulses, motion);
 }
 
 void solve_impulses(std::span<RigidContact> contacts, std::span<ContactBody> bodies, double speed_scale) {
-    const double tolerance = tolerance::contact_velocity * speed_scale;
-    const std::vector<ContactBody> free(bodies.begin(), bodies.end());
-    std::vector<std::size_t> active;
-    std::vector<char> is_active(contacts.size(), 0);
-    std::vector<char> settled(contacts.size(), 0);  // joined and left at once: at its target but for rounding
-    Eigen::MatrixXd A;
-    Eigen::VectorXd wanted, impulse;
-    for (RigidContact& contact : contacts)
-        contact.impulse = 0.0;
-
-    // Brings the bodies' motions up to date with the impulses of the active contacts.
-    const auto move_bodies = [&] {
-        std::copy(free.begin(), free.end(), bodies.begin());
-        for (const std::size_t i : active)
-            apply(contacts[i], contacts[i].impulse, bodies);
-    };
-    // How far a contact is from its target in that motion; positive = still short of it.
-    const auto shortfall = [&](std::size_t i) {
-        return contacts[i].target - separation_velocity(contacts[i], bodies);
-    };
-    const auto solve_active = [&] {
-        const auto m = static_cast<Eigen::Index>(active.size());
-        A.resize(m, m);
-        wanted.resize(m);
-        for (Eigen::Index r = 0; r < m; ++r) {
-            const RigidContact& row = contacts[active[static_cast<std::size_t>(r)]];
-            for (Eigen::Index c = 0; c <= r; ++c)
-                A(r, c) = A(c, r) = influence(row, contacts[active[static_cast<std::size_t>(c)]], free);
-            A(r, r) *= 1.0 + row.compliance;
-            wanted[r] = row.target - separation_velocity(row, free);
-        }
-        impulse = A.ldlt().solve(wanted);
-    };
-
-    constexpr int most_rounds = 1000;
-    for (int round = 0;; ++round) {
-        std::size_t worst = contacts.size();
-        double largest = tolerance;
-        for (std::size_t i = 0; i < contacts.size(); ++i) {
-            if (settled[i] || is_active[i]) continue;
-            const double lack = shortfall(i);
-            if (lack > largest) largest = lack, worst = i;
-        }
-        if (worst == contacts.size()) break;
-        if (round == most_rounds)
-            throw std::runtime_error("rigid contacts: no set of impulses found in 1000 rounds");
-        active.push_back(worst);
-        is_active[worst] = 1;
-
-        // Move from the present impulses towards the solution of the active set; contacts that would pull
-        // leave it where their impulse reaches zero.
-        for (bool done = false; !done;) {
-            solve_active();
-            double step = 1.0;
-            for (std::size_t k = 0; k < active.size(); ++k) {
-                const double now = contacts[active[k]].impulse, next = impulse[static_cast<Eigen::Index>(k)];
-                if (next <= 0.0) step = std::min(step, now / (now - next));
-            }
-            done = step >= 1.0;
-            std::vector<std::size_t> kept;
-            for (std::size_t k = 0; k < active.size(); ++k) {
-                RigidContact& contact = contacts[active[k]];
-                const double next = impulse[static_cast<Eigen::Index>(k)];
-                const bool leaves =
-                    !done && next <= 0.0 && contact.impulse / (contact.impulse - next) <= step;
-                contact.impulse = leaves ? 0.0 : contact.impulse + step * (next - contact.impulse);
-                if (leaves)
-                    is_active[active[k]] = 0;
-                else
-                    kept.push_back(active[k]);
-            }
-            active = std::move(kept);
-        }
-        if (!is_active[worst]) settled[worst] = 1;
-        move_bodies();
-    }
-    if (active.empty()) return;
-
-    // The compliance has done its work, which is to share the load: take its give out again.
-    const Eigen::LDLT<Eigen::MatrixXd> factors = A.ldlt();
-    for (int pass = 0; pass < 3; ++pass) {
-        Eigen::VectorXd lack(static_cast<Eigen::Index>(active.size()));
-        for (std::size_t k = 0; k < active.size(); ++k)
-            lack[static_cast<Eigen::Index>(k)] = shortfall(active[k]);
-        const Eigen::VectorXd more = factors.solve(lack);
-        for (std::size_t k = 0; k < active.size(); ++k)
-            contacts[active[k]].impulse =
-                std::max(0.0, contacts[active[k]].impulse + more[static_cast<Eigen::Index>(k)]);
-        move_bodies();
-    }
+    if (!contacts.empty()) ImpulseSolver(contacts, bodies, speed_scale).solve(contacts, bodies);
 }
 
 }  // namespace birm3d

@@ -63,8 +63,10 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
         const double speed = velocity.norm();
         const Vec3 heading = Vec3(R(0, 0), R(1, 0), 0.0).normalized();
         const double across = std::abs(heading.x() * velocity.y() - heading.y() * velocity.x());
-        if (across <= 1e-9 * speed) return sum;  // the paper's "parallel to the r-direction", to rounding
-        const Vec3 direction = -velocity / std::max(speed, mu * speed_change);
+        // The paper's "parallel to the r-direction", to rounding: rolling, but for the brakes.
+        const double sliding = across <= 1e-9 * speed ? settings.braking : 1.0;
+        if (sliding == 0.0) return sum;
+        const Vec3 direction = -sliding / std::max(speed, mu * speed_change) * velocity;
         for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
             const Vec3 impulse = mu * normal_impulses[i] * direction;
             sum += {impulse, lowest_point(unit.wheels[i], R).cross(impulse)};
@@ -79,13 +81,21 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
     const Vec3 along(across.y(), -across.x(), 0.0);
     // At small slip the impulse is C N dt * v_across / v_along: v_along is held where that reverses nothing.
     const double slowest = settings.cornering_stiffness * speed_change;
+    const double brakes = settings.braking, steers = std::sqrt(1.0 - brakes * brakes);
     for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
         if (normal_impulses[i] == 0.0) continue;
         const Vec3 arm = lowest_point(unit.wheels[i], R);
         const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(arm);
         const double tan_slip = velocity.dot(across) / std::max(std::abs(velocity.dot(along)), slowest);
         const double share = brush(settings.cornering_stiffness * tan_slip / (3.0 * mu));
-        const Vec3 impulse = -mu * normal_impulses[i] * share * across;
+        // What brakes slides against the velocity; what is left of the friction steers.
+        Vec3 mobilised = steers * share * across;
+        if (brakes > 0.0) {
+            const Vec3 ground_velocity(velocity.x(), velocity.y(), 0.0);
+            mobilised += brakes / std::max(ground_velocity.norm(), mu * speed_change) * ground_velocity;
+            mobilised /= std::max(1.0, mobilised.norm());
+        }
+        const Vec3 impulse = -mu * normal_impulses[i] * mobilised;
         sum += {impulse, arm.cross(impulse)};
     }
     return sum;

@@ -15,6 +15,7 @@ namespace {
 void require_valid(const TrussInput& input) {
     const std::size_t n = input.node.size();
     require_not_negative("rate_sensitivity", input.rate_sensitivity);
+    require_not_negative("dent_slope", input.dent_slope);
     if (n == 0) refuse("nodes", "at least 1", 0.0);
     const auto same_size = [n](const char* name, std::size_t size) {
         if (size != n)
@@ -72,6 +73,13 @@ std::vector<std::size_t> spatial_order(const std::vector<Vec3>& points) {
     return order;
 }
 
+// Of a truss that points `inward`: 2 for each axis, the positive way first.
+std::size_t panel_of(const Vec3& inward) {
+    Eigen::Index axis = 0;
+    inward.cwiseAbs().maxCoeff(&axis);
+    return 2 * static_cast<std::size_t>(axis) + (inward[axis] < 0.0 ? 1 : 0);
+}
+
 Box box_around(const Lanes& x, const Lanes& y, const Lanes& z) {
     return Box::around(lanes, [&](std::size_t i) { return Vec3(x[i], y[i], z[i]); });
 }
@@ -81,6 +89,7 @@ Box box_around(const Lanes& x, const Lanes& y, const Lanes& z) {
 TrussMesh::TrussMesh(const TrussInput& input) {
     require_valid(input);
     rate_sensitivity = input.rate_sensitivity;
+    dent_slope = input.dent_slope;
     count = input.node.size();
     blocks = (count + lanes - 1) / lanes;
     for (const TrussCurve& curve : input.curve)
@@ -98,6 +107,25 @@ TrussMesh::TrussMesh(const TrussInput& input) {
         add_stiffness(block[b]);
         node_box.push_back(box_around(block[b].node_x, block[b].node_y, block[b].node_z));
         anchor_box.push_back(box_around(block[b].anchor_x, block[b].anchor_y, block[b].anchor_z));
+    }
+    find_panels();
+}
+
+void TrussMesh::find_panels() {
+    std::array<std::vector<Vec3>, panels> nodes;
+    panels_of.assign(blocks, 0);
+    for (std::size_t truss = 0; truss < count; ++truss) {
+        const std::size_t p = panel_of(anchor(truss) - node(truss));
+        block[truss / lanes].panel[truss % lanes] = static_cast<double>(p);
+        panels_of[truss / lanes] |= static_cast<std::uint8_t>(1U << p);
+        nodes[p].push_back(node(truss));
+    }
+    for (std::size_t padding = count; padding < blocks * lanes; ++padding)
+        block[padding / lanes].panel[padding % lanes] = block.back().panel[(count - 1) % lanes];
+    for (std::size_t p = 0; p < panels; ++p) {
+        const double way = p % 2 == 0 ? 1.0 : -1.0;
+        panel[p] = {way * Vec3::Unit(static_cast<Eigen::Index>(p / 2)), {}, !nodes[p].empty()};
+        if (panel[p].any) panel[p].box = box_around(nodes[p]);
     }
 }
 

@@ -1,6 +1,7 @@
 #include "birm3d/model/vehicle.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -36,11 +37,14 @@ RigidBody::RigidBody(double mass_, const Mat3& inertia_)
       inverse_inertia(inertia.inverse()) {}
 
 Unit::Unit(const RigidBody& body_, const TrussInput& trusses_, std::vector<Wheel> wheels_,
-           double mass_center_height_)
+           double mass_center_height_, const Vec3& offset_)
     : body(body_),
       trusses(trusses_),
       wheels(std::move(wheels_)),
-      mass_center_height(require_finite("mass_center_height", mass_center_height_)) {
+      mass_center_height(require_finite("mass_center_height", mass_center_height_)),
+      offset(offset_) {
+    if (!offset.allFinite()) refuse("offset", "finite", "a coordinate that is not");
+    if (offset.z() != 0.0) refuse("offset height", "0 m (the height is mass_center_height)", offset.z());
     for (std::size_t i = 0; i < wheels.size(); ++i) {
         const std::string name = "wheels[" + std::to_string(i) + "]";
         require_positive((name + " radius").c_str(), wheels[i].radius);
@@ -49,6 +53,29 @@ Unit::Unit(const RigidBody& body_, const TrussInput& trusses_, std::vector<Wheel
         if (height < -1e-3)
             refuse(name + " height of the lowest point above the ground", ">= -0.001 m", height);
     }
+}
+
+Vehicle joined(std::vector<Unit> units, std::vector<Joint> joints) {
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        Joint& joint = joints[i];
+        const std::string name = "joints[" + std::to_string(i) + "]";
+        for (const std::size_t unit : {joint.leading, joint.trailing})
+            if (unit >= units.size())
+                refuse(name + " unit", "below " + std::to_string(units.size()), static_cast<double>(unit));
+        if (joint.leading == joint.trailing)
+            refuse(name + " units", "two", "unit " + std::to_string(joint.leading) + " with itself");
+        for (const Vec3& place : {joint.place_on_leading, joint.place_on_trailing})
+            if (!place.allFinite()) refuse(name + " place", "finite", "a coordinate that is not");
+        require_within((name + " roll_limit").c_str(), joint.roll_limit, 0.0, 0.5 * std::numbers::pi);
+        const Vec3 place = units[joint.leading].place() + joint.place_on_leading;
+        const Vec3 on_trailing = place - units[joint.trailing].place();
+        const double apart = (on_trailing - joint.place_on_trailing).norm();
+        if (!(apart <= tolerance::joint_fit))
+            refuse("distance of the two places of " + name + " at rest",
+                   "<= " + to_text(tolerance::joint_fit) + " m", apart);
+        joint.place_on_trailing = on_trailing;
+    }
+    return {std::move(units), std::move(joints)};
 }
 
 }  // namespace birm3d

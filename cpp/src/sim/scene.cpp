@@ -10,49 +10,135 @@
 #include "birm3d/base/rotation.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
+#include "birm3d/kernels/tires.hpp"
+#include "birm3d/sim/obstacles.hpp"
 
 namespace birm3d {
 
 namespace {
 
-double nearest_gap(const Unit& unit, const BodyState& body, const Surface& face) {
-    const Surface seen = seen_from(face, body.position, body.orientation.toRotationMatrix());
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < unit.trusses.count; ++i) {
-        least = std::min({least, gap(seen, unit.trusses.node(i)), gap(seen, unit.trusses.anchor(i))});
-    }
-    return least;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void add_to(Hash& hash, const HalfSpace& plane) {
+    hash.add(plane.normal);
+    hash.add(plane.offset);
+}
+void add_to(Hash& hash, const Post& post) {
+    hash.add(post.radius);
+    hash.add(post.height);
+}
+void add_to(Hash& hash, const Prism& prism) {
+    for (const auto* edges : {&prism.edges(), &prism.covered_edges()})
+        for (const PrismEdge& edge : *edges)
+            for (const double number : {edge.x, edge.z, edge.tx, edge.tz, edge.low, edge.high})
+                hash.add(number);
+    hash.add(prism.y_low());
+    hash.add(prism.y_high());
+    hash.add((prism.low_end_is_surface() ? 1.0 : 0.0) + (prism.high_end_is_surface() ? 2.0 : 0.0));
+}
+void add_to(Hash& hash, const TriangleMesh& mesh) {
+    for (std::size_t i = 0; i < mesh.triangle_count(); ++i)
+        for (const Vec3& corner : mesh.corners(i))
+            hash.add(corner);
 }
 
-// How far along its path the vehicle of `state` has to go, forward or back, until its nearest point stands
-// `standoff` before the face (m).
-double way_to(const Barrier& barrier, const Vehicle& vehicle, State state, const Vec3& heading,
-              double standoff) {
-    const auto nearest = [&](const Surface& face) {
-        double least = std::numeric_limits<double>::infinity();
-        for (std::size_t u = 0; u < vehicle.units.size(); ++u)
-            least = std::min(least, nearest_gap(vehicle.units[u], state.units[u].body, face));
-        return least;
-    };
-    // To the plane that touches the barrier from the traffic's side.
-    HalfSpace plane{barrier.normal(), barrier.normal().dot(barrier.origin)};
-    if (const auto* pole = std::get_if<Cylinder>(&barrier.face)) plane.offset += pole->radius;
-    const double to_plane = (nearest(plane) - standoff) / -heading.dot(plane.normal);
-    if (std::holds_alternative<HalfSpace>(barrier.face)) return to_plane;
-
-    // From there step by step by the distance that is certainly free. A path that leads past it starts at the plane.
-    double way = to_plane;
-    for (UnitState& unit : state.units)
-        unit.body.position += to_plane * heading;
-    constexpr int most_steps = 200;
-    for (int i = 0; i < most_steps; ++i) {
-        const double free = nearest(barrier.face) - standoff;
-        way += free;
-        for (UnitState& unit : state.units)
-            unit.body.position += free * heading;
-        if (std::abs(free) < tolerance::initial_overlap * 1e-3) return way;
+// How far the barrier reaches along `direction` (m).
+double extent(const std::vector<Obstacle>& elements, const Vec3& direction) {
+    double most = -infinity;
+    for (const Obstacle& element : elements) {
+        const Vec3 own = element.rotation.transpose() * direction;
+        if (const auto* plane = std::get_if<HalfSpace>(&element.shape)) {
+            const bool ends = (own - plane->normal).norm() < 1e-12;
+            most = std::max(most, ends ? element.position.dot(direction) + plane->offset : infinity);
+            continue;
+        }
+        const Box box = bounds(element.shape);
+        double reach = element.position.dot(direction);
+        for (int i = 0; i < 3; ++i)
+            if (std::abs(own[i]) > 1e-12) reach += own[i] * box.center[i] + std::abs(own[i]) * box.half[i];
+        most = std::max(most, reach);
     }
-    return to_plane;
+    return most;
+}
+
+// Does the skin of a unit as it stands in `state` lie above the ground?
+bool skin_above_ground(const Unit& unit) {
+    for (std::size_t i = 0; i < unit.trusses.count; ++i)
+        if (unit.trusses.node(i).z() + unit.mass_center_height < 0.0) return false;
+    return true;
+}
+
+void move(State& state, const Vec3& way) {
+    for (UnitState& unit : state.units)
+        unit.body.position += way;
+}
+
+// A vehicle that is rolled stands on what is then its lowest point.
+void raise_to_ground(const Scene& scene, State& state) {
+    double lowest = 0.0;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const Unit& unit = scene.vehicle->units[u];
+        std::vector<RigidContact> wheels;
+        find_tire_contacts(unit, u, state.units[u].body, wheels);
+        for (const RigidContact& wheel : wheels)
+            lowest = std::min(lowest, wheel.gap);
+        if (scene.skin_meets_ground[u])
+            for (std::size_t i = 0; i < unit.trusses.count; ++i)
+                lowest = std::min(lowest, (state.units[u].body.position +
+                                           state.units[u].body.orientation * unit.trusses.node(i))
+                                              .z());
+    }
+    move(state, -lowest * Vec3::UnitZ());
+}
+
+// Does a segment of a wall go on where the one before it ends?
+bool continues(const Shape& shape) {
+    const auto* prism = std::get_if<Prism>(&shape);
+    return prism != nullptr && std::isfinite(prism->y_low()) && !prism->low_end_is_surface();
+}
+
+// Moves the vehicle of `state` along its path, forward or back, until its nearest point stands `standoff` before the
+// barrier. A path that leads past the barrier starts where the barrier begins.
+void place(const Scene& scene, const Vec3& heading, State& state) {
+    const Barrier& barrier = *scene.barrier;
+    const std::vector<Obstacle> elements(
+        scene.obstacles.begin(),
+        scene.obstacles.begin() + static_cast<std::ptrdiff_t>(barrier.elements.size()));
+    // Towards the barrier, or along it for a path that never comes nearer.
+    const Vec3 inward = heading.dot(barrier.normal()) < -1e-12 ? Vec3(-barrier.normal()) : heading;
+    const double first = -extent(elements, -inward), last = extent(elements, inward);
+    if (!std::isfinite(first))
+        refuse("impact_angle", "> 0 and < 180 deg where the barrier has no end",
+               scene.approach.angle * 180.0 / std::numbers::pi);
+    double front = -infinity, rear = infinity;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const BodyState& body = state.units[u].body;
+        const TrussMesh& mesh = scene.vehicle->units[u].trusses;
+        const Mat3 R = body.orientation.toRotationMatrix();
+        for (std::size_t i = 0; i < mesh.count; ++i)
+            for (const Vec3& p : {mesh.node(i), mesh.anchor(i)}) {
+                const double at = inward.dot(body.position + R * p);
+                front = std::max(front, at), rear = std::min(rear, at);
+            }
+    }
+    const double pace = heading.dot(inward);
+    const double to_plane = (first - scene.approach.standoff - front) / pace;
+    move(state, to_plane * heading);
+    const bool plane_only = elements.size() == 1 && std::holds_alternative<HalfSpace>(elements[0].shape);
+    if (plane_only) return;
+
+    // From there step by step by the distance that is certainly free.
+    const double longest = (last - first + front - rear) / pace + scene.approach.standoff;
+    double way = 0.0;
+    constexpr int most_steps = 1000;
+    for (int i = 0; i < most_steps && way <= longest; ++i) {
+        const double free = nearest_gap(scene, state, {.anchors = true}) - scene.approach.standoff;
+        move(state, free * heading);
+        way += free;
+        if (std::abs(free) < tolerance::initial_overlap * 1e-3) return;
+    }
+    if (way <= longest) return;  // it grazes
+    move(state, -way * heading);
 }
 
 }  // namespace
@@ -67,8 +153,10 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
     require_valid(settings);
     if (!vehicle || vehicle->units.empty()) refuse("vehicle", "at least one unit", 0.0);
     require_not_negative("impact_speed", approach.speed);
-    if (!(approach.angle > 0.0 && approach.angle < std::numbers::pi))
-        refuse("impact_angle", "> 0 and < 180 deg", approach.angle * 180.0 / std::numbers::pi);
+    if (!(approach.angle >= 0.0 && approach.angle <= std::numbers::pi))
+        refuse("impact_angle", "within 0 and 180 deg", approach.angle * 180.0 / std::numbers::pi);
+    require_finite("impact_yaw", approach.yaw);
+    require_finite("impact_roll", approach.roll);
     require_finite("impact_offset", approach.offset);
     if (!(std::isfinite(approach.standoff) && approach.standoff >= 0.0))
         refuse("standoff", "finite and >= 0 m, or the vehicle would start inside the barrier",
@@ -77,6 +165,19 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
     if (!duration && !barrier) refuse("duration", "given (s) where there is no barrier", "none");
     if (!duration && !(approach.speed > 0.0))
         refuse("duration", "given (s) where the vehicle stands still", "none");
+    if (barrier)
+        for (const Element& element : barrier->elements)
+            obstacles.push_back({element.shape,
+                                 Eigen::AngleAxisd(element.heading, Vec3::UnitZ()).toRotationMatrix(),
+                                 element.position, barrier->friction, 0});
+    for (std::size_t i = 0; i < obstacles.size(); ++i)
+        obstacles[i].structure = i > 0 && continues(obstacles[i].shape) ? obstacles[i - 1].structure : i;
+    ground = obstacles.size();
+    for (const Unit& unit : vehicle->units)
+        skin_meets_ground.push_back(settings.ground && !unit.wheels.empty() && skin_above_ground(unit));
+    if (std::any_of(skin_meets_ground.begin(), skin_meets_ground.end(), [](char meets) { return meets; }))
+        obstacles.push_back(
+            {HalfSpace{Vec3::UnitZ(), 0.0}, Mat3::Identity(), Vec3::Zero(), settings.mu_body, ground});
 }
 
 double Scene::reference_speed() const {
@@ -90,6 +191,7 @@ std::uint64_t Scene::fingerprint() const {
         for (int column = 0; column < 3; ++column)
             hash.add(Vec3(unit.body.inertia.col(column)));
         hash.add(unit.mass_center_height);
+        hash.add(unit.offset);
         for (const TrussBlock& b : unit.trusses.block)
             for (const Lanes* lane :
                  {&b.node_x, &b.node_y, &b.node_z, &b.anchor_x, &b.anchor_y, &b.anchor_z, &b.k_unloading})
@@ -99,19 +201,30 @@ std::uint64_t Scene::fingerprint() const {
             hash.add(hinge.slope_change);
         }
         hash.add(unit.trusses.rate_sensitivity);
+        hash.add(unit.trusses.dent_slope);
         for (const Wheel& wheel : unit.wheels) {
             hash.add(wheel.center);
             hash.add(wheel.radius);
         }
     }
+    for (const Joint& joint : vehicle->joints) {
+        hash.add(static_cast<double>(joint.kind));
+        hash.add(static_cast<double>(joint.leading));
+        hash.add(static_cast<double>(joint.trailing));
+        hash.add(joint.place_on_leading);
+        hash.add(joint.place_on_trailing);
+        hash.add(joint.roll_limit);
+    }
     if (barrier) {
         hash.add(barrier->friction);
         hash.add(barrier->origin);
         hash.add(barrier->heading);
-        hash.add(static_cast<double>(barrier->face.index()));
-        if (const auto* pole = std::get_if<Cylinder>(&barrier->face)) hash.add(pole->radius);
-        hash.add(barrier->width);
-        hash.add(barrier->height);
+        for (const Element& element : barrier->elements) {
+            hash.add(static_cast<double>(element.shape.index()));
+            std::visit([&](const auto& shape) { add_to(hash, shape); }, element.shape);
+            hash.add(element.position);
+            hash.add(element.heading);
+        }
     }
     return hash.value();
 }
@@ -125,23 +238,28 @@ State Scene::initial_state() const {
     const Vec3 heading(std::cos(yaw), std::sin(yaw), 0.0);
     const Vec3 line(-std::sin(barrier_heading), std::cos(barrier_heading), 0.0);
 
+    const double turn = yaw + approach.yaw;
+    const Quat orientation = from_roll_pitch_yaw({approach.roll, 0.0, turn});
+    const Unit& first = vehicle->units.front();
+    // A path along the line never meets it: the offset is its distance, away from the traffic.
+    const bool meets_line = std::abs(std::sin(approach.angle)) > 1e-12;
+    const Vec3 away(std::cos(barrier_heading), std::sin(barrier_heading), 0.0);
+    const Vec3 foot = Vec3(origin.x(), origin.y(), 0.0) + approach.offset * (meets_line ? line : away);
+    const Vec3 center = foot + from_roll_pitch_yaw({0.0, 0.0, turn}) * first.place();
     for (std::size_t u = 0; u < vehicle->units.size(); ++u) {
         BodyState& body = state.units[u].body;
         const Unit& unit = vehicle->units[u];
-        body.position = Vec3(origin.x(), origin.y(), 0.0) + approach.offset * line +
-                        unit.mass_center_height * Vec3::UnitZ();
-        body.orientation = from_roll_pitch_yaw({0.0, 0.0, yaw});
+        body.orientation = orientation;
+        body.position = center + orientation * (unit.place() - first.place());
         body.velocity = approach.speed * heading;
         state.energies.kinetic += kinetic_energy(unit.body, body);
     }
+    if (approach.roll != 0.0 && settings.ground) raise_to_ground(*this, state);
     if (barrier) {
-        const double shift = way_to(*barrier, *vehicle, state, heading, approach.standoff);
-        for (std::size_t u = 0; u < vehicle->units.size(); ++u) {
-            state.units[u].body.position += shift * heading;
-            const double nearest = nearest_gap(vehicle->units[u], state.units[u].body, barrier->face);
-            const double rounding = 1e-15 * std::abs(shift) + tolerance::initial_overlap;
-            if (nearest < -rounding) refuse("initial gap of the vehicle to the barrier", ">= 0 m", nearest);
-        }
+        place(*this, heading, state);
+        const double nearest = nearest_gap(*this, state, {.anchors = true});
+        const double rounding = 1e-15 * state.units[0].body.position.norm() + tolerance::initial_overlap;
+        if (nearest < -rounding) refuse("initial gap of the vehicle to the barrier", ">= 0 m", nearest);
     }
     state.next_step = tolerance::first_contact_step;
     return state;

@@ -8,7 +8,9 @@
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
-#include "birm3d/sim/barrier_forces.hpp"
+#include "birm3d/kernels/tires.hpp"
+#include "birm3d/sim/obstacles.hpp"
+#include "birm3d/sim/structure_course.hpp"
 
 namespace birm3d {
 
@@ -16,27 +18,74 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Fastest any point of the unit moves (m/s).
-double fastest_point(const Unit& unit, const BodyState& body) {
-    return body.velocity.norm() + angular_velocity(unit.body, body).norm() * unit.trusses.reach;
-}
-
 bool touches(const State& state) {
     return std::any_of(state.units.begin(), state.units.end(),
                        [](const UnitState& unit) { return unit.skin.normal_force > 0.0; });
 }
 
-// Moving away, and either faster than any turning could bring a point back or already out of its reach.
+// From the nearest point of a convex body around the shape to `p`, own axes.
+Vec3 from_hull(const Shape& shape, const Box& box, const Vec3& p) {
+    if (const auto* plane = std::get_if<HalfSpace>(&shape))
+        return std::max(0.0, plane->gap(p)) * plane->normal;
+    const Vec3 from = p - box.center;
+    return from - from.cwiseMax(-box.half).cwiseMin(box.half);
+}
+
+// Around all that is joined to obstacle `i`, its own axes.
+Box box_of_structure(const Scene& scene, std::size_t i) {
+    const Obstacle& first = scene.obstacles[i];
+    Box box = bounds(first.shape);
+    for (std::size_t j = i + 1; j < scene.obstacles.size() && scene.obstacles[j].structure == i; ++j) {
+        // Segments follow each other along y.
+        const Box own = bounds(scene.obstacles[j].shape);
+        const double shift = first.rotation.col(1).dot(scene.obstacles[j].position - first.position);
+        const double low = std::min(box.center.y() - box.half.y(), shift + own.center.y() - own.half.y());
+        const double high = std::max(box.center.y() + box.half.y(), shift + own.center.y() + own.half.y());
+        box.center.y() = 0.5 * (low + high), box.half.y() = 0.5 * (high - low);
+    }
+    return box;
+}
+
+// Moving away from every element, and either faster than any turning could bring a point back or already out of its
+// reach. On a straight path what recedes goes on receding.
 bool has_left(const Scene& scene, const State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Unit& unit = scene.vehicle->units[u];
         const BodyState& body = state.units[u].body;
-        const Surface& face = scene.barrier->face;
-        const double away = body.velocity.dot(normal_at(face, body.position));
         const double turning = angular_velocity(unit.body, body).norm() * unit.trusses.reach;
-        if (!(away > 0.0 && (away >= turning || gap(face, body.position) > unit.trusses.reach))) return false;
+        for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
+            const Obstacle& element = scene.obstacles[i];
+            if (element.structure != i) continue;
+            const Placement seen = placement(element, body);
+            const Vec3 from = from_hull(element.shape, box_of_structure(scene, i), seen.position);
+            const double distance = from.norm();
+            if (!(distance > 0.0)) return false;
+            const double away = (element.rotation.transpose() * body.velocity).dot(from) / distance;
+            if (!(away > 0.0 && (away >= turning || distance > unit.trusses.reach))) return false;
+        }
     }
     return true;
+}
+
+// Is the vehicle still lifting a wheel from the ground, or tipped over and not yet at rest?
+bool tips(const Scene& scene, const State& state) {
+    if (!scene.settings.ground || scene.settings.gravity == 0.0) return false;
+    constexpr double tipped = 0.7;  // cosine of the up axis to the vertical: about 45 degrees
+    std::vector<RigidContact> wheels;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const BodyState& body = state.units[u].body;
+        const Unit& unit = scene.vehicle->units[u];
+        if (unit.wheels.empty()) continue;
+        if ((body.orientation * Vec3::UnitZ()).z() < tipped) return true;
+        wheels.clear();
+        find_tire_contacts(unit, u, body, wheels);
+        const Twist motion = twist(unit.body, body);
+        for (const RigidContact& wheel : wheels)
+            if (wheel.gap > tolerance::lifted_wheel &&
+                (motion.velocity + motion.angular_velocity.cross(wheel.arm)).z() > 0.0)
+                return true;
+    }
+    return false;
 }
 
 // Mean velocity of the pushing nodes along their normals, weighted by their forces (m/s); negative =
@@ -70,19 +119,27 @@ Turn find_turn(const Scene& scene, const State& before, const Trial& trial) {
     return {approach / (approach - separation), 0.25 * trial.dt * trial.dt * stiffness * separation};
 }
 
-// When the last load is gone, by the course of the loads so far (s); infinite where that does not tell.
-double time_to_release(const State& state) {
+// When a load is gone, by its course so far (s); infinite where that does not tell.
+double time_to_release(const LoadCourse& course) {
+    const double force = course.now.normal_force, rate = course.rate.normal_force,
+                 bend = course.bend.normal_force, step = course.step;
+    if (!(force > 0.0)) return 0.0;
+    // Root of force + rate s + bend s (s + step), written for small bends.
+    const double slope = rate + bend * step;
+    const double square = slope * slope - 4.0 * bend * force;
+    const bool ends = square > 0.0 && slope < 0.0;
+    return ends ? 2.0 * force / (std::sqrt(square) - slope) : infinity;
+}
+
+// Of the last load.
+double time_to_release(const Scene& scene, const State& state) {
     double latest = 0.0;
-    for (const UnitState& unit : state.units) {
-        const double force = unit.course.now.normal_force, rate = unit.course.rate.normal_force,
-                     bend = unit.course.bend.normal_force, step = unit.course.step;
-        if (!(force > 0.0)) continue;
-        // Root of force + rate s + bend s (s + step), written for small bends.
-        const double slope = rate + bend * step;
-        const double square = slope * slope - 4.0 * bend * force;
-        const bool ends = square > 0.0 && slope < 0.0;
-        latest = std::max(latest, ends ? 2.0 * force / (std::sqrt(square) - slope) : infinity);
-    }
+    for (const UnitState& unit : state.units)
+        for (std::size_t i = 0; i < unit.touches.size();) {
+            const std::size_t structure = scene.obstacles[unit.touches[i].obstacle].structure;
+            latest = std::max(latest, time_to_release(course_of_structure(scene, unit.touches, structure)));
+            i = end_of_structure(scene, unit.touches, i);
+        }
     return latest;
 }
 
@@ -128,6 +185,14 @@ EndReason Simulation::end_reason() const {
     return has_left(scene_, state_) ? EndReason::separated : EndReason::stopped;
 }
 
+double Simulation::deepest_node() const {
+    return std::max(0.0, -nearest_gap(scene_, state_, {}));
+}
+
+double Simulation::deepest_anchor() const {
+    return std::max(0.0, -nearest_gap(scene_, state_, {.nodes = false, .anchors = true}));
+}
+
 double Simulation::remaining() const {
     double end = tolerance::longest_event;
     if (scene_.duration)
@@ -145,7 +210,8 @@ void Simulation::take(Trial& trial) {
         throw std::runtime_error("the state is no longer finite at t = " + to_text(state_.time) +
                                  " s, step " + to_text(trial.dt) + " s");
     if (!state_.decided && scene_.barrier && state_.touched &&
-        ((!touches(state_) && has_left(scene_, state_)) || at_rest(scene_, state_))) {
+        ((!touches(state_) && has_left(scene_, state_) && !tips(scene_, state_)) ||
+         at_rest(scene_, state_))) {
         state_.decided = true;
         state_.decided_at = state_.time;
     }
@@ -182,8 +248,10 @@ void Simulation::refuse_step(double dt, double critical) const {
 void Simulation::adaptive_step() {
     const double allowed =
         tolerance::step_error_per_tolerance * scene_.settings.tolerance * scene_.reference_speed();
-    double dt = std::min({state_.next_step, tolerance::longest_step, remaining()});
-    if (touches(state_)) dt = std::min(dt, std::max(time_to_release(state_), tolerance::release_resolution));
+    double dt =
+        std::min({state_.next_step, tolerance::longest_step, remaining(), passing_step(scene_, state_)});
+    if (touches(state_))
+        dt = std::min(dt, std::max(time_to_release(scene_, state_), tolerance::release_resolution));
     for (;;) {
         if (dt < tolerance::shortest_step)
             throw UnstableError(dt, tolerance::shortest_step, state_.time,
@@ -214,11 +282,7 @@ void Simulation::adaptive_step() {
         std::min(dt * std::min(4.0, growth), 0.9 * tolerance::stable_fraction * trial_.critical_step));
     if (scene_.barrier && !touches(state_)) {
         // Free flight: up to the first instant at which a node can be at the barrier.
-        double fastest = 0.0;
-        for (std::size_t u = 0; u < state_.units.size(); ++u)
-            fastest = std::max(fastest, fastest_point(scene_.vehicle->units[u], state_.units[u].body));
-        next = std::max(tolerance::first_contact_step,
-                        std::min(next, fastest > 0.0 ? nearest_gap(scene_, state_) / fastest : infinity));
+        next = std::max(tolerance::first_contact_step, std::min(next, untouched_step(scene_, state_)));
     }
     state_.next_step = next;
 }

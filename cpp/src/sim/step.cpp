@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
-#include "birm3d/sim/barrier_forces.hpp"
 #include "birm3d/sim/half_kick.hpp"
+#include "birm3d/sim/skin_forces.hpp"
+#include "birm3d/sim/structure_course.hpp"
 
 namespace birm3d {
 
@@ -35,46 +38,118 @@ Load lead(const LoadCourse& before, double dt) {
 }
 
 // A wall does not pull: the parabola of the normal force stays above zero while its bend is at most
-// (sqrt(F0) + sqrt(F1))^2.
-Load within_push(const Load& correction, const LoadCourse& before, const LoadCourse& now, double dt) {
+// (sqrt(F0) + sqrt(F1))^2. Share of a correction that this allows.
+double share_that_pushes(const Load& correction, const LoadCourse& before, const LoadCourse& now, double dt) {
     const double bend = -6.0 / dt * correction.normal_force;
     const double root = std::sqrt(before.now.normal_force) + std::sqrt(now.now.normal_force);
-    return bend > root * root ? scaled(correction, root * root / bend) : correction;
+    return bend > root * root ? root * root / bend : 1.0;
 }
 
-// The load at the new instant, its course, and what the higher order adds to the trapezoid rule. Returns the
-// estimated error of the step's velocity (m/s).
-double load_and_correct(const Unit& unit, const LoadCourse& before, double dt, UnitMotion& moved,
-                        HigherOrder& extra) {
-    LoadCourse& now = moved.course;
-    now = {};
-    now.now = {moved.skin.contact, moved.skin.normal_force};
-    now.now.wrench += moved.skin.friction;
-    const Load rise = difference(now.now, before.now);
-    // Where nothing presses any more, the rate ends with the load: a straight line is the better course
-    // through the corner that a release makes.
-    if (moved.skin.normal_force == 0.0) return error_of(unit, moved.body, rise, dt);
-
-    const double span = dt + before.step;
+// The course after a step of dt to `load`.
+LoadCourse course_to(const Load& load, const LoadCourse& before, double dt) {
+    LoadCourse now;
+    now.now = load;
     now.step = dt;
     now.step_before = before.step;
-    now.rate = scaled(rise, 1.0 / dt);
-    const Load departure = scaled(difference(now.rate, before.rate), dt);  // from a straight line
-    now.bend = scaled(departure, 1.0 / (dt * span));
-    extra.correction = scaled(departure, -dt * dt / (6.0 * span));
+    now.rate = scaled(difference(load, before.now), 1.0 / dt);
+    now.bend = scaled(difference(now.rate, before.rate), 1.0 / (dt + before.step));
+    return now;
+}
 
-    // A cubic follows the change of the bend, where the bend lasts. At a corner it does not, and a bend of the
-    // last step that was a corner says nothing of this one.
-    const Load change = scaled(difference(now.bend, before.bend), dt * span);
+// How far the end of the step lies from a straight line, and from a parabola.
+Load departure(const LoadCourse& before, const LoadCourse& now) {
+    return scaled(difference(now.rate, before.rate), now.step);
+}
+Load change(const LoadCourse& before, const LoadCourse& now) {
+    return scaled(difference(now.bend, before.bend), now.step * (now.step + before.step));
+}
+
+// Of the whole step, impulses. A cubic follows the change of the bend, where the bend lasts. At a corner it does not,
+// and a bend of the last step that was a corner says nothing of this one.
+Load correction(const LoadCourse& before, const LoadCourse& now) {
+    const double dt = now.step, span = dt + before.step;
+    Load sum = scaled(departure(before, now), -dt * dt / (6.0 * span));
     if (before.bend_lasts)
-        extra.correction +=
-            scaled(change, -cubic_weight(dt, before.step) / (span * (span + before.step_before)));
-    extra.correction = within_push(extra.correction, before, now, dt);
+        sum += scaled(change(before, now),
+                      -cubic_weight(dt, before.step) / (span * (span + before.step_before)));
+    return sum;
+}
 
-    const double by_departure = error_of(unit, moved.body, departure, dt);
-    const double by_change = error_of(unit, moved.body, change, dt);
+// The loads of the touches of one structure at the new instant, their courses, and what the higher order adds to the
+// trapezoid rule. Returns the estimated error of the step's velocity (m/s). What hangs on signs and sizes is decided by
+// the structure's load as a whole; the rest is linear in the load.
+double load_and_correct(const Unit& unit, const BodyState& body, const LoadCourse& before, double dt,
+                        std::span<const LoadCourse> befores, std::span<const Load> loads,
+                        std::span<Touch> touches) {
+    Load total;
+    for (std::size_t i = 0; i < touches.size(); ++i) {
+        total += loads[i];
+        touches[i].course = {};
+        touches[i].course.now = loads[i];
+        touches[i].extra = {lead(befores[i], dt), {}};
+    }
+    // Where nothing presses any more, the rate ends with the load: a straight line is the better course
+    // through the corner that a release makes.
+    if (total.normal_force == 0.0) return error_of(unit, body, difference(total, before.now), dt);
+
+    LoadCourse now = course_to(total, before, dt);
+    const double by_departure = error_of(unit, body, departure(before, now), dt);
+    const double by_change = error_of(unit, body, change(before, now), dt);
     now.bend_lasts = before.step > 0.0 && by_change < tolerance::lasting_bend * by_departure;
+    const double pushing = share_that_pushes(correction(before, now), before, now, dt);
+    for (std::size_t i = 0; i < touches.size(); ++i) {
+        touches[i].course = course_to(loads[i], befores[i], dt);
+        touches[i].course.bend_lasts = now.bend_lasts;
+        touches[i].extra.correction = correction(befores[i], touches[i].course);
+        if (pushing < 1.0) touches[i].extra.correction = scaled(touches[i].extra.correction, pushing);
+    }
     return std::min(by_departure, by_change);
+}
+
+const LoadCourse& course_at(const std::vector<Touch>& touches, std::size_t obstacle) {
+    static const LoadCourse none;
+    for (const Touch& touch : touches)
+        if (touch.obstacle == obstacle) return touch.course;
+    return none;
+}
+
+// Load of a touch as both sides feel it: what turns the unit about its mass centre turns the obstacle about its own
+// point, the other way.
+Load load_of(const Scene& scene, const BodyState& body, const Touch& touch) {
+    Wrench wrench = touch.contact;
+    wrench += touch.friction;
+    const Vec3 arm = body.position - scene.obstacles[touch.obstacle].position;
+    return {wrench, -wrench.torque - arm.cross(wrench.force), touch.normal_force};
+}
+
+// Returns the estimated error of the step's velocity (m/s).
+double correct(const Scene& scene, std::size_t u, const UnitState& from, double dt, UnitState& moved) {
+    double error = 0.0;
+    const std::span<Touch> touches(moved.touches);
+    std::vector<LoadCourse> befores;
+    std::vector<Load> loads;
+    for (std::size_t i = 0, end = 0; i < touches.size(); i = end) {
+        end = end_of_structure(scene, touches, i);
+        const LoadCourse before =
+            course_of_structure(scene, from.touches, scene.obstacles[touches[i].obstacle].structure);
+        befores.clear();
+        loads.clear();
+        for (const Touch& touch : touches.subspan(i, end - i)) {
+            LoadCourse own = course_at(from.touches, touch.obstacle);
+            own.step = before.step, own.step_before = before.step_before, own.bend_lasts = before.bend_lasts;
+            befores.push_back(own);
+            loads.push_back(load_of(scene, moved.body, touch));
+        }
+        error += load_and_correct(scene.vehicle->units[u], moved.body, before, dt, befores, loads,
+                                  touches.subspan(i, end - i));
+    }
+    return error;
+}
+
+bool touches_barrier(const Scene& scene, const UnitState& unit) {
+    return std::any_of(unit.touches.begin(), unit.touches.end(), [&](const Touch& touch) {
+        return touch.obstacle != scene.ground && touch.normal_force > 0.0;
+    });
 }
 
 // Infinite where nothing pushes.
@@ -82,11 +157,28 @@ double critical_step(const SkinForces& skin) {
     return skin.stiffness > 0.0 ? tolerance::critical_phase / std::sqrt(skin.stiffness) : infinity;
 }
 
+// A joint's force turns with its bodies, which the half kicks follow to second order: of a velocity omega r that
+// turns by phi = omega dt they miss about phi^3/12 (m/s).
+double joint_error(const Scene& scene, const State& state, double dt) {
+    double most = 0.0;
+    for (const Joint& joint : scene.vehicle->joints) {
+        const auto spin = [&](std::size_t u) {
+            return angular_velocity(scene.vehicle->units[u].body, state.units[u].body).norm();
+        };
+        const double omega = std::max(spin(joint.leading), spin(joint.trailing)), turn = omega * dt;
+        const double lever = joint.place_on_leading.norm() + joint.place_on_trailing.norm();
+        most = std::max(most, turn * turn * turn / 12.0 * omega * lever);
+    }
+    return most;
+}
+
 void clear(ContactImpulses& impulses) {
     std::fill(impulses.tire.begin(), impulses.tire.end(), 0.0);
-    impulses.tire_friction = impulses.barrier = Vec3::Zero();
+    impulses.tire_friction = Vec3::Zero();
+    impulses.obstacles.clear();
     impulses.barrier_normal = 0.0;
     impulses.member_contacts = 0;
+    impulses.joints = Vec3::Zero();
 }
 
 void begin(const State& from, double dt, Trial& trial) {
@@ -102,8 +194,11 @@ void begin(const State& from, double dt, Trial& trial) {
         clear(trial.impulses[u]);
         clear(trial.at_start.impulses[u]);
         clear(trial.at_end.impulses[u]);
-        trial.higher_order[u] = {lead(from.units[u].course, dt), {}};
+        for (Touch& touch : trial.state.units[u].touches)
+            touch.extra = {lead(touch.course, dt), {}};
     }
+    for (auto* sums : {&trial.joint_impulses, &trial.at_start.joint_impulses, &trial.at_end.joint_impulses})
+        std::fill(sums->begin(), sums->end(), Wrench{});
 }
 
 void book_trusses(State& now) {
@@ -132,7 +227,8 @@ Trial::Trial(const Vehicle& vehicle) : state(vehicle) {
             stale.back().add(block);
     }
     at_start.impulses = at_end.impulses = impulses;
-    higher_order.resize(vehicle.units.size());
+    joint_impulses.resize(vehicle.joints.size());
+    at_start.joint_impulses = at_end.joint_impulses = joint_impulses;
 }
 
 bool Trial::body_held() const {
@@ -153,15 +249,15 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
         now.energies.potential += dt * unit.body.mass * scene.settings.gravity * moved.body.velocity.z();
         drift(unit.body, dt, moved.body);
 
-        if (scene.barrier) barrier_forces(scene, u, from, trial);
-        if (moved.skin.normal_force > 0.0) now.touched = true;
+        if (!scene.obstacles.empty()) skin_forces(scene, u, from, trial);
+        if (touches_barrier(scene, moved)) now.touched = true;
 
-        const double error = load_and_correct(unit, from.units[u].course, dt, moved, trial.higher_order[u]);
-        trial.error = std::max(trial.error, error);
+        trial.error = std::max(trial.error, correct(scene, u, from.units[u], dt, moved));
         trial.critical_step = std::min(trial.critical_step, critical_step(moved.skin));
     }
 
     book_trusses(now);
+    trial.error = std::max(trial.error, joint_error(scene, now, dt));
 
     half_kick(scene, Stage::after_drift, options, trial);
     book_motion(scene, now);

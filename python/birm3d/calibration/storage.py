@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..whole_file import check_format, whole_file
 from .evaluator import Evaluation
 from .fitted import FittedParameter, FittedTarget
 from .identifiability import Spread
@@ -23,10 +24,9 @@ _FORMAT = "birm3d calibration"
 
 def save(result: CalibrationResult, path: str | Path) -> None:
     """Write a result; floats keep all their digits. The file is complete or is not there."""
-    path = Path(path)
-    part = path.with_name(path.name + ".part")
-    part.write_text(json.dumps(as_plain(result), indent=1, allow_nan=False), encoding="utf-8")
-    part.replace(path)
+    text = json.dumps(as_plain(result), indent=1, allow_nan=False)
+    with whole_file(path) as part:
+        part.write_text(text, encoding="utf-8")
 
 
 def as_plain(result: CalibrationResult) -> dict[str, Any]:
@@ -53,10 +53,7 @@ def load(path: str | Path) -> CalibrationResult:
         raise ValueError(f"{path}: can not be read: {error.strerror}") from error
     except ValueError as error:
         raise ValueError(f"{path}: must be JSON: {error}") from error
-    if not isinstance(document, dict) or document.get("format") != _FORMAT:
-        raise ValueError(f"{path}: format must be {_FORMAT!r}, got {_received(document)}")
-    if document["format_version"] != FORMAT_VERSION:
-        raise ValueError(f"{path}: format_version must be {FORMAT_VERSION}, got {document['format_version']}")
+    check_format(path, document, _FORMAT, FORMAT_VERSION)
     return CalibrationResult(
         parameters=tuple(_parameter(item) for item in document["parameters"]),
         targets=tuple(FittedTarget(**_arrays(item, FittedTarget)) for item in document["targets"]),
@@ -74,10 +71,6 @@ def load(path: str | Path) -> CalibrationResult:
         settings=document["settings"],
         profiles={name: Profile(**_arrays(item, Profile)) for name, item in document["profiles"].items()},
     )
-
-
-def _received(document: object) -> str:
-    return repr(document.get("format")) if isinstance(document, dict) else type(document).__name__
 
 
 def _parameter(item: dict[str, Any]) -> FittedParameter:

@@ -9,11 +9,12 @@ using namespace birm3d;
 namespace {
 
 const TrussMesh mesh(laboratory::front_face(laboratory::w2_curve(), 13, 10));  // anchors at 1 m
-const HalfSpace face{{-1.0, 0.0, 0.0}, -1.05};  // body axes: the anchors stand 50 mm before it
+const Shape face = HalfSpace{{-1.0, 0.0, 0.0}, -1.05};  // body axes: the anchors stand 50 mm before it
 
 std::vector<RigidContact> found(const Twist& motion, double dt, const BodyState& state = {}) {
     std::vector<RigidContact> contacts;
-    find_closed_members(mesh, 3, state, face, motion, dt, contacts);
+    const PlacedShape shapes[] = {{&face, {}, 0, 0.0}};
+    find_closed_members(mesh, 3, state, shapes, motion, dt, contacts);
     return contacts;
 }
 

@@ -14,6 +14,34 @@ namespace {
 // 1 MN/m to 0.1 m, 2 MN/m beyond; unloading 10 MN/m.
 const TrussCurve curve = knee_curve(1e6, 0.1, 2e6, laboratory::infinity, 10e6);
 
+SkinForces forces_of(const CrushSums& sums, const Wrench& wrench) {
+    return {wrench,
+            {},
+            row_sum(sums.nodes.force),
+            0.5 * row_sum(sums.nodes.twice_work) + sums.released_work,
+            0.5 * row_sum(sums.nodes.twice_stored),
+            sums.stiffness,
+            0.0};
+}
+
+// The forces of a mesh of one block by a pole, upright at (x, y).
+SkinForces press_by_pole(const TrussMesh& mesh, double x, double y, double radius,
+                         const TrussBlockState& before, TrussBlockState& now) {
+    NodeFaces faces;
+    BlockContact contact;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const Vec3 radial(before.x[i] - x, before.y[i] - y, 0.0);
+        const Vec3 n = radial.normalized();
+        faces.gap[i] = radial.norm() - radius;
+        contact.nx[i] = faces.bx[i] = n.x(), contact.ny[i] = faces.by[i] = n.y();
+        contact.nz[i] = faces.bz[i] = n.z();
+        faces.per_force[i] = 0.0;
+    }
+    CrushSums sums;
+    crush(faces, laboratory::body(), mesh, 0, nullptr, before, now, contact, sums);
+    return forces_of(sums, total_wrench(sums));
+}
+
 // The forces of a mesh of one block.
 SkinForces press(const TrussMesh& mesh, ContactModel model, const HalfSpace& face,
                  const TrussBlockState& before, TrussBlockState& now) {
@@ -22,9 +50,9 @@ SkinForces press(const TrussMesh& mesh, ContactModel model, const HalfSpace& fac
     BlockContact contact;
     contact.set_normal(face.normal);
     crush(surface, mesh, 0, nullptr, before, now, contact, sums);
-    SkinForces forces = total(surface, sums);
-    if (model == ContactModel::along_truss) forces.contact = along_trusses(mesh.block[0], now, contact);
-    return forces;
+    Wrench wrench = total_wrench(surface, sums);
+    if (model == ContactModel::along_truss) wrench = along_trusses(mesh.block[0], now, contact);
+    return forces_of(sums, wrench);
 }
 
 // One node that is pressed by a plane; all in body axes.
@@ -177,19 +205,14 @@ TEST("the block sums what its trusses do") {
 
 TEST("a pole of great radius presses like a wall") {
     const TrussMesh mesh(laboratory::front_face(laboratory::w2_curve(), 8, 8));
-    TrussState flat(mesh), curved(mesh);
     const double radius = 1e7;
-    const RigidBody body = laboratory::body();
+    TrussState flat(mesh), curved(mesh);
     for (const double place : {2.8, 2.5, 2.3, 2.4}) {
         const TrussBlockState flat_before = flat.block[0], curved_before = curved.block[0];
         const HalfSpace face{-Vec3::UnitX(), -place};
         const SkinForces wall = press(mesh, ContactModel::projected, face, flat_before, flat.block[0]);
-        const Cylinder pole{Vec3(place + radius, 0.0, 0.0), Vec3::UnitZ(), radius};
-        const CurvedContact surface(body, pole, pole);
-        CrushSums sums;
-        BlockContact contact;
-        crush(surface, mesh, 0, nullptr, curved_before, curved.block[0], contact, sums);
-        const SkinForces by_pole = total(surface, sums);
+        const SkinForces by_pole =
+            press_by_pole(mesh, place + radius, 0.0, radius, curved_before, curved.block[0]);
         // Nodes stand up to 1.2 m from the middle: 1.2^2 / 2e7 m less deep, on 60 MN/m.
         CHECK_CLOSE((by_pole.contact.force - wall.contact.force).norm(), 0.0, 10.0, "the pole's curvature");
         CHECK_CLOSE((by_pole.contact.torque - wall.contact.torque).norm(), 0.0, 10.0, "the same");
@@ -203,19 +226,14 @@ TEST("a node beside a pole goes to its surface along the radius") {
     const TrussMesh mesh({{node}, {anchor}, {curve}, {0}, {1.0}});
     TrussState state(mesh);
     const TrussBlockState before = state.block[0];
-    const Cylinder pole{Vec3(1.05, 0.0, 0.0), Vec3::UnitZ(), 0.2};
-    const RigidBody body = laboratory::body();
-    const CurvedContact surface(body, pole, pole);
-    CrushSums sums;
-    BlockContact contact;
-    crush(surface, mesh, 0, nullptr, before, state.block[0], contact, sums);
-    const Vec3 n = (node - pole.point).normalized();
-    const Vec3 place = pole.point + 0.2 * n;
+    const SkinForces f = press_by_pole(mesh, 1.05, 0.0, 0.2, before, state.block[0]);
+    const Vec3 axis(1.05, 0.0, 0.0);
+    const Vec3 n = (node - axis).normalized();
+    const Vec3 place = axis + 0.2 * n;
     CHECK_CLOSE((Vec3(state.block[0].x[0], state.block[0].y[0], state.block[0].z[0]) - place).norm(), 0.0,
                 1e-15, "rounding");
     const Vec3 b = anchor - place;
     const double force = envelope_force(curve, 1.0 - b.norm()) * b.normalized().dot(n);
-    const SkinForces f = total(surface, sums);
     CHECK_CLOSE((f.contact.force - force * n).norm(), 0.0, 1e-8, "rounding of 1e5 N");
     CHECK_CLOSE((f.contact.torque - place.cross(force * n)).norm(), 0.0, 1e-8, "the same");
 }

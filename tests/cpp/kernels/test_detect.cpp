@@ -1,22 +1,22 @@
 #include "birm3d/kernels/detect.hpp"
 
+#include <random>
+
 #include "check.hpp"
 
 using namespace birm3d;
 
-TEST("the gap is the signed distance along the outward normal") {
-    const Vec3 n = Vec3(1.0, -2.0, 2.0) / 3.0;
-    const HalfSpace face{n, 0.7};
+TEST("the box around a block of nodes holds them all and no more") {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> uniform(-3.0, 2.0);
     Lanes x, y, z;
-    for (std::size_t i = 0; i < lanes; ++i) {
-        // 0.1 i before the plane, and off to the side along two directions within it.
-        const Vec3 p = (0.7 + 0.1 * static_cast<double>(i) - 3.0) * n + 0.3 * Vec3(2.0, 1.0, 0.0) -
-                       5.0 * Vec3(0.0, 1.0, 1.0);
-        x[i] = p.x(), y[i] = p.y(), z[i] = p.z();
-    }
-    const Lanes gap = gaps(face, x, y, z);
-    for (std::size_t i = 0; i < lanes; ++i)
-        CHECK_CLOSE(gap[i], 0.1 * static_cast<double>(i) - 3.0, 1e-14, "rounding");
+    for (Lanes* column : {&x, &y, &z})
+        for (double& value : *column)
+            value = uniform(random);
+    const Box box = box_around(x, y, z);
+    const Box known = Box::around(lanes, [&](std::size_t i) { return Vec3(x[i], y[i], z[i]); });
+    CHECK(box.center == known.center);
+    CHECK(box.half == known.half);
 }
 
 TEST("a plane seen from moved and turned axes is the same plane") {

@@ -16,7 +16,9 @@ struct Pressed {
     }
     SkinForces friction(double mu, double full_speed, const Twist& motion) const {
         SkinForces forces;
-        add_friction(laboratory::body(), mu, full_speed, motion, state.block[0], contact, forces);
+        const TrussBlockState& block = state.block[0];
+        add_friction(laboratory::body(), mu, full_speed, motion, {block.x, block.y, block.z}, contact,
+                     forces);
         return forces;
     }
 

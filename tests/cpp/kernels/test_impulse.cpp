@@ -148,3 +148,182 @@ TEST("impulses and separation velocities are complementary in random scenes") {
     CHECK(pushed > 200);
     CHECK(free > 200);
 }
+
+namespace {
+
+// Deterministic numbers in [-1, 1).
+struct Random {
+    std::uint64_t seed = 12345;
+    double operator()() {
+        seed = seed * 6364136223846793005ULL + 1442695040888963407ULL;
+        return static_cast<double>(seed >> 11) / 9007199254740992.0 * 2.0 - 1.0;
+    }
+    Vec3 vector() {
+        const double x = (*this)(), y = (*this)(), z = (*this)();
+        return {x, y, z};
+    }
+};
+
+// Rows that push only: w >= target, j >= 0, and one of both is equal. Rows that are held: w = target.
+void check_answer(std::span<const RigidContact> rows, std::span<const ContactBody> bodies, double tolerance) {
+    for (const RigidContact& row : rows) {
+        const double w = separation_velocity(row, bodies) - row.target;
+        CHECK(std::isfinite(row.impulse));
+        if (!row.held) {
+            CHECK(row.impulse >= 0.0);
+            CHECK(w >= -tolerance);
+        }
+        if (row.held || row.impulse > 0.0) CHECK_CLOSE(w, 0.0, tolerance, "the tolerance of the solver");
+    }
+}
+
+}  // namespace
+
+TEST("a chain of pinned bodies that are pushed keeps together, and its momentum but for the pushes") {
+    Random random;
+    for (int scene = 0; scene < 100; ++scene) {
+        constexpr std::size_t links = 5;
+        std::vector<ContactBody> bodies;
+        std::vector<Vec3> place;
+        for (std::size_t b = 0; b < links; ++b) {
+            bodies.push_back(body(1000.0 * (1.0 + static_cast<double>(b)), {600.0, 900.0, 1100.0},
+                                  5.0 * random.vector(), random.vector()));
+            place.emplace_back(4.0 * static_cast<double>(b), 0.0, 0.0);
+        }
+        std::vector<RigidContact> rows;
+        for (std::size_t b = 0; b + 1 < links; ++b) {
+            const Vec3 pin = 0.5 * (place[b] + place[b + 1]) + 0.3 * random.vector();
+            for (const Vec3& along : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())}) {
+                RigidContact row = contact(pin - place[b], along, 0.05 * random());
+                row.body = b;
+                row.other = static_cast<int>(b + 1);
+                row.other_arm = pin - place[b + 1];
+                row.held = true;
+                rows.push_back(row);
+            }
+            RigidContact lock = contact(Vec3::Zero(), Vec3::UnitX());
+            lock.body = b;
+            lock.other = static_cast<int>(b + 1);
+            lock.about_axis = true;
+            lock.held = scene % 2 == 0;
+            rows.push_back(lock);
+        }
+        const std::size_t pins = rows.size();
+        if (scene % 4 < 2)
+            for (std::size_t b = 0; b < links; ++b) {
+                rows.push_back(contact(random.vector(), Vec3(0.0, 0.0, 1.0) + 0.3 * random.vector()));
+                rows.back().body = b;
+            }
+        const std::vector<ContactBody> start = bodies;
+        solve_impulses(rows, bodies, 5.0);
+        check_answer(rows, bodies, 1e-9);
+
+        Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
+        for (std::size_t b = 0; b < links; ++b) {
+            const Vec3 change =
+                (bodies[b].motion.velocity - start[b].motion.velocity) / bodies[b].inverse_mass;
+            linear += change;
+            angular += place[b].cross(change) +
+                       bodies[b].inverse_inertia.inverse() *
+                           (bodies[b].motion.angular_velocity - start[b].motion.angular_velocity);
+        }
+        for (std::size_t i = pins; i < rows.size(); ++i) {
+            const Vec3 push = rows[i].impulse * rows[i].normal;
+            linear -= push;
+            angular -= (place[rows[i].body] + rows[i].arm).cross(push);
+        }
+        CHECK_CLOSE(linear.norm(), 0.0, 1e-8, "rounding of 1e4 N s");
+        CHECK_CLOSE(angular.norm(), 0.0, 1e-7, "rounding of 1e5 N m s");
+    }
+}
+
+TEST("a stop turns a body back and lets it go; a lock holds it both ways") {
+    for (const double spin : {2.0, -2.0}) {
+        RigidContact stop = contact({0.4, 0.1, 0.0}, Vec3::UnitX());
+        stop.about_axis = true;
+        std::vector<ContactBody> bodies = {
+            body(1000.0, {500.0, 800.0, 900.0}, {1.0, 2.0, 3.0}, {spin, 0.5, 0.0})};
+        std::vector<RigidContact> rows = {stop};
+        solve_impulses(rows, bodies, 2.0);
+        CHECK_CLOSE(rows[0].impulse, spin < 0.0 ? -500.0 * spin : 0.0, 1e-9, "rounding; N m s");
+        CHECK_CLOSE(bodies[0].motion.angular_velocity.x(), std::max(0.0, spin), 1e-12, "rounding");
+        CHECK(bodies[0].motion.velocity == Vec3(1.0, 2.0, 3.0));
+
+        rows[0].held = true;
+        bodies[0].motion.angular_velocity.x() = spin;
+        solve_impulses(rows, bodies, 2.0);
+        CHECK_CLOSE(rows[0].impulse, -500.0 * spin, 1e-9, "rounding");
+        CHECK_CLOSE(bodies[0].motion.angular_velocity.x(), 0.0, 1e-12, "rounding");
+    }
+}
+
+TEST("thousands of points of one face press as its corners do") {
+    // A body that comes in turning: part of its face presses. What counts is the wrench.
+    const ContactBody start = body(6804.0, {5000.0, 40000.0, 42000.0}, {10.0, 0.3, -0.01}, {0.0, 0.3, 1.5});
+    const auto solve = [&](int across) {
+        std::vector<ContactBody> bodies = {start};
+        std::vector<RigidContact> contacts;
+        for (int i = 0; i < across; ++i)
+            for (int j = 0; j < across; ++j)
+                contacts.push_back(
+                    contact({1.0, -1.2 + 2.4 * i / (across - 1), -0.8 + 1.6 * j / (across - 1)},
+                            -Vec3::UnitX(), -0.5));
+        solve_impulses(contacts, bodies, 10.0);
+        check_answer(contacts, bodies, 1e-9);
+        return bodies[0].motion;
+    };
+    const Twist corners = solve(2);
+    for (const int across : {3, 10, 50}) {
+        const Twist motion = solve(across);
+        CHECK_CLOSE((motion.velocity - corners.velocity).norm(), 0.0, 1e-9, "the tolerance of the solver");
+        CHECK_CLOSE((motion.angular_velocity - corners.angular_velocity).norm(), 0.0, 1e-9, "the same");
+    }
+}
+
+TEST("points whose targets can not all be met exactly are met as inequalities") {
+    // Three axles land with targets that no rigid body has at once: the middle one shall leave fastest or slowest.
+    for (const double middle : {-1.0, 0.4}) {
+        std::vector<ContactBody> bodies = {
+            body(8633.0, {8000.0, 33000.0, 34000.0}, {0.0, 0.0, -3.0}, {0.1, 0.4, 0.0})};
+        std::vector<RigidContact> contacts;
+        for (const auto& [x, target] : {std::pair{1.8, 0.0}, {-1.8, middle}, {-3.1, 0.0}})
+            for (const double y : {1.0, -1.0}) {
+                contacts.push_back(contact({x, y, -1.0}, Vec3::UnitZ(), target));
+                contacts.back().compliance = 1e-3;
+            }
+        solve_impulses(contacts, bodies, 5.0);
+        check_answer(contacts, bodies, 1e-9);
+    }
+}
+
+TEST("a solver used again for other motions gives what a new one gives") {
+    Random random;
+    const ContactBody still = body(1500.0, {600.0, 2200.0, 2400.0}, Vec3::Zero());
+    std::vector<RigidContact> contacts;
+    for (int i = 0; i < 12; ++i) {
+        contacts.push_back(contact(random.vector(), Vec3(0.0, 0.0, 1.5) + random.vector()));
+        contacts.back().compliance = 1e-3;
+    }
+    std::vector<RigidContact> again = contacts;
+    ImpulseSolver solver(again, std::vector{still}, 5.0);
+    for (int i = 0; i < 50; ++i) {
+        std::vector<ContactBody> a = {still}, b;
+        a[0].motion = {5.0 * random.vector(), random.vector()};
+        b = a;
+        solver.solve(again, a);
+        solve_impulses(contacts, b, 5.0);
+        CHECK_CLOSE((a[0].motion.velocity - b[0].motion.velocity).norm(), 0.0, 1e-9,
+                    "the solver's tolerance");
+        CHECK_CLOSE((a[0].motion.angular_velocity - b[0].motion.angular_velocity).norm(), 0.0, 1e-9,
+                    "the same");
+        check_answer(again, a, 1e-9);
+    }
+}
+
+TEST("a body between two walls that both ask for way stays finite, and amid them") {
+    std::vector<ContactBody> bodies = {body(1000.0, {500.0, 800.0, 900.0}, {3.0, 0.0, 0.0})};
+    std::vector<RigidContact> contacts = {contact({1.0, 0.0, 0.0}, -Vec3::UnitX(), 0.5),
+                                          contact({-1.0, 0.0, 0.0}, Vec3::UnitX(), 0.5)};
+    solve_impulses(contacts, bodies, 3.0);
+    CHECK_CLOSE(bodies[0].motion.velocity.x(), 0.0, 1e-6, "both are alike; impulses of 1e9 times the body's");
+}

@@ -12,7 +12,7 @@ struct Gaps {
     double nodes = laboratory::infinity, anchors = laboratory::infinity;
 };
 Gaps least_gaps(const Simulation& simulation) {
-    const Surface& face = simulation.scene().barrier->face;
+    const Scene& scene = simulation.scene();
     const UnitState& unit = simulation.state().units[0];
     const TrussMesh& mesh = simulation.scene().vehicle->units[0].trusses;
     const Mat3 R = unit.body.orientation.toRotationMatrix();
@@ -21,8 +21,9 @@ Gaps least_gaps(const Simulation& simulation) {
         const TrussBlockState& block = unit.trusses.block[i / lanes];
         const std::size_t k = i % lanes;
         const Vec3 node(block.x[k], block.y[k], block.z[k]);
-        least.nodes = std::min(least.nodes, gap(face, unit.body.position + R * node));
-        least.anchors = std::min(least.anchors, gap(face, unit.body.position + R * mesh.anchor(i)));
+        least.nodes = std::min(least.nodes, laboratory::gap_to_barrier(scene, unit.body.position + R * node));
+        least.anchors = std::min(least.anchors,
+                                 laboratory::gap_to_barrier(scene, unit.body.position + R * mesh.anchor(i)));
     }
     return least;
 }
@@ -34,9 +35,15 @@ TEST("random impacts: nothing passes through a wall or a pole, and the ledger cl
     const auto draw = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
     };
-    const auto vehicle = laboratory::block(laboratory::w2_curve(), 12, 8);
-    for (int i = 0; i < 400; ++i) {
+    TrussInput front = laboratory::front_face(laboratory::w2_curve(), 12, 8);
+    front.dent_slope = 1.0;
+    Vehicle dented;
+    dented.units.emplace_back(laboratory::body(), front, std::vector<Wheel>{}, 0.0);
+    const std::vector<std::shared_ptr<const Vehicle>> vehicles = {
+        laboratory::block(laboratory::w2_curve(), 12, 8), std::make_shared<const Vehicle>(dented)};
+    for (int i = 0; i < 600; ++i) {
         const bool pole = i % 2 == 1;
+        const auto& vehicle = vehicles[static_cast<std::size_t>(i % 4 / 3)];
         const double friction = draw(0.0, 0.4);
         const auto barrier = pole ? std::make_shared<const Barrier>(Barrier::pole(
                                         friction, Vec3(0.0, draw(-1.0, 1.0), 0.0), 0.0, draw(0.05, 0.4)))

@@ -17,7 +17,8 @@ double nearest_gap(const Scene& scene) {
     const TrussMesh& mesh = scene.vehicle->units[0].trusses;
     double least = 1e9;
     for (std::size_t i = 0; i < mesh.count; ++i)
-        least = std::min(least, gap(scene.barrier->face, body.position + body.orientation * mesh.node(i)));
+        least = std::min(least,
+                         laboratory::gap_to_barrier(scene, body.position + body.orientation * mesh.node(i)));
     return least;
 }
 
@@ -54,8 +55,8 @@ TEST("the path of the mass centre meets the wall's line at the offset") {
     const Scene scene(laboratory::block(laboratory::w2_curve()), laboratory::wall(0.0, heading, origin),
                       Approach{20.0, angle, 1.25, 0.0}, laboratory::weightless(), {});
     const BodyState body = scene.initial_state().units[0].body;
-    const HalfSpace& face = std::get<HalfSpace>(scene.barrier->face);
-    const double t = face.gap(body.position) / -face.normal.dot(body.velocity);
+    const double t =
+        (body.position - origin).dot(scene.barrier->normal()) / -scene.barrier->normal().dot(body.velocity);
     const Vec3 line(-std::sin(heading), std::cos(heading), 0.0);
     CHECK_CLOSE((body.position + t * body.velocity - origin - 1.25 * line).norm(), 0.0, 1e-13, "rounding");
 }
@@ -69,8 +70,8 @@ TEST("what can not be run is refused") {
     const Settings good = laboratory::weightless();
     refused({-1.0, 1.0, 0.0, 0.0}, good, {});
     refused({std::nan(""), 1.0, 0.0, 0.0}, good, {});
-    refused({20.0, 0.0, 0.0, 0.0}, good, {});
-    refused({20.0, pi, 0.0, 0.0}, good, {});
+    refused({20.0, -0.1, 0.0, 0.0}, good, {});
+    refused({20.0, pi + 0.1, 0.0, 0.0}, good, {});
     refused({20.0, 1.0, 0.0, -0.1}, good, {});
     refused({20.0, 1.0, 0.0, 0.0}, good, 0.0);
     refused({0.0, 1.0, 0.0, 0.0}, good, {});
@@ -83,5 +84,5 @@ TEST("what can not be run is refused") {
     CHECK_THROWS(Scene(nullptr, laboratory::wall(), Approach{20.0, 1.0, 0.0, 0.0}, good, {}),
                  std::invalid_argument);
     CHECK_THROWS(Scene(vehicle, nullptr, Approach{20.0, 1.0, 0.0, 0.0}, good, {}), std::invalid_argument);
-    CHECK_THROWS(Barrier(-0.1, Vec3::Zero(), 0.0), std::invalid_argument);
+    CHECK_THROWS(Barrier::wall(-0.1, Vec3::Zero(), 0.0), std::invalid_argument);
 }

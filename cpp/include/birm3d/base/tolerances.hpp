@@ -7,12 +7,12 @@ namespace birm3d::tolerance {
 // gravity gives every resting tyre a small approach speed in each step. Large: light bounces are lost.
 inline constexpr double restitution_speed = 0.1;
 
-// Share of a tyre's own effective mass added as compliance, so that four tyres on a plane share the load
+// Share of a unit's inverse mass added to each of its tyres as compliance, so that tyres on a plane share the load
 // as equal springs would (the rigid problem has no unique answer). Large: tyres sink by a visible amount.
 inline constexpr double tire_compliance = 1e-3;
 
-// The same for the rigid body at the barrier: there the number of touching points is large, and only the
-// resulting wrench matters. Zero: the matrix of coinciding points is singular.
+// The least of any rigid contact, as a share of its own inverse effective mass: at the barrier the number of
+// touching points is large, and only the resulting wrench matters. Zero: the matrix of coinciding points is singular.
 inline constexpr double body_compliance = 1e-9;
 
 // Velocity by which a solved rigid contact may still approach, relative to the scene's speed.
@@ -41,6 +41,10 @@ inline constexpr double release_resolution = 2e-4;
 // First step of a contact (s); the error estimate corrects it at once.
 inline constexpr double first_contact_step = 2e-4;
 
+// Where nothing touches, a node that glides along a surface goes this far in a step at the most (m): beyond it another
+// surface may lie. Small: steps are short beside a wall. Large: steps that met something are done again.
+inline constexpr double untouched_way = 0.05;
+
 // Local velocity error allowed in one step, relative to the reference speed and per unit of
 // Settings::tolerance. Larger: the asked and the achieved error of the metrics part.
 inline constexpr double step_error_per_tolerance = 0.01;
@@ -56,6 +60,10 @@ inline constexpr double slowest_reference_speed = 0.1;
 // becomes stiff and the steps short. Larger: what should stick creeps at up to this speed.
 inline constexpr double full_friction_speed = 0.01;
 
+// Friction and normal impulses of rigid contacts are found in turns until these change by less than this share of their
+// sum. Large: which turn is the last hangs on rounding, and left and right do not mirror each other.
+inline constexpr double friction_settled = 1e-9;
+
 // Rigid contacts: how fast a point found inside a surface is pushed out at the most (m/s).
 inline constexpr double recovery_speed = 0.5;
 
@@ -66,9 +74,19 @@ inline constexpr double touching_gap = 1e-6;
 // wheels lands first would else hang on rounding. Large: points that are still in the air are stopped.
 inline constexpr double joint_impact_gap = 1e-3;
 
+// Places of a joint on its two bodies may differ by this much at rest (m): what files are rounded to.
+inline constexpr double joint_fit = 1e-3;
+
+// Gap of a joint at the end of a step below which its impulses are not corrected any more (m, rad): rounding.
+inline constexpr double joint_gap = 1e-12;
+
 // After the vehicle has left the barrier for good the run goes on for this long (s), so that filtered
 // histories settle.
 inline constexpr double tail_duration = 0.02;
+
+// A vehicle of which a wheel is further than this above the ground and still rises has not shown its greatest roll and
+// pitch yet (m). Small: every hop after an impact makes the run longer.
+inline constexpr double lifted_wheel = 0.1;
 
 // A run without a duration ends here at the latest (s).
 inline constexpr double longest_event = 5.0;
@@ -83,5 +101,23 @@ inline constexpr double solid_volume = 1e-12;
 // Rounding that an inertia tensor may show, relative: of its symmetry, and of the rule that no principal
 // moment is above the sum of the other two.
 inline constexpr double symmetric_inertia = 1e-9;
+
+// Points nearer than this to an edge or a corner of a shape take the normal of one of its faces (m): the
+// direction from the edge to such a point is rounding. Large: the corner's normal jumps by a visible amount.
+inline constexpr double edge_radius = 1e-12;
+
+// Squares of lengths below this have lost their digits to underflow (m^2).
+inline constexpr double least_square = 1e-280;
+
+// A point lies within a triangle if the three areas it spans with the edges exceed the triangle's by no more
+// than this share (paper Eq. 15). Zero: points on an internal edge belong to neither of its triangles.
+inline constexpr double triangle_area = 1e-9;
+
+// Neighbouring triangles belong to one flat face if all corners lie this near to its plane, relative to the
+// size of the mesh. Large: a curved surface is taken as flat. Zero: rounding splits flat faces.
+inline constexpr double flat_face = 1e-10;
+
+// Height of a triangle above its longest edge, relative to that edge, below which it has no normal.
+inline constexpr double triangle_height = 1e-9;
 
 }  // namespace birm3d::tolerance

@@ -1,9 +1,10 @@
-// Closed trusses: anchors at the barrier, where the rigid body itself must be held.
+// Closed trusses: anchors at an obstacle, where the rigid body itself must be held.
 #pragma once
 
 #include <span>
 
-#include "birm3d/geometry/surface.hpp"
+#include "birm3d/geometry/placement.hpp"
+#include "birm3d/geometry/shape.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 #include "birm3d/model/vehicle.hpp"
 #include "birm3d/state/body_state.hpp"
@@ -11,14 +12,27 @@
 
 namespace birm3d {
 
-// Adds a contact for each anchor that is at the surface or, as it now moves, will be within dt; `face` and
-// `motion` in body axes, contacts in world axes.
-void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyState& state, const Surface& face,
-                         const Twist& motion, double dt, std::vector<RigidContact>& contacts);
+// An obstacle seen from a body.
+struct PlacedShape {
+    const Shape* shape = nullptr;
+    Placement placement;
+    std::size_t obstacle = 0;
+    double friction = 0.0;
+};
 
-// Coulomb friction (paper 5.4) that goes with the normal impulses of closed members: linear and angular
-// impulse about the mass centre, world axes (N s, N m s). `full_speed`: sliding speed of full friction.
-Wrench member_friction(std::span<const RigidContact> contacts, std::size_t body, const RigidBody& model,
-                       double mu, double full_speed, const Twist& motion);
+// How near an anchor must be to be at a surface within dt, whichever way it goes (m); `motion` in body axes.
+double member_margin(const TrussMesh& mesh, const Twist& motion, double dt);
+
+// Adds a contact for each anchor that is at the nearest of the surfaces or, as it now moves, will be within dt;
+// `motion` in body axes, contacts in world axes.
+void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyState& state,
+                         std::span<const PlacedShape> shapes, const Twist& motion, double dt,
+                         std::vector<RigidContact>& contacts);
+
+// Coulomb friction (paper 5.4) that goes with the normal impulses of closed members: sets their friction impulses
+// and returns the sum, linear and angular about the mass centre, world axes (N s, N m s). `full_speed`: sliding speed
+// of full friction.
+Wrench member_friction(std::span<RigidContact> contacts, std::size_t body, const RigidBody& model,
+                       double full_speed, const Twist& motion);
 
 }  // namespace birm3d

@@ -10,6 +10,9 @@
 // A truss that has turned so far that it would push its node off the surface (b . n > 0) does not push: the node
 // springs to its residual length.
 //
+// Both are cases of one rule: with h the way of the node, h . n = 1, the force is F * (-b . h) * n. Nodes that a dent
+// draws in have their own h and n (dent.hpp).
+//
 // Deviations from the paper: its Eq. 14 (left side P2) as printed moves away from the plane; the push-back
 // is p - gap*n. The force is projected on the normal, because the node is free to slide: along the truss it
 // would do work on the vehicle that the truss never received. The 5-mm window epsilon is not needed: a node
@@ -17,7 +20,7 @@
 #pragma once
 
 #include "birm3d/base/node_sums.hpp"
-#include "birm3d/geometry/surface.hpp"
+#include "birm3d/geometry/half_space.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 #include "birm3d/model/vehicle.hpp"
 #include "birm3d/state/contacts.hpp"
@@ -45,12 +48,13 @@ struct FlatContact {
     InverseMass inverse_mass;
 };
 
-struct CurvedContact {
-    CurvedContact(const RigidBody& body_, const Cylinder& face_, const Cylinder& face_before)
-        : face(face_), before(face_before), body(body_) {}
-
-    Cylinder face, before;
-    const RigidBody& body;
+// What each node of a block sees of surfaces of any shape (body axes); its normals now are in the BlockContact.
+struct alignas(64) NodeFaces {
+    Lanes gap;         // of the nearest surface (m)
+    Lanes bx, by, bz;  // outward normal of the same surface at the instant before
+    // Of nodes that a dent draws in: b is the way itself, and a truss force along it that much greater as a normal force,
+    // which acts at the place that the BlockContact says. Zero for others.
+    Lanes per_force;
 };
 
 // What the blocks of a unit add up to.
@@ -60,23 +64,25 @@ struct CrushSums {
     double stiffness = 0.0;      // see SkinForces (1/s^2)
 };
 
-// Takes block `b` from `before` to `now`, fills in `contact` and adds to the sums. `factor`: on the loading
-// envelopes, may be null. The normals of a flat contact are the caller's to set, once for all blocks.
+// Takes block `b` from `before` to `now`, fills in the pressures of `contact` and adds to the sums; the normals of
+// `contact` are the caller's to set. `factor`: on the loading envelopes, may be null.
 void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
            const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums);
-void crush(const CurvedContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
-           const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums);
+void crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh, std::size_t b,
+           const Lanes* factor, const TrussBlockState& before, TrussBlockState& now, BlockContact& contact,
+           CrushSums& sums);
 
-// The forces of all blocks, projected (body axes).
-SkinForces total(const FlatContact& surface, const CrushSums& sums);
-SkinForces total(const CurvedContact& surface, const CrushSums& sums);
+// Force and torque of the blocks that saw one plane, and of those that saw surfaces of any shape; projected, body
+// axes.
+Wrench total_wrench(const FlatContact& surface, const CrushSums& sums);
+Wrench total_wrench(const CrushSums& sums);
 
 // The force of a block by the paper's rule: each truss pushes along itself (body axes).
 Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const BlockContact& contact);
 
-// The factor on the loading envelopes of block `b` by its rate of deflection (TrussInput), from the motion of
-// the body at that instant and the normals at its nodes (body axes).
-Lanes rate_factor(const TrussMesh& mesh, std::size_t b, const TrussBlockState& now, const Twist& motion,
-                  const BlockContact& contact);
+// The factor on the loading envelopes of a block by its rate of deflection (TrussInput), from the motion of the body
+// against the surface at that instant (body axes) and the block as it is without that factor.
+void set_rate_factor(double rate_sensitivity, const Lanes& force, const Twist& motion, const Places& places,
+                     const BlockContact& contact, Lanes& factor);
 
 }  // namespace birm3d

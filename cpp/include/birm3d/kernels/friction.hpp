@@ -8,12 +8,11 @@
 
 #include "birm3d/model/vehicle.hpp"
 #include "birm3d/state/contacts.hpp"
-#include "birm3d/state/truss_state.hpp"
 
 namespace birm3d {
 
 // `motion`: the vehicle's twist in body axes. Adds friction and its rate to `forces` (body axes).
 void add_friction(const RigidBody& body, double mu, double full_speed, const Twist& motion,
-                  const TrussBlockState& now, const BlockContact& contact, SkinForces& forces);
+                  const Places& places, const BlockContact& contact, SkinForces& forces);
 
 }  // namespace birm3d

@@ -1,33 +1,37 @@
-// A barrier: a surface, its friction, fixed to the ground. Its line runs along +y at heading 0, its traffic
-// face looks to -x.
+// A barrier: its elements, each a shape with a place, and what the vehicle feels of them. Its line runs along +y at
+// heading 0, its traffic face looks to -x.
 #pragma once
 
-#include <limits>
+#include <vector>
 
 #include "birm3d/base/types.hpp"
-#include "birm3d/geometry/surface.hpp"
+#include "birm3d/geometry/shape.hpp"
 
 namespace birm3d {
 
+// A wall or a segment of it, a post, a mesh: loads are reported element by element.
+struct Element {
+    Shape shape;                   // own axes, z up
+    Vec3 position = Vec3::Zero();  // of the own axes' origin, the element's foot, world (m)
+    double heading = 0.0;          // turn of the own axes about z (rad)
+};
+
 struct Barrier {
-    // Flat wall. origin: a point of the traffic face's foot (m). heading: turn of the barrier's line about z
-    // (rad). width, height: of the wall (m), may be infinite; its middle stands at the origin.
-    Barrier(double friction, const Vec3& origin, double heading,
-            double width = std::numeric_limits<double>::infinity(),
-            double height = std::numeric_limits<double>::infinity());
+    // origin, heading: of the line. friction: Coulomb coefficient vehicle-barrier.
+    Barrier(std::vector<Element> elements, double friction, const Vec3& origin, double heading);
+
+    // Flat, without end. origin: a point of the traffic face's foot (m). heading: turn of the line about z (rad).
+    static Barrier wall(double friction, const Vec3& origin, double heading);
 
     // Upright cylinder, taller than what meets it. origin: foot of its axis, on the barrier's line.
     static Barrier pole(double friction, const Vec3& origin, double heading, double radius);
 
-    bool finite() const;
     Vec3 normal() const;  // of the barrier's line, towards the traffic
 
+    std::vector<Element> elements;
     double friction;  // Coulomb coefficient vehicle-barrier (paper 5.4: 0.15 to 0.20 steel on concrete)
     Vec3 origin;      // m
     double heading;   // rad
-    double width;     // m
-    double height;    // m
-    Surface face;     // world axes
 };
 
 }  // namespace birm3d

@@ -22,6 +22,8 @@ struct Settings {
     double gravity = 9.80665;         // m/s^2
     bool ground = true;
     double mu_tire = 0.8;  // tyre-pavement friction coefficient
+    double mu_body = 0.4;  // vehicle body-pavement, where it slides on the ground
+    double braking = 0.0;  // share of the tyre-pavement friction that brakes: 0 rolling, 1 locked wheels
     double cornering_stiffness =
         10.0;                  // lateral force per normal load and radian of slip at small slip (1/rad)
     double restitution = 0.1;  // of rigid contacts (paper 5.2)

@@ -6,6 +6,7 @@
 // kernels run over whole blocks without gathers. The last block is padded with trusses of no stiffness.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -28,6 +29,8 @@ struct TrussInput {
     // What is crushed has inertia and rate strength, which the law of Fig. 3 leaves out: the loading envelope
     // grows by 1 + (this times the rate of deflection)^2 (s/m).
     double rate_sensitivity = 0.0;
+    // Slope of the skin beside a dent that a post makes (kernels/dent.hpp); zero: nodes know nothing of each other.
+    double dent_slope = 0.0;
 };
 
 // Unloading stiffness of some trusses and its second moments about the mass centre, body axes.
@@ -36,12 +39,21 @@ struct StiffnessMoments {
     Mat3 second = Mat3::Zero();  // sum of k r r^T (N m)
 };
 
+// The part of a skin whose trusses point in, more than in any other way, along +r, -r, +s, -s, +t or -t.
+struct Panel {
+    Vec3 inward;  // that axis
+    Box box;      // around its uncrushed nodes
+    bool any;     // has it any?
+};
+inline constexpr std::size_t panels = 6;
+
 struct alignas(64) TrussBlock {
     Lanes node_x, node_y, node_z;        // uncrushed, body axes (m)
     Lanes anchor_x, anchor_y, anchor_z;  // (m)
     Lanes length;                        // uncrushed (m)
     Lanes k_unloading;                   // N/m
     Lanes compliance;                    // 1/k_unloading, or 0 for a member without stiffness (m/N)
+    Lanes panel;                         // number of its panel
 };
 
 // One slope change of each truss's envelope.
@@ -65,7 +77,9 @@ struct TrussMesh {
     std::vector<Box> node_box;              // (blocks) around the uncrushed nodes
     std::vector<Box> anchor_box;            // (blocks)
     Box anchors;                            // around all of them
-    std::vector<std::size_t> input_index;   // (count) the caller's number of each truss
+    std::array<Panel, panels> panel;
+    std::vector<std::uint8_t> panels_of;   // (blocks) bit by bit: which panels have nodes there?
+    std::vector<std::size_t> input_index;  // (count) the caller's number of each truss
 
     Vec3 node(std::size_t truss) const {
         const TrussBlock& b = block[truss / lanes];
@@ -79,11 +93,13 @@ struct TrussMesh {
     }
 
     double rate_sensitivity = 0.0;  // see TrussInput (s/m)
+    double dent_slope = 0.0;        // see TrussInput
 
     double reach = 0.0;  // greatest distance of a node or anchor from the mass centre (m)
 
   private:
     void add_stiffness(const TrussBlock& trusses);
+    void find_panels();
     void fill_lane(const TrussInput& input, std::size_t source, bool padding, std::size_t b, std::size_t i);
 };
 

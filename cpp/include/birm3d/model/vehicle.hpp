@@ -1,9 +1,11 @@
-// A vehicle: one or more rigid units, each with a crushable skin and wheels. Constant while simulating.
+// A vehicle: one or more rigid units, each with a crushable skin and wheels, and joints between them. Constant
+// while simulating.
 #pragma once
 
 #include <vector>
 
 #include "birm3d/base/types.hpp"
+#include "birm3d/model/joint.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 
 namespace birm3d {
@@ -26,16 +28,28 @@ struct Wheel {
 
 struct Unit {
     Unit(const RigidBody& body, const TrussInput& trusses, std::vector<Wheel> wheels,
-         double mass_center_height);
+         double mass_center_height, const Vec3& offset = Vec3::Zero());
 
     RigidBody body;
     TrussMesh trusses;
     std::vector<Wheel> wheels;
     double mass_center_height;  // above the ground in the position of rest (m)
+    // Of the mass centre from the vehicle's reference point, forward and to the left in the position of rest; no
+    // height (m).
+    Vec3 offset;
+
+    // Of the mass centre above the vehicle's reference point on the ground, position of rest (m).
+    Vec3 place() const { return offset + mass_center_height * Vec3::UnitZ(); }
 };
 
 struct Vehicle {
     std::vector<Unit> units;
+    std::vector<Joint> joints;
 };
+
+// Refuses joints of units that are not there or of one with itself, and joints whose two places are more than
+// tolerance::joint_fit apart in the position of rest; below that the trailing unit's place is moved to the
+// leading one's.
+Vehicle joined(std::vector<Unit> units, std::vector<Joint> joints);
 
 }  // namespace birm3d

@@ -7,8 +7,10 @@
 // m * (change of velocity) equals the sum of forces times the interval to rounding.
 #pragma once
 
+#include <array>
 #include <vector>
 
+#include "birm3d/kernels/joints.hpp"
 #include "birm3d/sim/scene.hpp"
 #include "birm3d/sim/step.hpp"
 
@@ -22,16 +24,34 @@ struct UnitHistory {
     std::vector<Vec3> angular_velocity;     // body axes (rad/s)
     std::vector<Vec3> acceleration;         // mass centre, mean over the interval, body axes (m/s^2)
     std::vector<Vec3> barrier_force;        // on the vehicle, mean over the interval, world (N)
+    std::vector<Vec3> ground_force;         // of the ground on the skin, the same (N)
     std::vector<Vec3> tire_friction_force;  // the same, tangential to the ground (N)
     Column barrier_normal_force;            // sum of the normal forces, mean over the interval (N)
+    std::vector<Vec3> joint_force;          // of all its joints, mean over the interval, world (N)
     std::vector<Column> tire_reaction;      // (wheels)(n) normal force, mean over the interval (N)
+};
+
+// What one element of the barrier feels, means over the interval, world axes.
+struct ObstacleHistory {
+    std::size_t obstacle;      // place in Barrier::elements
+    std::vector<Vec3> force;   // N
+    std::vector<Vec3> moment;  // about the element's foot (N m)
+};
+
+struct JointHistory {
+    std::vector<Vec3> force;          // on the leading unit, mean over the interval, world (N)
+    std::vector<Vec3> moment;         // the same, about the joint's place (N m)
+    std::vector<JointAngles> angles;  // of the trailing unit from the leading one
 };
 
 struct History {
     Column time;  // s
     std::vector<UnitHistory> units;
-    Column kinetic, potential, stored, crushed, barrier_friction, tire_friction, impacts;  // J
-    double momentum_residual = 0.0;  // max |m a - sum of forces| / max |force|
+    std::vector<ObstacleHistory> obstacles;  // of the elements that were touched
+    std::vector<JointHistory> joints;
+    Column kinetic, potential, stored, crushed;                                    // J
+    Column barrier_friction, tire_friction, ground_friction, impacts, joint_work;  // J
+    double momentum_residual = 0.0;  // max |m a - sum of forces| / max |force|, over all units
 };
 
 class Recorder {
@@ -45,12 +65,26 @@ class Recorder {
     History resample(const Scene& scene) const;
 
   private:
+    struct Loads {
+        const std::vector<UnitState>& units;
+        const std::vector<ContactImpulses>& impulses;
+        const std::vector<Wrench>& joint_impulses;
+        bool bent;  // does the step that leads to this row have a bend?
+    };
+    struct ObstacleRow {
+        std::size_t row, obstacle;
+        std::array<double, 18> values;
+    };
+
     void add_row(const Scene& scene, double time, const Energies& energies,
-                 const std::vector<BodyState>& bodies, const std::vector<UnitState>& forces,
-                 const std::vector<ContactImpulses>& impulses, const std::vector<HigherOrder>& higher_order);
+                 const std::vector<BodyState>& bodies, const Loads& loads);
+    ObstacleRow& obstacle_row(std::size_t row, std::size_t obstacle);
+    void resample_obstacles(const std::vector<std::size_t>& step_of, History& history) const;
+    void resample_joints(const Scene& scene, const std::vector<std::size_t>& step_of, History& history) const;
 
     std::size_t width_;  // numbers in a row
     Column values_;      // (rows * width), flat: adding a row allocates only when the buffer grows
+    std::vector<ObstacleRow> obstacles_;  // rows in order; none where nothing is touched
 };
 
 }  // namespace birm3d

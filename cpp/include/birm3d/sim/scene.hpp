@@ -16,9 +16,22 @@ namespace birm3d {
 // `standoff` before its first touch.
 struct Approach {
     double speed = 0.0;     // m/s, >= 0
-    double angle = 0.0;     // rad between path and barrier line, in (0, pi); pi/2 = head-on
-    double offset = 0.0;    // m along the barrier's line, where the path of the mass centre meets it
+    double angle = 0.0;     // rad between path and barrier line, in [0, pi]; pi/2 = head-on
+    double offset = 0.0;    // m along the barrier's line, where the path of the mass centre meets it; of a
+                            // path along the line its distance from it, away from the traffic
     double standoff = 0.0;  // m between the nearest node and the barrier, >= 0
+    double yaw = 0.0;       // rad by which the nose points to the left of the path
+    double roll = 0.0;      // rad
+};
+
+// What the vehicle can touch: an element of the barrier, or the ground.
+struct Obstacle {
+    Shape shape;                       // own axes
+    Mat3 rotation = Mat3::Identity();  // own axes to the world
+    Vec3 position = Vec3::Zero();      // of the own axes' origin, world (m)
+    double friction = 0.0;
+    std::size_t structure =
+        0;  // place of the first obstacle that this one is joined to, itself where it stands alone
 };
 
 struct Scene {
@@ -31,6 +44,11 @@ struct Scene {
     Approach approach;
     Settings settings;
     std::optional<double> duration;  // s; absent: until the outcome is decided
+
+    std::vector<Obstacle> obstacles;  // the barrier's elements in their order, then the ground
+    std::size_t ground;               // place of the ground among them; beyond the last where there is none
+    std::vector<char>
+        skin_meets_ground;  // (units) those that stand on wheels, with all of their skin above the ground
 
     State initial_state() const;
 

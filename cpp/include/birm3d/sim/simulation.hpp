@@ -36,6 +36,10 @@ class Simulation {
     const Recorder& recorder() const { return recorder_; }
     EndReason end_reason() const;
 
+    // How deep the deepest shell node and the deepest anchor are inside the barrier now (m); zero where none is.
+    double deepest_node() const;
+    double deepest_anchor() const;
+
     struct Snapshot {
         std::uint64_t scene;  // fingerprint
         State state;

@@ -4,20 +4,28 @@
 #include <limits>
 #include <vector>
 
-#include "birm3d/sim/scene.hpp"
+#include "birm3d/sim/obstacles.hpp"
 #include "birm3d/state/state.hpp"
 
 namespace birm3d {
+
+// What the rigid body of one unit did to one obstacle, world axes.
+struct ObstacleImpulse {
+    std::size_t obstacle = 0;
+    Vec3 impulse = Vec3::Zero();  // on the unit (N s)
+    Vec3 torque = Vec3::Zero();   // on the obstacle, about its own point (N m s)
+};
 
 // What rigid contacts did to one unit.
 struct ContactImpulses {
     explicit ContactImpulses(std::size_t wheels) : tire(wheels, 0.0) {}
 
-    Column tire;                        // (wheels) normal impulse (N s)
-    Vec3 tire_friction = Vec3::Zero();  // of all wheels, world axes (N s)
-    Vec3 barrier = Vec3::Zero();        // of closed trusses, world axes (N s)
-    double barrier_normal = 0.0;        // its part along the normals (N s)
-    std::size_t member_contacts = 0;    // closed trusses that carried load
+    Column tire;                             // (wheels) normal impulse (N s)
+    Vec3 tire_friction = Vec3::Zero();       // of all wheels, world axes (N s)
+    std::vector<ObstacleImpulse> obstacles;  // of closed trusses
+    double barrier_normal = 0.0;             // their part along the normals, of the barrier's (N s)
+    std::size_t member_contacts = 0;         // closed trusses that carried load
+    Vec3 joints = Vec3::Zero();              // of all its joints, world axes (N s)
 };
 
 // A rigid impact at one end of a step: an instant of its own, not spread over the step.
@@ -26,12 +34,7 @@ struct Impact {
     std::vector<BodyState> bodies;          // (units) after an impact at the start, before one at the end
     Energies energies;                      // the same
     std::vector<ContactImpulses> impulses;  // (units)
-};
-
-// What the scheme adds to half kicks by the trapezoid rule (see step.hpp), impulses.
-struct HigherOrder {
-    Load lead;        // lent to the drift, taken back after it
-    Load correction;  // of the whole step
+    std::vector<Wrench> joint_impulses;     // (joints) on the leading unit, about the joint (N s, N m s)
 };
 
 // Some of the blocks of a mesh.
@@ -66,11 +69,13 @@ struct Trial {
     std::vector<BlockSet> active;           // (units) blocks near the barrier
     std::vector<BlockSet> stale;            // (units) blocks that may differ from the state's
     std::vector<ContactImpulses> impulses;  // (units) of lasting contacts, even over the step
+    std::vector<Wrench> joint_impulses;     // (joints) the same, on the leading unit, about the joint
     Impact at_start, at_end;
-    std::vector<HigherOrder> higher_order;  // (units)
-    double error = 0.0;                     // estimated velocity error of this step (m/s)
-    double critical_step;                   // sqrt(3)/omega of the trusses in contact (s)
-    double impact_after;                    // a rigid impact begins this long after t (s)
+    std::vector<NearObstacle> near;  // for skin_forces: reused, so that a step allocates nothing
+    std::vector<Touch> touches;
+    double error = 0.0;    // estimated velocity error of this step (m/s)
+    double critical_step;  // sqrt(3)/omega of the trusses in contact (s)
+    double impact_after;   // a rigid impact begins this long after t (s)
 
     bool body_held() const;  // did the rigid body meet the barrier?
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -10,55 +11,60 @@
 
 namespace birm3d {
 
+// Where the forces on a block of nodes act, body axes (m).
+struct Places {
+    const Lanes &x, &y, &z;
+
+    Vec3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+};
+
 // One block of nodes beside a surface, body axes.
 struct alignas(64) BlockContact {
     Lanes pressure;    // normal force of each node (N)
     Lanes nx, ny, nz;  // outward normal at each
+    // Where friction acts (m), and the torque of a unit of normal force about the mass centre (m): not kept up at flat
+    // surfaces, where they are the node and its own.
+    Lanes px, py, pz, tx, ty, tz;
 
     Vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
+    Places places() const { return {px, py, pz}; }
+    Vec3 torque(std::size_t i) const { return {tx[i], ty[i], tz[i]}; }
     void set_normal(const Vec3& n) { nx.fill(n.x()), ny.fill(n.y()), nz.fill(n.z()); }
 };
 
-// All that a unit's skin feels at one instant; wrenches in body axes until the step turns them to the world.
+// Sums over all that a unit's skin touches, world axes.
 struct SkinForces {
-    Wrench contact;              // of the barrier on the vehicle, without friction (N, N m)
+    Wrench contact;              // on the vehicle, without friction (N, N m)
     Wrench friction;             // N, N m
     double normal_force = 0.0;   // sum over nodes of the force along each surface normal (N)
     double work = 0.0;           // done on the trusses since the last instant, trapezoid rule (J)
     double stored = 0.0;         // elastic energy that unloading would return (J), blocks seen only
     double stiffness = 0.0;      // sum of k_unloading of pushing nodes times inverse effective mass (1/s^2)
     double friction_rate = 0.0;  // sum of mu * pressure times inverse effective mass (m/s^2)
-
-    SkinForces& operator+=(const SkinForces& o) {
-        contact += o.contact;
-        friction += o.friction;
-        normal_force += o.normal_force;
-        work += o.work;
-        stored += o.stored;
-        stiffness += o.stiffness;
-        friction_rate += o.friction_rate;
-        return *this;
-    }
 };
 
-// All that the skin does to its body, world axes, with the sum of its normal forces beside it.
+// What one obstacle and a unit's skin do to each other, world axes.
 struct Load {
-    Wrench wrench;
-    double normal_force = 0.0;
+    Wrench wrench;  // on the unit, about its mass centre
+    Vec3 reaction_torque =
+        Vec3::Zero();           // on the obstacle, about its own point (N m); its force is -wrench.force
+    double normal_force = 0.0;  // N
 
     Load& operator+=(const Load& o) {
         wrench += o.wrench;
+        reaction_torque += o.reaction_torque;
         normal_force += o.normal_force;
         return *this;
     }
 };
 
 inline Load scaled(const Load& load, double factor) {
-    return {scaled(load.wrench, factor), factor * load.normal_force};
+    return {scaled(load.wrench, factor), factor * load.reaction_torque, factor * load.normal_force};
 }
 
 inline Load difference(const Load& a, const Load& b) {
-    return {difference(a.wrench, b.wrench), a.normal_force - b.normal_force};
+    return {difference(a.wrench, b.wrench), a.reaction_torque - b.reaction_torque,
+            a.normal_force - b.normal_force};
 }
 
 // The course of the load over the last steps, in Newton's divided differences.
@@ -71,21 +77,64 @@ struct LoadCourse {
     bool bend_lasts = false;   // did the bend go on through the last step?
 };
 
-enum class ContactSource { tire, member };
+// What the scheme adds to half kicks by the trapezoid rule (see step.hpp), impulses.
+struct HigherOrder {
+    Load lead;        // lent to the drift, taken back after it
+    Load correction;  // of the whole step
+};
 
-// A point where a rigid body meets a rigid surface or another rigid body (world axes).
+// A unit's skin at one obstacle.
+struct Touch {
+    std::size_t obstacle = 0;
+    Wrench contact, friction;   // on the unit, world axes (N, N m)
+    double normal_force = 0.0;  // N
+    LoadCourse course;          // of contact and friction together
+    HigherOrder extra;          // of the step that led here
+};
+
+// Which panels of a unit an obstacle dents (kernels/dent.hpp), bit by bit. Those it has come into from the side it never
+// does until it has been in front of them again: their skin is not before it.
+struct Dented {
+    std::size_t obstacle = 0;
+    std::uint8_t panels = 0, passed = 0;
+};
+
+enum class ContactSource { tire, member, joint };
+
+// A row of the impulse solver: a direction in which two bodies, or a body and what is fixed, act on each other
+// (world axes). Usually a point where a rigid body meets a rigid surface or another rigid body, which may push
+// only; for joints also a point that is held both ways, or an axis about which turning is stopped or held.
+// Along an axis `gap`, `target` and `impulse` are in rad, rad/s and N m s.
 struct RigidContact {
     ContactSource source = ContactSource::tire;
-    std::size_t index = 0;          // wheel, or truss in mesh order
+    std::size_t index = 0;          // wheel, truss in mesh order, or joint
+    std::size_t obstacle = 0;       // of Scene::obstacles, for members
     std::size_t body = 0;           // M_a of Eq. 1
     int other = -1;                 // M_b of Eq. 1; -1 = fixed, M_b infinite
     Vec3 arm = Vec3::Zero();        // from the body's mass centre to the point (m)
     Vec3 other_arm = Vec3::Zero();  // the same for the other body
-    Vec3 normal = Vec3::UnitZ();    // from the surface towards the body
+    Vec3 normal = Vec3::UnitZ();    // from the surface towards the body; or the axis
     double gap = 0.0;               // m
-    double compliance = 0.0;        // share of the point's own inverse effective mass
-    double target = 0.0;            // least separation velocity wanted (m/s)
-    double impulse = 0.0;           // result (N s), >= 0
+    double compliance = 0.0;        // share of the inverse mass of its body
+    double target = 0.0;            // least separation velocity wanted; where held, the one wanted (m/s)
+    double impulse = 0.0;           // result (N s), >= 0 unless held
+    bool held = false;              // acts both ways
+    bool about_axis = false;        // turns the bodies about `normal` instead of pushing along it
+    double friction = 0.0;          // Coulomb coefficient of a member
+    Vec3 rubbing = Vec3::Zero();    // result: its friction impulse (N s)
 };
+
+// What a unit impulse does to the body: force and torque about its mass centre. The other body's is the
+// opposite, at its own arm.
+inline Wrench unit_wrench(const RigidContact& contact, const Vec3& arm) {
+    if (contact.about_axis) return {Vec3::Zero(), contact.normal};
+    return {contact.normal, arm.cross(contact.normal)};
+}
+inline Wrench wrench_on_body(const RigidContact& contact) {
+    return scaled(unit_wrench(contact, contact.arm), contact.impulse);
+}
+inline Wrench wrench_on_other(const RigidContact& contact) {
+    return scaled(unit_wrench(contact, contact.other_arm), -contact.impulse);
+}
 
 }  // namespace birm3d

@@ -16,8 +16,9 @@ namespace birm3d {
 // What a unit has besides its trusses: small, copied whole with every step that is tried.
 struct UnitMotion {
     BodyState body;
-    SkinForces skin;    // at this instant, world axes
-    LoadCourse course;  // of contact and friction together
+    SkinForces skin;             // at this instant
+    std::vector<Touch> touches;  // in the order of the obstacles
+    std::vector<Dented> dented;  // the same
 };
 
 struct UnitState : UnitMotion {
@@ -33,11 +34,14 @@ struct Energies {
     double stored = 0.0;            // elastic, in trusses
     double crushed = 0.0;           // plastic, in trusses
     double barrier_friction = 0.0;  // lost to friction on the barrier
-    double tire_friction = 0.0;     // lost to friction on the ground
+    double tire_friction = 0.0;     // lost to friction of tyres on the ground
+    double ground_friction = 0.0;   // lost to friction of the skin on the ground
     double impacts = 0.0;           // lost in rigid contacts
+    double joints = 0.0;            // taken by what joints hold: zero but for the error of the steps
 
     double total() const {
-        return kinetic + potential + stored + crushed + barrier_friction + tire_friction + impacts;
+        return kinetic + potential + stored + crushed + barrier_friction + tire_friction + ground_friction +
+               impacts + joints;
     }
 };
 
@@ -82,6 +86,8 @@ struct State : Progress {
             hash.add(unit.body.velocity);
             hash.add(unit.body.angular_momentum);
             unit.trusses.add_to(hash);
+            for (const Dented& dented : unit.dented)
+                hash.add(Vec3(static_cast<double>(dented.obstacle), dented.panels, dented.passed));
         }
         hash.add(energies.total());
         return hash.value();

@@ -1,10 +1,10 @@
 // What a crash changes in a unit's skin: blocks parallel to TrussMesh's.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "birm3d/base/hash.hpp"
+#include "birm3d/base/tolerances.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 
 namespace birm3d {
@@ -14,8 +14,14 @@ struct alignas(64) TrussBlockState {
     Lanes deflection, force;          // of the truss, now (m, N)
     Lanes peak_deflection, residual;  // greatest so far; where the unloading line meets zero force (m)
     Box box;                          // around the nodes where they were last let go, body axes
-    bool touching;                    // does any node push?
+    bool touching;                    // does any node push on an obstacle?
+    bool slack;  // has an obstacle drawn any node out beyond the free length of its truss?
 };
+
+// Was the node drawn out beyond the free length of its truss? A truss does not pull.
+inline bool is_slack(const TrussBlockState& block, std::size_t i) {
+    return block.force[i] == 0.0 && block.residual[i] - block.deflection[i] > tolerance::touching_gap;
+}
 
 struct TrussState {
     explicit TrussState(const TrussMesh& mesh) : block(mesh.blocks) {

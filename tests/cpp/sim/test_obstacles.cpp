@@ -1,4 +1,4 @@
-#include "birm3d/sim/barrier_forces.hpp"
+#include "birm3d/sim/obstacles.hpp"
 
 #include "check.hpp"
 #include "laboratory.hpp"
@@ -19,9 +19,9 @@ TEST("the nearest gap is that of the nearest node, crushed or not") {
             for (const TrussBlockState& block : unit.trusses.block)
                 for (std::size_t i = 0; i < lanes; ++i) {
                     const Vec3 place = unit.body.position + R * Vec3(block.x[i], block.y[i], block.z[i]);
-                    nearest = std::min(nearest, gap(simulation.scene().barrier->face, place));
+                    nearest = std::min(nearest, laboratory::gap_to_barrier(simulation.scene(), place));
                 }
-            CHECK_CLOSE(nearest_gap(simulation.scene(), state), nearest, 1e-13, "rounding of places");
+            CHECK_CLOSE(nearest_gap(simulation.scene(), state, {}), nearest, 1e-13, "rounding of places");
         }
     }
 }

@@ -1,0 +1,14 @@
+// The answer every barrier shape gives about a point.
+#pragma once
+
+#include "birm3d/base/types.hpp"
+
+namespace birm3d {
+
+// `point - gap * normal` is the nearest point of the surface, and the normal is the gradient of the gap.
+struct Nearest {
+    double gap;   // signed distance of the point (m), negative inside
+    Vec3 normal;  // outward, unit
+};
+
+}  // namespace birm3d

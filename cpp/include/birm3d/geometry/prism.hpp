@@ -1,0 +1,78 @@
+// An extruded profile: a closed polygon of the own x-z plane, convex or not, drawn along y. Walls, Jersey
+// barriers, curbs.
+//
+// Faces can be covered: they stand on the ground or abut a neighbour and are no surface. |gap| is the
+// distance to the faces that are not covered, negative inside the solid, so a point inside is never pushed
+// out through a covered face; across one the sign changes and the size does not. Points under a covered
+// bottom are outside: give a profile a foot in the ground where points may get below it.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "birm3d/geometry/box.hpp"
+#include "birm3d/geometry/nearest.hpp"
+#include "birm3d/geometry/prism_nearest.hpp"
+
+namespace birm3d {
+
+class Prism {
+  public:
+    using Profile = std::vector<Eigen::Vector2d>;
+
+    struct Cover {
+        std::vector<std::size_t> edges = {};  // edge i runs from point i of the profile to the next one
+        bool low_end = false, high_end = false;
+    };
+
+    // `profile`: x and z of the corners (m), either way round. The ends y_low < y_high may be infinite (m).
+    // Refuses fewer than 3 points, points that are not finite, edges without length, edges that touch or
+    // cross each other, an edge to cover that does not exist, and a cover that leaves no surface.
+    Prism(const Profile& profile, double y_low, double y_high, const Cover& cover);
+
+    // A wall: traffic face at x = 0, body at 0 <= x <= thickness, middle at y = 0, -foot <= z <= height,
+    // bottom covered. Width and height may be infinite.
+    static Prism box(double thickness, double width, double height, double foot = 0.0);
+
+    // Symmetric about x = 0: `half_profile` holds half width and z of the corners, from the lowest one up. The
+    // bottom, `foot` below the lowest corner, is covered. Middle at y = 0; the width along y may be infinite.
+    static Prism symmetric(const Profile& half_profile, double width, double foot = 0.0);
+
+    // The same body with its ends covered or not: a segment of a longer barrier.
+    Prism with_covered_ends(bool low_end, bool high_end) const;
+
+    // Of a point in own axes.
+    Nearest nearest(const Vec3& p) const;
+
+    // Signed distance from the solid, whose faces all count, covered or not (m).
+    double gap_of_solid(const Vec3& p) const;
+
+    Box bounds() const;        // as of a Shape
+    double thickness() const;  // as of a Shape
+
+    const std::vector<PrismEdge>& edges() const { return outline_->edges; }  // not covered
+    const std::vector<PrismEdge>& covered_edges() const { return outline_->covered_edges; }
+    double y_low() const { return y_low_; }
+    double y_high() const { return y_high_; }
+    bool low_end_is_surface() const { return low_end_; }
+    bool high_end_is_surface() const { return high_end_; }
+
+  private:
+    struct Outline {
+        std::vector<PrismEdge> edges, covered_edges;
+        Eigen::Vector2d low, high;  // corners of the rectangle around it (m); the upper may be infinite
+        double thickness = 0.0;     // m
+    };
+
+    Prism(std::shared_ptr<const Outline> outline, double y_low, double y_high, bool cover_low,
+          bool cover_high);
+    Nearest nearest_to(const Vec3& p, bool covered_too) const;
+    static std::shared_ptr<const Outline> outline_of(const Profile& profile,
+                                                     const std::vector<std::size_t>& covered);
+
+    std::shared_ptr<const Outline> outline_;
+    double y_low_, y_high_;    // m
+    bool low_end_, high_end_;  // is there a surface?
+};
+
+}  // namespace birm3d

@@ -1,0 +1,28 @@
+// Two rigid bodies joined at a point.
+//
+//   fifth_wheel  forces in three directions. The plate tilts about the leading body's s axis (pitch) and the
+//                kingpin, the trailing body's t axis, turns in it (yaw); about the axis across both the plates
+//                touch once the relative roll leaves +-roll_limit, and a moment is carried.
+//   welded       all six held.
+//
+// What a fifth wheel lets go, taken in this order (a Cardan joint): R_leading^T R_trailing = Ry(pitch) Rx(roll) Rz(yaw).
+#pragma once
+
+#include <cstddef>
+
+#include "birm3d/base/types.hpp"
+
+namespace birm3d {
+
+enum class JointKind { fifth_wheel, welded };
+
+struct Joint {
+    JointKind kind = JointKind::fifth_wheel;
+    std::size_t leading = 0;                // body whose axes define roll and pitch
+    std::size_t trailing = 1;               // the other
+    Vec3 place_on_leading = Vec3::Zero();   // body axes (m)
+    Vec3 place_on_trailing = Vec3::Zero();  // body axes (m)
+    double roll_limit = 0.0;                // rad; of a fifth wheel
+};
+
+}  // namespace birm3d

@@ -1,0 +1,43 @@
+// What rigid contacts and joints do at one end of the drift: their impulses with the friction that goes with them, the
+// kicks, and their place in sums and ledgers.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "birm3d/kernels/impulse.hpp"
+#include "birm3d/sim/trial.hpp"
+
+namespace birm3d {
+
+struct ContactKick {
+    std::vector<RigidContact> contacts;
+    std::vector<Wrench> on_ground, on_members;  // (units) friction impulses of tyres and of closed trusses
+};
+
+// Where what is lost to friction on an obstacle is booked.
+double& friction_of(const Scene& scene, std::size_t obstacle, Energies& energies);
+
+double power(const Wrench& w, const Twist& motion);
+Twist mean(const Twist& a, const Twist& b);
+
+std::vector<Twist> motions(const Scene& scene, const State& state);
+std::vector<ContactBody> contact_bodies(const Scene& scene, const State& state);
+
+// Solves for the impulses of contacts and their friction on top of the bodies' motion, and kicks the bodies.
+ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> contacts, State& state);
+
+// The same before a drift of dt, so that joints are closed after it (Ryckaert, Ciccotti and Berendsen, J. Comput.
+// Phys. 23, 1977, p. 327; with velocities that agree after it: Andersen, J. Comput. Phys. 52, 1983, p. 24).
+ContactKick kick_towards_closed_joints(const Scene& scene, double dt, std::vector<RigidContact> contacts,
+                                       State& state);
+
+void add_impulses(const Scene& scene, const State& state, const ContactKick& kicked,
+                  std::vector<ContactImpulses>& sums, std::vector<Wrench>& joints);
+
+// With the mean of the motions before and after, which makes the change of kinetic energy exact. What is held
+// takes no energy but by the error of the steps, and has a term of its own in which that shows.
+void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vector<Twist>& before,
+                   const std::vector<Twist>& after, State& state);
+
+}  // namespace birm3d

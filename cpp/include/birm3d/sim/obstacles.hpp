@@ -1,0 +1,45 @@
+// What the units of a scene can touch, and where it stands seen from one of them.
+#pragma once
+
+#include <vector>
+
+#include "birm3d/geometry/placement.hpp"
+#include "birm3d/geometry/shape.hpp"
+#include "birm3d/sim/scene.hpp"
+
+namespace birm3d {
+
+// An obstacle within reach of a unit, seen from the unit's body axes, now and an instant before.
+struct NearObstacle {
+    std::size_t index = 0;  // of Scene::obstacles
+    Placement now, before;
+};
+
+// Of an obstacle, seen from a body.
+Placement placement(const Obstacle& obstacle, const BodyState& seen_from);
+
+// Those that any node or anchor of the unit can be nearer to than `margin`, in their order.
+void find_near(const Scene& scene, std::size_t unit, const UnitState& before, const BodyState& now,
+               double margin, std::vector<NearObstacle>& near);
+
+// Fastest any point of the unit moves (m/s).
+double fastest_point(const Unit& unit, const BodyState& body);
+
+// Gap of the point that is nearest to an obstacle (m), infinite where there is none; exact, so that it does not hang on
+// how nodes are blocked. The ground counts only with `ground`; of the points, nodes and anchors as asked.
+struct Nearness {
+    bool ground = false;
+    bool nodes = true;
+    bool anchors = false;
+};
+double nearest_gap(const Scene& scene, const State& state, const Nearness& what);
+
+// A step in which no node reaches an element of the barrier (s): straight on towards the surface that is nearest to it
+// now, and no further than another surface may lie.
+double untouched_step(const Scene& scene, const State& state);
+
+// A step in which no point of a unit goes further than a quarter through the thinnest obstacle in its reach (s): in a
+// longer one it could come out on the other side.
+double passing_step(const Scene& scene, const State& state);
+
+}  // namespace birm3d

@@ -1,0 +1,18 @@
+#include "birm3d/geometry/post.hpp"
+
+#include "birm3d/base/error.hpp"
+
+namespace birm3d {
+
+Post::Post(double radius_, double height_) : radius(require_positive("radius", radius_)), height(height_) {
+    if (!(height > 0.0)) refuse("height", "> 0", height);
+}
+
+Nearest nearest(const Post& post, const Vec3& p) {
+    Nearest out;
+    nearest_of_post(post.radius, post.height, p.x(), p.y(), p.z(), out.gap, out.normal.x(), out.normal.y(),
+                    out.normal.z());
+    return out;
+}
+
+}  // namespace birm3d

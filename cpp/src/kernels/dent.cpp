@@ -1,0 +1,170 @@
+#include "birm3d/kernels/dent.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace birm3d {
+
+namespace {
+
+// Slope of a post's flank where a panel ends on it: beyond it small motions would make great forces.
+constexpr double steepest = 5.0;
+
+// Where a panel ends, the way in which its nodes hang on a post that stands beside it changes over within this (m): the
+// outermost stand on the edge itself, and rounding would choose.
+constexpr double edge_width = 1e-3;
+
+// A rim's highest place, sine * radius above the middle of the top, is rounded off below this sine: at a corner there the
+// torque would jump.
+constexpr double rounded = 0.05;
+
+// Sine of the angle between a post's axis and a panel beyond which it does not begin to dent it, or ceases to.
+constexpr double most_tilted = 0.5, overturned = 0.95;
+
+// A dent for the lane loop: plain numbers, and the flank from where it is steepest.
+struct Numbers {
+    double ex, ey, ez, wx, wy, wz, lx, ly, lz, ox, oy, oz;
+    double low, high, low_at, high_at, top, top_rate, tilt, radius, stretch, arc, slope;
+    double steep_arc, steep, rise_there;
+};
+
+Numbers numbers_of(const Dent& d) {
+    const double steep = std::max(steepest, d.slope), share = steep / d.stretch;
+    const double sine = share / std::sqrt(1.0 + share * share);
+    const Vec3 &e = d.into, &w = d.across, &l = d.along, &o = d.foot;
+    return {e.x(),     e.y(),
+            e.z(),     w.x(),
+            w.y(),     w.z(),
+            l.x(),     l.y(),
+            l.z(),     o.x(),
+            o.y(),     o.z(),
+            d.low,     d.high,
+            d.low_at,  d.high_at,
+            d.top,     d.top_rate,
+            d.tilt,    d.radius,
+            d.stretch, d.arc,
+            d.slope,   sine * d.radius,
+            steep,     d.stretch * d.radius * std::sqrt(1.0 - sine * sine)};
+}
+
+// Depth of the post's surface over that of its axis, at `a` across: itself, and for each unit across and of stretch.
+struct Rise {
+    double rise, across, stretch;
+};
+BIRM3D_IN_LANE_LOOP Rise rise_at(const Numbers& d, double a) {
+    const double far = a < 0.0 ? -a : a;
+    const bool round = far <= d.steep_arc;
+    const double on = round ? far : d.steep_arc;
+    const double root = std::sqrt(d.radius * d.radius - on * on);
+    return {round ? d.stretch * root : d.rise_there - d.steep * (far - d.steep_arc),
+            round ? -d.stretch * a / root : (a < 0.0 ? d.steep : -d.steep), root};
+}
+
+BIRM3D_LANE_LOOP void dent_of_block(const Numbers& d, const Lanes& x, const Lanes& y, const Lanes& z,
+                                    DentLanes& out) {
+    const double ex = d.ex, ey = d.ey, ez = d.ez, wx = d.wx, wy = d.wy, wz = d.wz, lx = d.lx, ly = d.ly,
+                 lz = d.lz, ox = d.ox, oy = d.oy, oz = d.oz;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const double rx = x[i] - ox, ry = y[i] - oy, rz = z[i] - oz;
+        const double e = ex * rx + ey * ry + ez * rz;
+        const double w = wx * rx + wy * ry + wz * rz;
+        const double l = lx * rx + ly * ry + lz * rz;
+        // The nearest place of the post that falls off no more steeply than the dent, within the panel.
+        const double on_arc = w > d.arc ? d.arc : (w < -d.arc ? -d.arc : w);
+        const double highest = w > d.high ? w : d.high, lowest = w < d.low ? w : d.low;
+        const double a = on_arc > highest ? highest : (on_arc < lowest ? lowest : on_arc);
+        const Rise rise = rise_at(d, a);
+        const bool above = l > d.top;
+        const double up = above ? d.top : l;
+        const double at = d.tilt * up + rise.rise;
+        const double beside = w > a ? w - a : a - w;
+        out.gap[i] = e - (at - d.slope * beside - d.slope * (l - up));
+
+        const double rises = above ? -d.slope : d.tilt;
+        const double nx = ex - rise.across * wx - rises * lx, ny = ey - rise.across * wy - rises * ly,
+                     nz = ez - rise.across * wz - rises * lz;
+        const double size = std::sqrt(nx * nx + ny * ny + nz * nz), per = 1.0 / size;
+        out.nx[i] = nx * per;
+        out.ny[i] = ny * per;
+        out.nz[i] = nz * per;
+        out.per_force[i] = size;
+        out.px[i] = ox + (at * ex + a * wx + up * lx);
+        out.py[i] = oy + (at * ey + a * wy + up * ly);
+        out.pz[i] = oz + (at * ez + a * wz + up * lz);
+
+        // How the depth changes as the post turns about e, with the dent, and as its axis leans along e.
+        const bool by_high = on_arc > highest, by_low = on_arc < lowest;
+        const double within = by_high ? d.high - w : (by_low ? w - d.low : 0.0);
+        const double share = 0.5 + 0.5 * within / edge_width;
+        const double at_edge = by_high || by_low ? (share < 0.0 ? 0.0 : (share > 1.0 ? 1.0 : share)) : 0.0;
+        const double edge = by_high ? d.high_at : d.low_at, side = by_high ? -d.slope : d.slope;
+        const double about = at_edge * (side * (l - edge) - rise.across * edge) -
+                             (1.0 - at_edge) * rise.across * l + rises * w;
+        const double leaning = d.stretch * d.stretch * (up + d.tilt * rise.stretch / d.stretch) +
+                               (above ? (d.tilt + d.slope) * d.top_rate / d.stretch : 0.0);
+        const double qx = about * (d.tilt * lx - ex) + leaning * wx,
+                     qy = about * (d.tilt * ly - ey) + leaning * wy,
+                     qz = about * (d.tilt * lz - ez) + leaning * wz;
+        out.tx[i] = per * (oy * nz - oz * ny + qx);
+        out.ty[i] = per * (oz * nx - ox * nz + qy);
+        out.tz[i] = per * (ox * ny - oy * nx + qz);
+    }
+}
+
+}  // namespace
+
+Dent::Dent(const Post& post, const Placement& stands, const Panel& panel, double slope_)
+    : into(panel.inward), foot(stands.from_own(Vec3::Zero())), radius(post.radius), slope(slope_) {
+    const Vec3 axis_up = stands.direction_from_own(Vec3::UnitZ());
+    const double leaning = axis_up.dot(into), upright = axis_up.cross(into).norm();
+    across = axis_up.cross(into) / upright;
+    along = (axis_up - leaning * into) / upright;
+    // The middles of the edges at either side. Corners of the box would change places with every sway of the post.
+    Eigen::Index side = 0;
+    across.cwiseAbs().maxCoeff(&side);
+    const Vec3 edge = std::copysign(panel.box.half[side], across[side]) * Vec3::Unit(side);
+    const Vec3 least = panel.box.center - edge - foot, most = panel.box.center + edge - foot;
+    low = least.dot(across);
+    high = most.dot(across);
+    low_at = least.dot(along);
+    high_at = most.dot(along);
+    tilt = leaning / upright;
+    stretch = 1.0 / upright;
+    const double rim = std::hypot(leaning, rounded);
+    top = post.height * upright + radius * rim;
+    top_rate = radius * leaning / rim - post.height * tilt;
+    const double share = slope / stretch;
+    arc = radius * share / std::sqrt(1.0 + share * share);
+}
+
+bool Dent::overlaps(const Panel& panel) const {
+    return low < radius && high > -radius &&
+           top > (panel.box.center - foot).dot(along) - panel.box.half.dot(along.cwiseAbs());
+}
+
+bool stands_across(const Placement& post, const Panel& panel, bool dents) {
+    const double sine = std::abs(post.direction_from_own(Vec3::UnitZ()).dot(panel.inward));
+    return sine < (dents ? overturned : most_tilted);
+}
+
+double most_inside(const Dent& d, const Box& box) {
+    const auto range = [&](const Vec3& way) {
+        const double middle = (box.center - d.foot).dot(way), half = box.half.dot(way.cwiseAbs());
+        return std::pair(middle - half, middle + half);
+    };
+    const double outermost = range(d.into).first;
+    const auto [w0, w1] = range(d.across);
+    const auto [l0, l1] = range(d.along);
+    const double beside = std::max({w0 - d.arc, -d.arc - w1, 0.0});
+    const double deepest =
+        d.stretch * d.radius + std::max(d.tilt * std::min(l0, d.top), d.tilt * std::min(l1, d.top));
+    return deepest - d.slope * (beside + std::max(l0 - d.top, 0.0)) - outermost;
+}
+
+void dent_of(const Dent& dent, const TrussBlockState& nodes, DentLanes& out) {
+    dent_of_block(numbers_of(dent), nodes.x, nodes.y, nodes.z, out);
+}
+
+}  // namespace birm3d

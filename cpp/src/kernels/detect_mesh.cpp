@@ -1,0 +1,99 @@
+// Meshes: the tree is walked once for the whole block, and each triangle met is tried on all nodes at a time.
+// Where that would be too many, because the triangles are small against the block, each node walks by itself.
+#include <cmath>
+
+#include "geometry/triangle_mesh_data.hpp"
+#include "kernels/detect_lanes.hpp"
+
+namespace birm3d {
+
+namespace {
+
+// More triangles than this are not tried on whole blocks: found by measuring.
+constexpr std::size_t most_triangles = 32;
+
+// What is known of each node's nearest triangle.
+struct alignas(64) TriangleLanes {
+    Lanes square, x, y, z, part;  // as OnTriangle
+    Lanes index;                  // of the triangle
+};
+
+BIRM3D_LANE_LOOP void begin(double square, TriangleLanes& best) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        best.square[i] = square;
+        best.x[i] = best.y[i] = best.z[i] = best.part[i] = best.index[i] = 0.0;
+    }
+}
+
+// Largest number of a block, by halves.
+BIRM3D_IN_LANE_LOOP double most_of(const Lanes& values) {
+    alignas(64) Lanes v;
+    for (std::size_t i = 0; i < lanes / 2; ++i)
+        v[i] = values[i] > values[lanes / 2 + i] ? values[i] : values[lanes / 2 + i];
+    for (std::size_t half = lanes / 4; half >= 1; half /= 2) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < half; ++i)
+            v[i] = v[i] > v[half + i] ? v[i] : v[half + i];
+    }
+    return v[0];
+}
+
+// Returns the largest square of a distance that is left.
+BIRM3D_LANE_LOOP double ask_triangle(const PlainTriangle& triangle, double index, const OwnLanes& own,
+                                     TriangleLanes& best) {
+    const PlainTriangle t = triangle;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const OnTriangle on = nearest_on_plain(t, own.x[i], own.y[i], own.z[i]);
+        const bool nearer = on.square < best.square[i];
+        best.square[i] = nearer ? on.square : best.square[i];
+        best.x[i] = nearer ? on.x : best.x[i];
+        best.y[i] = nearer ? on.y : best.y[i];
+        best.z[i] = nearer ? on.z : best.z[i];
+        best.part[i] = nearer ? on.part : best.part[i];
+        best.index[i] = nearer ? index : best.index[i];
+    }
+    return most_of(best.square);
+}
+
+}  // namespace
+
+void nearest_of_mesh(const TriangleMesh& mesh, const Placement& now, const Placement& before, const Lanes& x,
+                     const Lanes& y, const Lanes& z, NearestLanes& out) {
+    const TriangleMeshData& data = mesh.data();
+    OwnLanes own;
+    to_own(turn_of(now), x, y, z, own);
+    const Box box = Box::around(lanes, [&](std::size_t i) { return Vec3(own.x[i], own.y[i], own.z[i]); });
+
+    // The triangle nearest to the middle of the block is near all of it.
+    std::size_t hint = 0;
+    mesh.nearest(box.center, hint);
+    TriangleLanes best;
+    begin(std::numeric_limits<double>::infinity(), best);
+    double most = ask_triangle(data.triangles[hint].plain, static_cast<double>(hint), own, best);
+    std::size_t asked = 1;
+    data.tree.near(box.center - box.half, box.center + box.half, most, [&](std::size_t i) {
+        if (i == hint || asked > most_triangles) return;
+        most = ask_triangle(data.triangles[i].plain, static_cast<double>(i), own, best);
+        if (++asked > most_triangles) most = 0.0;  // ends the walk
+    });
+    const bool all_asked = asked <= most_triangles;
+
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const Vec3 p(own.x[i], own.y[i], own.z[i]);
+        auto triangle = static_cast<std::size_t>(best.index[i]);
+        const OnTriangle on{best.square[i], best.x[i], best.y[i], best.z[i], best.part[i]};
+        const Nearest exact =
+            all_asked ? nearest_from(data.triangles[triangle], on, p) : mesh.nearest(p, triangle);
+        const Vec3 motion = p - before.to_own({x[i], y[i], z[i]});
+        const Nearest n = mesh.contact(p, motion, exact);
+        const Vec3 normal = now.direction_from_own(n.normal);
+        out.gap[i] = n.gap;
+        out.nx[i] = normal.x();
+        out.ny[i] = normal.y();
+        out.nz[i] = normal.z();
+    }
+}
+
+}  // namespace birm3d

@@ -1,0 +1,79 @@
+#include "birm3d/kernels/joints.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "birm3d/base/tolerances.hpp"
+
+namespace birm3d {
+
+namespace {
+
+Vec3 place_of(const BodyState& body, const Vec3& place) {
+    return body.position + body.orientation * place;
+}
+
+// Rotation vector of the leading body from the trailing one, world axes (rad).
+Vec3 turn_between(const BodyState& leading, const BodyState& trailing) {
+    const Quat turn = leading.orientation * trailing.orientation.conjugate();
+    const Vec3 half = turn.w() < 0.0 ? Vec3(-turn.vec()) : Vec3(turn.vec());
+    const double sine = half.norm();
+    if (sine < 1e-6) return 2.0 * half;
+    return 2.0 * std::atan2(sine, std::abs(turn.w())) / sine * half;
+}
+
+}  // namespace
+
+void find_joint_rows(const Joint& joint, std::size_t index, const BodyState& leading,
+                     const BodyState& trailing, std::vector<RigidContact>& rows) {
+    const Vec3 middle =
+        0.5 * (place_of(leading, joint.place_on_leading) + place_of(trailing, joint.place_on_trailing));
+    RigidContact row;
+    row.source = ContactSource::joint;
+    row.index = index;
+    row.body = joint.leading;
+    row.other = static_cast<int>(joint.trailing);
+    row.arm = middle - leading.position;
+    row.other_arm = middle - trailing.position;
+    row.compliance = tolerance::body_compliance;
+    row.held = true;
+    const auto hold_along_axes = [&] {
+        for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())}) {
+            row.normal = direction;
+            row.gap = held_gap(joint, row, leading, trailing);
+            rows.push_back(row);
+        }
+    };
+    hold_along_axes();
+    row.about_axis = true;
+    if (joint.kind == JointKind::welded) {
+        hold_along_axes();
+        return;
+    }
+    row.held = false;
+    const Vec3 axis = (leading.orientation * Vec3::UnitY()).cross(trailing.orientation * Vec3::UnitZ());
+    // Kingpin in line with the tilting axis: no direction is left to stop, and no stop lets it come there.
+    const double size = axis.norm();
+    if (size < 1e-6) return;
+    const double roll = joint_angles(leading.orientation, trailing.orientation).roll;
+    for (const double side : {1.0, -1.0}) {
+        row.normal = side / size * axis;
+        row.gap = joint.roll_limit - side * roll;
+        rows.push_back(row);
+    }
+}
+
+double held_gap(const Joint& joint, const RigidContact& row, const BodyState& leading,
+                const BodyState& trailing) {
+    if (row.about_axis) return row.normal.dot(turn_between(leading, trailing));
+    return row.normal.dot(place_of(leading, joint.place_on_leading) -
+                          place_of(trailing, joint.place_on_trailing));
+}
+
+JointAngles joint_angles(const Quat& leading, const Quat& trailing) {
+    const Mat3 R = (leading.conjugate() * trailing).toRotationMatrix();
+    return {std::asin(std::clamp(-R(1, 2), -1.0, 1.0)), std::atan2(R(0, 2), R(2, 2)),
+            std::atan2(R(1, 0), R(1, 1))};
+}
+
+}  // namespace birm3d

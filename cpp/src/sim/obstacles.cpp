@@ -1,0 +1,208 @@
+#include "birm3d/sim/obstacles.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/kernels/dent.hpp"
+#include "birm3d/kernels/detect.hpp"
+#include "birm3d/kernels/integrate.hpp"
+
+namespace birm3d {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Around its nodes; that of the state is kept up only while nothing touches.
+Box box_of(const TrussBlockState& block) {
+    if (!block.touching) return block.box;
+    return Box::around(lanes, [&block](std::size_t i) { return Vec3(block.x[i], block.y[i], block.z[i]); });
+}
+
+Box everything(const TrussMesh& mesh, const TrussState& trusses) {
+    Box box{Vec3::Zero(), Vec3::Constant(mesh.reach)};
+    for (const TrussBlockState& block : trusses.block) {
+        if (!block.slack) continue;  // else no node is further away than where it was made
+        const Box around = box_of(block);
+        box.half = box.half.cwiseMax(around.center.cwiseAbs() + around.half);
+    }
+    return box;
+}
+
+// The least of `least` and the gaps of some points, of which a box can be left out that is further away.
+template <class Blocks>
+double nearest_in_blocks(const Shape& shape, const Placement& seen, std::size_t blocks, const Blocks& block,
+                         double least) {
+    alignas(64) NearestLanes found;
+    for (std::size_t b = 0; b < blocks; ++b) {
+        const auto [box, x, y, z] = block(b);
+        if (!within_reach(shape, seen, box, least)) continue;
+        nearest_of(shape, seen, seen, *x, *y, *z, found);
+        least = std::min(least, *std::min_element(found.gap.begin(), found.gap.end()));
+    }
+    return least;
+}
+
+}  // namespace
+
+Placement placement(const Obstacle& obstacle, const BodyState& seen_from) {
+    const Mat3 to_own = obstacle.rotation.transpose();
+    return {to_own * seen_from.orientation.toRotationMatrix(),
+            to_own * (seen_from.position - obstacle.position)};
+}
+
+void find_near(const Scene& scene, std::size_t u, const UnitState& before, const BodyState& now,
+               double margin, std::vector<NearObstacle>& near) {
+    near.clear();
+    const Box box = everything(scene.vehicle->units[u].trusses, before.trusses);
+    for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+        if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
+        const Obstacle& obstacle = scene.obstacles[i];
+        const Placement seen = placement(obstacle, now);
+        if (within_reach(obstacle.shape, seen, box, margin))
+            near.push_back({i, seen, placement(obstacle, before.body)});
+    }
+}
+
+double fastest_point(const Unit& unit, const BodyState& body) {
+    return body.velocity.norm() + angular_velocity(unit.body, body).norm() * unit.trusses.reach;
+}
+
+double nearest_gap(const Scene& scene, const State& state, const Nearness& what) {
+    double least = infinity;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const UnitState& unit = state.units[u];
+        const TrussMesh& mesh = scene.vehicle->units[u].trusses;
+        const Box all = everything(mesh, unit.trusses);
+        for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+            if (i == scene.ground && !(what.ground && scene.skin_meets_ground[u])) continue;
+            const Shape& shape = scene.obstacles[i].shape;
+            const Placement seen = placement(scene.obstacles[i], unit.body);
+            if (!within_reach(shape, seen, all, least)) continue;
+            struct Points {
+                Box box;
+                const Lanes *x, *y, *z;
+            };
+            if (what.nodes)
+                least = nearest_in_blocks(
+                    shape, seen, mesh.blocks,
+                    [&](std::size_t b) {
+                        const TrussBlockState& block = unit.trusses.block[b];
+                        return Points{box_of(block), &block.x, &block.y, &block.z};
+                    },
+                    least);
+            if (!what.anchors) continue;
+            least = nearest_in_blocks(
+                shape, seen, mesh.blocks,
+                [&](std::size_t b) {
+                    const TrussBlock& block = mesh.block[b];
+                    return Points{mesh.anchor_box[b], &block.anchor_x, &block.anchor_y, &block.anchor_z};
+                },
+                least);
+        }
+    }
+    return least;
+}
+
+namespace {
+
+// A step in which no post comes to dent a panel (s). Those that stand beside it or within come from the side.
+double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
+                     double longest) {
+    const double rate = fastest_growth(mesh.dent_slope) * fastest;
+    alignas(64) DentLanes found;
+    for (const Obstacle& obstacle : scene.obstacles) {
+        const Post* post = std::get_if<Post>(&obstacle.shape);
+        if (post == nullptr) continue;
+        const Placement seen = placement(obstacle, unit.body);
+        for (std::size_t p = 0; p < panels; ++p) {
+            if (!mesh.panel[p].any || !stands_across(seen, mesh.panel[p], false)) continue;
+            Dent dent(*post, seen, mesh.panel[p], mesh.dent_slope);
+            dent.low = -infinity;
+            dent.high = infinity;
+            double gap = infinity;
+            for (std::size_t b = 0; b < mesh.blocks; ++b) {
+                const TrussBlockState& block = unit.trusses.block[b];
+                if ((mesh.panels_of[b] >> p & 1U) == 0) continue;
+                if (-most_inside(dent, box_of(block)) > longest * rate) continue;
+                dent_of(dent, block, found);
+                for (std::size_t i = 0; i < lanes; ++i)
+                    if (mesh.block[b].panel[i] == static_cast<double>(p)) gap = std::min(gap, found.gap[i]);
+            }
+            if (gap > 0.0) longest = std::min(longest, (gap + tolerance::untouched_way) / rate);
+        }
+    }
+    return longest;
+}
+
+}  // namespace
+
+double untouched_step(const Scene& scene, const State& state) {
+    double longest = infinity;
+    std::vector<std::pair<const Shape*, Placement>> near;
+    alignas(64) NearestLanes found, nearest;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const UnitState& unit = state.units[u];
+        const Unit& model = scene.vehicle->units[u];
+        const double fastest = fastest_point(model, unit.body);
+        if (!(fastest > 0.0)) continue;
+        const Mat3 R = unit.body.orientation.toRotationMatrix();
+        const Vec3 v = R.transpose() * unit.body.velocity;
+        const Vec3 w = R.transpose() * angular_velocity(model.body, unit.body);
+        const Box all = everything(model.trusses, unit.trusses);
+        near.clear();
+        for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+            const Placement seen = placement(scene.obstacles[i], unit.body);
+            if (i != scene.ground && within_reach(scene.obstacles[i].shape, seen, all, longest * fastest))
+                near.emplace_back(&scene.obstacles[i].shape, seen);
+        }
+        for (const TrussBlockState& block : unit.trusses.block) {
+            const Box box = box_of(block);
+            nearest.gap.fill(infinity);
+            for (const auto& [shape, seen] : near) {
+                if (!within_reach(*shape, seen, box, longest * fastest)) continue;
+                nearest_of(*shape, seen, seen, block.x, block.y, block.z, found);
+                for (std::size_t k = 0; k < lanes; ++k) {
+                    if (!(found.gap[k] < nearest.gap[k])) continue;
+                    nearest.gap[k] = found.gap[k];
+                    nearest.nx[k] = found.nx[k], nearest.ny[k] = found.ny[k], nearest.nz[k] = found.nz[k];
+                }
+            }
+            for (std::size_t k = 0; k < lanes; ++k) {
+                const double gap = std::max(nearest.gap[k], 0.0);
+                if (!(gap < longest * fastest) || is_slack(block, k)) continue;
+                const Vec3 node(block.x[k], block.y[k], block.z[k]);
+                const double approach =
+                    -Vec3(nearest.nx[k], nearest.ny[k], nearest.nz[k]).dot(v + w.cross(node));
+                const double straight = approach > 0.0 ? gap / approach : infinity;
+                longest = std::min({longest, straight, (gap + tolerance::untouched_way) / fastest});
+            }
+        }
+        if (model.trusses.dent_slope > 0.0)
+            longest = undented_step(scene, unit, model.trusses, fastest, longest);
+    }
+    return longest;
+}
+
+double passing_step(const Scene& scene, const State& state) {
+    double longest = infinity;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const BodyState& body = state.units[u].body;
+        const Unit& unit = scene.vehicle->units[u];
+        const double speed = fastest_point(unit, body);
+        if (!(speed > 0.0)) continue;
+        for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+            const double width = thickness(scene.obstacles[i].shape);
+            // Out of reach even after a step as long as this obstacle would allow.
+            if (width < infinity && 0.25 * width < longest * speed &&
+                within_reach(scene.obstacles[i].shape, placement(scene.obstacles[i], body),
+                             everything(unit.trusses, state.units[u].trusses), 0.25 * width))
+                longest = 0.25 * width / speed;
+        }
+    }
+    return longest;
+}
+
+}  // namespace birm3d

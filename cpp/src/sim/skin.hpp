@@ -1,0 +1,100 @@
+// What skin_forces and its dents share: one unit's skin within one step.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "birm3d/kernels/crush.hpp"
+#include "birm3d/kernels/dent.hpp"
+#include "birm3d/kernels/detect.hpp"
+#include "birm3d/sim/trial.hpp"
+
+namespace birm3d {
+
+// One unit's skin within one step; body axes.
+class Skin {
+  public:
+    Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial);
+
+    void press_blocks();
+    void hand_over();  // sums and touches, to the trial
+
+  private:
+    // Sums over blocks that saw one plane, or (by general detection) one obstacle.
+    struct PlaneSums {
+        std::size_t near;
+        FlatContact surface;
+        CrushSums sums;
+    };
+    struct ObstacleSums {
+        CrushSums sums;
+        Wrench by_trusses;  // of the paper's rule, in the stead of the projected force
+        Wrench contact;     // of blocks that saw several obstacles
+        double normal_force = 0.0;
+        SkinForces friction;
+    };
+
+    void press(std::size_t b);
+    void look_about(std::size_t b);
+    void spring_back(std::size_t b);
+    const TrussBlockState& from(std::size_t b) const {
+        return sprung_back_ ? sprung_ : before_.trusses.block[b];
+    }
+    // A post and a panel that it dents.
+    struct DentedPanel {
+        std::size_t near;
+        std::size_t panel;
+        Dent dent;
+    };
+    void find_dents();
+    Dented dents_of(std::size_t near);
+    double least_gap(const DentedPanel& dented);
+    bool find_dents_of_block(std::size_t b);
+    void leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) const;
+    void draw_in(std::size_t b, const TrussBlockState& block);
+    void find_seen(const Box& box, double margin);
+    PlaneSums& sums_of_plane(std::size_t near, const HalfSpace& plane);
+    void press_plane(PlaneSums& plane, std::size_t b);
+    void press_shapes(std::size_t b);
+    void look(std::size_t b);
+    void look_at(std::size_t b, const TrussBlockState& block);
+    void turn_flat_faces();
+    void settle_in_corners(const TrussBlockState& block);
+    void find_entered_faces(const TrussBlockState& block);
+    void share_out(std::size_t b, const TrussBlockState& next);
+    void rub(std::size_t near, std::size_t b, const TrussBlockState& next, const Places& places,
+             const BlockContact& contact);
+    template <class Crush>
+    void crush_with_rate(const TrussBlockState& next, const Places& places, CrushSums& sums,
+                         const Crush& crush);
+
+    const Scene& scene_;
+    const Unit& unit_;
+    const TrussMesh& mesh_;
+    const UnitState& before_;
+    UnitState& now_;
+    Trial& trial_;
+    const std::size_t u_;
+    const Mat3 R_;
+    const bool along_;
+    double full_speed_;
+    double margin_;  // how far a held node can have come off its surface within the step (m)
+    Twist motion_;   // body axes; only friction and the rate of deflection ask for it
+
+    std::vector<NearObstacle>& near_;
+    std::vector<std::size_t> seen_;  // by the block at hand, places in near_
+    std::vector<PlaneSums> planes_;
+    std::vector<ObstacleSums> obstacles_;  // parallel to near_
+    CrushSums shared_;                     // of blocks that saw several obstacles
+    std::vector<DentedPanel> dents_;
+    std::vector<std::size_t> block_dents_;  // by the block at hand, places in dents_
+    TrussBlockState sprung_;                // the block at hand, if some of its nodes have sprung back
+    bool sprung_back_ = false;
+    Box box_;  // around the nodes of the block at hand
+    NodeFaces faces_;
+    BlockContact contact_;
+    std::array<std::size_t, lanes> nearest_;  // place in seen_ of each node's obstacle
+};
+
+}  // namespace birm3d

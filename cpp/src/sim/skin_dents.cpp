@@ -1,0 +1,111 @@
+// Posts that dent the skin: see kernels/dent.hpp.
+#include <algorithm>
+#include <limits>
+
+#include "birm3d/base/tolerances.hpp"
+#include "sim/skin.hpp"
+
+namespace birm3d {
+
+void Skin::find_dents() {
+    if (mesh_.dent_slope == 0.0) return;
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+        if (!std::holds_alternative<Post>(scene_.obstacles[near_[k].index].shape)) continue;
+        const Dented dented = dents_of(k);
+        if ((dented.panels | dented.passed) != 0) now_.dented.push_back(dented);
+    }
+}
+
+// Which panels does the post dent? Those that it comes into from in front, until it has let go of them.
+Dented Skin::dents_of(std::size_t k) {
+    const std::size_t obstacle = near_[k].index;
+    const Post& post = std::get<Post>(scene_.obstacles[obstacle].shape);
+    const auto known = std::find_if(before_.dented.begin(), before_.dented.end(),
+                                    [=](const Dented& d) { return d.obstacle == obstacle; });
+    const Dented last = known != before_.dented.end() ? *known : Dented{obstacle};
+    const bool pushes = std::any_of(before_.touches.begin(), before_.touches.end(), [=](const Touch& touch) {
+        return touch.obstacle == obstacle && touch.normal_force > 0.0;
+    });
+    Dented now{obstacle};
+    for (std::size_t p = 0; p < panels; ++p) {
+        const Panel& panel = mesh_.panel[p];
+        const auto bit = static_cast<std::uint8_t>(1U << p);
+        const bool dents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
+        if (!panel.any || !stands_across(near_[k].now, panel, dents)) continue;
+        const DentedPanel dented{k, p, Dent(post, near_[k].now, panel, mesh_.dent_slope)};
+        if (!dents && !dented.dent.overlaps(panel)) continue;
+        const double gap = dents && pushes ? 0.0 : least_gap(dented);
+        if (gap > 0.0) continue;
+        if (dents || (!passed && gap > -2.0 * margin_ * fastest_growth(mesh_.dent_slope))) {
+            now.panels |= bit;
+            dents_.push_back(dented);
+        } else {
+            now.passed |= bit;
+        }
+    }
+    return now;
+}
+
+// Of the nodes of the panel, from the surface of the dent; infinite where all are far.
+double Skin::least_gap(const DentedPanel& dented) {
+    double least = std::numeric_limits<double>::infinity();
+    alignas(64) DentLanes found;
+    for (std::size_t b = 0; b < mesh_.blocks; ++b) {
+        if ((mesh_.panels_of[b] >> dented.panel & 1U) == 0) continue;
+        const TrussBlockState& block = before_.trusses.block[b];
+        if (!block.touching && most_inside(dented.dent, block.box) < 0.0) continue;
+        dent_of(dented.dent, block, found);
+        for (std::size_t i = 0; i < lanes; ++i)
+            if (mesh_.block[b].panel[i] == static_cast<double>(dented.panel))
+                least = std::min(least, found.gap[i]);
+    }
+    return least;
+}
+
+// Which dents can reach the block? Their posts are among what it sees, then.
+bool Skin::find_dents_of_block(std::size_t b) {
+    block_dents_.clear();
+    for (std::size_t d = 0; d < dents_.size(); ++d) {
+        const DentedPanel& dented = dents_[d];
+        if ((mesh_.panels_of[b] >> dented.panel & 1U) == 0) continue;
+        if (!from(b).touching && most_inside(dented.dent, box_) < 0.0) continue;
+        block_dents_.push_back(d);
+        if (std::find(seen_.begin(), seen_.end(), dented.near) == seen_.end())
+            seen_.insert(std::lower_bound(seen_.begin(), seen_.end(), dented.near), dented.near);
+    }
+    return !block_dents_.empty();
+}
+
+// Nodes of a panel that a post dents do not see the post itself.
+void Skin::leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) const {
+    for (const std::size_t d : block_dents_) {
+        if (dents_[d].near != near) continue;
+        const auto panel = static_cast<double>(dents_[d].panel);
+        for (std::size_t i = 0; i < lanes; ++i)
+            if (mesh_.block[b].panel[i] == panel) found.gap[i] = std::numeric_limits<double>::infinity();
+    }
+}
+
+void Skin::draw_in(std::size_t b, const TrussBlockState& block) {
+    alignas(64) DentLanes found;
+    for (const std::size_t d : block_dents_) {
+        const DentedPanel& dented = dents_[d];
+        const Vec3& into = dented.dent.into;
+        dent_of(dented.dent, block, found);
+        const auto seen =
+            static_cast<std::size_t>(std::find(seen_.begin(), seen_.end(), dented.near) - seen_.begin());
+        for (std::size_t i = 0; i < lanes; ++i) {
+            if (mesh_.block[b].panel[i] != static_cast<double>(dented.panel)) continue;
+            if (!(found.gap[i] < faces_.gap[i])) continue;
+            nearest_[i] = seen;
+            faces_.gap[i] = found.gap[i];
+            faces_.per_force[i] = found.per_force[i];
+            faces_.bx[i] = into.x(), faces_.by[i] = into.y(), faces_.bz[i] = into.z();
+            contact_.nx[i] = found.nx[i], contact_.ny[i] = found.ny[i], contact_.nz[i] = found.nz[i];
+            contact_.px[i] = found.px[i], contact_.py[i] = found.py[i], contact_.pz[i] = found.pz[i];
+            contact_.tx[i] = found.tx[i], contact_.ty[i] = found.ty[i], contact_.tz[i] = found.tz[i];
+        }
+    }
+}
+
+}  // namespace birm3d

@@ -1,0 +1,413 @@
+#include "birm3d/sim/skin_forces.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/kernels/friction.hpp"
+#include "birm3d/kernels/integrate.hpp"
+#include "birm3d/sim/entered_face.hpp"
+#include "birm3d/sim/obstacles.hpp"
+#include "sim/skin.hpp"
+
+namespace birm3d {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Cosine above which the normals of two instants are of the same face.
+constexpr double same_face = 0.9;
+
+Wrench turned(const Wrench& w, const Mat3& R) {
+    return {R * w.force, R * w.torque};
+}
+
+// Motion at the end of the step, body axes: what the drift has made of it, and what the loads so far will add
+// in the second half of the step.
+Twist predicted_motion(const Unit& unit, const std::vector<Touch>& touches, double dt,
+                       const BodyState& drifted, const Mat3& R) {
+    BodyState body = drifted;
+    for (const Touch& touch : touches) {
+        Load coming = scaled(touch.course.now, 0.5 * dt);
+        coming += scaled(touch.course.rate, dt * dt / 3.0);
+        kick(unit.body, coming.wrench, body);
+    }
+    return {R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
+}
+
+// Obstacles that were touched an instant before are near, whatever the step has made of it.
+void add_touched(const Scene& scene, const UnitState& before, const BodyState& now,
+                 std::vector<NearObstacle>& near) {
+    for (const Touch& touch : before.touches) {
+        const auto place = std::lower_bound(
+            near.begin(), near.end(), touch.obstacle,
+            [](const NearObstacle& known, std::size_t obstacle) { return known.index < obstacle; });
+        if (place != near.end() && place->index == touch.obstacle) continue;
+        const Obstacle& obstacle = scene.obstacles[touch.obstacle];
+        near.insert(place, {touch.obstacle, placement(obstacle, now), placement(obstacle, before.body)});
+    }
+}
+
+}  // namespace
+
+Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
+    : scene_(scene),
+      unit_(scene.vehicle->units[u]),
+      mesh_(unit_.trusses),
+      before_(from.units[u]),
+      now_(trial.state.units[u]),
+      trial_(trial),
+      u_(u),
+      R_(now_.body.orientation.toRotationMatrix()),
+      along_(scene.settings.contact_model == ContactModel::along_truss),
+      full_speed_(std::max(tolerance::full_friction_speed * scene.reference_speed(),
+                           trial.dt * before_.skin.friction_rate)),
+      margin_(trial.dt * std::max(fastest_point(unit_, before_.body), fastest_point(unit_, now_.body)) +
+              tolerance::touching_gap),
+      near_(trial.near) {
+    find_near(scene, u, before_, now_.body, before_.touches.empty() ? 0.0 : margin_, near_);
+    add_touched(scene, before_, now_.body, near_);
+    const bool rubs = std::any_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
+        return scene.obstacles[obstacle.index].friction > 0.0;
+    });
+    if (rubs || mesh_.rate_sensitivity > 0.0)
+        motion_ = predicted_motion(unit_, before_.touches, trial.dt, now_.body, R_);
+    obstacles_.resize(near_.size());
+}
+
+void Skin::press_blocks() {
+    trial_.active[u_].clear();
+    now_.dented.clear();
+    const bool slack = std::any_of(before_.trusses.block.begin(), before_.trusses.block.end(),
+                                   [](const TrussBlockState& block) { return block.slack; });
+    if (near_.empty() && before_.touches.empty() && !slack) return;
+    find_dents();
+    for (std::size_t b = 0; b < mesh_.blocks; ++b)
+        press(b);
+    trial_.state.statistics.node_evaluations += trial_.active[u_].blocks().size() * lanes;
+}
+
+// Nodes that an obstacle has drawn out beyond the free length of their trusses return to it once their way is free.
+void Skin::spring_back(std::size_t b) {
+    sprung_back_ = false;
+    const TrussBlockState& block = before_.trusses.block[b];
+    if (!block.slack) return;
+    const TrussBlock& truss = mesh_.block[b];
+    sprung_ = block;
+    sprung_.slack = false;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!is_slack(block, i)) continue;
+        const Vec3 anchor(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
+        const Vec3 place = anchor - (truss.length[i] - block.residual[i]) *
+                                        (anchor - Vec3(block.x[i], block.y[i], block.z[i])).normalized();
+        const bool free = std::all_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
+            return nearest(scene_.obstacles[obstacle.index].shape, obstacle.now.to_own(place)).gap >= 0.0;
+        });
+        if (!free) {
+            sprung_.slack = true;
+            continue;
+        }
+        sprung_.x[i] = place.x(), sprung_.y[i] = place.y(), sprung_.z[i] = place.z();
+        sprung_.deflection[i] = block.residual[i];
+        sprung_back_ = true;
+    }
+    if (sprung_back_) sprung_.box = box_around(sprung_.x, sprung_.y, sprung_.z);
+}
+
+// Which obstacles can the nodes of the block meet?
+void Skin::look_about(std::size_t b) {
+    spring_back(b);
+    const TrussBlockState& block = from(b);
+    // Where a flat surface is all there is, pushing nodes need no box.
+    const bool flat_only =
+        near_.size() == 1 && std::holds_alternative<HalfSpace>(scene_.obstacles[near_[0].index].shape);
+    box_ = block.touching && !flat_only ? box_around(block.x, block.y, block.z) : block.box;
+    if (block.touching && flat_only)
+        seen_.assign(1, 0);
+    else
+        find_seen(box_, block.touching ? margin_ : 0.0);
+    // What pushes stays at what it pushes on until it is released, however far it was drawn off within the step.
+    if (block.touching && seen_.empty())
+        for (std::size_t k = 0; k < near_.size(); ++k)
+            seen_.push_back(k);
+}
+
+void Skin::press(std::size_t b) {
+    look_about(b);
+    const bool drawn = find_dents_of_block(b);
+    if (seen_.empty() && !sprung_back_) return;
+    trial_.active[u_].add(b);
+    trial_.stale[u_].add(b);
+    if (seen_.empty()) {
+        now_.trusses.block[b] = sprung_;
+        return;
+    }
+    if (seen_.size() == 1 && !drawn) {
+        const NearObstacle& only = near_[seen_[0]];
+        if (const auto plane = flat_part(scene_.obstacles[only.index].shape, only.now, box_)) {
+            press_plane(sums_of_plane(seen_[0], *plane), b);
+            return;
+        }
+    }
+    press_shapes(b);
+}
+
+void Skin::find_seen(const Box& box, double margin) {
+    seen_.clear();
+    for (std::size_t k = 0; k < near_.size(); ++k)
+        if (within_reach(scene_.obstacles[near_[k].index].shape, near_[k].now, box, margin))
+            seen_.push_back(k);
+}
+
+Skin::PlaneSums& Skin::sums_of_plane(std::size_t near, const HalfSpace& plane) {
+    for (PlaneSums& known : planes_)
+        if (known.near == near && known.surface.face.normal == plane.normal) return known;
+    const NearObstacle& obstacle = near_[near];
+    HalfSpace before = plane;
+    before.normal = obstacle.before.rotation.transpose() * (obstacle.now.rotation * plane.normal);
+    planes_.push_back({near, FlatContact(unit_.body, plane, before), {}});
+    return planes_.back();
+}
+
+// The rate of deflection is taken where the nodes will be, so that a rate-sensitive block is first crushed without it.
+template <class Crush>
+void Skin::crush_with_rate(const TrussBlockState& next, const Places& places, CrushSums& sums,
+                           const Crush& crush) {
+    if (mesh_.rate_sensitivity == 0.0) {
+        crush(nullptr, sums);
+        return;
+    }
+    CrushSums without;
+    crush(nullptr, without);
+    alignas(64) Lanes factor;
+    set_rate_factor(mesh_.rate_sensitivity, next.force, motion_, places, contact_, factor);
+    crush(&factor, sums);
+}
+
+void Skin::press_plane(PlaneSums& plane, std::size_t b) {
+    TrussBlockState& next = now_.trusses.block[b];
+    contact_.set_normal(plane.surface.face.normal);
+    const Places places{next.x, next.y, next.z};
+    crush_with_rate(next, places, plane.sums, [&](const Lanes* factor, CrushSums& sums) {
+        crush(plane.surface, mesh_, b, factor, from(b), next, contact_, sums);
+    });
+    if (next.touching) rub(plane.near, b, next, places, contact_);
+}
+
+void Skin::press_shapes(std::size_t b) {
+    TrussBlockState& next = now_.trusses.block[b];
+    look(b);
+    const bool alone = seen_.size() == 1;
+    CrushSums& to = alone ? obstacles_[seen_[0]].sums : shared_;
+    crush_with_rate(next, contact_.places(), to, [&](const Lanes* factor, CrushSums& sums) {
+        crush(faces_, unit_.body, mesh_, b, factor, from(b), next, contact_, sums);
+    });
+    if (!next.touching) return;
+    if (alone)
+        rub(seen_[0], b, next, contact_.places(), contact_);
+    else
+        share_out(b, next);
+}
+
+// What each node of a block sees: the nearest of the surfaces in its reach.
+void Skin::look(std::size_t b) {
+    const TrussBlockState& block = from(b);
+    faces_.gap.fill(infinity);
+    faces_.per_force.fill(0.0);
+    contact_.set_normal(Vec3::UnitX());
+    nearest_.fill(0);
+    look_at(b, block);
+    find_entered_faces(block);
+    if (block.touching) turn_flat_faces();
+    settle_in_corners(block);
+    draw_in(b, block);
+}
+
+void Skin::look_at(std::size_t b, const TrussBlockState& block) {
+    alignas(64) NearestLanes found;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+        const NearObstacle& obstacle = near_[seen_[k]];
+        const Shape& shape = scene_.obstacles[obstacle.index].shape;
+        nearest_of(shape, obstacle.now, obstacle.before, block.x, block.y, block.z, found);
+        leave_to_dents(b, seen_[k], found);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            if (!(found.gap[i] < faces_.gap[i])) continue;
+            nearest_[i] = k;
+            faces_.gap[i] = found.gap[i];
+            contact_.nx[i] = found.nx[i], contact_.ny[i] = found.ny[i], contact_.nz[i] = found.nz[i];
+        }
+    }
+    faces_.bx = contact_.nx, faces_.by = contact_.ny, faces_.bz = contact_.nz;
+    if (!block.touching) return;
+    // Of all surfaces at that instant: segments of a wall take over from each other.
+    alignas(64) Lanes gap_before;
+    gap_before.fill(infinity);
+    for (const std::size_t k : seen_) {
+        const NearObstacle& obstacle = near_[k];
+        nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.before, obstacle.before, block.x, block.y,
+                   block.z, found);
+        leave_to_dents(b, k, found);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            if (!(found.gap[i] < gap_before[i])) continue;
+            gap_before[i] = found.gap[i];
+            faces_.bx[i] = found.nx[i];
+            faces_.by[i] = found.ny[i];
+            faces_.bz[i] = found.nz[i];
+        }
+    }
+}
+
+// Where a node that leaves one surface would get into another, in the corner between a barrier and the ground or of two
+// slopes, it goes onto both: the corner pushes it straight there.
+void Skin::settle_in_corners(const TrussBlockState& block) {
+    const auto is_prism = [&](std::size_t k) {
+        return std::holds_alternative<Prism>(scene_.obstacles[near_[k].index].shape);
+    };
+    if (seen_.empty() || (seen_.size() == 1 && !is_prism(seen_[0]))) return;
+    const auto inside = [&](std::size_t i) { return faces_.gap[i] < -tolerance::touching_gap; };
+    alignas(64) Lanes x = block.x, y = block.y, z = block.z;
+    bool any = false;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!inside(i)) continue;
+        any = true;
+        x[i] -= faces_.gap[i] * contact_.nx[i];
+        y[i] -= faces_.gap[i] * contact_.ny[i];
+        z[i] -= faces_.gap[i] * contact_.nz[i];
+    }
+    if (!any) return;
+    constexpr double parallel = 0.01;  // square of the sine below which two faces make no corner
+    alignas(64) NearestLanes found;
+    for (const std::size_t k : seen_) {
+        const NearObstacle& obstacle = near_[k];
+        nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.now, obstacle.now, x, y, z, found);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            if (!inside(i) || !(found.gap[i] < -tolerance::touching_gap)) continue;
+            const Vec3 first = contact_.normal(i), second(found.nx[i], found.ny[i], found.nz[i]);
+            const Vec3 along = second - second.dot(first) * first;
+            const double square = along.squaredNorm();
+            if (square < parallel) continue;
+            const Vec3 way = -faces_.gap[i] * first - found.gap[i] / square * along;
+            const double length = way.norm();
+            const Vec3 n = way / length;
+            faces_.gap[i] = -length;
+            contact_.nx[i] = faces_.bx[i] = n.x();
+            contact_.ny[i] = faces_.by[i] = n.y();
+            contact_.nz[i] = faces_.bz[i] = n.z();
+        }
+    }
+}
+
+// A flat face, or an edge, had the same normal in its own axes an instant before, whatever was nearest then.
+void Skin::turn_flat_faces() {
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const NearObstacle& obstacle = near_[seen_[nearest_[i]]];
+        if (std::holds_alternative<Post>(scene_.obstacles[obstacle.index].shape)) continue;
+        const Vec3 m = obstacle.before.direction_from_own(obstacle.now.direction_to_own(contact_.normal(i)));
+        faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
+    }
+}
+
+// The nearest face can be the wrong one to nodes beside an edge: those that arrive, and those that seem to have changed
+// over to another face. Meshes do the like with all that come in.
+void Skin::find_entered_faces(const TrussBlockState& block) {
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!(faces_.gap[i] < 0.0)) continue;
+        const Shape& shape = scene_.obstacles[near_[seen_[nearest_[i]]].index].shape;
+        if (std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<TriangleMesh>(shape)) continue;
+        const double turn =
+            contact_.nx[i] * faces_.bx[i] + contact_.ny[i] * faces_.by[i] + contact_.nz[i] * faces_.bz[i];
+        if (block.force[i] > 0.0 && turn > same_face) continue;
+        const auto entered = entered_face(scene_, near_, seen_, {block.x[i], block.y[i], block.z[i]});
+        if (!entered) continue;
+        nearest_[i] = entered->seen;
+        const Vec3 &n = entered->now.normal, &m = entered->normal_before;
+        faces_.gap[i] = entered->now.gap;
+        contact_.nx[i] = n.x(), contact_.ny[i] = n.y(), contact_.nz[i] = n.z();
+        faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
+    }
+}
+
+// Nodes of one block that push on several obstacles: to each its own.
+void Skin::share_out(std::size_t b, const TrussBlockState& next) {
+    BlockContact part = contact_;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+        ObstacleSums& sums = obstacles_[seen_[k]];
+        double force = 0.0;
+        for (std::size_t i = 0; i < lanes; ++i) {
+            part.pressure[i] = nearest_[i] == k ? contact_.pressure[i] : 0.0;
+            if (!(part.pressure[i] > 0.0)) continue;
+            const Vec3 push = part.pressure[i] * part.normal(i);
+            sums.contact += {push, part.pressure[i] * contact_.torque(i)};
+            force += part.pressure[i];
+        }
+        sums.normal_force += force;
+        if (force > 0.0) rub(seen_[k], b, next, contact_.places(), part);
+    }
+}
+
+void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, const Places& places,
+               const BlockContact& contact) {
+    ObstacleSums& sums = obstacles_[near];
+    if (along_) sums.by_trusses += along_trusses(mesh_.block[b], next, contact);
+    const double mu = scene_.obstacles[near_[near].index].friction;
+    if (mu > 0.0) add_friction(unit_.body, mu, full_speed_, motion_, places, contact, sums.friction);
+}
+
+void Skin::hand_over() {
+    SkinForces& skin = now_.skin;
+    skin = {};
+    std::vector<Touch>& touches = trial_.touches;
+    touches.clear();
+    const auto add = [&skin](const CrushSums& sums) {
+        skin.work += 0.5 * row_sum(sums.nodes.twice_work) + sums.released_work;
+        skin.stored += 0.5 * row_sum(sums.nodes.twice_stored);
+        skin.stiffness += sums.stiffness;
+    };
+    add(shared_);
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+        ObstacleSums& sums = obstacles_[k];
+        Touch touch;
+        touch.obstacle = near_[k].index;
+        touch.contact = sums.contact;
+        touch.contact += total_wrench(sums.sums);
+        touch.normal_force = sums.normal_force + row_sum(sums.sums.nodes.force);
+        add(sums.sums);
+        for (const PlaneSums& plane : planes_) {
+            if (plane.near != k) continue;
+            touch.contact += total_wrench(plane.surface, plane.sums);
+            touch.normal_force += row_sum(plane.sums.nodes.force);
+            add(plane.sums);
+        }
+        if (along_) touch.contact = sums.by_trusses;
+        touch.contact = turned(touch.contact, R_);
+        touch.friction = turned(sums.friction.friction, R_);
+        skin.friction_rate += sums.friction.friction_rate;
+        skin.contact += touch.contact;
+        skin.friction += touch.friction;
+        skin.normal_force += touch.normal_force;
+        if (touch.normal_force > 0.0) touches.push_back(touch);
+    }
+    // What was touched before and is not now ends its course: at once, or, as part of a structure that is, in the
+    // steps by which the structure's course reaches back.
+    for (const Touch& last : before_.touches) {
+        const Load &rate = last.course.rate, &bend = last.course.bend;
+        if (!(last.normal_force > 0.0) && rate.normal_force == 0.0 && bend.normal_force == 0.0) continue;
+        const auto place = std::lower_bound(
+            touches.begin(), touches.end(), last.obstacle,
+            [](const Touch& touch, std::size_t obstacle) { return touch.obstacle < obstacle; });
+        if (place != touches.end() && place->obstacle == last.obstacle) continue;
+        Touch ended;
+        ended.obstacle = last.obstacle;
+        touches.insert(place, ended);
+    }
+    now_.touches = touches;
+}
+
+void skin_forces(const Scene& scene, std::size_t u, const State& from, Trial& trial) {
+    Skin skin(scene, u, from, trial);
+    skin.press_blocks();
+    skin.hand_over();
+}
+
+}  // namespace birm3d

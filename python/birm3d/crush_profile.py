@@ -1,0 +1,208 @@
+"""Crush of one side of a vehicle: of every node of its skin, and at six points of equal spacing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .unit_shapes import UnitShape, unit_shapes
+
+if TYPE_CHECKING:
+    from .result import Result
+
+__all__ = ["CrushMap", "CrushProfile", "Side", "crush_map", "crush_profile", "crushed_sides"]
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Side: TypeAlias = Literal["front", "rear", "left", "right"]
+
+# Outward direction of each side and its lateral axis, body axes.
+_SIDES: Mapping[Side, tuple[int, float, int]] = {
+    "front": (0, 1.0, 1),
+    "rear": (0, -1.0, 1),
+    "left": (1, 1.0, 0),
+    "right": (1, -1.0, 0),
+}
+# An element belongs to a side if its normal is within 60 degrees of outwards.
+_FACING = 0.5
+_POINTS = 6
+
+
+@dataclass(frozen=True, eq=False)
+class CrushMap:
+    """Crush of the skin of one side.
+
+    Attributes
+    ----------
+    side : str
+    lateral : ndarray, shape (n,)
+        Of all nodes of the unit, uncrushed, body axes: s for front and rear, r for left and right [m].
+    height : ndarray, shape (n,)
+        Of all nodes above the ground at rest, uncrushed [m].
+    crush : ndarray, shape (n,)
+        Of all nodes: how far they have moved inwards, square to the side [m].
+    triangles : ndarray, shape (m, 3)
+        Of the side, indices of nodes.
+    """
+
+    side: Side
+    lateral: Floats
+    height: Floats
+    crush: Floats
+    triangles: Ints
+
+
+@dataclass(frozen=True, eq=False)
+class CrushProfile:
+    """Crush along a level line across one side of a vehicle.
+
+    Attributes
+    ----------
+    side : str
+    height : float
+        Of the line above the ground at rest [m].
+    lateral, crush : ndarray, shape (k,)
+        Along the line: body axis s (front, rear) or r (left, right) and crush [m].
+    stations, points : ndarray, shape (6,)
+        Places of C1 to C6 along the line, evenly spaced over its whole width, and the crush there [m]. C1 is
+        at the left end of front and rear, at the rear end of left and right.
+    width : float
+        Of the line [m].
+    mean : float
+        Mean crush by the trapezium rule of six points, (C1/2 + C2 + C3 + C4 + C5 + C6/2) / 5 [m].
+    """
+
+    side: Side
+    height: float
+    lateral: Floats
+    crush: Floats
+    stations: Floats
+    points: Floats
+    width: float
+    mean: float
+
+
+def crush_map(result: Result, side: Side = "front", *, unit: int = 0) -> CrushMap:
+    """Return the residual crush of one side: uncrushed less final place, square to the side, of every node.
+
+    Raises
+    ------
+    ValueError
+        If the side is unknown or the unit has no skin there.
+    """
+    if side not in _SIDES:
+        raise ValueError(f"side must be one of {', '.join(_SIDES)}; got {side!r}")
+    shape = unit_shapes(result.scene.vehicle)[unit]
+    axis, sign, lateral = _SIDES[side]
+    triangles = _facing(shape, axis, sign, lateral)
+    if len(triangles) == 0:
+        raise ValueError(f"side must be one that the vehicle has skin on, got {side!r}")
+    return CrushMap(
+        side=side,
+        lateral=shape.nodes[:, lateral],
+        height=shape.nodes[:, 2] + shape.height,
+        crush=sign * (shape.nodes - result.final_nodes(unit))[:, axis],
+        triangles=triangles,
+    )
+
+
+def crush_profile(
+    result: Result, side: Side = "front", *, height: float | None = None, unit: int = 0
+) -> CrushProfile:
+    """Return the crush of one side along a level line, with the six points of a CRASH3 (NHTSA) measurement.
+
+    Parameters
+    ----------
+    side
+        ``"front"``, ``"rear"``, ``"left"`` or ``"right"``.
+    height
+        Of the line above the ground at rest [m]; ``None``: the middle of the zone ``bumper`` in front, else
+        where the crush is greatest.
+
+    Raises
+    ------
+    ValueError
+        If the side is unknown, the unit has no skin there, or none at that height.
+    """
+    field = crush_map(result, side, unit=unit)
+    if height is None:
+        height = _usual_height(unit_shapes(result.scene.vehicle)[unit], field)
+    lateral, crush = _cut(field, height)
+    if len(lateral) < 2:
+        heights = field.height[field.triangles]
+        raise ValueError(
+            f"height must be between {heights.min():.3f} and {heights.max():.3f} m, "
+            f"where the {side} has skin, got {height}"
+        )
+    ends = (lateral[-1], lateral[0]) if _SIDES[side][0] == 0 else (lateral[0], lateral[-1])
+    stations = np.linspace(*ends, _POINTS)
+    points = np.interp(stations, lateral, crush)
+    weights = np.array([0.5, *[1.0] * (_POINTS - 2), 0.5]) / (_POINTS - 1)
+    return CrushProfile(
+        side=side,
+        height=float(height),
+        lateral=lateral,
+        crush=crush,
+        stations=stations,
+        points=points,
+        width=float(lateral[-1] - lateral[0]),
+        mean=float(weights @ points),
+    )
+
+
+def crushed_sides(result: Result, least: float = 0.01, *, unit: int = 0) -> tuple[Side, ...]:
+    """Return the sides that are crushed by more than `least` [m] somewhere, greatest crush first."""
+    shape = unit_shapes(result.scene.vehicle)[unit]
+    greatest: dict[Side, float] = {}
+    for side, (axis, sign, lateral) in _SIDES.items():
+        if len(_facing(shape, axis, sign, lateral)):
+            field = crush_map(result, side, unit=unit)
+            greatest[side] = float(field.crush[np.unique(field.triangles)].max())
+    order = sorted(greatest, key=lambda side: -greatest[side])
+    return tuple(side for side in order if greatest[side] > least)
+
+
+def _facing(shape: UnitShape, axis: int, sign: float, lateral: int) -> Ints:
+    """Return the triangles of the skin that look to a side."""
+    if len(shape.quads):
+        corners = shape.nodes[shape.quads]
+        normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+        lengths = np.linalg.norm(normals, axis=1)
+        quads = shape.quads[sign * normals[:, axis] > _FACING * lengths]
+        return np.vstack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    # Without a skin: nodes whose trusses point to the side, joined to their neighbours.
+    trusses = shape.nodes - shape.anchors
+    mine = np.flatnonzero(sign * trusses[:, axis] > _FACING * np.linalg.norm(trusses, axis=1))
+    plane = shape.nodes[mine][:, [lateral, 2]]
+    if len(mine) < 3 or np.linalg.matrix_rank(plane - plane.mean(axis=0), tol=1e-9) < 2:
+        return np.empty((0, 3), np.int64)
+    from scipy.spatial import Delaunay
+
+    return np.asarray(mine[Delaunay(plane).simplices])
+
+
+def _usual_height(shape: UnitShape, field: CrushMap) -> float:
+    nodes = np.unique(field.triangles)
+    if field.side == "front" and "bumper" in shape.zone_names:
+        bumper = nodes[shape.zone_of_node[nodes] == shape.zone_names.index("bumper")]
+        if len(bumper):
+            return float(0.5 * (field.height[bumper].min() + field.height[bumper].max()))
+    return float(field.height[nodes[np.argmax(field.crush[nodes])]])
+
+
+def _cut(field: CrushMap, height: float) -> tuple[Floats, Floats]:
+    """Return lateral places, increasing, where the edges of the side cross a height, and the crush there."""
+    t = field.triangles
+    edges = np.unique(np.sort(np.vstack([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]]), axis=1), axis=0)
+    above = field.height[edges] - height
+    edges = edges[(above[:, 0] * above[:, 1] <= 0.0) & (above[:, 0] != above[:, 1])]
+    a, b = edges.T
+    share = (height - field.height[a]) / (field.height[b] - field.height[a])
+    lateral = field.lateral[a] + share * (field.lateral[b] - field.lateral[a])
+    crush = field.crush[a] + share * (field.crush[b] - field.crush[a])
+    order = np.argsort(lateral, kind="stable")
+    return lateral[order], crush[order]

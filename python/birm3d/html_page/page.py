@@ -1,0 +1,149 @@
+"""The page: what is in it, put into the template."""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+import io
+import json
+from collections.abc import Sequence
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .. import units
+from ..crush_profile import Side, crushed_sides
+from ..metrics import METRIC_UNITS
+from ..outcome import outcome_rows
+from ..report import END_REASONS
+from ..whole_file import whole_file
+from .page_data import page_data
+
+if TYPE_CHECKING:
+    from ..barrier import Barrier
+    from ..result import Result
+
+__all__ = ["write_html"]
+
+# Above these the ledgers of a run are worth a look.
+_ENERGY, _MOMENTUM = 5e-3, 1e-9
+
+
+def write_html(result: Result, path: str | Path, *, frames: int = 61) -> None:
+    """Write one page that needs no network: scene, outcome, plan view with a slider, histories, crush.
+
+    Histories are after their channel frequency class (SAE J211-1).
+
+    Parameters
+    ----------
+    path
+        Of the file.
+    frames
+        Number of instants of the plan view's slider, >= 2.
+
+    Raises
+    ------
+    ImportError
+        Without plotly.
+    ValueError
+        If there are fewer than 2 frames or more than rows, or the path is a folder or lies in none.
+    """
+    try:
+        from plotly.offline import get_plotlyjs
+    except ImportError as error:
+        raise ImportError("write_html() needs plotly: pip install 'birm3d[html]'") from error
+    # Inside a script element no text may end it.
+    content = page_data(result, frames)
+    data = json.dumps(content, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
+    here = files(__package__)
+    page = here.joinpath("page.html").read_text(encoding="utf-8")
+    scene = result.scene
+    parts = {
+        "TITLE": escape(f"{scene.vehicle.name}, {scene.impact_speed:.2f} m/s at {scene.impact_angle:g}°"),
+        "VERSION": escape(result.version),
+        "SCENE": _table(("scene", ""), _scene_rows(result)),
+        "OUTCOME": _table(("outcome", "value", "unit"), outcome_rows(result)),
+        "CHECKS": _table(("check", "", "limit", "value"), _check_rows(result)),
+        "METRICS": _table(("metric", "value", "unit"), _metric_rows(result)),
+        "CRUSH": "".join(_crush_picture(result, side) for side in crushed_sides(result)) or "<p>None.</p>",
+        "REPORT": escape(result.report()),
+        "ROWS": "" if content["every"] == 1 else f"One row in {content['every']} is shown.",
+        "SCRIPT": here.joinpath("page.js").read_text(encoding="utf-8"),
+        "DATA": data,
+        "PLOTLY": get_plotlyjs(),
+    }
+    # One pass from left to right: what is put in is not looked at again.
+    head, *rest = page.split("<!--")
+    text = [head]
+    for piece in rest:
+        name, _, tail = piece.partition("-->")
+        text += [parts[name], tail]
+    with whole_file(path) as part:
+        part.write_text("".join(text), encoding="utf-8")
+
+
+def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
+    def line(cells: tuple[str, ...], tag: str) -> str:
+        return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>"
+
+    body = "".join(line(row, "td") for row in rows)
+    return f"<table><thead>{line(head, 'th')}</thead><tbody>{body}</tbody></table>"
+
+
+def _scene_rows(result: Result) -> list[tuple[str, ...]]:
+    scene, settings = result.scene, result.scene.settings
+    vehicle = scene.vehicle
+    steps = (
+        f"fixed, {settings.time_step:g} s"
+        if settings.time_step
+        else f"adaptive, tolerance {settings.tolerance:g}"
+    )
+    return [
+        ("vehicle", f"{vehicle.name}, {vehicle.mass:,.1f} kg, {vehicle.n_nodes:,} shell nodes"),
+        ("barrier", _barrier(scene.barrier)),
+        ("impact speed", f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph)"),
+        ("impact angle", f"{scene.impact_angle:g}° from the barrier's line"),
+        ("impact offset", f"{scene.impact_offset:g} m"),
+        ("time steps", steps),
+        ("contact, tyres", f"{settings.contact_model}, {settings.tire_model}"),
+        ("ended", f"at {result.time[-1]:.4f} s: {END_REASONS[result.end_reason]}"),
+        ("state hash", f"{result.state_hash:016x}"),
+    ]
+
+
+def _barrier(barrier: Barrier | None) -> str:
+    """Return the numbers of the barrier that are not the usual ones, and its friction."""
+    if barrier is None:
+        return "none"
+    given = [f"friction {barrier.friction:g}"]
+    for field in dataclasses.fields(barrier):
+        value = getattr(barrier, field.name)
+        if field.name != "friction" and value != field.default:
+            given.append(f"{field.name} {value}")
+    return ", ".join(given)
+
+
+def _check_rows(result: Result) -> list[tuple[str, ...]]:
+    metrics = result.metrics
+    rows: list[tuple[str, ...]] = []
+    for name, label, limit in (
+        ("energy_residual", "energy ledger closes, of the initial kinetic energy", _ENERGY),
+        ("momentum_residual", "momentum ledger closes, of the greatest force", _MOMENTUM),
+    ):
+        good = metrics[name] <= limit
+        rows.append((label, "✓ yes" if good else "✗ no", f"{limit:g}", f"{metrics[name]:.1e}"))
+    decided = result.end_reason in ("separated", "stopped")
+    rows.append(("the outcome is decided", "✓ yes" if decided else "✗ no", "", result.end_reason))
+    return rows
+
+
+def _metric_rows(result: Result) -> list[tuple[str, ...]]:
+    return [(name, f"{value:.6g}", METRIC_UNITS.get(name, "")) for name, value in result.metrics.items()]
+
+
+def _crush_picture(result: Result, side: Side) -> str:
+    stream = io.BytesIO()
+    result.plot_crush(side).savefig(stream, format="png", dpi=90)
+    image = base64.b64encode(stream.getvalue()).decode("ascii")
+    return f'<img alt="residual crush of the {side}" src="data:image/png;base64,{image}">'

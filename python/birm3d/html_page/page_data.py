@@ -1,0 +1,135 @@
+"""Numbers of the page: histories, plan view and their axes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import units
+from ..element_loads import touched_elements
+from ..filters import moving_average
+from ..plan_axes import PlanAxes
+from ..plotting.style import filtered
+from ..silhouette import silhouette
+from ..skin import skins_at
+from ..unit_shapes import unit_shapes
+
+if TYPE_CHECKING:
+    from ..result import Result
+
+__all__ = ["page_data"]
+
+Floats = npt.NDArray[np.float64]
+
+_ROWS = 3000  # more than a screen has pixels across
+_RAYS = 240
+_DIGITS = 6
+
+
+def page_data(result: Result, frames: int) -> dict[str, Any]:
+    """Return what the page's script draws; of long runs every so many rows."""
+    every = -(-len(result.time) // _ROWS)
+    ms = result.time[::every] * 1e3
+    panels = [
+        {
+            "title": name,
+            "unit": unit,
+            "curves": [{"name": label, "y": _short(values[::every])} for label, values in curves],
+        }
+        for name, unit, curves in _panels(result)
+    ]
+    return {
+        "time": _short(ms),
+        "every": every,
+        "panels": panels,
+        "plan": _plan(result, frames),
+    }
+
+
+def _panels(result: Result) -> list[tuple[str, str, list[tuple[str, Floats]]]]:
+    interval = result.scene.settings.output_interval
+
+    def curve(name: str, values: Floats, channel_class: float) -> tuple[str, Floats]:
+        smooth, class_ = filtered(values, channel_class, interval)
+        return f"{name}, {class_}", smooth
+
+    panels = []
+    if result.scene.barrier is not None:
+        normal = result.barrier_normal_force / 1e3
+        forces = [curve("normal", normal, 60), ("normal, 50-ms mean", moving_average(normal, 0.05, interval))]
+        forces += [
+            curve(f"{axis} (world)", result.barrier_force[:, i] / 1e3, 60) for i, axis in enumerate("xyz")
+        ]
+        forces.append(("normal, unfiltered", normal))
+        panels.append(("Barrier force", "kN", forces))
+        loads = touched_elements(result)
+        if len(loads) > 1:
+            on_each = [
+                (load.name, np.linalg.norm(filtered(load.force / 1e3, 60, interval)[0], axis=1))
+                for load in loads
+            ]
+            panels.append((f"Force on the barrier's elements, {forces[0][0].split(', ')[1]}", "kN", on_each))
+    acceleration = [curve(axis, result.acceleration[:, i] / units.g, 60) for i, axis in enumerate("rst")]
+    panels.append(("Acceleration of the mass centre, body axes", "g", acceleration))
+    velocity = [(axis, result.velocity[:, i]) for i, axis in enumerate("xyz")]
+    speed = ("speed", np.linalg.norm(result.velocity, axis=1))
+    panels.append(("Velocity of the mass centre, world axes", "m/s", [speed, *velocity]))
+    names = ("roll", "pitch", "yaw")
+    panels.append(("Angles", "deg", [(name, getattr(result, name)) for name in names]))
+    rates = [curve(f"{name} rate", result.angular_velocity[:, i], 180) for i, name in enumerate(names)]
+    panels.append(("Angular rates, body axes", "deg/s", rates))
+    if result.tire_reaction.shape[1]:
+        wheels = result.tire_reaction / 1e3
+        tires = [curve(f"wheel {i + 1}", wheels[:, i], 60) for i in range(wheels.shape[1])]
+        panels.append(("Tyre reactions", "kN", tires))
+    energy = [
+        (name.replace("_", " "), values / 1e3) for name, values in result.energy.items() if name != "residual"
+    ]
+    panels.append(("Energy ledger", "kJ", energy))
+    panels.append(("Energy residual", "J", [("residual", result.energy["residual"])]))
+    return panels
+
+
+def _plan(result: Result, frames: int) -> dict[str, Any]:
+    if frames < 2:
+        raise ValueError(f"frames must be >= 2, got {frames}")
+    times = np.linspace(result.time[0], result.time[-1], frames)
+    axes = PlanAxes(result)
+    shapes = unit_shapes(result.scene.vehicle)
+    skins = skins_at(result, times)
+    outlines = [
+        [
+            axes.plan(silhouette(shape, skin.nodes, skin.center, skin.turn, _RAYS))
+            for shape, skin in zip(shapes, one, strict=True)
+        ]
+        for one in skins
+    ]
+    paths = [axes.plan(result.pose(times, unit)[0]) for unit in range(len(shapes))]
+    world = np.vstack([skin.world for one in (skins[0], skins[-1]) for skin in one])
+    drawn = np.vstack([polygon for one in outlines for polygon in one])
+    parts = axes.barrier(world, drawn)
+    shown = np.vstack([drawn, *(vertices for vertices, _ in parts)])
+    return {
+        "labels": axes.labels,
+        "time": _short(times * 1e3),
+        "outlines": [[_short(np.vstack([p, p[:1]]).T) for p in one] for one in outlines],
+        "paths": [_short(path.T) for path in paths],
+        "barrier": [[_short(v[[*face, face[0]]].T) for face in _from_above(v, faces)] for v, faces in parts],
+        "range": _short(np.stack([shown.min(axis=0), shown.max(axis=0)]).T),
+    }
+
+
+def _from_above(plan: Floats, faces: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """Return the triangles that look up: they cover a solid's plan once."""
+    a, b, c = (plan[faces[:, i]] for i in range(3))
+    u, v = b - a, c - a
+    return faces[u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] > 1e-9]
+
+
+def _short(values: Floats) -> Any:
+    """Return lists of numbers with as many digits as a screen can show."""
+    if values.ndim > 1:
+        return [_short(row) for row in values]
+    return [float(f"{value:.{_DIGITS}g}") for value in values.tolist()]

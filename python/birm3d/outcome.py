@@ -1,0 +1,80 @@
+"""The numbers of a run that decide, with labels and units of practice."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from . import units
+from .element_loads import touched_elements
+
+if TYPE_CHECKING:
+    from .result import Result
+
+__all__ = ["ELEMENT_COLUMNS", "element_rows", "elements_in_si", "outcome_rows"]
+
+ELEMENT_COLUMNS = (
+    "element",
+    "peak force, unfiltered [kN]",
+    "50-ms mean [kN]",
+    "height then [m]",
+    "overturning moment, 50-ms mean [kN m]",
+)
+"""Of :func:`element_rows`."""
+
+_ROWS = (
+    ("dynamic_crush", "dynamic crush (greatest truss shortening)", "m", 1.0, ".3f"),
+    ("residual_crush", "residual crush", "m", 1.0, ".3f"),
+    ("max_displacement", "travel of the mass centre towards the barrier", "m", 1.0, ".3f"),
+    ("vehicle_penetration", "rigid body past the barrier's line", "m", 1.0, ".3f"),
+    ("time_of_zero_velocity", "time of zero normal velocity", "ms", 1e-3, ".1f"),
+    ("peak_normal_force_cfc60", "peak normal force, CFC 60", "kN", 1e3, ".0f"),
+    ("peak_force_50ms", "peak 50-ms mean of the normal force", "kN", 1e3, ".0f"),
+    ("peak_element_force_50ms", "peak 50-ms force on one element", "kN", 1e3, ".0f"),
+    ("peak_overturning_moment_50ms", "peak 50-ms overturning moment of one element", "kN m", 1e3, ".0f"),
+    ("peak_deceleration_cfc60", "peak deceleration along r, CFC 60", "g", units.g, ".1f"),
+    ("delta_v", "change of velocity", "m/s", 1.0, ".2f"),
+    ("restitution", "restitution along the normal", "", 1.0, ".2f"),
+    ("exit_speed", "exit speed", "m/s", 1.0, ".2f"),
+    ("exit_angle", "exit angle from the barrier's line", "deg", 1.0, ".1f"),
+    ("max_roll", "greatest roll", "deg", 1.0, ".1f"),
+    ("max_pitch", "greatest pitch", "deg", 1.0, ".1f"),
+    ("max_yaw", "greatest yaw", "deg", 1.0, ".1f"),
+    ("energy_residual", "energy residual / initial kinetic energy", "", 1.0, ".1e"),
+    ("momentum_residual", "momentum residual / greatest force", "", 1.0, ".1e"),
+)
+
+
+def outcome_rows(result: Result) -> list[tuple[str, str, str]]:
+    """Return label, value and unit of the scalars that a run has."""
+    metrics = result.metrics
+    return [
+        (label, format(metrics[name] / size, form), unit)
+        for name, label, unit, size, form in _ROWS
+        if name in metrics
+    ]
+
+
+def element_rows(result: Result) -> list[tuple[str, ...]]:
+    """Return the loads on the elements that were touched, one row each; see ``ELEMENT_COLUMNS``."""
+    return [
+        (
+            load.name,
+            f"{load.peak_force / 1e3:.0f}",
+            f"{load.peak_force_50ms / 1e3:.0f}",
+            f"{load.height_at_peak:.2f}",
+            f"{load.peak_overturning_moment_50ms / 1e3:.0f}",
+        )
+        for load in touched_elements(result)
+    ]
+
+
+def elements_in_si(result: Result) -> list[dict[str, str | float]]:
+    """Return the loads on the elements that were touched by name, SI."""
+    numbers = (
+        *("peak_force", "peak_force_50ms", "height_at_peak"),
+        *("peak_overturning_moment", "peak_overturning_moment_50ms"),
+    )
+    return [
+        {"name": load.name, **{number: getattr(load, number) for number in numbers}}
+        for load in touched_elements(result)
+    ]

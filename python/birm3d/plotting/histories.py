@@ -1,0 +1,105 @@
+"""Time histories with their channel frequency class."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.figure import Figure
+
+from .. import units
+from ..filters import moving_average
+from .style import BLUE, GREEN, RED, fit, legend, plot_filtered, prepare, title
+
+if TYPE_CHECKING:
+    from ..result import Result
+
+__all__ = ["plot_histories"]
+
+# SAE J211-1: vehicle structure and barrier forces, and what is integrated to an angle.
+_STRUCTURE, _INTEGRATED = 60, 180
+_AXES = (("r", BLUE, "-"), ("s", RED, "--"), ("t", GREEN, "-."))
+
+
+def plot_histories(result: Result) -> Figure:
+    """Return forces, accelerations, velocities, angular rates, angles and tyre forces against time.
+
+    Forces and accelerations after CFC 60 (vehicle structure, barrier), angular rates after CFC 180
+    (integration), SAE J211-1; unfiltered interval means are thin lines behind. Velocities and angles are
+    states: they are not filtered.
+    """
+    figure = Figure(figsize=(12.0, 9.5), layout="constrained")
+    panels = figure.subplots(3, 2, sharex=True)
+    (force, acceleration), (velocity, rates), (tires, angles) = panels
+    prepare(*panels.flat)
+    ms = result.time * 1e3
+    interval = result.scene.settings.output_interval
+
+    if result.scene.barrier is not None:
+        normal = result.barrier_normal_force / 1e3
+        plot_filtered(force, result, normal, _STRUCTURE, "normal force", BLUE)
+        mean = moving_average(normal, 0.05, interval)
+        force.plot(ms, mean, color=RED, ls="--", label="50-ms mean")
+        legend([force])
+    force.set_title("Barrier force on the vehicle")
+    force.set_ylabel("force [kN]")
+
+    for i, (axis, color, style) in enumerate(_AXES):
+        channel = result.acceleration[:, i] / units.g
+        plot_filtered(acceleration, result, channel, _STRUCTURE, axis, color, style)
+    acceleration.set_title("Acceleration of the mass centre, body axes")
+    acceleration.set_ylabel("acceleration [g]")
+    legend([acceleration])
+
+    ahead = _heading(result)
+    left = np.array([-ahead[1], ahead[0], 0.0])
+    for name, direction, color, style in (
+        ("along the path", ahead, BLUE, "-"),
+        ("to its left", left, RED, "--"),
+        ("up", np.array([0.0, 0.0, 1.0]), GREEN, "-."),
+    ):
+        velocity.plot(ms, result.velocity @ direction, color=color, ls=style, label=name)
+    velocity.set_title("Velocity of the mass centre from the initial path")
+    velocity.set_ylabel("velocity [m/s]")
+    legend([velocity])
+
+    for i, (name, (_, color, style)) in enumerate(zip(("roll", "pitch", "yaw"), _AXES, strict=True)):
+        channel = result.angular_velocity[:, i]
+        plot_filtered(rates, result, channel, _INTEGRATED, f"{name} rate", color, style)
+        angles.plot(ms, getattr(result, name), color=color, ls=style, label=name)
+    rates.set_title("Angular rates, body axes")
+    rates.set_ylabel("angular rate [deg/s]")
+    legend([rates])
+    angles.set_title("Angles")
+    angles.set_ylabel("angle [deg]")
+    legend([angles])
+
+    if result.tire_reaction.shape[1]:
+        total = result.tire_reaction.sum(axis=1) / 1e3
+        plot_filtered(tires, result, total, _STRUCTURE, "all wheels", BLUE)
+        weight = result.scene.vehicle.mass * result.scene.settings.gravity / 1e3
+        tires.axhline(weight, color="0.4", ls=":", label="weight")
+        legend([tires])
+    tires.set_title("Tyre reaction")
+    tires.set_ylabel("force [kN]")
+
+    for axes in (force, acceleration, rates, tires):
+        fit(axes)
+    if result.tire_reaction.shape[1]:
+        tires.set_ylim(bottom=0.0)
+    for axes in panels[-1]:
+        axes.set_xlabel("time [ms]")
+        axes.set_xlim(0.0, float(ms[-1]))
+    figure.suptitle(title(result))
+    return figure
+
+
+def _heading(result: Result) -> npt.NDArray[np.float64]:
+    """Return the unit vector of the initial path; that of the vehicle where it stands."""
+    velocity = np.array([*result.velocity[0, :2], 0.0])
+    speed = float(np.linalg.norm(velocity))
+    if speed > 0.0:
+        return velocity / speed
+    ahead = result.pose(0.0)[1][0] @ [1.0, 0.0, 0.0]
+    return np.asarray(ahead / np.linalg.norm(ahead))

@@ -1,0 +1,135 @@
+#include "birm3d/kernels/dent.hpp"
+
+#include <random>
+
+#include "check.hpp"
+#include "laboratory.hpp"
+
+using namespace birm3d;
+
+namespace {
+
+// 8 by 8 nodes at x = 3 m, 2.4 m by 1.6 m, trusses straight back.
+const TrussMesh mesh(laboratory::front_face(laboratory::w2_curve(), 8, 8));
+const TrussState uncrushed(mesh);
+const Panel& front = mesh.panel[1];
+
+// Axis through `foot`, leaning by `lean` towards the vehicle and by `sway` to its side (rad).
+Placement standing(const Vec3& foot, double lean = 0.0, double sway = 0.0) {
+    const Quat turn = Eigen::AngleAxisd(sway, Vec3::UnitX()) * Eigen::AngleAxisd(lean, Vec3::UnitY());
+    const Mat3 to_own = turn.toRotationMatrix().transpose();
+    return {to_own, -(to_own * foot)};
+}
+
+DentLanes dent_by(const Post& post, const Placement& stands, double slope) {
+    DentLanes found;
+    dent_of(Dent(post, stands, front, slope), uncrushed.block[0], found);
+    return found;
+}
+
+Vec3 node(std::size_t i) {
+    return {uncrushed.block[0].x[i], uncrushed.block[0].y[i], uncrushed.block[0].z[i]};
+}
+
+}  // namespace
+
+TEST("trusses that point back belong to the front") {
+    CHECK(front.any);
+    CHECK_CLOSE(laboratory::distance(front.inward, -Vec3::UnitX()), 0.0, 0.0, "an axis");
+    CHECK_CLOSE(laboratory::distance(front.box.half, {0.0, 1.2, 0.8}), 0.0, 1e-15, "rounding");
+    for (std::size_t p = 0; p < panels; ++p)
+        CHECK(mesh.panel[p].any == (p == 1));
+}
+
+TEST("beside an upright post the skin is drawn in with the slope") {
+    const double radius = 0.2, axis = 2.7;
+    for (const double slope : {0.5, 1.0, 2.0}) {
+        const DentLanes found = dent_by(Post(radius), standing({axis, 0.1, 0.0}), slope);
+        const double arc = radius * slope / std::sqrt(1.0 + slope * slope);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            const double w = std::abs(node(i).y() - 0.1), on = std::min(w, arc);
+            const double surface = axis - std::sqrt(radius * radius - on * on) + slope * (w - on);
+            CHECK_CLOSE(found.gap[i], surface - node(i).x(), 1e-14, "rounding of lengths near 3 m");
+        }
+    }
+}
+
+TEST("above a post the skin is drawn in with the slope, too") {
+    const double radius = 0.2, height = 0.3, slope = 0.8;
+    const DentLanes low = dent_by(Post(radius, height), standing({2.7, 0.0, 0.0}), slope);
+    const DentLanes tall = dent_by(Post(radius), standing({2.7, 0.0, 0.0}), slope);
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const double above = std::max(0.0, node(i).z() - height);
+        const double hair = above > 0.0 ? slope * 0.05 * radius : 0.0;
+        CHECK_CLOSE(low.gap[i], tall.gap[i] + slope * above - hair, 1e-14,
+                    "the hair by which the rim is rounded");
+    }
+}
+
+TEST("of a post that stands beside the panel only what reaches over its edge presses") {
+    // The axis 0.15 m beyond the edge at y = 1.2 m.
+    const double radius = 0.2;
+    const DentLanes found = dent_by(Post(radius), standing({2.9, 1.35, 0.0}), 1.0);
+    const double at_edge = 2.9 - std::sqrt(radius * radius - 0.15 * 0.15);
+    for (std::size_t i = 0; i < lanes; ++i)
+        CHECK_CLOSE(found.gap[i], at_edge + (1.2 - node(i).y()) - node(i).x(), 1e-14, "rounding");
+}
+
+TEST("force and torque are what the depth of the dent asks for by virtual work") {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> share(-1.0, 1.0);
+    const double h = 1e-6;
+    int above = 0, beside = 0;
+    for (int round = 0; round < 200; ++round) {
+        const Post post(0.2 + 0.1 * share(random), 1.5 + 0.9 * share(random));
+        const Vec3 foot(2.8 + 0.2 * share(random), 1.4 * share(random), -1.0);
+        const double lean = 0.3 * share(random), sway = 0.3 * share(random);
+        const Placement stands = standing(foot, lean, sway);
+        const DentLanes here = dent_by(post, stands, 1.0);
+        // Both ways along and about each axis.
+        for (int axis = 0; axis < 3; ++axis) {
+            const Vec3 way = Vec3::Unit(axis);
+            const auto moved = [&](double by) {
+                return dent_by(post, {stands.rotation, stands.position - stands.rotation * (by * way)}, 1.0);
+            };
+            const auto turned = [&](double by) {
+                const Mat3 turn = Eigen::AngleAxisd(by, way).toRotationMatrix();
+                return dent_by(post, {stands.rotation * turn.transpose(), stands.position}, 1.0);
+            };
+            const DentLanes forth = moved(h), back = moved(-h), left = turned(h), right = turned(-h);
+            for (std::size_t i = 0; i < lanes; ++i) {
+                const double force = here.per_force[i] * Vec3(here.nx[i], here.ny[i], here.nz[i])[axis];
+                const double torque = here.per_force[i] * Vec3(here.tx[i], here.ty[i], here.tz[i])[axis];
+                // Differences of second order, but at kinks, which one side of the difference lies beyond.
+                const double by_force = (back.gap[i] - forth.gap[i]) / (2.0 * h);
+                const double by_torque = (right.gap[i] - left.gap[i]) / (2.0 * h);
+                const double bend = std::abs(forth.gap[i] + back.gap[i] - 2.0 * here.gap[i]) / h +
+                                    std::abs(left.gap[i] + right.gap[i] - 2.0 * here.gap[i]) / h;
+                if (bend > 1e-3) continue;
+                CHECK_CLOSE(force, by_force, 1e-4, "the difference's error");
+                CHECK_CLOSE(torque, by_torque, 1e-4, "the same");
+            }
+        }
+        const Dent dent(post, stands, front, 1.0);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            above += (node(i) - foot).dot(dent.along) > dent.top ? 1 : 0;
+            beside += std::abs((node(i) - foot).dot(dent.across)) > dent.arc ? 1 : 0;
+        }
+    }
+    CHECK(above > 1000);
+    CHECK(beside > 1000);
+}
+
+TEST("no node is further inside than what the box says") {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> share(-1.0, 1.0);
+    for (int round = 0; round < 200; ++round) {
+        const Post post(0.2 + 0.1 * share(random), 1.5 + 0.9 * share(random));
+        const Placement stands = standing({2.8 + share(random), 2.0 * share(random), -1.0},
+                                          0.4 * share(random), 0.4 * share(random));
+        const Dent dent(post, stands, front, 1.0);
+        const DentLanes found = dent_by(post, stands, 1.0);
+        const double least = *std::min_element(found.gap.begin(), found.gap.end());
+        CHECK(-least <= most_inside(dent, front.box) + 1e-12);
+    }
+}

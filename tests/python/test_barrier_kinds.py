@@ -1,0 +1,247 @@
+"""Every kind of barrier wherever one goes: equality, pickles, files, fingerprints, sweeps, surfaces."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+import pickle
+from pathlib import Path
+
+import birm3d
+import numpy as np
+import pytest
+from birm3d import Barrier, Simulation, Vehicle
+from birm3d.barrier_surfaces import barrier_surfaces
+from birm3d.fingerprint import fingerprint
+from birm3d.scene_codec import decode, encode
+from birm3d.scene_file import read_scene_file
+from birm3d.scene_parameters import parameter_names, unit_of, value_of, varied
+
+WEDGE = np.array([[0, -1, 0], [1, -1, 0], [1, -1, 1], [0, 1, 0], [1, 1, 0], [1, 1, 1]], float)
+SIDES = np.array([[0, 1, 2], [3, 5, 4], [0, 4, 1], [0, 3, 4], [1, 5, 2], [1, 4, 5], [0, 2, 5], [0, 5, 3]])
+
+# Each with what differs from it by one number.
+KINDS: dict[str, tuple[Barrier, Barrier]] = {
+    "endless wall": (Barrier.rigid_wall(), Barrier.rigid_wall(friction=0.1)),
+    "wall": (
+        Barrier.rigid_wall(width=4.0, height=1.1, thickness=0.3, segments=2, heading=30.0),
+        Barrier.rigid_wall(width=4.0, height=1.1, thickness=0.3, segments=4, heading=30.0),
+    ),
+    "pole": (Barrier.pole(diameter=0.25), Barrier.pole(diameter=0.26)),
+    "bollards": (
+        Barrier.bollards(count=3, rows=2, row_offset=0.6, heading=-20.0),
+        Barrier.bollards(count=3, rows=2, row_offset=0.5, heading=-20.0),
+    ),
+    "jersey": (
+        Barrier.jersey(length=6.0, segments=2, origin=(1.0, 2.0, 0.0)),
+        Barrier.jersey(profile="f_shape", length=6.0, segments=2, origin=(1.0, 2.0, 0.0)),
+    ),
+    "profile": (
+        Barrier.jersey(profile=((0.3, 0.0), (0.1, 0.6)), length=5.0),
+        Barrier.jersey(profile=((0.3, 0.0), (0.1, 0.7)), length=5.0),
+    ),
+    "mesh": (
+        Barrier.from_mesh(WEDGE, SIDES, heading=10.0),
+        Barrier.from_mesh(1.1 * WEDGE, SIDES, heading=10.0),
+    ),
+}
+EVERY = pytest.mark.parametrize("kind", KINDS)
+
+
+def lab() -> Vehicle:
+    """A slow block with a front of four nodes."""
+    across = [[1.0, y, z] for y in (-0.6, 0.6) for z in (-0.2, 0.2)]
+    return Vehicle.from_arrays(
+        mass=1000.0,
+        inertia=np.diag([300.0, 1200.0, 1300.0]),
+        nodes=across,
+        anchors=[[0.0, y, z] for _, y, z in across],
+        k_initial=2e5,
+        k_unloading=2e6,
+        mass_center_height=0.5,
+    )
+
+
+@EVERY
+def test_equal_ones_are_equal_and_others_are_not(kind: str) -> None:
+    barrier, other = KINDS[kind]
+    again = dataclasses.replace(barrier)
+    assert barrier == again != other
+    assert hash(barrier) == hash(again)
+    assert fingerprint(barrier) == fingerprint(again) != fingerprint(other)
+    for another, (different, _) in KINDS.items():
+        assert (barrier == different) == (kind == another)
+        assert (fingerprint(barrier) == fingerprint(different)) == (kind == another)
+
+
+@EVERY
+def test_pickles_and_files_keep_them(kind: str) -> None:
+    barrier, _ = KINDS[kind]
+    assert pickle.loads(pickle.dumps(barrier)) == barrier
+    arrays: dict[str, np.ndarray] = {}
+    plain = json.loads(json.dumps(encode(barrier, arrays, "barrier"), allow_nan=False))
+    back = decode(plain, arrays)
+    assert type(back) is type(barrier)
+    assert back == barrier
+
+
+@EVERY
+def test_results_of_all_kinds_are_kept(kind: str, tmp_path: Path) -> None:
+    result = Simulation(lab(), KINDS[kind][0], 6.0, 80.0, duration=0.15).run()
+    result.save(tmp_path / "r")
+    loaded = birm3d.load(tmp_path / "r")
+    assert loaded.scene == result.scene
+    assert Simulation.from_scene(loaded.scene).run().state_hash == result.state_hash
+    assert (
+        pickle.loads(pickle.dumps(Simulation.from_scene(result.scene))).run().state_hash == result.state_hash
+    )
+
+
+@EVERY
+def test_names_are_as_many_as_elements(kind: str) -> None:
+    barrier, _ = KINDS[kind]
+    assert len(set(barrier.element_names)) == len(barrier.elements())
+
+
+@EVERY
+def test_surfaces_are_closed_and_stand_where_the_model_has_them(kind: str) -> None:
+    """Every edge has its opposite, the volume is positive, and the surfaces are as many as the elements."""
+    barrier, _ = KINDS[kind]
+    around = np.array([[-3.0, -4.0, 0.0], [0.0, 4.0, 1.5]])
+    surfaces = barrier_surfaces(barrier, around)
+    assert len(surfaces) == len(barrier.elements())
+    for vertices, faces in surfaces:
+        edges = np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+        there = {tuple(edge) for edge in edges.tolist()}
+        assert len(there) == len(edges)
+        assert all((b, a) in there for a, b in there)
+        a, b, c = (vertices[faces[:, i]] - vertices[0] for i in range(3))
+        assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0.0
+        assert np.isfinite(vertices).all()
+
+
+def test_a_drawn_segment_is_the_one_that_is_met() -> None:
+    """A single node run into a Jersey barrier touches where the drawn surface is, face and place."""
+    barrier = Barrier.jersey(length=4.0, segments=2, heading=35.0, origin=(2.0, 1.0, 0.0))
+    (low, faces), (high, _) = barrier_surfaces(barrier, [[0.0, 0.0, 1.0]])
+    axes = np.array([[math.cos(a), math.sin(a)] for a in (math.radians(35.0), math.radians(125.0))])
+    across, along = ((low[:, :2] - [2.0, 1.0]) @ axes.T).T
+    assert (across.min(), across.max()) == (pytest.approx(0.0, abs=1e-12), pytest.approx(0.6096))
+    assert (along.min(), along.max()) == (pytest.approx(-2.0), pytest.approx(0.0, abs=1e-12))
+    assert ((high[:, :2] - [2.0, 1.0]) @ axes[1]).max() == pytest.approx(2.0)
+    assert low[:, 2].max() == pytest.approx(0.8128)
+    height = 0.5
+    vehicle = Vehicle.from_arrays(
+        mass=1000.0, inertia=1000.0 * np.eye(3), nodes=[[1.0, 0.0, 0.0]], anchors=[[0.0, 0.0, 0.0]],
+        k_initial=1e5, k_unloading=1e5, mass_center_height=height,
+    )  # fmt: skip
+    settings = birm3d.Settings(gravity=0.0, ground=False)
+    start = Simulation(vehicle, barrier, 1.0, 90.0, -1.0, settings=settings).result()
+    node = start.position[0] + np.array([*axes[0], 0.0])
+    corners = low[faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    gap = np.einsum("ij,ij->i", node - corners[:, 0], normal)
+    foot = node - gap[:, None] * normal
+    edges = np.roll(corners, -1, axis=1) - corners
+    turns = np.einsum("ijk,ik->ij", np.cross(edges, foot[:, None, :] - corners), normal)
+    beside = (turns >= -1e-9).all(axis=1)  # the node lies off the triangle itself, not off its edges
+    assert np.abs(gap[beside]).min() == pytest.approx(0.0, abs=1e-6)
+
+
+# ---- names of numbers --------------------------------------------------------------------------------------
+
+
+def test_sizes_can_be_swept() -> None:
+    simulation = Simulation(lab(), Barrier.bollards(count=2, spacing=1.2), 6.0, duration=0.1)
+    names = parameter_names(simulation)
+    for name in ("count", "diameter", "height", "spacing", "rows", "row_spacing", "row_offset", "friction"):
+        assert f"barrier.{name}" in names
+    assert unit_of("barrier.spacing") == unit_of("barrier.row_offset") == "m"
+    study = birm3d.sweep(
+        simulation, parameters={"barrier.spacing": [1.2, 2.4]}, metrics=["peak_element_force"], progress=False
+    )
+    hit, passed = study.to_dataframe()["peak_element_force"]
+    assert hit > 0.0 == passed  # posts at +-0.6 m meet the nodes, at +-1.2 m they do not
+
+
+def test_counts_of_a_sweep_are_whole_numbers() -> None:
+    simulation = Simulation(lab(), Barrier.bollards(count=2), 6.0)
+    changed = varied(simulation, {"barrier.count": 3.0})
+    assert value_of(changed, "barrier.count") == 3
+    assert changed.scene.barrier == Barrier.bollards(count=3)
+    with pytest.raises(ValueError, match=r"count must be a whole number >= 1, got 2\.5"):
+        varied(simulation, {"barrier.count": 2.5})
+    with pytest.raises(ValueError, match=r"near: .*barrier\.spacing"):
+        varied(simulation, {"barrier.spacin": 2.0})
+    jersey = Simulation(lab(), Barrier.jersey(length=6.0), 6.0)
+    assert value_of(varied(jersey, {"barrier.profile": "f_shape"}), "barrier.profile") == "f_shape"
+
+
+# ---- scene files -------------------------------------------------------------------------------------------
+
+SCENE = """
+[vehicle]
+preset = "passenger_car"
+mesh_density = 0.1
+[barrier]
+{barrier}
+[impact]
+speed = "30 km/h"
+angle = "60 deg"
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "barrier"),
+    [
+        (
+            "kind = 'bollards'\ncount = 3\ndiameter_m = 0.4\nheight_m = 0.9\nspacing_m = 1.3\nrows = 2\n"
+            "row_spacing_m = 1.1\nrow_offset_m = 0.65\nheading_deg = 10.0\nfriction = 0.1",
+            Barrier.bollards(
+                count=3, diameter=0.4, height=0.9, spacing=1.3, rows=2, row_spacing=1.1, row_offset=0.65,
+                heading=10.0, friction=0.1,
+            ),
+        ),
+        ("kind = 'bollards'", Barrier.bollards()),
+        ("kind = 'jersey'", Barrier.jersey()),
+        (
+            "kind = 'jersey'\nprofile = 'f_shape'\nheight_m = 1.07\nlength_m = 9.0\nsegments = 3",
+            Barrier.jersey(profile="f_shape", height=1.07, length=9.0, segments=3),
+        ),
+        (
+            "kind = 'jersey'\nprofile = [[0.3, 0.0], [0.1, 0.6]]",
+            Barrier.jersey(profile=((0.3, 0.0), (0.1, 0.6))),
+        ),
+        (
+            "kind = 'rigid_wall'\nwidth_m = 5.0\nheight_m = 1.2\nthickness_m = 0.4\nsegments = 5",
+            Barrier.rigid_wall(width=5.0, height=1.2, thickness=0.4, segments=5),
+        ),
+        ("kind = 'pole'\ndiameter_m = 0.254", Barrier.pole(diameter=0.254)),
+    ],
+)  # fmt: skip
+def test_scene_files(text: str, barrier: Barrier, tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text(SCENE.format(barrier=text), encoding="utf-8")
+    assert read_scene_file(tmp_path / "scene.toml").scene.barrier == barrier
+
+
+@pytest.mark.parametrize(
+    ("text", "parts"),
+    [
+        ("kind = 'fence'", ["kind", "fence"]),
+        ("kind = 'bollards'\nwidth_m = 3.0", ["width_m", "rigid_wall"]),
+        ("kind = 'rigid_wall'\nspacing_m = 3.0", ["spacing_m", "bollards"]),
+        ("kind = 'bollards'\nspacing_m = 0.1", ["spacing", "above the diameter", "0.1"]),
+        ("kind = 'bollards'\ncount = 0", ["count", ">= 1", "0"]),
+        ("kind = 'jersey'\nprofile = 'vertical'", ["profile", "new_jersey", "vertical"]),
+        ("kind = 'jersey'\nsegments = 2", ["segments", "infinite length", "2"]),
+        ("kind = 'pole'\ncolour = 'red'", ["colour"]),
+    ],
+)
+def test_scene_files_that_can_not_be(text: str, parts: list[str], tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text(SCENE.format(barrier=text), encoding="utf-8")
+    with pytest.raises(ValueError, match=r"scene\.toml") as caught:
+        read_scene_file(tmp_path / "scene.toml")
+    for part in parts:
+        assert part in str(caught.value)

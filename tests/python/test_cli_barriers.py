@@ -1,0 +1,107 @@
+"""Barriers on the command line: sizes, loads on elements, and what is refused."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+from birm3d import Barrier, Simulation, Vehicle, units
+from birm3d.cli import main
+
+CAR = ("run", "--vehicle", "passenger_car", "--mesh-density", "0.1", "--speed", "30mph")
+
+
+def birm3d(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    """Run the command line in this process; returns the exit code."""
+    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
+    try:
+        main()
+    except SystemExit as stop:
+        return int(stop.code or 0)
+    return 0
+
+
+@pytest.mark.parametrize(
+    ("options", "barrier"),
+    [
+        (
+            "--barrier bollards --count 3 --spacing 1100mm --diameter 12in --height 3ft --rows 2 "
+            "--row-spacing 1.5 --row-offset 550mm",
+            Barrier.bollards(
+                count=3, spacing=1.1, diameter=12 * units.inch, height=3 * units.ft, rows=2, row_spacing=1.5,
+                row_offset=0.55,
+            ),
+        ),
+        (
+            "--barrier jersey --profile f_shape --height 42in --length 6m --segments 2",
+            Barrier.jersey(profile="f_shape", height=42 * units.inch, length=6.0, segments=2),
+        ),
+        (
+            "--barrier rigid_wall --width 4 --height 1.5 --thickness 0.3 --segments 2 --friction 0.1",
+            Barrier.rigid_wall(width=4.0, height=1.5, thickness=0.3, segments=2, friction=0.1),
+        ),
+    ],
+)  # fmt: skip
+def test_the_options_are_the_scene(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], options: str, barrier: Barrier
+) -> None:
+    assert birm3d(monkeypatch, *CAR, *options.split(), "--angle", "60", "--json") == 0
+    outcome: dict[str, Any] = json.loads(capsys.readouterr().out)
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    result = Simulation(car, barrier, 30 * units.mph, 60.0).run()
+    assert outcome["state_hash"] == f"{result.state_hash:016x}"
+    touched = [load for load in result.element_loads if load.touched]
+    assert [one["name"] for one in outcome["elements"]] == [load.name for load in touched] != []
+    for one, load in zip(outcome["elements"], touched, strict=True):
+        assert one["peak_force_50ms"] == load.peak_force_50ms
+        assert one["peak_overturning_moment_50ms"] == load.peak_overturning_moment_50ms
+        assert one["height_at_peak"] == load.height_at_peak
+
+
+def test_the_table_has_the_posts_that_were_touched(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert birm3d(monkeypatch, *CAR, "--barrier", "bollards", "--count", "3") == 0
+    out = capsys.readouterr().out
+    assert "elements of the barrier that were touched" in out
+    assert "bollard 2" in out
+    assert "50-ms mean [kN]" in out
+    assert birm3d(monkeypatch, *CAR) == 0
+    assert "elements of the barrier" not in capsys.readouterr().out
+
+
+def test_yaw_and_roll(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    turned = ("--yaw", "90deg", "--roll", "5", "--barrier", "pole", "--duration", "0.05", "--json")
+    assert birm3d(monkeypatch, *CAR, *turned) == 0
+    outcome = json.loads(capsys.readouterr().out)
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    result = Simulation(
+        car, Barrier.pole(), 30 * units.mph, impact_yaw=90.0, impact_roll=5.0, duration=0.05
+    ).run()
+    assert outcome["state_hash"] == f"{result.state_hash:016x}"
+
+
+@pytest.mark.parametrize(
+    ("options", "parts"),
+    [
+        ("--barrier pole --height 1", ["--height", "rigid_wall", "bollards", "jersey", "not of pole"]),
+        ("--barrier jersey --row-offset 1", ["--row-offset", "bollards", "not of jersey"]),
+        ("--barrier none --width 3", ["--width", "not of none"]),
+        ("--barrier bollards --spacing 0.2", ["spacing", "above the diameter", "0.2"]),
+        ("--barrier bollards --count 0", ["count", ">= 1"]),
+        ("--barrier jersey --height 5", ["height", "below", "5"]),
+        ("--barrier rigid_wall --segments 2", ["segments", "infinite width"]),
+        ("--barrier fence", ["--barrier", "fence"]),
+        ("--angle 0", ["impact_angle", "no end", "0"]),
+        ("--angle 180", ["impact_angle", "no end", "180"]),
+    ],
+)
+def test_what_can_not_be(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], options: str, parts: list[str]
+) -> None:
+    assert birm3d(monkeypatch, *CAR, *options.split()) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    for part in parts:
+        assert part in err

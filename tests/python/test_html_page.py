@@ -1,0 +1,176 @@
+"""The page: it is whole, it parses, it needs no network and holds the numbers of the result."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from birm3d import Barrier, Result, Settings, Simulation, Vehicle
+from birm3d.filters import cfc
+
+VOID = {"meta", "input", "img"}
+
+
+class Page(HTMLParser):
+    """Texts of elements by tag, and the tags in order; refuses tags that do not close."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.texts: dict[str, list[str]] = {}
+        self.attributes: list[tuple[str, dict[str, str | None]]] = []
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.attributes.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+            self.texts.setdefault(tag, []).append("")
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if self.open:
+            self.texts[self.open[-1]][-1] += data
+
+
+@pytest.fixture(scope="module")
+def result() -> Result:
+    car = Vehicle.preset("passenger_car", mesh_density=0.2)
+    return Simulation(car, Barrier.rigid_wall(), 20.0, 30.0).run()
+
+
+@pytest.fixture(scope="module")
+def text(result: Result, tmp_path_factory: pytest.TempPathFactory) -> str:
+    path = tmp_path_factory.mktemp("page") / "crash.html"
+    result.write_html(path, frames=11)
+    return path.read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def page(text: str) -> Page:
+    return Page(text)
+
+
+def data_of(page: Page) -> dict[str, Any]:
+    return json.loads(page.texts["script"][0])  # type: ignore[no-any-return]
+
+
+def test_tables_hold_the_outcome(page: Page, result: Result) -> None:
+    cells = page.texts["td"]
+    assert f"{result.metrics['exit_angle']:.1f}" in cells
+    for name, value in result.metrics.items():
+        assert cells[cells.index(name) + 1] == f"{value:.6g}"
+    assert cells.count("✓ yes") == 3
+    assert any("passenger_car, 1,814.4 kg" in cell for cell in cells)
+    assert page.texts["pre"] == [result.report()]
+    assert "<!--" not in "".join(page.texts["body"])
+
+
+def test_numbers_are_those_of_the_result(page: Page, result: Result) -> None:
+    data = data_of(page)
+    step = data["every"]
+    assert data["time"] == pytest.approx(result.time[::step] * 1e3, rel=1e-5)
+    panels = {panel["title"]: panel for panel in data["panels"]}
+    force = {curve["name"]: curve["y"] for curve in panels["Barrier force"]["curves"]}
+    expected = cfc(result.barrier_normal_force / 1e3, 60, 1e-4)[::step]
+    assert np.abs(np.array(force["normal, CFC 60"]) - expected).max() < 1e-5 * expected.max()
+    energy = {curve["name"]: curve["y"] for curve in panels["Energy ledger"]["curves"]}
+    assert set(energy) == {name.replace("_", " ") for name in result.energy} - {"residual"}
+    assert panels["Angles"]["unit"] == "deg"
+    rates = panels["Angular rates, body axes"]["curves"]
+    assert [curve["name"] for curve in rates] == [f"{n} rate, CFC 180" for n in ("roll", "pitch", "yaw")]
+
+
+def test_plan_has_a_frame_for_each_place_of_the_slider(page: Page) -> None:
+    plan = data_of(page)["plan"]
+    assert len(plan["time"]) == len(plan["outlines"]) == 11
+    assert all(len(path[0]) == 11 for path in plan["paths"])
+    ((x, y),) = plan["outlines"][5]
+    assert (x[0], y[0]) == (x[-1], y[-1])
+    assert min(y) > -0.01  # in front of the face
+    assert len(plan["barrier"][0]) == 2  # a box from above: two triangles
+    assert plan["labels"][0] == "along the barrier's line [m]"
+
+
+def test_page_needs_no_network(text: str, page: Page) -> None:
+    for tag, attributes in page.attributes:
+        for key in ("src", "href"):
+            assert (attributes.get(key) or "data:").startswith("data:"), tag
+    assert not re.search(r"@import|url\(", page.texts["style"][0])
+    images = [attributes for tag, attributes in page.attributes if tag == "img"]
+    assert any("crush of the right" in str(image["alt"]) for image in images)
+    assert 3e6 < len(text) < 9e6  # plotly's script is in it
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="no node to run the page's script with")
+def test_script_runs(text: str, tmp_path: Path) -> None:
+    """With a document and a Plotly that only write down what is asked of them."""
+    (tmp_path / "page.html").write_text(text, encoding="utf-8")
+    (tmp_path / "run.js").write_text(
+        """
+        const text = require("fs").readFileSync(process.argv[2], "utf8");
+        const scripts = [...text.matchAll(/<script[^>]*>([\\s\\S]*?)<\\/script>/g)].map((m) => m[1]);
+        const calls = [], elements = {};
+        const element = (id) => ({ id, value: "0", handlers: {}, appendChild() {},
+          addEventListener(name, f) { this.handlers[name] = f; }, on() {} });
+        global.document = { createElement: () => element("panel"),
+          getElementById: (id) => (elements[id] ??= element(id)) };
+        document.getElementById("data").textContent = scripts[0];
+        global.Plotly = { newPlot: (div, traces) => calls.push([div.id, traces.length]),
+          restyle: (div, update, traces) => calls.push(["restyle", update.x[0][0], traces]), relayout() {} };
+        eval(scripts.at(-1));
+        elements.slider.value = "5";
+        elements.slider.handlers.input();
+        console.log(JSON.stringify({ calls, now: elements.now.value, max: elements.slider.max }));
+        """,
+        encoding="utf-8",
+    )
+    command = ["node", str(tmp_path / "run.js"), str(tmp_path / "page.html")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    outcome = json.loads(done.stdout)
+    data = data_of(Page(text))
+    assert outcome["max"] == 10
+    assert outcome["now"] == f"{data['plan']['time'][5]:.1f} ms"
+    names = [call[0] for call in outcome["calls"]]
+    assert names == ["panel"] * len(data["panels"]) + ["plan", "restyle", "restyle"]
+    # barrier, path and first outline stay; outline and mass centre move
+    assert outcome["calls"][-1] == ["restyle", data["plan"]["outlines"][5][0][0][0], [3, 4]]
+
+
+def test_names_can_not_break_the_page(tmp_path: Path) -> None:
+    block = Vehicle.from_arrays(
+        name="</script><b>&x",
+        mass=1000.0, inertia=1000.0 * np.eye(3), nodes=[[1.0, 0.0, 0.0]], anchors=[[0.0, 0.0, 0.0]],
+        k_initial=1e6, k_unloading=1e6,
+    )  # fmt: skip
+    settings = Settings(ground=False, gravity=0.0)
+    Simulation(block, None, 5.0, duration=0.05, settings=settings).run().write_html(tmp_path / "a.html")
+    page = Page((tmp_path / "a.html").read_text(encoding="utf-8"))
+    assert "b" not in page.texts
+    assert page.texts["title"][0].startswith("</script><b>&x, 5.00 m/s")
+    assert "✗ no" in page.texts["td"]  # the outcome is not decided
+
+
+def test_bad_arguments_and_missing_extra(
+    result: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(ValueError, match="frames must be >= 2, got 1"):
+        result.write_html(tmp_path / "a.html", frames=1)
+    with pytest.raises(ValueError, match="path must be a file"):
+        result.write_html(tmp_path)
+    monkeypatch.setitem(sys.modules, "plotly.offline", None)
+    with pytest.raises(ImportError, match=r"plotly: pip install 'birm3d\[html\]'"):
+        result.write_html(tmp_path / "a.html")
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,288 @@
+"""Figures: the right curves, names and units; numbers behind crush maps and plan views."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from birm3d import Barrier, Channel, Result, Settings, Simulation, Vehicle, compare_curves, scenes
+from birm3d.barrier_surfaces import barrier_surfaces
+from birm3d.crush_profile import crush_map, crush_profile, crushed_sides
+from birm3d.filters import cfc
+from birm3d.plotting import plot_comparisons
+from birm3d.silhouette import silhouette
+from birm3d.skin import skins_at
+from birm3d.unit_shapes import UnitShape, unit_shapes
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+
+
+@pytest.fixture(scope="module")
+def head_on() -> Result:
+    return scenes.nhtsa_10146(mesh_density=0.3).run()
+
+
+@pytest.fixture(scope="module")
+def oblique() -> Result:
+    car = Vehicle.preset("passenger_car", mesh_density=0.3)
+    return Simulation(car, Barrier.rigid_wall(), 26.7, 24.0).run()
+
+
+def names(axes: Axes) -> list[str]:
+    legend = axes.get_legend()
+    assert legend is not None
+    return [text.get_text() for text in legend.get_texts()]
+
+
+def image(figure: Figure, tmp_path: Path) -> np.ndarray:
+    from matplotlib.image import imread
+
+    figure.savefig(tmp_path / "figure.png", dpi=50)
+    return imread(tmp_path / "figure.png")
+
+
+def test_histories(oblique: Result) -> None:
+    figure = oblique.plot_histories()
+    force, acceleration, velocity, rates, tires, angles = figure.get_axes()
+    assert names(force) == ["normal force, CFC 60", "50-ms mean"]
+    assert names(acceleration) == ["r, CFC 60", "s, CFC 60", "t, CFC 60"]
+    assert names(rates) == ["roll rate, CFC 180", "pitch rate, CFC 180", "yaw rate, CFC 180"]
+    assert names(angles) == ["roll", "pitch", "yaw"]
+    assert [a.get_ylabel().split("[")[1] for a in (force, velocity, tires)] == ["kN]", "m/s]", "kN]"]
+    assert angles.get_xlabel() == "time [ms]"
+    # Thin and unfiltered behind, filtered before it.
+    raw, smooth = force.get_lines()[:2]
+    assert raw.get_linewidth() < smooth.get_linewidth()
+    assert np.array_equal(raw.get_ydata(), oblique.barrier_normal_force / 1e3)
+    assert np.array_equal(smooth.get_ydata(), cfc(oblique.barrier_normal_force / 1e3, 60, 1e-4))
+
+
+def test_an_impulse_does_not_hide_the_rest(make_soft_scene: Callable[..., Simulation]) -> None:
+    """The rigid body at the wall stops within a row: the unfiltered line leaves the panel."""
+    result = make_soft_scene().run()
+    smooth = cfc(result.barrier_normal_force, 60, 1e-4).max() / 1e3
+    assert result.barrier_normal_force.max() / 1e3 > 10.0 * smooth
+    for figure in (result.plot(), result.plot_histories()):
+        assert smooth < figure.get_axes()[0].get_ylim()[1] < 1.7 * smooth
+
+
+def test_rows_too_far_apart_are_said_to_be_unfiltered() -> None:
+    block = scenes.laboratory_block(16, k_initial=3e6, k_unloading=3e6)
+    settings = Settings(output_interval=2e-3, gravity=0.0, ground=False)
+    result = Simulation(block, Barrier.rigid_wall(), 10.0, settings=settings).run()
+    for figure in (result.plot(), result.plot_histories()):
+        said = [name for axes in figure.get_axes() if axes.get_legend() for name in names(axes)]
+        assert any("unfiltered: rows too far apart" in name for name in said)
+        assert not any("CFC" in name for name in said)
+
+
+@pytest.mark.parametrize("name", ["rolling", "parked"])
+def test_figures_without_a_barrier(result_of: Callable[[str], Result], name: str) -> None:
+    result = result_of(name)
+    assert result.plot_histories().get_axes()[0].get_legend() is None
+    plan = result.plot_plan([0.0, 0.1]).get_axes()[0]
+    assert (plan.get_xlabel(), plan.get_ylabel()) == ("x [m]", "y [m]")
+    assert len(plan.collections) == 0
+
+
+def test_figures_are_not_blank(oblique: Result, tmp_path: Path) -> None:
+    for figure in (
+        oblique.plot(),
+        oblique.plot_histories(),
+        oblique.plot_plan(),
+        oblique.plot_crush("right"),
+    ):
+        pixels = image(figure, tmp_path)
+        assert pixels.std() > 0.05
+        assert len(np.unique(pixels.reshape(-1, pixels.shape[-1]), axis=0)) > 50
+
+
+# ---- plan view -------------------------------------------------------------------------------------------
+
+
+def test_plan(oblique: Result) -> None:
+    figure = oblique.plot_plan([0.0, 0.1, 0.2])
+    (axes,) = figure.get_axes()
+    assert axes.get_aspect() == 1.0
+    outlines = [patch for patch in axes.patches if isinstance(patch, Polygon)]
+    assert [patch.get_label() for patch in outlines] == ["0 ms", "100 ms", "200 ms"]
+    assert axes.get_xlabel() == "along the barrier's line [m]"
+    labels = [line.get_label() for line in axes.get_lines()]
+    assert "path of the mass centre" in labels
+    assert any("exit box (EN 1317-2, MASH)" in str(label) for label in labels)
+    # The traffic side is above: no outline is below the face, and that at the wall touches it.
+    lowest = [float(patch.get_xy()[:, 1].min()) for patch in outlines]
+    assert lowest[1] == pytest.approx(0.0, abs=0.01)
+    assert min(lowest) > -0.01
+    assert f"{oblique.metrics['exit_angle']:.1f}°" in axes.get_title()
+    assert "straight on" not in [
+        line.get_label() for line in oblique.plot_plan(exit_box=False).gca().get_lines()
+    ]
+
+
+def test_plan_of_a_turned_scene_is_the_same() -> None:
+    """The picture is in the barrier's axes, whatever its heading and place."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.2)
+    plain = Simulation(car, Barrier.rigid_wall(), 20.0, 30.0).run()
+    turned = Simulation(car, Barrier.rigid_wall(heading=130.0, origin=(5.0, -3.0, 0.0)), 20.0, 30.0).run()
+    a, b = (
+        [patch.get_xy() for patch in result.plot_plan([0.0, 0.05]).get_axes()[0].patches]
+        for result in (plain, turned)
+    )
+    for one, other in zip(a, b, strict=True):
+        # Rays have other directions in the vehicle: their ends differ by at most their spacing.
+        assert np.abs(np.ptp(one, axis=0) - np.ptp(other, axis=0)).max() < 0.03
+
+
+def test_exit_box_is_left_out_head_on(head_on: Result) -> None:
+    (axes,) = head_on.plot_plan().get_axes()
+    assert axes.get_xlabel() == "past the barrier's line [m]"
+    assert not any("exit box" in str(line.get_label()) for line in axes.get_lines())
+    with pytest.raises(ValueError, match="frames must be"):
+        head_on.plot_plan([9.0])
+
+
+def test_silhouette_of_a_box() -> None:
+    """A box of 4 by 2 m, turned: its corners are met to the spacing of the rays."""
+    x, y = np.meshgrid(np.linspace(-2.0, 2.0, 9), np.linspace(-1.0, 1.0, 5), indexing="ij")
+    nodes = np.column_stack([x.ravel(), y.ravel(), 0.0 * x.ravel()])
+    index = np.arange(45).reshape(9, 5)
+    quads = np.stack([index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]], axis=-1).reshape(-1, 4)
+    box = UnitShape(nodes, nodes, quads, np.zeros(45, int), ("all",), np.empty((0, 4)), 0.5)
+    c, s = np.cos(0.5), np.sin(0.5)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    outline = (silhouette(box, nodes, np.array([3.0, 4.0, 0.0]), turn) - [3.0, 4.0]) @ turn[:2, :2]
+    assert np.max(np.abs(outline) / [2.0, 1.0], axis=1) == pytest.approx(1.0, abs=1e-9)
+    assert np.abs(outline).max(axis=0) == pytest.approx([2.0, 1.0], abs=0.03)
+    following = np.roll(outline, -1, axis=0)
+    area = 0.5 * abs(np.sum(outline[:, 0] * following[:, 1] - outline[:, 1] * following[:, 0]))
+    assert area == pytest.approx(8.0, rel=1e-3)
+
+
+def test_silhouette_without_a_skin() -> None:
+    result = scenes.w2(16).run()
+    (skin,) = skins_at(result, 0.0)[0]
+    (shape,) = unit_shapes(result.scene.vehicle)
+    outline = silhouette(shape, skin.nodes, skin.center, skin.turn)
+    assert np.ptp(outline, axis=0) == pytest.approx([2.0, 2.4], abs=1e-9)
+
+
+# ---- crush -----------------------------------------------------------------------------------------------
+
+
+def test_crush_of_a_flat_front_is_the_truss_shortening() -> None:
+    """Head-on, all trusses along r: the map is their deflection at the end, the same everywhere."""
+    result = scenes.w2(64).run()
+    expected = float(result.deflection.mean())
+    field = crush_map(result)
+    assert field.crush == pytest.approx(result.deflection, abs=1e-12)
+    profile = crush_profile(result)
+    assert profile.points == pytest.approx(expected, abs=1e-9)
+    assert profile.mean == pytest.approx(expected, abs=1e-9)
+    assert profile.width == pytest.approx(2.4)
+    assert crushed_sides(result) == ("front",)
+    with pytest.raises(ValueError, match="skin on, got 'left'"):
+        crush_map(result, "left")
+
+
+def test_six_points(head_on: Result) -> None:
+    profile = crush_profile(head_on)
+    assert np.diff(profile.stations) == pytest.approx(-profile.width / 5.0)
+    assert profile.stations[0] > 0.0  # C1 is at the vehicle's left
+    # A symmetric crash has a symmetric profile; weights 1/2 at the ends.
+    assert profile.points == pytest.approx(profile.points[::-1], abs=1e-6)
+    c = profile.points
+    assert profile.mean == pytest.approx((c[0] / 2 + c[1] + c[2] + c[3] + c[4] + c[5] / 2) / 5)
+    bumper = head_on.scene.vehicle.nodes[head_on.scene.vehicle.zone_of_node == 0, 2]
+    middle = 0.5 * (bumper.min() + bumper.max()) + head_on.scene.vehicle.mass_center_height
+    assert profile.height == pytest.approx(middle, abs=0.05)
+    assert profile.crush.max() <= head_on.metrics["residual_crush"] + 1e-9
+
+
+def test_crush_is_on_the_struck_side(oblique: Result) -> None:
+    """The wall is on the right: it crushes the right and the right half of the front."""
+    sides = crushed_sides(oblique)
+    assert sides[:2] == ("right", "front")
+    assert "left" not in sides
+    profile = crush_profile(oblique, "front")
+    assert profile.points[5] > 0.05
+    assert profile.points[0] < 0.01
+    right = crush_profile(oblique, "right")
+    assert right.stations[0] < 0.0 < right.stations[5]  # C1 is at the rear
+
+
+def test_bad_sides_and_heights(head_on: Result) -> None:
+    with pytest.raises(ValueError, match=r"side must be one of front.*'top'"):
+        head_on.plot_crush("top")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"height must be between .* got 5"):
+        head_on.plot_crush("front", height=5.0)
+
+
+def test_crush_figure(head_on: Result) -> None:
+    above, below, bar = head_on.plot_crush().get_axes()
+    assert above.get_xlim() == below.get_xlim()
+    assert above.get_xlim()[0] > above.get_xlim()[1]  # left is left
+    assert bar.get_ylabel() == "residual crush [m]"
+    texts = [text.get_text() for text in below.texts]
+    assert [text.split("\n")[0] for text in texts] == ["C1", "C2", "C3", "C4", "C5", "C6"]
+    assert texts[2].endswith(f"{crush_profile(head_on).points[2] * 1e3:.0f} mm")
+    assert "front" in above.get_title()
+
+
+def test_crush_figure_of_a_sound_side(head_on: Result) -> None:
+    above, *_ = head_on.plot_crush("rear").get_axes()
+    assert "greatest 0.000 m" in above.get_title()
+
+
+# ---- barriers --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("barrier", "volume"),
+    [
+        (Barrier.rigid_wall(width=3.0, height=1.2, heading=25.0, origin=(1.0, 2.0, 0.1)), 3.0 * 1.2 * 0.5),
+        (Barrier.pole(diameter=0.5, origin=(1.0, 0.0, 0.0)), np.pi * 0.25**2 * 1.8),
+    ],
+)
+def test_surfaces_are_closed_and_look_outwards(barrier: Barrier, volume: float) -> None:
+    ((vertices, faces),) = barrier_surfaces(barrier, [[0.0, 0.0, 1.5]])
+    edges = np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    there = {tuple(edge) for edge in edges.tolist()}
+    assert len(there) == len(edges)
+    assert all((b, a) in there for a, b in there)
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    # The pole is a polygon of 48 sides: 0.3 % less.
+    assert np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0 == pytest.approx(volume, rel=4e-3)
+
+
+def test_walls_stand_where_the_model_has_them() -> None:
+    around = np.array([[-3.0, -4.0, 0.0], [-1.0, 6.0, 1.4]])
+    ((vertices, _),) = barrier_surfaces(Barrier.rigid_wall(), around)
+    assert vertices[:, 0].max() > 0.0 == vertices[:, 0].min()
+    assert (vertices[:, 1].min(), vertices[:, 1].max()) == (-5.0, 7.0)
+    assert vertices[:, 2].max() == pytest.approx(1.7)
+    ((vertices, _),) = barrier_surfaces(Barrier.rigid_wall(width=2.0, height=0.8), around)
+    assert (vertices[:, 1].min(), vertices[:, 1].max(), vertices[:, 2].max()) == (-1.0, 1.0, 0.8)
+    assert barrier_surfaces(None, around) == []
+
+
+# ---- comparisons -----------------------------------------------------------------------------------------
+
+
+def test_panels_of_comparisons(head_on: Result) -> None:
+    force = Channel("wall", head_on.time, head_on.barrier_normal_force, "N")
+    other = Channel("model", head_on.time, 1.1 * head_on.barrier_normal_force, "N")
+    comparison = compare_curves(force, other)
+    figure = plot_comparisons([comparison] * 3)
+    panels = figure.get_axes()
+    assert len(panels) == 4
+    assert [axes.get_visible() for axes in panels] == [True, True, True, False]
+    assert "measured: wall" in names(panels[0])
+    assert "Sprague-Geers" in panels[0].get_title()
+    assert panels[2].get_xlabel() == "time [ms]"
+    for arguments, message in ((([],), "at least one"), (([comparison], 0), "columns must be")):
+        with pytest.raises(ValueError, match=message):
+            plot_comparisons(*arguments)  # type: ignore[arg-type]
