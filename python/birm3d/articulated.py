@@ -83,7 +83,7 @@ class ArticulatedVehicle(Vehicle):
     one's first. ``units`` are the two, each with its own in its own axes; zones keep their names, which
     differ between the units.
 
-    ``with_zone``, ``with_rate_sensitivity``, ``with_dent_slope`` and ``with_mesh_density`` go to the units
+    ``with_zone``, ``with_rate_sensitivity``, ``with_dent_reach`` and ``with_mesh_density`` go to the units
     that they concern; ``with_gvw`` loads or lightens the trailing unit; ``with_unit`` and ``with_joint``
     change a part.
     """
@@ -166,9 +166,9 @@ class ArticulatedVehicle(Vehicle):
         """Return the vehicle with :meth:`Vehicle.with_rate_sensitivity` of both units."""
         return self._with([unit.with_rate_sensitivity(rate_sensitivity) for unit in self._units])
 
-    def with_dent_slope(self, dent_slope: float) -> ArticulatedVehicle:
-        """Return the vehicle with :meth:`Vehicle.with_dent_slope` of both units."""
-        return self._with([unit.with_dent_slope(dent_slope) for unit in self._units])
+    def with_dent_reach(self, dent_reach: float) -> ArticulatedVehicle:
+        """Return the vehicle with :meth:`Vehicle.with_dent_reach` of both units."""
+        return self._with([unit.with_dent_reach(dent_reach) for unit in self._units])
 
     def with_mesh_density(self, mesh_density: float) -> ArticulatedVehicle:
         """Return the vehicle with :meth:`Vehicle.with_mesh_density` of both units."""
@@ -296,7 +296,7 @@ def articulate(units: Sequence[Vehicle], joint: Joint, name: str | None) -> Arti
         mass_center_height=float(center[2]),
         zones={**leading.zones, **trailing.zones},
         rate_sensitivity=leading.rate_sensitivity,
-        dent_slope=leading.dent_slope,
+        dent_reach=leading.dent_reach,
         _draft=leading._draft,
         _units=(leading, trailing),
         _joint=joint,

@@ -96,7 +96,7 @@ class Pole(Barrier):
 class Bollards(Barrier):
     """Rigid bollards in rows.
 
-    A bollard draws in the skin beside it, see :meth:`birm3d.Vehicle.with_dent_slope`.
+    A bollard draws in the skin beside it, see :meth:`birm3d.Vehicle.with_dent_reach`.
     """
 
     count: int = 5

@@ -11,7 +11,7 @@ name                           value
 ``vehicle.mass_center_height`` above the ground at rest [m]
 ``vehicle.mesh_density``       relative number of shell elements
 ``vehicle.rate_sensitivity``   [s/m], see :meth:`birm3d.Vehicle.with_rate_sensitivity`
-``vehicle.dent_slope``         see :meth:`birm3d.Vehicle.with_dent_slope`
+``vehicle.dent_reach``         see :meth:`birm3d.Vehicle.with_dent_reach`
 ``zone.<zone>.<number>``       ``k_initial``, ``knee``, ``k_hardening``, ``f_max`` or ``k_unloading`` of
                                :class:`birm3d.Zone`
 ``zone.<zone>.stress[i]``      stress of point i of the zone's envelope [N per m^2]
@@ -37,7 +37,7 @@ from .vehicle import TRUSS_LAW, Vehicle, Zone
 
 __all__ = ["parameter_names", "unit_of", "value_of", "varied"]
 
-_VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity", "dent_slope")
+_VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity", "dent_reach")
 _UNITS = {
     "impact_speed": "m/s",
     "impact_angle": "deg",
@@ -199,8 +199,8 @@ def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -
         changed = changed.with_mesh_density(numbers["mesh_density"])
     if "rate_sensitivity" in numbers:
         changed = changed.with_rate_sensitivity(numbers["rate_sensitivity"])
-    if "dent_slope" in numbers:
-        changed = changed.with_dent_slope(numbers["dent_slope"])
+    if "dent_reach" in numbers:
+        changed = changed.with_dent_reach(numbers["dent_reach"])
     if "gvw" in numbers:
         changed = changed.with_gvw(numbers["gvw"])
     if "mass_center_height" in numbers:

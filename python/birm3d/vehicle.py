@@ -61,8 +61,8 @@ class Vehicle:
     zones : mapping of str to Zone
     rate_sensitivity : float
         Optional physics, see :meth:`with_rate_sensitivity` [s/m].
-    dent_slope : float
-        Optional physics, see :meth:`with_dent_slope`.
+    dent_reach : float
+        Optional physics, see :meth:`with_dent_reach`.
     """
 
     name: str
@@ -78,7 +78,7 @@ class Vehicle:
     mass_center_height: float
     zones: Mapping[str, Zone]
     rate_sensitivity: float = 0.0
-    dent_slope: float = 0.0
+    dent_reach: float = 0.0
     # What made the vehicle: laws per truss (m, N, N/m), or a file with its mesh density.
     _truss_laws: Floats | None = None
     _file: VehicleFile | None = None
@@ -327,14 +327,16 @@ class Vehicle:
         """
         return dataclasses.replace(self, rate_sensitivity=float(rate_sensitivity))
 
-    def with_dent_slope(self, dent_slope: float) -> Vehicle:
-        """Return the vehicle with a skin whose dents drag their surroundings along; at 0 that is left out.
+    def with_dent_reach(self, dent_reach: float) -> Vehicle:
+        """Return the vehicle with a skin that a post draws in beside itself; at 0 that is left out.
 
-        Beside a narrow obstacle (a bollard, a pole) the skin is drawn in with this slope, so that the dent is
-        ``2 * depth / dent_slope`` wider than the obstacle; the paper's trusses know nothing of each other,
-        and between them a narrow post passes to the rigid core. A flat wall makes no dent. [1], >= 0.
+        A post (bollard, pole) that has come a depth d into a front, side or rear draws in the skin to either
+        side of it and above it with a slope of about d / dent_reach, at a touch 0.25: its dent reaches about
+        dent_reach [m] beyond it, as far as the beams and panels there carry. The paper's trusses know nothing
+        of each other, and between them a narrow post passes to the rigid core. Walls and meshes make no dent.
+        ``>= 0``.
         """
-        return dataclasses.replace(self, dent_slope=float(dent_slope))
+        return dataclasses.replace(self, dent_reach=float(dent_reach))
 
     def with_mesh_density(self, mesh_density: float) -> Vehicle:
         """Return the vehicle with another number of shell elements, relative to its file's choice."""
@@ -426,7 +428,7 @@ class Vehicle:
     def _anew(self, vehicle: Vehicle) -> Vehicle:
         """Return a vehicle made anew from the file with what the file does not hold."""
         return dataclasses.replace(
-            vehicle, rate_sensitivity=self.rate_sensitivity, dent_slope=self.dent_slope
+            vehicle, rate_sensitivity=self.rate_sensitivity, dent_reach=self.dent_reach
         )
 
     def draft(self) -> Vehicle:
@@ -514,7 +516,7 @@ class Vehicle:
             wheels=self.wheels,
             mass_center_height=self.mass_center_height,
             rate_sensitivity=self.rate_sensitivity,
-            dent_slope=self.dent_slope,
+            dent_reach=self.dent_reach,
             offset=offset,
         )
 
@@ -589,7 +591,7 @@ def _assemble(
         wheels=wheels,
         mass_center_height=float(center[2]),
         zones=zones if zones is not None else {zone.name: Zone._from_file(zone) for zone in file.zones},
-        dent_slope=0.0 if file.dents is None else file.dents.slope,
+        dent_reach=0.0 if file.dents is None else file.dents.reach_m,
         _file=file,
         _mesh=mesh,
         _mesh_density=mesh_density,

@@ -299,9 +299,9 @@ class Exterior(Block):
 
 
 class Dents(Block):
-    """Slope of the skin beside a narrow obstacle's dent, see :meth:`birm3d.Vehicle.with_dent_slope`."""
+    """How far a post's dent reaches beyond it, see :meth:`birm3d.Vehicle.with_dent_reach`."""
 
-    slope: Positive
+    reach_m: Positive
 
 
 class CoreBox(Block):

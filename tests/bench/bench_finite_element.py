@@ -5,7 +5,7 @@
 Vehicles N (4.8 t, soft) and S (1.2 t, stiff) are finite-element models, run for this project;
 finite_element.py says how far their runs can be believed. The front's envelope, five stresses at set depths,
 is fitted to the wall at 20 and 40 mph together; wall 30 and the wall at 25 degrees from head-on are
-predicted, and the pole with skins whose dents drag their surroundings along at several slopes, each also with
+predicted, and the pole with skins whose dents reach differently far, each also with
 4 times the elements. Then the same with the rate of deflection in the envelope. Rows that were fitted are
 marked. Errors are of the mass centre's travel along the barrier's normal, of the CFC60 peak force, and of the
 mean force up to the greatest travel.
@@ -40,7 +40,7 @@ STRESS = (0.02e6, 4e6)  # Pa
 RATE = Parameter("vehicle.rate_sensitivity", 0.0, 0.2, start=0.03)
 WALLS = ("wall00_20", "wall00_40")
 FINER = 4.0
-SLOPES = (0.0, 0.5, 1.0, 2.0)
+REACHES = (0.0, 0.5, 0.65, 0.8)  # m
 ERRORS = ("crush_error", "peak_force_error", "mean_force_error")
 
 
@@ -106,18 +106,18 @@ def fit(vehicle: CheckVehicle, variant: Variant, options: argparse.Namespace) ->
 def predicted(
     vehicle: CheckVehicle, variant: Variant, fitted: birm3d.Vehicle, chosen: Sequence[Run]
 ) -> list[Row]:
-    """Rows of all runs; of the pole with several slopes of dents, each also with FINER times the elements."""
+    """Rows of all runs; of the pole with several reaches of dents, each with FINER times the elements."""
     rows = []
     for run in chosen:
         name = run.name.split("_", 1)[1]
         if run.barrier != "pole":
             rows.append(compared(vehicle, variant, fitted, run, name, name in variant.fitted))
             continue
-        for slope in SLOPES:
-            dented = fitted.with_dent_slope(slope)
+        for reach in REACHES:
+            dented = fitted.with_dent_reach(reach)
             finer = dented.with_mesh_density(FINER * fitted.mesh_density)
-            rows.append(compared(vehicle, variant, dented, run, f"{name}, slope {slope:g}", False))
-            rows.append(compared(vehicle, variant, finer, run, f"{name}, slope {slope:g}, fine", False))
+            rows.append(compared(vehicle, variant, dented, run, f"{name}, reach {reach:g}", False))
+            rows.append(compared(vehicle, variant, finer, run, f"{name}, reach {reach:g}, fine", False))
     return rows
 
 

@@ -82,7 +82,7 @@ def vehicle(name: str, dents: bool) -> Vehicle:
         )
     else:
         made = Vehicle.preset(name, mesh_density=0.2)
-    return made.with_dent_slope(1.0 if dents else 0.0)
+    return made.with_dent_reach(0.65 if dents else 0.0)
 
 
 def prism_mesh(profile: Floats, length: float, pieces: int) -> tuple[Floats, npt.NDArray[np.int64]]:

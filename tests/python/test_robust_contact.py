@@ -80,10 +80,10 @@ def test_gliding_along_a_wall_costs_few_steps() -> None:
     ids=["wall", "bollards", "jersey"],
 )
 def test_left_and_right_mirror_each_other(name: str, barrier: Barrier) -> None:
-    """To rounding, which a crash makes grow."""
+    """To 1e-9 of the speed: rounding, which a crash makes grow."""
     right = Simulation(car(name), barrier, 25.0, 40.0, 0.1, duration=0.2).run()
     left = Simulation(car(name), barrier, 25.0, 140.0, -0.1, duration=0.2).run()
-    np.testing.assert_allclose(left.velocity, right.velocity * [1.0, -1.0, 1.0], rtol=0.0, atol=1e-9)
+    np.testing.assert_allclose(left.velocity, right.velocity * [1.0, -1.0, 1.0], rtol=0.0, atol=25.0 * 1e-9)
 
 
 def test_a_wall_of_triangles_is_the_same_wall() -> None:
@@ -118,7 +118,7 @@ def test_a_post_of_many_sides_comes_near_the_round_one(sides: int, limit: float)
     for i in range(sides):
         j = (i + 1) % sides
         faces += [(i, j, j + sides), (i, j + sides, i + sides)]
-    vehicle = Vehicle.preset("passenger_car", mesh_density=0.5).with_dent_slope(0.0)
+    vehicle = Vehicle.preset("passenger_car", mesh_density=0.5).with_dent_reach(0.0)
     post = Barrier.bollards(count=1, diameter=0.4, height=1.0)
     exact, mesh = (
         15.0 - Simulation(vehicle, barrier, 15.0, duration=0.02).run().velocity[-1, 0]

@@ -15,7 +15,7 @@ namespace {
 void require_valid(const TrussInput& input) {
     const std::size_t n = input.node.size();
     require_not_negative("rate_sensitivity", input.rate_sensitivity);
-    require_not_negative("dent_slope", input.dent_slope);
+    require_not_negative("dent_reach", input.dent_reach);
     if (n == 0) refuse("nodes", "at least 1", 0.0);
     const auto same_size = [n](const char* name, std::size_t size) {
         if (size != n)
@@ -89,7 +89,7 @@ Box box_around(const Lanes& x, const Lanes& y, const Lanes& z) {
 TrussMesh::TrussMesh(const TrussInput& input) {
     require_valid(input);
     rate_sensitivity = input.rate_sensitivity;
-    dent_slope = input.dent_slope;
+    dent_reach = input.dent_reach;
     count = input.node.size();
     blocks = (count + lanes - 1) / lanes;
     for (const TrussCurve& curve : input.curve)

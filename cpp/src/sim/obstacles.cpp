@@ -111,7 +111,6 @@ namespace {
 // A step in which no post comes to dent a panel (s). Those that stand beside it or within come from the side.
 double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
                      double longest) {
-    const double rate = fastest_growth(mesh.dent_slope) * fastest;
     alignas(64) DentLanes found;
     for (const Obstacle& obstacle : scene.obstacles) {
         const Post* post = std::get_if<Post>(&obstacle.shape);
@@ -119,7 +118,8 @@ double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh&
         const Placement seen = placement(obstacle, unit.body);
         for (std::size_t p = 0; p < panels; ++p) {
             if (!mesh.panel[p].any || !stands_across(seen, mesh.panel[p], false)) continue;
-            Dent dent(*post, seen, mesh.panel[p], mesh.dent_slope);
+            Dent dent(*post, seen, mesh.panel[p], mesh.dent_reach);
+            const double rate = dent.fastest_growth(mesh.panel[p]) * fastest;
             dent.low = -infinity;
             dent.high = infinity;
             double gap = infinity;
@@ -180,7 +180,7 @@ double untouched_step(const Scene& scene, const State& state) {
                 longest = std::min({longest, straight, (gap + tolerance::untouched_way) / fastest});
             }
         }
-        if (model.trusses.dent_slope > 0.0)
+        if (model.trusses.dent_reach > 0.0)
             longest = undented_step(scene, unit, model.trusses, fastest, longest);
     }
     return longest;

@@ -201,7 +201,7 @@ std::uint64_t Scene::fingerprint() const {
             hash.add(hinge.slope_change);
         }
         hash.add(unit.trusses.rate_sensitivity);
-        hash.add(unit.trusses.dent_slope);
+        hash.add(unit.trusses.dent_reach);
         for (const Wheel& wheel : unit.wheels) {
             hash.add(wheel.center);
             hash.add(wheel.radius);

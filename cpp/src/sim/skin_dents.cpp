@@ -8,7 +8,7 @@
 namespace birm3d {
 
 void Skin::find_dents() {
-    if (mesh_.dent_slope == 0.0) return;
+    if (mesh_.dent_reach == 0.0) return;
     for (std::size_t k = 0; k < near_.size(); ++k) {
         if (!std::holds_alternative<Post>(scene_.obstacles[near_[k].index].shape)) continue;
         const Dented dented = dents_of(k);
@@ -32,11 +32,11 @@ Dented Skin::dents_of(std::size_t k) {
         const auto bit = static_cast<std::uint8_t>(1U << p);
         const bool dents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
         if (!panel.any || !stands_across(near_[k].now, panel, dents)) continue;
-        const DentedPanel dented{k, p, Dent(post, near_[k].now, panel, mesh_.dent_slope)};
+        const DentedPanel dented{k, p, Dent(post, near_[k].now, panel, mesh_.dent_reach)};
         if (!dents && !dented.dent.overlaps(panel)) continue;
         const double gap = dents && pushes ? 0.0 : least_gap(dented);
         if (gap > 0.0) continue;
-        if (dents || (!passed && gap > -2.0 * margin_ * fastest_growth(mesh_.dent_slope))) {
+        if (dents || (!passed && gap > -2.0 * margin_ * dented.dent.fastest_growth(panel))) {
             now.panels |= bit;
             dents_.push_back(dented);
         } else {

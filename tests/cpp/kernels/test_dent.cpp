@@ -21,10 +21,15 @@ Placement standing(const Vec3& foot, double lean = 0.0, double sway = 0.0) {
     return {to_own, -(to_own * foot)};
 }
 
-DentLanes dent_by(const Post& post, const Placement& stands, double slope) {
+DentLanes dent_by(const Post& post, const Placement& stands, double reach) {
     DentLanes found;
-    dent_of(Dent(post, stands, front, slope), uncrushed.block[0], found);
+    dent_of(Dent(post, stands, front, reach), uncrushed.block[0], found);
     return found;
+}
+
+// Of a post that stands upright, its surface at x.
+double slope_by(double x, double reach) {
+    return std::hypot(0.25, (3.0 - x) / reach);
 }
 
 Vec3 node(std::size_t i) {
@@ -43,8 +48,9 @@ TEST("trusses that point back belong to the front") {
 
 TEST("beside an upright post the skin is drawn in with the slope") {
     const double radius = 0.2, axis = 2.7;
-    for (const double slope : {0.5, 1.0, 2.0}) {
-        const DentLanes found = dent_by(Post(radius), standing({axis, 0.1, 0.0}), slope);
+    for (const double reach : {0.25, 0.5, 1.0}) {
+        const double slope = slope_by(axis - radius, reach);
+        const DentLanes found = dent_by(Post(radius), standing({axis, 0.1, 0.0}), reach);
         const double arc = radius * slope / std::sqrt(1.0 + slope * slope);
         for (std::size_t i = 0; i < lanes; ++i) {
             const double w = std::abs(node(i).y() - 0.1), on = std::min(w, arc);
@@ -55,9 +61,9 @@ TEST("beside an upright post the skin is drawn in with the slope") {
 }
 
 TEST("above a post the skin is drawn in with the slope, too") {
-    const double radius = 0.2, height = 0.3, slope = 0.8;
-    const DentLanes low = dent_by(Post(radius, height), standing({2.7, 0.0, 0.0}), slope);
-    const DentLanes tall = dent_by(Post(radius), standing({2.7, 0.0, 0.0}), slope);
+    const double radius = 0.2, height = 0.3, reach = 0.8, slope = slope_by(2.5, reach);
+    const DentLanes low = dent_by(Post(radius, height), standing({2.7, 0.0, 0.0}), reach);
+    const DentLanes tall = dent_by(Post(radius), standing({2.7, 0.0, 0.0}), reach);
     for (std::size_t i = 0; i < lanes; ++i) {
         const double above = std::max(0.0, node(i).z() - height);
         const double hair = above > 0.0 ? slope * 0.05 * radius : 0.0;
@@ -69,10 +75,11 @@ TEST("above a post the skin is drawn in with the slope, too") {
 TEST("of a post that stands beside the panel only what reaches over its edge presses") {
     // The axis 0.15 m beyond the edge at y = 1.2 m.
     const double radius = 0.2;
-    const DentLanes found = dent_by(Post(radius), standing({2.9, 1.35, 0.0}), 1.0);
+    const double reach = 0.5, slope = slope_by(2.7, reach);
+    const DentLanes found = dent_by(Post(radius), standing({2.9, 1.35, 0.0}), reach);
     const double at_edge = 2.9 - std::sqrt(radius * radius - 0.15 * 0.15);
     for (std::size_t i = 0; i < lanes; ++i)
-        CHECK_CLOSE(found.gap[i], at_edge + (1.2 - node(i).y()) - node(i).x(), 1e-14, "rounding");
+        CHECK_CLOSE(found.gap[i], at_edge + slope * (1.2 - node(i).y()) - node(i).x(), 1e-14, "rounding");
 }
 
 TEST("force and torque are what the depth of the dent asks for by virtual work") {
@@ -113,7 +120,7 @@ TEST("force and torque are what the depth of the dent asks for by virtual work")
         const Dent dent(post, stands, front, 1.0);
         for (std::size_t i = 0; i < lanes; ++i) {
             above += (node(i) - foot).dot(dent.along) > dent.top ? 1 : 0;
-            beside += std::abs((node(i) - foot).dot(dent.across)) > dent.arc ? 1 : 0;
+            beside += std::abs((node(i) - foot).dot(dent.across)) > dent.radius ? 1 : 0;
         }
     }
     CHECK(above > 1000);

@@ -36,7 +36,7 @@ TEST("random impacts: nothing passes through a wall or a pole, and the ledger cl
         return std::uniform_real_distribution<double>(low, high)(random);
     };
     TrussInput front = laboratory::front_face(laboratory::w2_curve(), 12, 8);
-    front.dent_slope = 1.0;
+    front.dent_reach = 0.65;
     Vehicle dented;
     dented.units.emplace_back(laboratory::body(), front, std::vector<Wheel>{}, 0.0);
     const std::vector<std::shared_ptr<const Vehicle>> vehicles = {

@@ -1,5 +1,5 @@
-// A dent drags its surroundings along: beside a post the skin of a panel is drawn in with a slope s of its own. Seen
-// along the panel's direction e, into the vehicle, the post reaches to a depth f over the panel; the skin to
+// A dent drags its surroundings along: beside a post the skin of a panel is drawn in with a slope s. Seen along the
+// panel's direction e, into the vehicle, the post reaches to a depth f over the panel; the skin to
 //   D(w, l) = max over places of the post that stand in the panel of  f(w*, l*) - s |w - w*| - s (l - l*)+
 // with w across the post's axis and l along it, upwards. A node goes straight along e, as at a wall, to e . x = D. Its
 // depth is a function of how the post stands alone, whatever came before, so that the force on the vehicle follows by
@@ -8,6 +8,9 @@
 // the normal of the post where it drives the node, with the torque by which D changes as the post turns: at the post
 // itself that of a force there; beside it the dent turns about e with the post.
 // A post as wide as the panel presses it as a wall does.
+//
+// The slope grows with the depth d of the post, s = sqrt(s0^2 + (d / reach)^2): beams and panels carry a dent as far to
+// either side when it is deep as when it is shallow. What a node has to go less for that is part of its virtual work.
 //
 // f is that of the round post, cut off a hair above the highest place of its rim; where it falls off more steeply than
 // `steepest`, which is asked only of a post that has come half across the panel's edge, with that slope.
@@ -25,7 +28,7 @@ namespace birm3d {
 
 // A post seen from a panel. Places from the foot of its axis: across it (w), along it (l) and into the panel (e); m.
 struct Dent {
-    Dent(const Post& post, const Placement& stands, const Panel& panel, double slope);
+    Dent(const Post& post, const Placement& stands, const Panel& panel, double reach);
 
     Vec3 into, across, along;  // e, w, l: unit, square to each other, body axes
     Vec3 foot;                 // of the axis, body axes
@@ -35,20 +38,18 @@ struct Dent {
     double top_rate;           // of that for each unit of change of the axis's part along e
     double tilt;               // e of the axis for each unit of l
     double radius, stretch;    // the post's, and that of its section with a plane of e and w over it
-    double arc;                // from the axis to where the post falls off with the slope
-    double slope;
+    double surface;            // into, of the outermost node of the panel
+    double reach;
 
     // Does any of the post stand before, in or behind the panel?
     bool overlaps(const Panel& panel) const;
+
+    // How fast it can grow at any node while the post comes with 1 m/s.
+    double fastest_growth(const Panel& panel) const;
 };
 
 // Does the post stand upright enough before the panel for a dent? `dents`: does it make one already?
 bool stands_across(const Placement& post, const Panel& panel, bool dents);
-
-// How fast a dent can grow at any node while the post comes with 1 m/s, but for its flanks at a panel's edge.
-inline double fastest_growth(double slope) {
-    return 1.0 + slope;
-}
 
 // No node of the box (body axes) is further inside than this (m); negative: none is reached.
 double most_inside(const Dent& dent, const Box& box);

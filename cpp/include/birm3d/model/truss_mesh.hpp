@@ -29,8 +29,8 @@ struct TrussInput {
     // What is crushed has inertia and rate strength, which the law of Fig. 3 leaves out: the loading envelope
     // grows by 1 + (this times the rate of deflection)^2 (s/m).
     double rate_sensitivity = 0.0;
-    // Slope of the skin beside a dent that a post makes (kernels/dent.hpp); zero: nodes know nothing of each other.
-    double dent_slope = 0.0;
+    // How far the dent that a post makes reaches beyond it (kernels/dent.hpp); zero: nodes know nothing of each other (m).
+    double dent_reach = 0.0;
 };
 
 // Unloading stiffness of some trusses and its second moments about the mass centre, body axes.
@@ -93,7 +93,7 @@ struct TrussMesh {
     }
 
     double rate_sensitivity = 0.0;  // see TrussInput (s/m)
-    double dent_slope = 0.0;        // see TrussInput
+    double dent_reach = 0.0;        // see TrussInput
 
     double reach = 0.0;  // greatest distance of a node or anchor from the mass centre (m)
 
