@@ -34,9 +34,11 @@ Dented Skin::dents_of(std::size_t k) {
         if (!panel.any || !stands_across(near_[k].now, panel, dents)) continue;
         const DentedPanel dented{k, p, Dent(post, near_[k].now, panel, mesh_.dent_reach)};
         if (!dents && !dented.dent.overlaps(panel)) continue;
-        const double gap = dents && pushes ? 0.0 : least_gap(dented);
+        // How far in a post can have come from in front within the step; of one that was in before, does it touch?
+        const double deepest = dents || passed ? 0.0 : 2.0 * margin_ * dented.dent.fastest_growth(panel);
+        const double gap = dents && pushes ? 0.0 : least_gap(dented, -deepest);
         if (gap > 0.0) continue;
-        if (dents || (!passed && gap > -2.0 * margin_ * dented.dent.fastest_growth(panel))) {
+        if (dents || (!passed && gap > -deepest)) {
             now.panels |= bit;
             dents_.push_back(dented);
         } else {
@@ -46,8 +48,8 @@ Dented Skin::dents_of(std::size_t k) {
     return now;
 }
 
-// Of the nodes of the panel, from the surface of the dent; infinite where all are far.
-double Skin::least_gap(const DentedPanel& dented) {
+// Of the nodes of the panel, from the surface of the dent; infinite where all are far, any below `enough` will do.
+double Skin::least_gap(const DentedPanel& dented, double enough) {
     double least = std::numeric_limits<double>::infinity();
     alignas(64) DentLanes found;
     for (std::size_t b = 0; b < mesh_.blocks; ++b) {
@@ -58,6 +60,7 @@ double Skin::least_gap(const DentedPanel& dented) {
         for (std::size_t i = 0; i < lanes; ++i)
             if (mesh_.block[b].panel[i] == static_cast<double>(dented.panel))
                 least = std::min(least, found.gap[i]);
+        if (least <= enough) break;
     }
     return least;
 }
