@@ -1,6 +1,7 @@
 #include "birm3d/sim/obstacles.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -186,6 +187,21 @@ double untouched_step(const Scene& scene, const State& state) {
     return longest;
 }
 
+namespace {
+
+// Time in which no point of a body gets further than a quarter through the obstacle (s). Gliding along a wall is no
+// way through it; `turning`: speed that its turning adds anywhere (m/s).
+double passing_time(const Obstacle& obstacle, const Vec3& velocity, double turning) {
+    const double width = thickness(obstacle.shape);
+    const auto* prism = std::get_if<Prism>(&obstacle.shape);
+    if (prism == nullptr) return 0.25 * width / (velocity.norm() + turning);
+    const Vec3 own = obstacle.rotation.transpose() * velocity;
+    const double along = 0.25 * (prism->y_high() - prism->y_low()) / (std::abs(own.y()) + turning);
+    return std::min(0.25 * width / (std::hypot(own.x(), own.z()) + turning), along);
+}
+
+}  // namespace
+
 double passing_step(const Scene& scene, const State& state) {
     double longest = infinity;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
@@ -193,13 +209,15 @@ double passing_step(const Scene& scene, const State& state) {
         const Unit& unit = scene.vehicle->units[u];
         const double speed = fastest_point(unit, body);
         if (!(speed > 0.0)) continue;
+        const double turning = speed - body.velocity.norm();
         for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
-            const double width = thickness(scene.obstacles[i].shape);
+            const Obstacle& obstacle = scene.obstacles[i];
+            const double time = passing_time(obstacle, body.velocity, turning);
             // Out of reach even after a step as long as this obstacle would allow.
-            if (width < infinity && 0.25 * width < longest * speed &&
-                within_reach(scene.obstacles[i].shape, placement(scene.obstacles[i], body),
-                             everything(unit.trusses, state.units[u].trusses), 0.25 * width))
-                longest = 0.25 * width / speed;
+            if (time < longest &&
+                within_reach(obstacle.shape, placement(obstacle, body),
+                             everything(unit.trusses, state.units[u].trusses), time * speed))
+                longest = time;
         }
     }
     return longest;
