@@ -109,36 +109,63 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
 
 namespace {
 
-// A step in which no post comes to dent a panel (s). Those that stand beside it or within come from the side.
-double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
-                     double longest) {
+// Calls `use` with each dent that a post makes or would make, and how far the nodes of the panel are from it, at least
+// (m); infinite where that is more than `far`. `whole`: as if the panel had no ends.
+template <class Use>
+void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double far, bool whole,
+                   const Use& use) {
     alignas(64) DentLanes found;
     for (const Obstacle& obstacle : scene.obstacles) {
         const Post* post = std::get_if<Post>(&obstacle.shape);
         if (post == nullptr) continue;
         const Placement seen = placement(obstacle, unit.body);
         for (std::size_t p = 0; p < panels; ++p) {
-            if (!mesh.panel[p].any || !stands_across(seen, mesh.panel[p], false)) continue;
-            Dent dent(*post, seen, mesh.panel[p], mesh.dent_reach);
-            const double rate = dent.fastest_growth(mesh.panel[p]) * fastest;
-            dent.low = -infinity;
-            dent.high = infinity;
+            const Panel& panel = mesh.panel[p];
+            if (!panel.any || !stands_across(seen, panel, false)) continue;
+            Dent dent(*post, seen, panel, mesh.dent_reach);
+            if (whole) {
+                dent.low = -infinity;
+                dent.high = infinity;
+            } else if (!dent.overlaps(panel)) {
+                continue;
+            }
             double gap = infinity;
             for (std::size_t b = 0; b < mesh.blocks; ++b) {
                 const TrussBlockState& block = unit.trusses.block[b];
-                if ((mesh.panels_of[b] >> p & 1U) == 0) continue;
-                if (-most_inside(dent, box_of(block)) > longest * rate) continue;
+                if ((mesh.panels_of[b] >> p & 1U) == 0 || -most_inside(dent, box_of(block)) > far) continue;
                 dent_of(dent, block, found);
                 for (std::size_t i = 0; i < lanes; ++i)
                     if (mesh.block[b].panel[i] == static_cast<double>(p)) gap = std::min(gap, found.gap[i]);
             }
-            if (gap > 0.0) longest = std::min(longest, (gap + tolerance::untouched_way) / rate);
+            use(dent.fastest_growth(panel), gap);
         }
     }
+}
+
+// A step in which no post comes to dent a panel (s). Those that stand beside it or within come from the side.
+double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
+                     double longest) {
+    for_each_dent(scene, unit, mesh, (2.0 + mesh.reach / mesh.dent_reach) * longest * fastest, true,
+                  [&](double growth, double gap) {
+                      if (gap > 0.0)
+                          longest = std::min(longest, (gap + tolerance::untouched_way) / (growth * fastest));
+                  });
     return longest;
 }
 
 }  // namespace
+
+double overlap_of_dents(const Scene& scene, const State& state, double deepest) {
+    double most = 0.0;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const TrussMesh& mesh = scene.vehicle->units[u].trusses;
+        if (mesh.dent_reach == 0.0) continue;
+        for_each_dent(scene, state.units[u], mesh, 0.0, false, [&](double, double gap) {
+            if (-gap < deepest) most = std::max(most, -gap);
+        });
+    }
+    return most;
+}
 
 double untouched_step(const Scene& scene, const State& state) {
     double longest = infinity;

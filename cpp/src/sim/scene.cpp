@@ -97,6 +97,17 @@ bool continues(const Shape& shape) {
     return prism != nullptr && std::isfinite(prism->y_low()) && !prism->low_end_is_surface();
 }
 
+// Beside a post a bowed front is drawn in before the post touches a node: back to before that.
+void stand_back(const Scene& scene, const Vec3& heading, State& state) {
+    constexpr double deepest = 0.3;
+    constexpr int most_steps = 50;
+    for (int i = 0; i < most_steps; ++i) {
+        const double overlap = overlap_of_dents(scene, state, deepest);
+        if (overlap == 0.0) return;
+        move(state, -(overlap + tolerance::touching_gap) * heading);
+    }
+}
+
 // Moves the vehicle of `state` along its path, forward or back, until its nearest point stands `standoff` before the
 // barrier. A path that leads past the barrier starts where the barrier begins.
 void place(const Scene& scene, const Vec3& heading, State& state) {
@@ -135,9 +146,12 @@ void place(const Scene& scene, const Vec3& heading, State& state) {
         const double free = nearest_gap(scene, state, {.anchors = true}) - scene.approach.standoff;
         move(state, free * heading);
         way += free;
-        if (std::abs(free) < tolerance::initial_overlap * 1e-3) return;
+        if (std::abs(free) < tolerance::initial_overlap * 1e-3) break;
     }
-    if (way <= longest) return;  // it grazes
+    if (way <= longest) {
+        stand_back(scene, heading, state);
+        return;
+    }
     move(state, -way * heading);
 }
 

@@ -34,11 +34,11 @@ Dented Skin::dents_of(std::size_t k) {
         if (!panel.any || !stands_across(near_[k].now, panel, dents)) continue;
         const DentedPanel dented{k, p, Dent(post, near_[k].now, panel, mesh_.dent_reach)};
         if (!dents && !dented.dent.overlaps(panel)) continue;
-        // How far in a post can have come from in front within the step; of one that was in before, does it touch?
+        // How far in a post can have come within the step; of one that was in before, does it touch?
         const double deepest = dents || passed ? 0.0 : 2.0 * margin_ * dented.dent.fastest_growth(panel);
         const double gap = dents && pushes ? 0.0 : least_gap(dented, -deepest);
         if (gap > 0.0) continue;
-        if (dents || (!passed && gap > -deepest)) {
+        if (dents || (!passed && (gap > -deepest || was_before(k, p)))) {
             now.panels |= bit;
             dents_.push_back(dented);
         } else {
@@ -46,6 +46,14 @@ Dented Skin::dents_of(std::size_t k) {
         }
     }
     return now;
+}
+
+// Did the post stand in front of the panel an instant before?
+bool Skin::was_before(std::size_t k, std::size_t p) {
+    const Post& post = std::get<Post>(scene_.obstacles[near_[k].index].shape);
+    const Panel& panel = mesh_.panel[p];
+    const DentedPanel then{k, p, Dent(post, near_[k].before, panel, mesh_.dent_reach)};
+    return then.dent.overlaps(panel) && least_gap(then, 0.0) > 0.0;
 }
 
 // Of the nodes of the panel, from the surface of the dent; infinite where all are far, any below `enough` will do.

@@ -34,6 +34,10 @@ struct Nearness {
 };
 double nearest_gap(const Scene& scene, const State& state, const Nearness& what);
 
+// How far the dent of any post lies over nodes that it has come to from in front, but for any that would be deeper than
+// `deepest` (m): such a post stands beside the panel.
+double overlap_of_dents(const Scene& scene, const State& state, double deepest);
+
 // A step in which no node reaches an element of the barrier (s): straight on towards the surface that is nearest to it
 // now, and no further than another surface may lie.
 double untouched_step(const Scene& scene, const State& state);
