@@ -268,7 +268,7 @@ def line_of(text: str, part: str) -> int:
         ('source = ["layout"]', 'source = ["hearsay"]', "solid.0.source", "got 'hearsay'"),
         ('source = ["layout"]', "source = []", "solid.0.source", "at least 1 item"),
         ('status = "measured"', 'status = "sure"', "source.0.status", "got 'sure'"),
-        ('core = ["chassis"]', 'core = ["keel"]', "zone.bumper.core", "fire_wall; got 'keel'"),
+        ('core = ["bulkhead"]', 'core = ["keel"]', "zone.bumper.core", "fire_wall; got 'keel'"),
         ('blocks = ["body"]', 'blocks = ["boot"]', "zone.engine_bay.blocks", "body, cabin; got 'boot'"),
     ],
 )  # fmt: skip
