@@ -49,7 +49,8 @@ bool stayed(const std::vector<Wrench>& on_base, std::vector<Wrench>& last) {
         change = std::max(change, (on_base[i].force - last[i].force).norm());
         last[i] = on_base[i];
     }
-    return change <= tolerance::friction_settled * sum;
+    constexpr double settled = 1e-6;  // what holds a corner that is all but at rest hangs on rounding
+    return change <= settled * sum;
 }
 
 // Greatest friction impulse of the ground on each segment (N s).
@@ -66,7 +67,7 @@ Column friction_limits(const Scene& scene, const Column& pressed, const ContactK
 // What friction holds is at rest but for rounding, and for what pins and friction leave to each other; then it is at
 // rest. Share of the speed that friction can take from a segment which it may have left.
 void bring_to_rest(const Scene& scene, const Column& limits, State& state) {
-    constexpr double left_over = 1e-7;
+    constexpr double left_over = 1e-4;
     for (std::size_t i = 0; i < limits.size(); ++i) {
         const Segment& segment = scene.barrier->segments[i];
         BodyState& body = state.segments[i];
@@ -75,23 +76,52 @@ void bring_to_rest(const Scene& scene, const Column& limits, State& state) {
     }
 }
 
-// Friction of the ground on each segment, for the motions without it that the contacts leave.
+// Friction of the ground on each segment, on top of what else moves it; pins are found with it.
 void rub_on_ground(const Scene& scene, const std::vector<ContactBody>& bodies, const Column& pressed,
                    ContactKick& kicked, State& state) {
+    const std::size_t units = state.units.size();
+    std::vector<PinnedSlab> slabs;
+    std::vector<SlabPin> pins;
     const Column limits = friction_limits(scene, pressed, kicked);
+    bool any = false;  // does anything move?
+    const bool guessed = std::any_of(kicked.on_base.begin(), kicked.on_base.end(),
+                                     [](const Wrench& friction) { return !friction.force.isZero(0.0); });
     for (std::size_t i = 0; i < limits.size(); ++i) {
         const Segment& segment = scene.barrier->segments[i];
-        const std::size_t body = state.units.size() + i;
-        Wrench& friction = kicked.on_base[i];
-        Twist motion = bodies[body].motion;
-        motion.velocity -= segment.body.inverse_mass * friction.force;
-        motion.angular_velocity -= segment.body.inverse_inertia * friction.torque;
-        std::array<Vec3, 4> arm;
-        for (std::size_t c = 0; c < arm.size(); ++c)
-            arm[c] = state.segments[i].orientation * segment.corner[c];
-        const Wrench next = slide_friction(segment.body, arm, limits[i], motion);
-        kick_body(scene, body, difference(next, friction), state);
-        friction = next;
+        PinnedSlab slab{
+            &segment.body, {}, limits[i], twist(segment.body, state.segments[i]), bodies[units + i].motion};
+        slab.motion.velocity -= segment.body.inverse_mass * kicked.on_base[i].force;
+        slab.motion.angular_velocity -= segment.body.inverse_inertia * kicked.on_base[i].torque;
+        for (std::size_t c = 0; c < slab.arm.size(); ++c)
+            slab.arm[c] = state.segments[i].orientation * segment.corner[c];
+        slabs.push_back(slab);
+    }
+    for (const RigidContact& contact : kicked.contacts) {
+        const bool is_pin = contact.body >= units;
+        if (is_pin) {
+            const auto on = [&](const Vec3& arm, double sign) {
+                const Wrench unit = unit_wrench(contact, arm);
+                return Vec3(sign * unit.force.x(), sign * unit.force.y(), sign * unit.torque.z());
+            };
+            pins.push_back({contact.body - units, static_cast<std::size_t>(contact.other) - units,
+                            on(contact.arm, 1.0), on(contact.other_arm, -1.0), contact.target});
+        } else if (contact.source == ContactSource::member && contact.other >= 0) {
+            const Wrench push = wrench_on_other(contact);
+            PinnedSlab& slab = slabs[contact.obstacle];
+            slab.motion.velocity += slab.body->inverse_mass * Vec3(push.force.x(), push.force.y(), 0.0);
+            slab.motion.angular_velocity.z() += slab.body->inverse_inertia(2, 2) * push.torque.z();
+        }
+    }
+    for (const PinnedSlab& slab : slabs)
+        any = any || !slab.motion.velocity.isZero(0.0) || !slab.motion.angular_velocity.isZero(0.0);
+    std::vector<Wrench> next(slabs.size());
+    if (any && !pins.empty()) next = slide_friction(slabs, pins, guessed);
+    if (any && pins.empty())
+        for (std::size_t i = 0; i < slabs.size(); ++i)
+            next[i] = slide_friction(*slabs[i].body, slabs[i].arm, slabs[i].limit, slabs[i].motion);
+    for (std::size_t i = 0; i < next.size(); ++i) {
+        kick_body(scene, units + i, difference(next[i], kicked.on_base[i]), state);
+        kicked.on_base[i] = next[i];
     }
 }
 
@@ -130,7 +160,7 @@ void kick_by_contacts(const Scene& scene, const Column& pressed, std::vector<Con
     };
     solve();
     // Friction follows from the normal impulses and tips the body, which changes them: to and fro, until they stay.
-    const int most_rounds = state.segments.empty() ? 30 : 200;
+    constexpr int most_rounds = 30;
     Column last;
     std::vector<Wrench> last_on_base;
     for (int round = 0; round < most_rounds; ++round) {
