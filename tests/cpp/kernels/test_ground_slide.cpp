@@ -104,3 +104,66 @@ TEST("without load or motion there is no friction") {
     CHECK(slide_friction(body, corners(0.0), 0.0, motion).force.isZero(0.0));
     CHECK(slide_friction(body, corners(0.0), 10.0, {}).force.isZero(0.0));
 }
+
+namespace {
+
+// Slabs end to end along y, pinned at their ends, all with one limit.
+struct Row {
+    explicit Row(std::size_t count, double limit) {
+        for (std::size_t i = 0; i < count; ++i)
+            slabs.push_back({&body, corners(0.0), limit, {}, {}});
+        for (std::size_t i = 1; i < count; ++i)
+            for (const Vec3& n : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY())}) {
+                const Vec3 a(0.0, 1.5, 0.0), b(0.0, -1.5, 0.0);
+                pins.push_back({i - 1, i, Vec3(n.x(), n.y(), a.cross(n).z()),
+                                Vec3(-n.x(), -n.y(), -b.cross(n).z()), 0.0});
+            }
+    }
+    std::vector<PinnedSlab> slabs;
+    std::vector<SlabPin> pins;
+};
+
+}  // namespace
+
+TEST("a pinned row that slides as one loses the limit of each") {
+    Row row(4, 300.0);
+    for (PinnedSlab& slab : row.slabs)
+        slab.motion.velocity = {3.0, -4.0, 0.0};
+    for (const Wrench& friction : slide_friction(row.slabs, row.pins, false)) {
+        CHECK_CLOSE((friction.force - 300.0 * Vec3(-0.6, 0.8, 0.0)).norm(), 0.0, 1e-9 * 300.0, "rounding");
+        CHECK_CLOSE(friction.torque.norm(), 0.0, 1e-9 * 300.0, "rounding");
+    }
+}
+
+TEST("a row that is pulled at one slab along its length holds it together, from a guess or without") {
+    Row row(7, 100.0);
+    row.slabs[2].motion.velocity = {0.0, 250.0 * body.inverse_mass, 0.0};
+    // What friction can take is 5 cm/s, the rounding off a millionth of it.
+    for (const bool guessed : {false, true})
+        for (const Wrench& friction : slide_friction(row.slabs, row.pins, guessed)) {
+            CHECK_CLOSE(friction.force.y(), -250.0 / 7.0, 1e-3, "each an equal share, to the rounding off");
+            CHECK_CLOSE(friction.force.x(), 0.0, 1e-3, "the same");
+            CHECK_CLOSE(friction.torque.z(), 0.0, 1e-3, "the same");
+        }
+}
+
+TEST("a row that is pushed aside bends at its pins: the slab that is pushed slides, its ends drag the next") {
+    Row row(7, 100.0);
+    row.slabs[3].motion.velocity = {1.0, 0.0, 0.0};
+    const std::vector<Wrench> friction = slide_friction(row.slabs, row.pins, false);
+    CHECK_CLOSE(friction[3].force.x(), -100.0, 1e-6 * 100.0, "full, against the push");
+    CHECK(friction[2].force.norm() <= 100.0 * (1.0 + 1e-12));
+    CHECK(friction[2].torque.z() * friction[4].torque.z() < 0.0);
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK_CLOSE(friction[i].force.x(), friction[6 - i].force.x(), 1e-6 * 100.0, "left and right");
+        CHECK_CLOSE(friction[i].force.y(), -friction[6 - i].force.y(), 1e-6 * 100.0, "left and right");
+        CHECK_CLOSE(friction[i].torque.z(), -friction[6 - i].torque.z(), 1e-6 * 100.0, "left and right");
+    }
+}
+
+TEST("without friction a row has none") {
+    Row row(3, 0.0);
+    row.slabs[0].motion.velocity = {1.0, 0.0, 0.0};
+    for (const Wrench& friction : slide_friction(row.slabs, row.pins, false))
+        CHECK(friction.force.isZero(0.0));
+}
