@@ -15,6 +15,13 @@ Element element(Shape shape, const InputArray& position, double heading) {
     return {std::move(shape), vector(position, "position"), heading};
 }
 
+// None or one: a barrier stands in one way.
+std::optional<FreeStanding> only(const std::vector<FreeStanding>& free_standing) {
+    if (free_standing.size() > 1)
+        refuse("free_standing", "at most 1", static_cast<double>(free_standing.size()));
+    return free_standing.empty() ? std::nullopt : std::optional(free_standing.front());
+}
+
 Prism::Profile profile_points(const InputArray& array) {
     if (array.ndim() != 2 || array.shape(1) != 2) refuse("profile shape", "(n, 2)", shape_text(array));
     Prism::Profile profile;
@@ -64,15 +71,40 @@ void register_barrier(py::module_& m) {
             py::kw_only(), py::arg("vertices"), py::arg("faces"), py::arg("position"), py::arg("heading"),
             "vertices (n, 3) m, faces (m, 3), counter-clockwise seen from outside.");
 
+    py::enum_<SegmentJoint>(m, "SegmentJoint")
+        .value("pinned", SegmentJoint::pinned)
+        .value("loose", SegmentJoint::loose);
+    py::class_<FreeStanding>(m, "FreeStanding", "Segments that slide on the ground.")
+        .def(py::init([](double density, double ground_friction, SegmentJoint joint) {
+                 return FreeStanding{density, ground_friction, joint};
+             }),
+             py::kw_only(), py::arg("density"), py::arg("ground_friction"), py::arg("joint"),
+             "density: kg/m^3; ground_friction: Coulomb coefficient.");
+    py::class_<Segment>(m, "Segment", "A free-standing segment of a barrier.")
+        .def_property_readonly(
+            "mass", [](const Segment& s) { return s.body.mass; }, "kg")
+        .def_property_readonly(
+            "yaw_inertia", [](const Segment& s) { return s.body.inertia(2, 2); },
+            "kg m^2, about the vertical through the mass centre")
+        .def_readonly("mass_center_height", &Segment::mass_center_height, "m")
+        .def_readonly("half_length", &Segment::half_length, "m")
+        .def_readonly("half_base", &Segment::half_base, "m");
+
     py::class_<Barrier, std::shared_ptr<Barrier>>(m, "Barrier",
                                                   "Elements that stand on the ground. Immutable.")
         .def(
             py::init([](const std::vector<Element>& elements, double friction, const InputArray& origin,
-                        double heading) {
-                return std::make_shared<Barrier>(elements, friction, vector(origin, "origin"), heading);
+                        double heading, const std::vector<FreeStanding>& free_standing) {
+                return std::make_shared<Barrier>(elements, friction, vector(origin, "origin"), heading,
+                                                 only(free_standing));
             }),
             py::kw_only(), py::arg("elements"), py::arg("friction"), py::arg("origin"), py::arg("heading"),
-            "friction: Coulomb coefficient; origin (3,) m on the barrier's line; heading of it about z, rad.")
+            py::arg("free_standing"),
+            "friction: Coulomb coefficient; origin (3,) m on the barrier's line; heading of it about z, rad; "
+            "free_standing: one, or none where the elements are fixed.")
+        .def_property_readonly(
+            "segments", [](const Barrier& barrier) { return barrier.segments; },
+            "The elements where they are free-standing, else none.")
         .def_property_readonly(
             "normal", [](const Barrier& barrier) { return copy(barrier.normal()); },
             "(3,) of the barrier's line, towards the traffic, world axes");

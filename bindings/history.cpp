@@ -16,6 +16,32 @@ void add_view(py::class_<Class>& cls, const char* name, T Class::* member, const
         doc);
 }
 
+// One column of each free-standing segment, side by side.
+OutputArray of_segments(const History& history, Column SegmentHistory::* column) {
+    const auto rows = static_cast<py::ssize_t>(history.time.size());
+    OutputArray result({rows, static_cast<py::ssize_t>(history.segments.size())});
+    auto at = result.mutable_unchecked<2>();
+    for (py::ssize_t i = 0; i < at.shape(1); ++i)
+        for (py::ssize_t row = 0; row < rows; ++row)
+            at(row, i) =
+                (history.segments[static_cast<std::size_t>(i)].*column)[static_cast<std::size_t>(row)];
+    return read_only(std::move(result));
+}
+
+// The same of vectors along the ground.
+OutputArray of_segments(const History& history, std::vector<Vec3> SegmentHistory::* column) {
+    const auto rows = static_cast<py::ssize_t>(history.time.size());
+    OutputArray result({rows, static_cast<py::ssize_t>(history.segments.size()), py::ssize_t{2}});
+    auto at = result.mutable_unchecked<3>();
+    for (py::ssize_t i = 0; i < at.shape(1); ++i)
+        for (py::ssize_t row = 0; row < rows; ++row) {
+            const Vec3& v =
+                (history.segments[static_cast<std::size_t>(i)].*column)[static_cast<std::size_t>(row)];
+            at(row, i, 0) = v.x(), at(row, i, 1) = v.y();
+        }
+    return read_only(std::move(result));
+}
+
 }  // namespace
 
 void register_history(py::module_& m) {
@@ -98,6 +124,20 @@ void register_history(py::module_& m) {
     add_view(history, "ground_friction", &History::ground_friction, "(n,) J");
     add_view(history, "impacts", &History::impacts, "(n,) J");
     add_view(history, "joint_work", &History::joint_work, "(n,) J");
+    add_view(history, "segment_friction", &History::segment_friction,
+             "(n,) J, of free-standing segments on the ground");
+    history.def_property_readonly(
+        "segment_position", [](const History& self) { return of_segments(self, &SegmentHistory::position); },
+        "(n, k, 2) m, foot of the axis of each free-standing segment, world");
+    history.def_property_readonly(
+        "segment_velocity", [](const History& self) { return of_segments(self, &SegmentHistory::velocity); },
+        "(n, k, 2) m/s, of its mass centre, world");
+    history.def_property_readonly(
+        "segment_yaw", [](const History& self) { return of_segments(self, &SegmentHistory::yaw); },
+        "(n, k) rad, from the start");
+    history.def_property_readonly(
+        "segment_yaw_rate", [](const History& self) { return of_segments(self, &SegmentHistory::yaw_rate); },
+        "(n, k) rad/s");
     history.def_readonly("momentum_residual", &History::momentum_residual,
                          "max |m a - sum of forces| / max |force|");
     history.def_property_readonly(

@@ -17,6 +17,7 @@ from .channel_checks import check_channel
 from .comparison import CurveComparison, compare_curves
 from .element_loads import ElementLoad
 from .fragility import fragility
+from .free_standing import FreeStanding
 from .impact_point import critical_impact_point
 from .monte_carlo import monte_carlo
 from .result import Result
@@ -36,6 +37,7 @@ __all__ = [
     "Channel",
     "CurveComparison",
     "ElementLoad",
+    "FreeStanding",
     "Joint",
     "Result",
     "Scene",

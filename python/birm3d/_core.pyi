@@ -6,19 +6,24 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Barrier', 'ContactModel', 'Element', 'EndReason', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tumble']
+__all__: list[str] = ['Barrier', 'ContactModel', 'Element', 'EndReason', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tumble']
 class Barrier:
     """
     Elements that stand on the ground. Immutable.
     """
-    def __init__(self, *, elements: collections.abc.Sequence[Element], friction: typing.SupportsFloat | typing.SupportsIndex, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, *, elements: collections.abc.Sequence[Element], friction: typing.SupportsFloat | typing.SupportsIndex, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, free_standing: collections.abc.Sequence[FreeStanding]) -> None:
         """
-        friction: Coulomb coefficient; origin (3,) m on the barrier's line; heading of it about z, rad.
+        friction: Coulomb coefficient; origin (3,) m on the barrier's line; heading of it about z, rad; free_standing: one, or none where the elements are fixed.
         """
     @property
     def normal(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (3,) of the barrier's line, towards the traffic, world axes
+        """
+    @property
+    def segments(self) -> list[Segment]:
+        """
+        The elements where they are free-standing, else none.
         """
 class ContactModel:
     """
@@ -127,6 +132,14 @@ class EndReason:
     @property
     def value(self) -> int:
         ...
+class FreeStanding:
+    """
+    Segments that slide on the ground.
+    """
+    def __init__(self, *, density: typing.SupportsFloat | typing.SupportsIndex, ground_friction: typing.SupportsFloat | typing.SupportsIndex, joint: SegmentJoint) -> None:
+        """
+        density: kg/m^3; ground_friction: Coulomb coefficient.
+        """
 class History:
     """
     Evenly spaced output of a run; read-only views.
@@ -183,6 +196,31 @@ class History:
     def potential(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) J
+        """
+    @property
+    def segment_friction(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) J, of free-standing segments on the ground
+        """
+    @property
+    def segment_position(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, k, 2) m, foot of the axis of each free-standing segment, world
+        """
+    @property
+    def segment_velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, k, 2) m/s, of its mass centre, world
+        """
+    @property
+    def segment_yaw(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, k) rad, from the start
+        """
+    @property
+    def segment_yaw_rate(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, k) rad/s
         """
     @property
     def stored(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -301,6 +339,72 @@ class ObstacleHistory:
         """
         (n, 3) N m about the element's foot, interval means, world
         """
+class Segment:
+    """
+    A free-standing segment of a barrier.
+    """
+    @property
+    def half_base(self) -> float:
+        """
+        m
+        """
+    @property
+    def half_length(self) -> float:
+        """
+        m
+        """
+    @property
+    def mass(self) -> float:
+        """
+        kg
+        """
+    @property
+    def mass_center_height(self) -> float:
+        """
+        m
+        """
+    @property
+    def yaw_inertia(self) -> float:
+        """
+        kg m^2, about the vertical through the mass centre
+        """
+class SegmentJoint:
+    """
+    Members:
+    
+      pinned
+    
+      loose
+    """
+    __members__: typing.ClassVar[dict[str, SegmentJoint]]  # value = {'pinned': <SegmentJoint.pinned: 0>, 'loose': <SegmentJoint.loose: 1>}
+    loose: typing.ClassVar[SegmentJoint]  # value = <SegmentJoint.loose: 1>
+    pinned: typing.ClassVar[SegmentJoint]  # value = <SegmentJoint.pinned: 0>
+    def __eq__(self, other: typing.Any) -> bool:
+        ...
+    def __getstate__(self) -> int:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __index__(self) -> int:
+        ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None:
+        ...
+    def __int__(self) -> int:
+        ...
+    def __ne__(self, other: typing.Any) -> bool:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None:
+        ...
+    def __str__(self) -> str:
+        ...
+    @property
+    def name(self) -> str:
+        ...
+    @property
+    def value(self) -> int:
+        ...
 class Settings:
     """
     How a scene is computed (SI). Immutable.

@@ -15,6 +15,7 @@ from . import _core
 
 if TYPE_CHECKING:
     from .barrier_kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
+    from .free_standing import FreeStanding
 
 __all__ = ["Barrier"]
 
@@ -187,6 +188,8 @@ class Barrier:
         height: float | None = None,
         length: float | None = None,
         segments: int = 1,
+        free_standing: bool | FreeStanding = False,
+        density: float | None = None,
         friction: float = 0.2,
         origin: Sequence[float] = (0.0, 0.0, 0.0),
         heading: float = 0.0,
@@ -205,6 +208,11 @@ class Barrier:
             Along the line, its middle at the origin [m]; ``None``: without end.
         segments
             Elements of equal length that a barrier of finite length is made of.
+        free_standing
+            Whether the segments only stand on the ground, pinned end to end, and slide when they are hit; a
+            :class:`birm3d.FreeStanding` says more. Fixed barriers do not move.
+        density
+            Of a free-standing barrier [kg/m^3]; ``None``: concrete, 2400. A fixed one has no use for it.
         friction, origin, heading
             See :class:`Barrier`.
 
@@ -214,6 +222,19 @@ class Barrier:
             If a number is out of range; the message names argument, limit and value.
         """
         from .barrier_kinds import Jersey
+        from .free_standing import FreeStanding
+
+        if isinstance(free_standing, FreeStanding):
+            if density is not None:
+                raise ValueError(
+                    f"density must be given in free_standing where that says more, got {density}"
+                )
+            free: FreeStanding | None = free_standing
+        else:
+            if density is not None:
+                density = float(density)
+            stands = FreeStanding(density=density)  # refuses a density that is none
+            free = stands if free_standing else None
 
         points: Any = profile
         if not isinstance(profile, str):
@@ -228,6 +249,7 @@ class Barrier:
             height=None if height is None else float(height),
             length=math.inf if length is None else float(length),
             segments=segments,
+            free_standing=free,
         )
 
     @staticmethod
@@ -280,12 +302,18 @@ class Barrier:
     @cached_property
     def core(self) -> _core.Barrier:
         """The same barrier for the core."""
+        free = self.stands_free()
         return _core.Barrier(
             elements=self.elements(),
             friction=self.friction,
             origin=np.asarray(self.origin, float),
             heading=math.radians(self.heading),
+            free_standing=[] if free is None else [free],
         )
+
+    def stands_free(self) -> _core.FreeStanding | None:
+        """Return how its elements stand free, for the core; ``None`` where they are fixed."""
+        return None
 
     def place(self, across: float, along: float) -> npt.NDArray[np.float64]:
         """Return a point at the foot of the barrier, world axes, shape (3,) [m].

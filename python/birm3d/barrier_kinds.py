@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from . import _core
 from .barrier import Barrier
+from .free_standing import FreeStanding
 
 __all__ = ["PROFILES", "Bollards", "Jersey", "MeshBarrier", "Pole", "RigidWall"]
 
@@ -175,6 +176,7 @@ class Jersey(Barrier):
     height: float | None = None
     length: float = math.inf
     segments: int = 1
+    free_standing: FreeStanding | None = None
 
     _counts: ClassVar = ("segments",)
 
@@ -214,7 +216,19 @@ class Jersey(Barrier):
         base = half[0, 0]
         left = half[::-1] * [-1.0, 1.0]
         corners = np.vstack([[-base, -_FOOT], [base, -_FOOT], half, left])
-        return _along_line(self, corners, base, self.length, self.segments)
+        loose = self.free_standing is not None and self.free_standing.joint == "loose"
+        return _along_line(self, corners, base, self.length, self.segments, abutting=not loose)
+
+    def stands_free(self) -> _core.FreeStanding | None:
+        """Return how its segments stand free, for the core; ``None`` where they are fixed."""
+        if self.free_standing is None:
+            return None
+        if math.isinf(self.length):
+            raise ValueError(f"length must be finite where the barrier is free-standing, got {self.length}")
+        if self.origin[2] != 0.0:
+            raise ValueError(f"origin must be on the ground (z = 0 m) where free-standing, got {self.origin}")
+        half, level = self.half_profile().T
+        return self.free_standing.core(2.0 * float(np.trapezoid(half, level)))
 
     @property
     def element_names(self) -> tuple[str, ...]:
@@ -288,9 +302,9 @@ class MeshBarrier(Barrier):
 
 
 def _along_line(
-    barrier: Barrier, corners: Floats, across: float, length: float, segments: int
+    barrier: Barrier, corners: Floats, across: float, length: float, segments: int, *, abutting: bool = True
 ) -> list[_core.Element]:
-    """Extrude a profile along the line in segments that abut; its first edge stands in the ground."""
+    """Extrude a profile along the line; its first edge is in the ground. Abutting ends are no surface."""
     ends = [-math.inf, math.inf] if math.isinf(length) else np.linspace(-0.5, 0.5, segments + 1) * length
     elements = []
     for i in range(segments):
@@ -302,8 +316,8 @@ def _along_line(
                 y_low=low - middle,
                 y_high=high - middle,
                 covered_edges=[0],
-                covered_low_end=i > 0,
-                covered_high_end=i < segments - 1,
+                covered_low_end=abutting and i > 0,
+                covered_high_end=abutting and i < segments - 1,
                 position=barrier.place(across, middle),
                 heading=math.radians(barrier.heading),
             )

@@ -39,7 +39,7 @@ _SIZES = {
     "rigid_wall": ("width", "height", "thickness", "segments"),
     "pole": ("diameter",),
     "bollards": ("count", "diameter", "height", "spacing", "rows", "row_spacing", "row_offset"),
-    "jersey": ("profile", "height", "length", "segments"),
+    "jersey": ("profile", "height", "length", "segments", "free_standing", "density"),
 }
 
 _OPTIONS = (
@@ -69,6 +69,13 @@ _OPTIONS = (
     ),
     click.option("--length", type=Quantity("length"), help="Of a Jersey barrier.  [default: without end]"),
     click.option("--segments", type=int, help="Of a wall or Jersey barrier that has ends."),
+    click.option(
+        "--free-standing",
+        is_flag=True,
+        default=None,
+        help="Segments of a Jersey barrier slide on the ground, pinned end to end.",
+    ),
+    click.option("--density", type=float, help="Of a free-standing Jersey barrier, kg/m^3.  [default: 2400]"),
     click.option("--friction", type=float, default=0.2, show_default=True, help="Vehicle on barrier."),
     click.option("--speed", type=Quantity("speed"), help="Such as 50mph, 57.09km/h or 15.9 (m/s)."),
     click.option(

@@ -33,7 +33,8 @@ class ElementLoad:
     Forces are those of the vehicle on the element, in world axes (z up): the sum over all elements is
     ``-result.barrier_force``. Moments are about the element's foot: the foot of a post's axis, of a wall's
     segment the middle of its face's foot, of a Jersey segment the middle of its base, of a mesh the barrier's
-    origin. A moment follows the right-hand rule: a force along +x at a height has a moment about +y.
+    origin. A free-standing segment takes its foot along; its line is that at the start.
+    A moment follows the right-hand rule: a force along +x at a height has a moment about +y.
 
     Unfiltered peaks have the blow of the rigid body in one interval where a crush zone is used up; compare
     50-ms means, or filter the histories, where that happens.

@@ -17,11 +17,12 @@ import numpy.typing as npt
 
 from .element_loads import touched_elements
 from .filters import cfc, moving_average
+from .free_standing import lateral_movement
 
 if TYPE_CHECKING:
     from .result import Result
 
-__all__ = ["JOINT_METRICS", "METRIC_UNITS", "compute_metrics"]
+__all__ = ["JOINT_METRICS", "METRIC_UNITS", "SEGMENT_METRICS", "compute_metrics"]
 
 METRIC_UNITS: Mapping[str, str] = MappingProxyType(
     {
@@ -39,6 +40,9 @@ METRIC_UNITS: Mapping[str, str] = MappingProxyType(
         "max_displacement": "m",
         "vehicle_penetration": "m",
         "contact_overlap": "m",
+        "barrier_deflection": "m",
+        "residual_barrier_deflection": "m",
+        "max_overturning_ratio": "",
         "time_of_zero_velocity": "s",
         "restitution": "",
         "delta_v": "m/s",
@@ -61,6 +65,9 @@ METRIC_UNITS: Mapping[str, str] = MappingProxyType(
 
 JOINT_METRICS = ("max_articulation_angle", "peak_joint_force")
 """Those that only a vehicle of two units has."""
+
+SEGMENT_METRICS = ("barrier_deflection", "residual_barrier_deflection", "max_overturning_ratio")
+"""Those that only a free-standing barrier has."""
 
 # Below this speed a direction of travel means nothing, m/s.
 _SLOWEST = 1e-3
@@ -96,6 +103,11 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     begins behind the crush zone; crushed skin in front of it does not count. A body beside the end of a
     barrier counts like one that went through. ASTM F2656 counts otherwise: a stated point of the vehicle
     (of trucks the lower leading edge of the cargo bed) from the barrier's protected side.
+
+    With a free-standing barrier: ``barrier_deflection`` and ``residual_barrier_deflection`` (how far the
+    furthest corner of any segment's base moved square to the line, away from the traffic, during the run and
+    at its end) [m]; where there is gravity ``max_overturning_ratio`` (greatest of
+    :attr:`birm3d.Result.overturning_ratio`: above 1 a segment would begin to tip, which is left out).
 
     With two units: ``max_articulation_angle`` (greatest magnitude) [deg], ``peak_joint_force`` (greatest
     magnitude) [N]. Scalars of motion are those of the leading unit, crushes the greatest of both.
@@ -151,6 +163,12 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     metrics["dynamic_crush"] = _greatest(result, "peak_deflection")
     metrics["residual_crush"] = max(0.0, _greatest(result, "deflection"))
     metrics["contact_overlap"] = statistics.deepest_point
+    if scene.barrier.core.segments:
+        movement = lateral_movement(result)
+        metrics["barrier_deflection"] = float(movement.max())
+        metrics["residual_barrier_deflection"] = float(movement[-1])
+        if scene.settings.gravity > 0.0:
+            metrics["max_overturning_ratio"] = float(result.overturning_ratio.max())
     past = -np.asarray(scene.barrier.core.normal)
     along = abs(math.sin(math.radians(scene.impact_angle))) < _ALONG
     if not along and (names is None or "vehicle_penetration" in names):

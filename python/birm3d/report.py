@@ -55,6 +55,11 @@ def report(result: Result) -> str:
             f"  {vehicle.joint.kind}: peak force {metrics['peak_joint_force']:.3g} N, greatest articulation "
             f"angle {metrics['max_articulation_angle']:.1f} deg"
         )
+    if "barrier_deflection" in metrics:
+        lines.append(
+            f"  the barrier moves by {metrics['barrier_deflection']:.3f} m at the most, "
+            f"{metrics['residual_barrier_deflection']:.3f} m at the end"
+        )
     for load in touched_elements(result):
         lines.append(
             f"  {load.name}: peak 50-ms mean of the force {load.peak_force_50ms / 1e3:.3g} kN at "
@@ -72,12 +77,15 @@ def report(result: Result) -> str:
 def _barrier(barrier: Barrier) -> str:
     names = barrier.element_names
     count = f"{len(names)} elements" if len(names) > 1 else names[0]
+    segments = barrier.core.segments
+    if segments:
+        count += f", free-standing, {segments[0].mass:.0f} kg each"
     return f"to the line of a {type(barrier).__name__} ({count}), friction {barrier.friction:g}"
 
 
 def _left_out(result: Result) -> list[str]:
     scene, settings, statistics = result.scene, result.scene.settings, result.statistics
-    vehicle = scene.vehicle
+    vehicle, metrics = scene.vehicle, result.metrics
     lines = []
     if scene.barrier is None:
         lines.append(f"barrier contact of all {vehicle.n_nodes} nodes: there is no barrier")
@@ -89,6 +97,12 @@ def _left_out(result: Result) -> list[str]:
         units = [result.unit(u) for u in range(len(vehicle.units))]
         touched = sum(int((unit.peak_deflection > 0.0).sum()) for unit in units)
         lines.append(f"the crush of {vehicle.n_nodes - touched} nodes that never touched the barrier")
+        if scene.barrier.core.segments:
+            over = metrics.get("max_overturning_ratio", 0.0)
+            lines.append(
+                "contact of the barrier's segments with each other but through pins, and their tipping: "
+                f"greatest overturning over restoring moment {over:.2f}"
+            )
         if scene.barrier.friction == 0.0:
             lines.append("barrier friction: its coefficient is 0")
     if not settings.ground:

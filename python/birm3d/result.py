@@ -16,6 +16,7 @@ from . import _core, pictures, result_table
 from ._version import __version__
 from .element_loads import ElementLoad, element_loads
 from .frames import Frames, capture, pose
+from .free_standing import is_pinned, overturning_ratio
 from .metrics import compute_metrics
 from .report import report
 from .unit_result import UnitResult, read_only
@@ -200,6 +201,50 @@ class Result:
         """
         return element_loads(self)
 
+    @property
+    def _segments(self) -> int:
+        """How many free-standing segments the barrier has."""
+        barrier = self.scene.barrier
+        return 0 if barrier is None else len(barrier.core.segments)
+
+    @property
+    def segment_position(self) -> Floats:
+        """Foot of the middle of each free-standing segment, world x and y, shape (n, k, 2) [m].
+
+        Segments are those of ``scene.barrier.element_names``; k is 0 where the barrier is fixed.
+        """
+        return self._of_segments("segment_position", (2,))
+
+    @property
+    def segment_velocity(self) -> Floats:
+        """Of the mass centre of each free-standing segment, world x and y, shape (n, k, 2) [m/s]."""
+        return self._of_segments("segment_velocity", (2,))
+
+    @cached_property
+    def segment_yaw(self) -> Floats:
+        """Turn of each free-standing segment since the start, positive to the left, shape (n, k) [deg]."""
+        return read_only(np.degrees(self._of_segments("segment_yaw", ())))
+
+    @cached_property
+    def segment_yaw_rate(self) -> Floats:
+        """Of each free-standing segment, shape (n, k) [deg/s]."""
+        return read_only(np.degrees(self._of_segments("segment_yaw_rate", ())))
+
+    @cached_property
+    def overturning_ratio(self) -> Floats:
+        """Overturning over restoring moment of each free-standing segment, 50-ms means, shape (n, k).
+
+        Above 1 it would begin to tip, which the model leaves out; see
+        :func:`birm3d.free_standing.overturning_ratio`.
+        """
+        return read_only(overturning_ratio(self))
+
+    def _of_segments(self, name: str, more: tuple[int, ...]) -> Floats:
+        if self._segments == 0:  # files of earlier versions have none
+            return read_only(np.zeros((len(self.time), 0, *more)))
+        values: Floats = getattr(self._history, name)
+        return values
+
     @cached_property
     def tire_reaction(self) -> Floats:
         """Normal force under each wheel of all units, shape (n, wheels) [N]; interval means."""
@@ -270,12 +315,16 @@ class Result:
         ``barrier_friction``, ``tire_friction``, ``ground_friction`` (of the body on the ground) and
         ``impacts`` (lost in rigid contacts); their ``total``; and ``residual``, total now less total at the
         start: no work enters from outside.
-        Where units are joined also ``joints``: what the joint's held directions took, zero but for the error
-        of the steps; it has a term of its own so that this error shows and is not mistaken for a loss. What
-        the stops of a fifth wheel take is in ``impacts``.
+        ``kinetic`` is that of all bodies. Where the barrier is free-standing also
+        ``barrier_ground_friction``, what its segments lost to friction on the ground.
+        Where units or segments are joined also ``joints``: what the held directions took, zero but for the
+        error of the steps; it has a term of its own so that this error shows and is not mistaken for a loss.
+        What the stops of a fifth wheel take is in ``impacts``.
         """
         terms = {name: getattr(self._history, name) for name in _ENERGIES}
-        if self.scene.vehicle.joint is not None:
+        if self._segments:
+            terms["barrier_ground_friction"] = self._history.segment_friction
+        if self.scene.vehicle.joint is not None or is_pinned(self.scene.barrier):
             terms["joints"] = self._history.joint_work
         total = np.sum(list(terms.values()), axis=0)
         return MappingProxyType({**terms, "total": read_only(total), "residual": read_only(total - total[0])})

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._version import __version__
-from .metrics import JOINT_METRICS, METRIC_UNITS
+from .metrics import JOINT_METRICS, METRIC_UNITS, SEGMENT_METRICS
 from .progress import progress_bar
 from .scene_parameters import value_of, varied
 from .simulation import Simulation
@@ -102,7 +102,9 @@ def run_study(
 
     names = tuple(names)
     joined = simulation.scene.vehicle.joint is not None or "vehicle" in names
-    wanted = _checked_metrics(metrics, joined)
+    barrier = simulation.scene.barrier
+    free = (barrier is not None and bool(barrier.core.segments)) or "barrier" in names
+    wanted = _checked_metrics(metrics, joined, free)
     table = [tuple(_plain(value) for value in row) for row in rows]
     _check_rows(simulation, names, table)
     units = {name: METRIC_UNITS[name] for name in wanted}
@@ -145,9 +147,10 @@ def run_study(
     return study(outcomes, grid=grid)
 
 
-def _checked_metrics(metrics: Sequence[str] | None, joined: bool) -> tuple[str, ...]:
-    """Return the metrics of a study; those of joints by themselves only where a vehicle may have one."""
-    usual = tuple(name for name in _STUDY_METRICS if joined or name not in JOINT_METRICS)
+def _checked_metrics(metrics: Sequence[str] | None, joined: bool, free: bool) -> tuple[str, ...]:
+    """Return the metrics of a study; those of joints and segments by themselves only where there may be."""
+    absent = (() if joined else JOINT_METRICS) + (() if free else SEGMENT_METRICS)
+    usual = tuple(name for name in _STUDY_METRICS if name not in absent)
     wanted = usual if metrics is None else tuple(dict.fromkeys(metrics))
     if not wanted:
         raise ValueError("metrics must name at least one, got none")

@@ -26,6 +26,7 @@ def _classes() -> Mapping[str, type[Any]]:
     """Return the classes that scenes are made of by the names they have in files."""
     from .articulated import ArticulatedVehicle, Joint
     from .barrier_kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
+    from .free_standing import FreeStanding
     from .mesher import ExteriorMesh
     from .settings import Settings
     from .simulation import Scene
@@ -34,7 +35,7 @@ def _classes() -> Mapping[str, type[Any]]:
 
     known: tuple[type[Any], ...] = (
         *(ArticulatedVehicle, Joint, Vehicle, VehicleFile, ExteriorMesh, Zone),
-        *(RigidWall, Pole, Bollards, Jersey, MeshBarrier),
+        *(RigidWall, Pole, Bollards, Jersey, MeshBarrier, FreeStanding),
         *(Scene, Settings),
     )
     return {kind.__name__: kind for kind in known}

@@ -9,6 +9,7 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from . import units
 from .barrier import Barrier
+from .free_standing import FreeStanding
 from .settings import Settings
 from .simulation import Simulation
 from .toml_document import Document, DocumentError, Strict, frozen, reject
@@ -54,8 +55,33 @@ _BARRIERS: dict[str, dict[str, str]] = {
         "row_spacing_m": "row_spacing",
         "row_offset_m": "row_offset",
     },
-    "jersey": {"profile": "profile", "height_m": "height", "length_m": "length", "segments": "segments"},
+    "jersey": {
+        "profile": "profile",
+        "height_m": "height",
+        "length_m": "length",
+        "segments": "segments",
+        "free_standing": "free_standing",
+        "density_kg_m3": "density",
+    },
 }
+
+
+class _FreeStanding(Strict):
+    """A table in place of ``free_standing = true``; see :class:`birm3d.FreeStanding`."""
+
+    density_kg_m3: float | None = None
+    mass_per_length_kg_m: float | None = None
+    ground_friction: float = FreeStanding.ground_friction
+    joint: Literal["pinned", "loose"] = "pinned"
+
+    def made(self) -> FreeStanding:
+        """Return how the segments stand."""
+        return FreeStanding(
+            density=self.density_kg_m3,
+            mass_per_length=self.mass_per_length_kg_m,
+            ground_friction=self.ground_friction,
+            joint=self.joint,
+        )
 
 
 class _Barrier(Strict):
@@ -76,6 +102,8 @@ class _Barrier(Strict):
     row_offset_m: float | None = None
     profile: str | tuple[tuple[float, float], ...] | None = None
     length_m: float | None = None
+    free_standing: bool | _FreeStanding = False
+    density_kg_m3: float | None = None
 
     @model_validator(mode="after")
     def _check(self) -> _Barrier:
@@ -93,6 +121,8 @@ class _Barrier(Strict):
             for key, argument in _BARRIERS[self.kind].items()
             if key in self.model_fields_set
         }
+        if isinstance(self.free_standing, _FreeStanding):
+            given["free_standing"] = self.free_standing.made()
         barrier: Barrier = getattr(Barrier, self.kind)(
             friction=self.friction, heading=self.heading_deg, **given
         )

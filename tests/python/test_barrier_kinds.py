@@ -11,7 +11,7 @@ from pathlib import Path
 import birm3d
 import numpy as np
 import pytest
-from birm3d import Barrier, Simulation, Vehicle
+from birm3d import Barrier, FreeStanding, Simulation, Vehicle
 from birm3d.barrier_surfaces import barrier_surfaces
 from birm3d.fingerprint import fingerprint
 from birm3d.scene_codec import decode, encode
@@ -36,6 +36,10 @@ KINDS: dict[str, tuple[Barrier, Barrier]] = {
     "jersey": (
         Barrier.jersey(length=6.0, segments=2, origin=(1.0, 2.0, 0.0)),
         Barrier.jersey(profile="f_shape", length=6.0, segments=2, origin=(1.0, 2.0, 0.0)),
+    ),
+    "free-standing": (
+        Barrier.jersey(length=6.0, segments=2, free_standing=FreeStanding(ground_friction=0.4)),
+        Barrier.jersey(length=6.0, segments=2, free_standing=FreeStanding(ground_friction=0.45)),
     ),
     "profile": (
         Barrier.jersey(profile=((0.3, 0.0), (0.1, 0.6)), length=5.0),
@@ -206,6 +210,15 @@ angle = "60 deg"
         ),
         ("kind = 'bollards'", Barrier.bollards()),
         ("kind = 'jersey'", Barrier.jersey()),
+        (
+            "kind = 'jersey'\nlength_m = 6.0\nfree_standing = true\ndensity_kg_m3 = 2300.0",
+            Barrier.jersey(length=6.0, free_standing=True, density=2300.0),
+        ),
+        (
+            "kind = 'jersey'\nlength_m = 6.0\nfree_standing = {joint = 'loose', "
+            "mass_per_length_kg_m = 600.0}",
+            Barrier.jersey(length=6.0, free_standing=FreeStanding(joint="loose", mass_per_length=600.0)),
+        ),
         (
             "kind = 'jersey'\nprofile = 'f_shape'\nheight_m = 1.07\nlength_m = 9.0\nsegments = 3",
             Barrier.jersey(profile="f_shape", height=1.07, length=9.0, segments=3),

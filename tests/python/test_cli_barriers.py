@@ -38,6 +38,10 @@ def birm3d(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
             Barrier.jersey(profile="f_shape", height=42 * units.inch, length=6.0, segments=2),
         ),
         (
+            "--barrier jersey --length 6m --segments 2 --free-standing --density 2300",
+            Barrier.jersey(length=6.0, segments=2, free_standing=True, density=2300.0),
+        ),
+        (
             "--barrier rigid_wall --width 4 --height 1.5 --thickness 0.3 --segments 2 --friction 0.1",
             Barrier.rigid_wall(width=4.0, height=1.5, thickness=0.3, segments=2, friction=0.1),
         ),

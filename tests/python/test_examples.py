@@ -17,6 +17,10 @@ SCRIPTS = {
     "fit_sedan_front.py": (["fit_sedan_front.png"], "in the file"),
     "fit_truck_front.py": (["fit_truck_front.png"], "in the file"),
     "fragility.py": (["fragility.png", "sweep.png"], "dynamic_crush > 0.7 m"),
+    "free_standing_jersey.py": (
+        ["free_standing_jersey.png", "free_standing_jersey_plan.png"],
+        "loose, friction 0.5",
+    ),
     "head_on_sedan.py": (["head_on_sedan.png", "head_on_sedan_overview.png"], "peak_normal_force_cfc60"),
     "oblique_car.py": (["oblique_car.png", "oblique_car_plan.png"], "redirected at"),
     "own_vehicle.py": (["own_vehicle.png"], "trolley"),

@@ -28,7 +28,13 @@ double member_margin(const TrussMesh& mesh, const Twist& motion, double dt) {
 void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyState& state,
                          std::span<const PlacedShape> shapes, const Twist& motion, double dt,
                          std::vector<RigidContact>& contacts) {
-    const double turn = bend(mesh, motion, dt), margin = member_margin(mesh, motion, dt);
+    const auto relative = [&motion](const PlacedShape& shape) {
+        return Twist{motion.velocity - shape.motion.velocity,
+                     motion.angular_velocity - shape.motion.angular_velocity};
+    };
+    double margin = 0.0;
+    for (const PlacedShape& shape : shapes)
+        margin = std::max(margin, member_margin(mesh, relative(shape), dt));
     std::vector<const PlacedShape*> near;
     for (std::size_t b = 0; b < mesh.blocks; ++b) {
         near.clear();
@@ -46,8 +52,9 @@ void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyStat
             }
             if (at == nullptr) continue;
             const Vec3 normal = at->placement.rotation.transpose() * found.normal;
-            const double approach = -normal.dot(motion.velocity + motion.angular_velocity.cross(anchor));
-            if (found.gap >= turn + dt * std::max(0.0, approach)) continue;
+            const Twist there = relative(*at);
+            const double approach = -normal.dot(there.velocity + there.angular_velocity.cross(anchor));
+            if (found.gap >= bend(mesh, there, dt) + dt * std::max(0.0, approach)) continue;
             RigidContact contact;
             contact.source = ContactSource::member;
             contact.index = i;
@@ -78,7 +85,8 @@ Wrench member_friction(std::span<RigidContact> contacts, std::size_t body, const
         if (contact.body != body || contact.source != ContactSource::member) continue;
         contact.rubbing = Vec3::Zero();
         if (!slides(contact)) continue;
-        const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(contact.arm);
+        const Vec3 velocity =
+            motion.velocity + motion.angular_velocity.cross(contact.arm) - contact.sliding_surface;
         const Vec3 sliding = velocity - velocity.dot(contact.normal) * contact.normal;
         contact.rubbing = -contact.friction * contact.impulse / std::max(sliding.norm(), slowest) * sliding;
         sum += {contact.rubbing, contact.arm.cross(contact.rubbing)};

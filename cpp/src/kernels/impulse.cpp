@@ -17,9 +17,15 @@ using Eigen::Index;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Lower triangle; zero for a body that can not be turned.
-Mat3 root_of(const Mat3& inverse_inertia) {
-    if (inverse_inertia.isZero(0.0)) return Mat3::Zero();
-    return inverse_inertia.llt().matrixL();
+Mat3 root_of(const ContactBody& body) {
+    if (body.inverse_inertia.isZero(0.0)) return Mat3::Zero();
+    if (body.level) return Vec3(0.0, 0.0, std::sqrt(body.inverse_inertia(2, 2))).asDiagonal();
+    return body.inverse_inertia.llt().matrixL();
+}
+
+// What of a force moves a body that stands on the ground.
+Vec3 along_ground(const Vec3& force) {
+    return {force.x(), force.y(), 0.0};
 }
 
 }  // namespace
@@ -39,6 +45,9 @@ double separation_velocity(const RigidContact& contact, std::span<const ContactB
 double inverse_effective_mass(const RigidContact& contact, std::span<const ContactBody> bodies) {
     const auto of = [&contact](const ContactBody& body, const Vec3& arm) {
         const Wrench wrench = unit_wrench(contact, arm);
+        if (body.level)
+            return body.inverse_mass * along_ground(wrench.force).squaredNorm() +
+                   body.inverse_inertia(2, 2) * wrench.torque.z() * wrench.torque.z();
         return body.inverse_mass * wrench.force.squaredNorm() +
                wrench.torque.dot(body.inverse_inertia * wrench.torque);
     };
@@ -53,7 +62,7 @@ ImpulseSolver::ImpulseSolver(std::span<const RigidContact> contacts, std::span<c
       motion_(Eigen::VectorXd::Zero(6 * static_cast<Index>(bodies.size()))) {
     roots_.reserve(bodies.size());
     for (const ContactBody& body : bodies)
-        roots_.push_back({std::sqrt(body.inverse_mass), root_of(body.inverse_inertia)});
+        roots_.push_back({std::sqrt(body.inverse_mass), root_of(body), body.level});
     rows_.reserve(contacts.size());
     for (const RigidContact& contact : contacts) {
         Row row{contact.body, contact.other, {}, Vec6::Zero()};
@@ -100,7 +109,7 @@ void ImpulseSolver::solve(std::span<RigidContact> contacts, std::span<ContactBod
 
 ImpulseSolver::Vec6 ImpulseSolver::in_unit_mass(const Wrench& wrench, std::size_t body) const {
     Vec6 g;
-    g.head<3>() = roots_[body].mass * wrench.force;
+    g.head<3>() = roots_[body].mass * (roots_[body].level ? along_ground(wrench.force) : wrench.force);
     g.tail<3>() = roots_[body].inertia.transpose() * wrench.torque;
     return g;
 }

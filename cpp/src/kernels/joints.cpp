@@ -37,6 +37,14 @@ void find_joint_rows(const Joint& joint, std::size_t index, const BodyState& lea
     row.other_arm = middle - trailing.position;
     row.compliance = tolerance::body_compliance;
     row.held = true;
+    if (joint.kind == JointKind::pinned) {
+        for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY())}) {
+            row.normal = direction;
+            row.gap = held_gap(joint, row, leading, trailing);
+            rows.push_back(row);
+        }
+        return;
+    }
     const auto hold_along_axes = [&] {
         for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())}) {
             row.normal = direction;

@@ -6,14 +6,47 @@
 #include <utility>
 
 #include "birm3d/base/error.hpp"
+#include "birm3d/base/tolerances.hpp"
 
 namespace birm3d {
 
-Barrier::Barrier(std::vector<Element> elements_, double friction_, const Vec3& origin_, double heading_)
+namespace {
+
+Vec3 end_of(const Element& element, double y) {
+    return element.position + Eigen::AngleAxisd(element.heading, Vec3::UnitZ()) * Vec3(0.0, y, 0.0);
+}
+
+// Solids of the elements; refuses those that can not stand free, and pinned ones whose ends do not meet.
+std::vector<Segment> segments_of(const std::vector<Element>& elements, const FreeStanding& free) {
+    require_not_negative("ground_friction", free.ground_friction);
+    std::vector<Segment> segments;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        const std::string name = "elements[" + std::to_string(i) + "]";
+        const auto* prism = std::get_if<Prism>(&elements[i].shape);
+        if (prism == nullptr) refuse(name, "a prism where it is free-standing", "another shape");
+        if (elements[i].position.z() != 0.0)
+            refuse(name + " height", "0 m where it is free-standing", elements[i].position.z());
+        segments.push_back(segment_of(*prism, free.density));
+        if (i == 0 || free.joint == SegmentJoint::loose) continue;
+        const double apart = (end_of(elements[i - 1], segments[i - 1].half_length) -
+                              end_of(elements[i], -segments[i].half_length))
+                                 .norm();
+        if (!(apart <= tolerance::joint_fit))
+            refuse("distance of the pinned ends of " + name + " and the one before it",
+                   "<= " + to_text(tolerance::joint_fit) + " m", apart);
+    }
+    return segments;
+}
+
+}  // namespace
+
+Barrier::Barrier(std::vector<Element> elements_, double friction_, const Vec3& origin_, double heading_,
+                 const std::optional<FreeStanding>& free_standing_)
     : elements(std::move(elements_)),
       friction(require_not_negative("friction", friction_)),
       origin(origin_),
-      heading(require_finite("heading", heading_)) {
+      heading(require_finite("heading", heading_)),
+      free_standing(free_standing_) {
     if (!origin.allFinite()) refuse("origin", "finite", "a coordinate that is not");
     if (elements.empty()) refuse("elements", "at least 1", 0.0);
     for (std::size_t i = 0; i < elements.size(); ++i) {
@@ -22,16 +55,17 @@ Barrier::Barrier(std::vector<Element> elements_, double friction_, const Vec3& o
             refuse(name + "position", "finite", "a coordinate that is not");
         require_finite((name + "heading").c_str(), elements[i].heading);
     }
+    if (free_standing) segments = segments_of(elements, *free_standing);
 }
 
 Barrier Barrier::wall(double friction, const Vec3& origin, double heading) {
-    return {{{HalfSpace{}, origin, heading}}, friction, origin, heading};
+    return {{{HalfSpace{}, origin, heading}}, friction, origin, heading, {}};
 }
 
 Barrier Barrier::pole(double friction, const Vec3& origin, double heading, double radius) {
     require_positive("radius", radius);
     const Post post{radius, std::numeric_limits<double>::infinity()};
-    return {{{post, origin, heading}}, friction, origin, heading};
+    return {{{post, origin, heading}}, friction, origin, heading, {}};
 }
 
 Vec3 Barrier::normal() const {

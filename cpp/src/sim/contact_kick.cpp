@@ -1,15 +1,19 @@
 #include "birm3d/sim/contact_kick.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/closed_members.hpp"
+#include "birm3d/kernels/ground_slide.hpp"
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/kernels/joints.hpp"
 #include "birm3d/kernels/tires.hpp"
+#include "birm3d/sim/bodies.hpp"
+#include "birm3d/sim/obstacles.hpp"
 
 namespace birm3d {
 
@@ -36,6 +40,91 @@ bool stayed(const std::vector<RigidContact>& contacts, Column& last) {
     return change <= tolerance::friction_settled * sum;
 }
 
+// Have the frictions of segments on the ground?
+bool stayed(const std::vector<Wrench>& on_base, std::vector<Wrench>& last) {
+    last.resize(on_base.size());
+    double sum = 0.0, change = 0.0;
+    for (std::size_t i = 0; i < on_base.size(); ++i) {
+        sum += on_base[i].force.norm();
+        change = std::max(change, (on_base[i].force - last[i].force).norm());
+        last[i] = on_base[i];
+    }
+    constexpr double settled = 1e-6;  // what holds a corner that is all but at rest hangs on rounding
+    return change <= settled * sum;
+}
+
+// Greatest friction impulse of the ground on each segment (N s).
+Column friction_limits(const Scene& scene, const Column& pressed, const ContactKick& kicked) {
+    Column limits = pressed;
+    for (const RigidContact& contact : kicked.contacts)
+        if (contact.source == ContactSource::member && contact.other >= 0)
+            limits[contact.obstacle] += contact.impulse * contact.normal.z() + contact.rubbing.z();
+    for (double& limit : limits)
+        limit = scene.barrier->free_standing->ground_friction * std::max(0.0, limit);
+    return limits;
+}
+
+// What friction holds is at rest but for rounding, and for what pins and friction leave to each other; then it is at
+// rest. Share of the speed that friction can take from a segment which it may have left.
+void bring_to_rest(const Scene& scene, const Column& limits, State& state) {
+    constexpr double left_over = 1e-4;
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+        const Segment& segment = scene.barrier->segments[i];
+        BodyState& body = state.segments[i];
+        if (fastest_point(segment, body) <= left_over * segment.body.inverse_mass * limits[i])
+            body.velocity = body.angular_momentum = Vec3::Zero();
+    }
+}
+
+// Friction of the ground on each segment, on top of what else moves it; pins are found with it.
+void rub_on_ground(const Scene& scene, const std::vector<ContactBody>& bodies, const Column& pressed,
+                   ContactKick& kicked, State& state) {
+    const std::size_t units = state.units.size();
+    std::vector<PinnedSlab> slabs;
+    std::vector<SlabPin> pins;
+    const Column limits = friction_limits(scene, pressed, kicked);
+    bool any = false;  // does anything move?
+    const bool guessed = std::any_of(kicked.on_base.begin(), kicked.on_base.end(),
+                                     [](const Wrench& friction) { return !friction.force.isZero(0.0); });
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+        const Segment& segment = scene.barrier->segments[i];
+        PinnedSlab slab{
+            &segment.body, {}, limits[i], twist(segment.body, state.segments[i]), bodies[units + i].motion};
+        slab.motion.velocity -= segment.body.inverse_mass * kicked.on_base[i].force;
+        slab.motion.angular_velocity -= segment.body.inverse_inertia * kicked.on_base[i].torque;
+        for (std::size_t c = 0; c < slab.arm.size(); ++c)
+            slab.arm[c] = state.segments[i].orientation * segment.corner[c];
+        slabs.push_back(slab);
+    }
+    for (const RigidContact& contact : kicked.contacts) {
+        const bool is_pin = contact.body >= units;
+        if (is_pin) {
+            const auto on = [&](const Vec3& arm, double sign) {
+                const Wrench unit = unit_wrench(contact, arm);
+                return Vec3(sign * unit.force.x(), sign * unit.force.y(), sign * unit.torque.z());
+            };
+            pins.push_back({contact.body - units, static_cast<std::size_t>(contact.other) - units,
+                            on(contact.arm, 1.0), on(contact.other_arm, -1.0), contact.target});
+        } else if (contact.source == ContactSource::member && contact.other >= 0) {
+            const Wrench push = wrench_on_other(contact);
+            PinnedSlab& slab = slabs[contact.obstacle];
+            slab.motion.velocity += slab.body->inverse_mass * Vec3(push.force.x(), push.force.y(), 0.0);
+            slab.motion.angular_velocity.z() += slab.body->inverse_inertia(2, 2) * push.torque.z();
+        }
+    }
+    for (const PinnedSlab& slab : slabs)
+        any = any || !slab.motion.velocity.isZero(0.0) || !slab.motion.angular_velocity.isZero(0.0);
+    std::vector<Wrench> next(slabs.size());
+    if (any && !pins.empty()) next = slide_friction(slabs, pins, guessed);
+    if (any && pins.empty())
+        for (std::size_t i = 0; i < slabs.size(); ++i)
+            next[i] = slide_friction(*slabs[i].body, slabs[i].arm, slabs[i].limit, slabs[i].motion);
+    for (std::size_t i = 0; i < next.size(); ++i) {
+        kick_body(scene, units + i, difference(next[i], kicked.on_base[i]), state);
+        kicked.on_base[i] = next[i];
+    }
+}
+
 // Normal impulses of the tyres by wheel.
 void tire_impulses(const Scene& scene, const std::vector<RigidContact>& contacts, std::vector<Column>& tire) {
     for (std::size_t u = 0; u < tire.size(); ++u)
@@ -45,17 +134,26 @@ void tire_impulses(const Scene& scene, const std::vector<RigidContact>& contacts
 }
 
 // Solves for the impulses of contacts and their friction on top of the bodies' motion, and kicks the bodies.
-void kick_by_contacts(const Scene& scene, std::vector<ContactBody>& bodies, ImpulseSolver& solver,
-                      ContactKick& kicked, State& state) {
+void kick_by_contacts(const Scene& scene, const Column& pressed, std::vector<ContactBody>& bodies,
+                      ImpulseSolver& solver, ContactKick& kicked, State& state) {
     const std::size_t units = state.units.size();
     kicked.on_ground.assign(units, {});
-    kicked.on_members.assign(units, {});
+    kicked.on_members.assign(bodies.size(), {});
     const std::vector<Twist> motion = motions(scene, state);
+    // What a round before this one has found is where the search begins.
+    kicked.on_base.resize(state.segments.size());
+    for (std::size_t i = 0; i < kicked.on_base.size(); ++i)
+        kick_body(scene, units + i, kicked.on_base[i], state);
+    for (RigidContact& contact : kicked.contacts) {
+        if (contact.source != ContactSource::member || contact.other < 0) continue;
+        const Twist& other = motion[static_cast<std::size_t>(contact.other)];
+        contact.sliding_surface = other.velocity + other.angular_velocity.cross(contact.other_arm);
+    }
     std::vector<Column> tire(units);
     const auto solve = [&] {
-        for (std::size_t u = 0; u < units; ++u) {
-            const BodyState& now = state.units[u].body;
-            bodies[u].motion = {now.velocity, bodies[u].inverse_inertia * now.angular_momentum};
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+            const BodyState& now = body_state(state, b);
+            bodies[b].motion = {now.velocity, bodies[b].inverse_inertia * now.angular_momentum};
         }
         solver.solve(kicked.contacts, bodies);
         tire_impulses(scene, kicked.contacts, tire);
@@ -64,30 +162,41 @@ void kick_by_contacts(const Scene& scene, std::vector<ContactBody>& bodies, Impu
     // Friction follows from the normal impulses and tips the body, which changes them: to and fro, until they stay.
     constexpr int most_rounds = 30;
     Column last;
+    std::vector<Wrench> last_on_base;
     for (int round = 0; round < most_rounds; ++round) {
-        if (stayed(kicked.contacts, last)) break;
+        const bool pushes_stay = stayed(kicked.contacts, last);
+        const bool frictions_stay = round > 0 && stayed(kicked.on_base, last_on_base);
+        if (pushes_stay && (frictions_stay || state.segments.empty())) break;
+        // Of both sides of closed trusses.
+        std::vector<Wrench> on_members(bodies.size());
         for (std::size_t u = 0; u < units; ++u) {
             const Unit& unit = scene.vehicle->units[u];
             BodyState& body = state.units[u].body;
             const Wrench on_ground = tire_friction(unit, scene.settings, body, motion[u], tire[u]);
-            const Wrench on_members =
+            on_members[u] =
                 member_friction(kicked.contacts, u, unit.body,
                                 tolerance::full_friction_speed * scene.reference_speed(), motion[u]);
             kick(unit.body, difference(on_ground, kicked.on_ground[u]), body);
-            kick(unit.body, difference(on_members, kicked.on_members[u]), body);
+            kick(unit.body, difference(on_members[u], kicked.on_members[u]), body);
             kicked.on_ground[u] = on_ground;
-            kicked.on_members[u] = on_members;
         }
-        if (!slides(kicked)) break;
+        for (const RigidContact& contact : kicked.contacts)
+            if (contact.source == ContactSource::member && contact.other >= 0)
+                on_members[static_cast<std::size_t>(contact.other)] +=
+                    {-contact.rubbing, -contact.other_arm.cross(contact.rubbing)};
+        for (std::size_t b = units; b < bodies.size(); ++b)
+            kick_body(scene, b, difference(on_members[b], kicked.on_members[b]), state);
+        kicked.on_members = on_members;
+        rub_on_ground(scene, bodies, pressed, kicked, state);
+        if (state.segments.empty() && !slides(kicked)) break;
         solve();
     }
     for (const RigidContact& contact : kicked.contacts) {
-        const auto push = [&](std::size_t u, const Wrench& impulse) {
-            kick(scene.vehicle->units[u].body, impulse, state.units[u].body);
-        };
-        push(contact.body, wrench_on_body(contact));
-        if (contact.other >= 0) push(static_cast<std::size_t>(contact.other), wrench_on_other(contact));
+        kick_body(scene, contact.body, wrench_on_body(contact), state);
+        if (contact.other >= 0)
+            kick_body(scene, static_cast<std::size_t>(contact.other), wrench_on_other(contact), state);
     }
+    bring_to_rest(scene, friction_limits(scene, pressed, kicked), state);
 }
 
 // `impulse` on the unit, friction included.
@@ -98,21 +207,21 @@ void add_to_obstacle(const Scene& scene, const State& state, const RigidContact&
     if (sum == sums.end()) sum = sums.insert(sums.end(), {contact.obstacle, Vec3::Zero(), Vec3::Zero()});
     const Vec3 place = state.units[contact.body].body.position + contact.arm;
     sum->impulse += impulse;
-    sum->torque -= (place - scene.obstacles[contact.obstacle].position).cross(impulse);
+    sum->torque -= (place - pose_of(scene, contact.obstacle, state).position).cross(impulse);
 }
 
 // Takes what would be left of the joints' gaps at the end of the drift from their targets; returns the greatest.
 double correct_targets(const Scene& scene, const State& kicked, double dt,
                        std::vector<RigidContact>& contacts) {
     std::vector<BodyState> bodies;
-    for (std::size_t u = 0; u < kicked.units.size(); ++u) {
-        bodies.push_back(kicked.units[u].body);
-        drift(scene.vehicle->units[u].body, dt, bodies.back());
+    for (std::size_t b = 0; b < body_count(kicked); ++b) {
+        bodies.push_back(body_state(kicked, b));
+        drift(rigid_body(scene, b), dt, bodies.back());
     }
     double widest = 0.0;
     for (RigidContact& contact : contacts) {
         if (!contact.held) continue;
-        const Joint& joint = scene.vehicle->joints[contact.index];
+        const Joint& joint = scene.joints[contact.index];
         const double gap = held_gap(joint, contact, bodies[joint.leading], bodies[joint.trailing]);
         contact.target -= gap / dt;
         widest = std::max(widest, std::abs(gap));
@@ -136,46 +245,61 @@ Twist mean(const Twist& a, const Twist& b) {
 
 std::vector<Twist> motions(const Scene& scene, const State& state) {
     std::vector<Twist> result;
-    for (std::size_t u = 0; u < state.units.size(); ++u)
-        result.push_back(twist(scene.vehicle->units[u].body, state.units[u].body));
+    for (std::size_t b = 0; b < body_count(state); ++b)
+        result.push_back(twist(rigid_body(scene, b), body_state(state, b)));
     return result;
+}
+
+Twist relative_motion(const Scene& scene, const State& state, std::size_t u, std::size_t obstacle,
+                      std::span<const Twist> before, std::span<const Twist> after) {
+    Twist motion = mean(before[u], after[u]);
+    const int other = body_of_obstacle(scene, obstacle);
+    if (other < 0) return motion;
+    const auto b = static_cast<std::size_t>(other);
+    const Twist of = mean(before[b], after[b]);
+    motion.velocity -=
+        of.velocity + of.angular_velocity.cross(state.units[u].body.position - body_state(state, b).position);
+    motion.angular_velocity -= of.angular_velocity;
+    return motion;
 }
 
 std::vector<ContactBody> contact_bodies(const Scene& scene, const State& state) {
     std::vector<ContactBody> bodies;
-    for (std::size_t u = 0; u < state.units.size(); ++u) {
-        const RigidBody& body = scene.vehicle->units[u].body;
-        const BodyState& now = state.units[u].body;
-        bodies.push_back({body.inverse_mass, inverse_inertia_in_world(body, now), twist(body, now)});
+    for (std::size_t b = 0; b < body_count(state); ++b) {
+        const RigidBody& body = rigid_body(scene, b);
+        const BodyState& now = body_state(state, b);
+        bodies.push_back({body.inverse_mass, inverse_inertia_in_world(body, now), twist(body, now),
+                          b >= state.units.size()});
     }
     return bodies;
 }
 
-ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> contacts, State& state) {
-    if (contacts.empty()) return {};
-    ContactKick kicked{std::move(contacts), {}, {}};
+ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> contacts, const Column& pressed,
+                             State& state) {
+    if (contacts.empty() && pressed.empty()) return {};
+    ContactKick kicked{std::move(contacts), {}, {}, {}};
     std::vector<ContactBody> bodies = contact_bodies(scene, state);
     ImpulseSolver solver(kicked.contacts, bodies, scene.reference_speed());
-    kick_by_contacts(scene, bodies, solver, kicked, state);
+    kick_by_contacts(scene, pressed, bodies, solver, kicked, state);
     return kicked;
 }
 
 ContactKick kick_towards_closed_joints(const Scene& scene, double dt, std::vector<RigidContact> contacts,
-                                       State& state) {
-    if (scene.vehicle->joints.empty()) return kick_by_contacts(scene, std::move(contacts), state);
+                                       const Column& pressed, State& state) {
+    if (scene.joints.empty()) return kick_by_contacts(scene, std::move(contacts), pressed, state);
     std::vector<BodyState> start;
-    for (const UnitState& unit : state.units)
-        start.push_back(unit.body);
-    ContactKick kicked{std::move(contacts), {}, {}};
+    for (std::size_t b = 0; b < body_count(state); ++b)
+        start.push_back(body_state(state, b));
+    ContactKick kicked{std::move(contacts), {}, {}, {}};
     std::vector<ContactBody> bodies = contact_bodies(scene, state);
     ImpulseSolver solver(kicked.contacts, bodies, scene.reference_speed());
     // Each round leaves about omega dt of the gap.
     constexpr int most_rounds = 20;
     double last = infinity;
     for (int round = 0; round < most_rounds; ++round) {
-        for (std::size_t u = 0; u < start.size(); ++u)
-            state.units[u].body = start[u];
-        kick_by_contacts(scene, bodies, solver, kicked, state);
+        for (std::size_t b = 0; b < start.size(); ++b)
+            body_state(state, b) = start[b];
+        kick_by_contacts(scene, pressed, bodies, solver, kicked, state);
         const double gap = correct_targets(scene, state, dt, kicked.contacts);
         if (gap <= tolerance::joint_gap || gap >= last) break;
         last = gap;
@@ -189,6 +313,7 @@ void add_impulses(const Scene& scene, const State& state, const ContactKick& kic
     for (std::size_t u = 0; u < sums.size(); ++u)
         sums[u].tire_friction += kicked.on_ground[u].force;
     for (const RigidContact& contact : kicked.contacts) {
+        if (contact.body >= sums.size()) continue;  // a pin between segments
         const Vec3 impulse = contact.impulse * contact.normal;
         ContactImpulses& sum = sums[contact.body];
         switch (contact.source) {
@@ -215,9 +340,10 @@ void add_impulses(const Scene& scene, const State& state, const ContactKick& kic
 
 void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vector<Twist>& before,
                    const std::vector<Twist>& after, State& state) {
-    if (kicked.contacts.empty()) return;
     const auto motion = [&](std::size_t u) { return mean(before[u], after[u]); };
-    for (std::size_t u = 0; u < state.units.size(); ++u)
+    for (std::size_t i = 0; i < kicked.on_base.size(); ++i)
+        state.energies.segment_friction -= power(kicked.on_base[i], motion(state.units.size() + i));
+    for (std::size_t u = 0; u < kicked.on_ground.size(); ++u)
         state.energies.tire_friction -= power(kicked.on_ground[u], motion(u));
     for (const RigidContact& contact : kicked.contacts) {
         double work = power(wrench_on_body(contact), motion(contact.body));
@@ -226,7 +352,8 @@ void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vec
         (contact.held ? state.energies.joints : state.energies.impacts) -= work;
         if (contact.source == ContactSource::member)
             friction_of(scene, contact.obstacle, state.energies) -=
-                power({contact.rubbing, contact.arm.cross(contact.rubbing)}, motion(contact.body));
+                power({contact.rubbing, contact.arm.cross(contact.rubbing)},
+                      relative_motion(scene, state, contact.body, contact.obstacle, before, after));
     }
 }
 

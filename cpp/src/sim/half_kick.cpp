@@ -12,6 +12,7 @@
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/kernels/joints.hpp"
 #include "birm3d/kernels/tires.hpp"
+#include "birm3d/sim/bodies.hpp"
 #include "birm3d/sim/contact_kick.hpp"
 #include "birm3d/sim/obstacles.hpp"
 
@@ -37,16 +38,28 @@ std::vector<RigidContact> find_rigid_contacts(const Scene& scene, const State& s
         for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
             if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
             const Obstacle& obstacle = scene.obstacles[i];
-            const Placement seen = placement(obstacle, body);
-            if (within_reach(obstacle.shape, seen, anchors, member_margin(unit.trusses, motion, dt)))
-                placed.push_back({&obstacle.shape, seen, i, obstacle.friction});
+            const Placement seen = placement(pose_of(scene, i, state), body);
+            const Twist other = obstacle_motion(scene, i, state, body);
+            const Twist relative{motion.velocity - other.velocity,
+                                 motion.angular_velocity - other.angular_velocity};
+            if (within_reach(obstacle.shape, seen, anchors, member_margin(unit.trusses, relative, dt)))
+                placed.push_back({&obstacle.shape, seen, i, obstacle.friction, other});
         }
-        if (!placed.empty()) find_closed_members(unit.trusses, u, body, placed, motion, dt, contacts);
+        if (placed.empty()) continue;
+        const std::size_t first = contacts.size();
+        find_closed_members(unit.trusses, u, body, placed, motion, dt, contacts);
+        for (std::size_t i = first; i < contacts.size(); ++i) {
+            RigidContact& contact = contacts[i];
+            contact.other = body_of_obstacle(scene, contact.obstacle);
+            if (contact.other >= 0)
+                contact.other_arm = contact.arm + body.position -
+                                    body_state(state, static_cast<std::size_t>(contact.other)).position;
+        }
     }
-    const std::vector<Joint>& joints = scene.vehicle->joints;
+    const std::vector<Joint>& joints = scene.joints;
     for (std::size_t j = 0; j < joints.size(); ++j)
-        find_joint_rows(joints[j], j, state.units[joints[j].leading].body,
-                        state.units[joints[j].trailing].body, contacts);
+        find_joint_rows(joints[j], j, body_state(state, joints[j].leading),
+                        body_state(state, joints[j].trailing), contacts);
     return contacts;
 }
 
@@ -102,7 +115,11 @@ double time_to_impact(std::span<const ContactBody> bodies, const std::vector<Rig
     return earliest;
 }
 
-void kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial) {
+// Returns with what impulse each free-standing segment presses on the ground: its weight and what pushes it down (N s).
+Column kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial) {
+    Column pressed(trial.state.segments.size());
+    for (std::size_t i = 0; i < pressed.size(); ++i)
+        pressed[i] = half * scene.barrier->segments[i].body.mass * scene.settings.gravity;
     for (std::size_t u = 0; u < trial.state.units.size(); ++u) {
         const RigidBody& body = scene.vehicle->units[u].body;
         UnitState& unit = trial.state.units[u];
@@ -112,10 +129,15 @@ void kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial) 
             load += stage == Stage::before_drift ? touch.extra.lead
                                                  : difference(touch.extra.correction, touch.extra.lead);
             impulse += load.wrench;
+            const int segment = body_of_obstacle(scene, touch.obstacle);
+            if (segment < 0) continue;
+            kick_body(scene, static_cast<std::size_t>(segment), reaction_of(load), trial.state);
+            pressed[touch.obstacle] += load.wrench.force.z();
         }
         impulse.force.z() -= half * body.mass * scene.settings.gravity;
         kick(body, impulse, unit.body);
     }
+    return pressed;
 }
 
 void book_forces(const Scene& scene, const std::vector<Twist>& before, const std::vector<Twist>& after,
@@ -123,19 +145,20 @@ void book_forces(const Scene& scene, const std::vector<Twist>& before, const std
     for (std::size_t u = 0; u < state.units.size(); ++u)
         for (const Touch& touch : state.units[u].touches)
             friction_of(scene, touch.obstacle, state.energies) -=
-                half * power(touch.friction, mean(before[u], after[u]));
+                half * power(touch.friction, relative_motion(scene, state, u, touch.obstacle, before, after));
 }
 
 // State and energies beside an impact.
 void keep(const Scene& scene, const State& state, Impact& impact) {
     impact.happened = true;
     impact.bodies.clear();
+    impact.segments = state.segments;
     impact.energies = state.energies;
     impact.energies.kinetic = 0.0;
-    for (std::size_t u = 0; u < state.units.size(); ++u) {
-        impact.bodies.push_back(state.units[u].body);
-        impact.energies.kinetic += kinetic_energy(scene.vehicle->units[u].body, state.units[u].body);
-    }
+    for (const UnitState& unit : state.units)
+        impact.bodies.push_back(unit.body);
+    for (std::size_t body = 0; body < body_count(state); ++body)
+        impact.energies.kinetic += kinetic_energy(rigid_body(scene, body), body_state(state, body));
 }
 
 // An impact takes no time: it stands apart from the forces of the step, in the ledger and in the record.
@@ -149,7 +172,8 @@ void impact_at_once(const Scene& scene, Stage stage, double reach, std::vector<R
     Impact& impact = start ? trial.at_start : trial.at_end;
     if (!start) keep(scene, state, impact);
     const std::vector<Twist> before = motions(scene, state);
-    const ContactKick kicked = kick_by_contacts(scene, std::move(contacts), state);
+    const ContactKick kicked =
+        kick_by_contacts(scene, std::move(contacts), Column(state.segments.size()), state);
     add_impulses(scene, state, kicked, impact.impulses, impact.joint_impulses);
     book_contacts(scene, kicked, before, motions(scene, state), state);
     if (start) keep(scene, state, impact);
@@ -175,8 +199,8 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     }
 
     const std::vector<Twist> before = motions(scene, state);
-    kick_by_forces(scene, stage, half, trial);
-    if (contacts.empty()) {
+    const Column pressed = kick_by_forces(scene, stage, half, trial);
+    if (contacts.empty() && pressed.empty()) {
         book_forces(scene, before, motions(scene, state), half, state);
         return;
     }
@@ -185,9 +209,10 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     if (stage == Stage::before_drift && options.locate_impacts)
         trial.impact_after = time_to_impact(bodies, contacts);
     set_lasting_targets(stage, trial.dt, trial.impulses, bodies, lasting);
-    const ContactKick kicked = stage == Stage::before_drift
-                                   ? kick_towards_closed_joints(scene, trial.dt, std::move(lasting), state)
-                                   : kick_by_contacts(scene, std::move(lasting), state);
+    const ContactKick kicked =
+        stage == Stage::before_drift
+            ? kick_towards_closed_joints(scene, trial.dt, std::move(lasting), pressed, state)
+            : kick_by_contacts(scene, std::move(lasting), pressed, state);
     add_impulses(scene, state, kicked, trial.impulses, trial.joint_impulses);
     const std::vector<Twist> after = motions(scene, state);
     book_forces(scene, before, after, half, state);

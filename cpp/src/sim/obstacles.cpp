@@ -1,6 +1,7 @@
 #include "birm3d/sim/obstacles.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "birm3d/kernels/dent.hpp"
 #include "birm3d/kernels/detect.hpp"
 #include "birm3d/kernels/integrate.hpp"
+#include "birm3d/sim/bodies.hpp"
 
 namespace birm3d {
 
@@ -48,27 +50,50 @@ double nearest_in_blocks(const Shape& shape, const Placement& seen, std::size_t 
 
 }  // namespace
 
-Placement placement(const Obstacle& obstacle, const BodyState& seen_from) {
+Pose pose_of(const Scene& scene, std::size_t i, const State& state) {
+    const Obstacle& obstacle = scene.obstacles[i];
+    if (i >= state.segments.size()) return {obstacle.rotation, obstacle.position};
+    const BodyState& segment = state.segments[i];
+    return {segment.orientation.toRotationMatrix(),
+            segment.position - scene.barrier->segments[i].mass_center_height * Vec3::UnitZ()};
+}
+
+Twist obstacle_motion(const Scene& scene, std::size_t i, const State& state, const BodyState& seen_from) {
+    if (i >= state.segments.size()) return {};
+    const BodyState& segment = state.segments[i];
+    const Mat3 R = seen_from.orientation.toRotationMatrix();
+    const Vec3 spin = angular_velocity(scene.barrier->segments[i].body, segment);
+    return {R.transpose() * (segment.velocity + spin.cross(seen_from.position - segment.position)),
+            R.transpose() * spin};
+}
+
+Placement placement(const Pose& obstacle, const BodyState& seen_from) {
     const Mat3 to_own = obstacle.rotation.transpose();
     return {to_own * seen_from.orientation.toRotationMatrix(),
             to_own * (seen_from.position - obstacle.position)};
 }
 
-void find_near(const Scene& scene, std::size_t u, const UnitState& before, const BodyState& now,
-               double margin, std::vector<NearObstacle>& near) {
+void find_near(const Scene& scene, std::size_t u, const State& before, const State& now, double margin,
+               std::vector<NearObstacle>& near) {
     near.clear();
-    const Box box = everything(scene.vehicle->units[u].trusses, before.trusses);
+    const Box box = everything(scene.vehicle->units[u].trusses, before.units[u].trusses);
     for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
         if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
-        const Obstacle& obstacle = scene.obstacles[i];
-        const Placement seen = placement(obstacle, now);
-        if (within_reach(obstacle.shape, seen, box, margin))
-            near.push_back({i, seen, placement(obstacle, before.body)});
+        const Placement seen = placement(pose_of(scene, i, now), now.units[u].body);
+        if (within_reach(scene.obstacles[i].shape, seen, box, margin))
+            near.push_back({i, seen, placement(pose_of(scene, i, before), before.units[u].body)});
     }
 }
 
 double fastest_point(const Unit& unit, const BodyState& body) {
     return body.velocity.norm() + angular_velocity(unit.body, body).norm() * unit.trusses.reach;
+}
+
+double fastest_segment(const Scene& scene, const State& state) {
+    double fastest = 0.0;
+    for (std::size_t i = 0; i < state.segments.size(); ++i)
+        fastest = std::max(fastest, fastest_point(scene.barrier->segments[i], state.segments[i]));
+    return fastest;
 }
 
 double nearest_gap(const Scene& scene, const State& state, const Nearness& what) {
@@ -80,7 +105,7 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
         for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
             if (i == scene.ground && !(what.ground && scene.skin_meets_ground[u])) continue;
             const Shape& shape = scene.obstacles[i].shape;
-            const Placement seen = placement(scene.obstacles[i], unit.body);
+            const Placement seen = placement(pose_of(scene, i, state), unit.body);
             if (!within_reach(shape, seen, all, least)) continue;
             struct Points {
                 Box box;
@@ -118,7 +143,8 @@ void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& m
     for (const Obstacle& obstacle : scene.obstacles) {
         const Post* post = std::get_if<Post>(&obstacle.shape);
         if (post == nullptr) continue;
-        const Placement seen = placement(obstacle, unit.body);
+        const Placement seen =
+            placement({obstacle.rotation, obstacle.position}, unit.body);  // posts are fixed
         for (std::size_t p = 0; p < panels; ++p) {
             const Panel& panel = mesh.panel[p];
             if (!panel.any || !stands_across(seen, panel, false)) continue;
@@ -169,12 +195,19 @@ double overlap_of_dents(const Scene& scene, const State& state, double deepest) 
 
 double untouched_step(const Scene& scene, const State& state) {
     double longest = infinity;
-    std::vector<std::pair<const Shape*, Placement>> near;
+    struct Seen {
+        const Shape* shape;
+        Placement placement;
+        Twist motion;
+    };
+    std::vector<Seen> near;
     alignas(64) NearestLanes found, nearest;
+    std::array<std::size_t, lanes> of;  // place in near
+    const double segments = fastest_segment(scene, state);
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const UnitState& unit = state.units[u];
         const Unit& model = scene.vehicle->units[u];
-        const double fastest = fastest_point(model, unit.body);
+        const double fastest = fastest_point(model, unit.body) + segments;
         if (!(fastest > 0.0)) continue;
         const Mat3 R = unit.body.orientation.toRotationMatrix();
         const Vec3 v = R.transpose() * unit.body.velocity;
@@ -182,19 +215,23 @@ double untouched_step(const Scene& scene, const State& state) {
         const Box all = everything(model.trusses, unit.trusses);
         near.clear();
         for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
-            const Placement seen = placement(scene.obstacles[i], unit.body);
+            const Placement seen = placement(pose_of(scene, i, state), unit.body);
             if (i != scene.ground && within_reach(scene.obstacles[i].shape, seen, all, longest * fastest))
-                near.emplace_back(&scene.obstacles[i].shape, seen);
+                near.push_back(
+                    {&scene.obstacles[i].shape, seen, obstacle_motion(scene, i, state, unit.body)});
         }
         for (const TrussBlockState& block : unit.trusses.block) {
             const Box box = box_of(block);
             nearest.gap.fill(infinity);
-            for (const auto& [shape, seen] : near) {
-                if (!within_reach(*shape, seen, box, longest * fastest)) continue;
-                nearest_of(*shape, seen, seen, block.x, block.y, block.z, found);
+            of.fill(0);
+            for (std::size_t j = 0; j < near.size(); ++j) {
+                const Placement& seen = near[j].placement;
+                if (!within_reach(*near[j].shape, seen, box, longest * fastest)) continue;
+                nearest_of(*near[j].shape, seen, seen, block.x, block.y, block.z, found);
                 for (std::size_t k = 0; k < lanes; ++k) {
                     if (!(found.gap[k] < nearest.gap[k])) continue;
                     nearest.gap[k] = found.gap[k];
+                    of[k] = j;
                     nearest.nx[k] = found.nx[k], nearest.ny[k] = found.ny[k], nearest.nz[k] = found.nz[k];
                 }
             }
@@ -202,8 +239,10 @@ double untouched_step(const Scene& scene, const State& state) {
                 const double gap = std::max(nearest.gap[k], 0.0);
                 if (!(gap < longest * fastest) || is_slack(block, k)) continue;
                 const Vec3 node(block.x[k], block.y[k], block.z[k]);
+                const Twist& other = near[of[k]].motion;
                 const double approach =
-                    -Vec3(nearest.nx[k], nearest.ny[k], nearest.nz[k]).dot(v + w.cross(node));
+                    -Vec3(nearest.nx[k], nearest.ny[k], nearest.nz[k])
+                         .dot(v - other.velocity + (w - other.angular_velocity).cross(node));
                 const double straight = approach > 0.0 ? gap / approach : infinity;
                 longest = std::min({longest, straight, (gap + tolerance::untouched_way) / fastest});
             }
@@ -217,12 +256,12 @@ double untouched_step(const Scene& scene, const State& state) {
 namespace {
 
 // Time in which no point of a body gets further than a quarter through the obstacle (s). Gliding along a wall is no
-// way through it; `turning`: speed that its turning adds anywhere (m/s).
-double passing_time(const Obstacle& obstacle, const Vec3& velocity, double turning) {
-    const double width = thickness(obstacle.shape);
-    const auto* prism = std::get_if<Prism>(&obstacle.shape);
+// way through it; `turning`: speed that its turning, and the obstacle's motion, add anywhere (m/s).
+double passing_time(const Shape& shape, const Pose& pose, const Vec3& velocity, double turning) {
+    const double width = thickness(shape);
+    const auto* prism = std::get_if<Prism>(&shape);
     if (prism == nullptr) return 0.25 * width / (velocity.norm() + turning);
-    const Vec3 own = obstacle.rotation.transpose() * velocity;
+    const Vec3 own = pose.rotation.transpose() * velocity;
     const double along = 0.25 * (prism->y_high() - prism->y_low()) / (std::abs(own.y()) + turning);
     return std::min(0.25 * width / (std::hypot(own.x(), own.z()) + turning), along);
 }
@@ -231,18 +270,20 @@ double passing_time(const Obstacle& obstacle, const Vec3& velocity, double turni
 
 double passing_step(const Scene& scene, const State& state) {
     double longest = infinity;
+    const double segments = fastest_segment(scene, state);
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const BodyState& body = state.units[u].body;
         const Unit& unit = scene.vehicle->units[u];
-        const double speed = fastest_point(unit, body);
+        const double speed = fastest_point(unit, body) + segments;
         if (!(speed > 0.0)) continue;
         const double turning = speed - body.velocity.norm();
         for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
             const Obstacle& obstacle = scene.obstacles[i];
-            const double time = passing_time(obstacle, body.velocity, turning);
+            const Pose pose = pose_of(scene, i, state);
+            const double time = passing_time(obstacle.shape, pose, body.velocity, turning);
             // Out of reach even after a step as long as this obstacle would allow.
             if (time < longest &&
-                within_reach(obstacle.shape, placement(obstacle, body),
+                within_reach(obstacle.shape, placement(pose, body),
                              everything(unit.trusses, state.units[u].trusses), time * speed))
                 longest = time;
         }

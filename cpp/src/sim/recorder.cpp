@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "birm3d/base/rotation.hpp"
@@ -13,7 +14,7 @@ namespace birm3d {
 namespace {
 
 // Where the numbers of a row stand. Energies and bodies at the end of the step, impulses within it.
-enum RowOffset : std::size_t { at_time = 0, at_energies = 1, at_units = 10 };
+enum RowOffset : std::size_t { at_time = 0, at_energies = 1, at_units = 11 };
 enum UnitOffset : std::size_t {
     at_position = 0,
     at_orientation = 3,  // x, y, z, w
@@ -41,6 +42,14 @@ enum ObstacleOffset : std::size_t {
 };
 // Behind the units: for each joint force and moment impulse.
 constexpr std::size_t joint_width = 6;
+// Behind the joints: for each free-standing segment its motion.
+enum SegmentOffset : std::size_t {
+    at_segment_position = 0,
+    at_segment_orientation = 3,
+    at_segment_velocity = 7,
+    at_segment_spin = 10,
+    segment_width = 11
+};
 
 std::size_t unit_width(const Unit& unit) {
     return at_tire_impulses + unit.wheels.size();
@@ -127,10 +136,10 @@ Recorder::Recorder(const Scene& scene, const State& start) : width_(at_units) {
         width_ += unit_width(unit);
         none.emplace_back(unit.wheels.size());
     }
-    width_ += joint_width * scene.vehicle->joints.size();
+    width_ += joint_width * scene.vehicle->joints.size() + segment_width * start.segments.size();
     values_.reserve(512 * width_);
     add_row(scene, start.time, start.energies, bodies_of(start),
-            {start.units, none, std::vector<Wrench>(scene.vehicle->joints.size()), false});
+            {start.units, start.segments, none, std::vector<Wrench>(scene.vehicle->joints.size()), false});
 }
 
 void Recorder::add(const Scene& scene, const Trial& accepted) {
@@ -140,7 +149,8 @@ void Recorder::add(const Scene& scene, const Trial& accepted) {
         const std::size_t before = values_.size() - width_;
         const std::size_t last = rows() - 1;
         add_row(scene, values_[before + at_time], accepted.at_start.energies, accepted.at_start.bodies,
-                {state.units, accepted.at_start.impulses, accepted.at_start.joint_impulses, false});
+                {state.units, accepted.at_start.segments, accepted.at_start.impulses,
+                 accepted.at_start.joint_impulses, false});
         const double* from = values_.data() + before + at_units;
         double* to = values_.data() + values_.size() - width_ + at_units;
         for (const Unit& unit : scene.vehicle->units) {
@@ -159,10 +169,11 @@ void Recorder::add(const Scene& scene, const Trial& accepted) {
     const Impact& end = accepted.at_end;
     add_row(scene, state.time, end.happened ? end.energies : state.energies,
             end.happened ? end.bodies : bodies,
-            {state.units, accepted.impulses, accepted.joint_impulses, true});
+            {state.units, end.happened ? end.segments : state.segments, accepted.impulses,
+             accepted.joint_impulses, true});
     if (end.happened)
         add_row(scene, state.time, state.energies, bodies,
-                {state.units, end.impulses, end.joint_impulses, false});
+                {state.units, state.segments, end.impulses, end.joint_impulses, false});
 }
 
 Recorder::ObstacleRow& Recorder::obstacle_row(std::size_t row, std::size_t obstacle) {
@@ -184,8 +195,9 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e,
             to[i] += v[i];
     };
     row[at_time] = time;
-    const std::array energies = {e.kinetic,       e.potential,       e.stored,  e.crushed, e.barrier_friction,
-                                 e.tire_friction, e.ground_friction, e.impacts, e.joints};
+    const std::array energies = {e.kinetic,          e.potential,       e.stored,          e.crushed,
+                                 e.barrier_friction, e.tire_friction,   e.ground_friction, e.impacts,
+                                 e.joints,           e.segment_friction};
     std::copy(energies.begin(), energies.end(), row + at_energies);
     row += at_units;
     for (std::size_t u = 0; u < bodies.size(); ++u) {
@@ -230,12 +242,21 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e,
         put(row + 3, joint.torque);
         row += joint_width;
     }
+    for (std::size_t i = 0; i < loads.segments.size(); ++i) {
+        const BodyState& body = loads.segments[i];
+        put(row + at_segment_position, body.position);
+        std::copy_n(body.orientation.coeffs().data(), 4, row + at_segment_orientation);
+        put(row + at_segment_velocity, body.velocity);
+        row[at_segment_spin] = angular_velocity(scene.barrier->segments[i].body, body).z();
+        row += segment_width;
+    }
 }
 
 void Recorder::resample_joints(const Scene& scene, const std::vector<std::size_t>& step_of,
                                History& history) const {
     const std::vector<Joint>& joints = scene.vehicle->joints;
-    const std::size_t first = width_ - joint_width * joints.size(), count = history.time.size();
+    const std::size_t first = width_ - segment_width * scene.free_segments() - joint_width * joints.size(),
+                      count = history.time.size();
     for (std::size_t j = 0; j < joints.size(); ++j) {
         JointHistory joint;
         joint.force.assign(count, Vec3::Zero());
@@ -298,7 +319,8 @@ History Recorder::resample(const Scene& scene) const {
 
     Column* const energies[] = {&history.kinetic,         &history.potential,        &history.stored,
                                 &history.crushed,         &history.barrier_friction, &history.tire_friction,
-                                &history.ground_friction, &history.impacts,          &history.joint_work};
+                                &history.ground_friction, &history.impacts,          &history.joint_work,
+                                &history.segment_friction};
     for (std::size_t e = 0; e < std::size(energies); ++e) {
         energies[e]->resize(count);
         for (std::size_t k = 0; k < count; ++k) {
@@ -404,6 +426,7 @@ History Recorder::resample(const Scene& scene) const {
     }
     resample_obstacles(step_of, history);
     resample_joints(scene, step_of, history);
+    resample_segments(scene, step_of, history);
     history.momentum_residual = largest > 0.0 ? worst / largest : 0.0;
     return history;
 }
@@ -459,6 +482,58 @@ void Recorder::resample_obstacles(const std::vector<std::size_t>& step_of, Histo
         }
         if (count > 1) of.force[0] = of.force[1], of.moment[0] = of.moment[1];
         history.obstacles.push_back(std::move(of));
+    }
+}
+
+// Between rows a segment moves by what the vehicle does to it, as the record has it; what the ground and the pins do
+// within the step, the rest of its change of velocity, is spread evenly. So the momentum of all bodies adds up at every
+// instant.
+void Recorder::resample_segments(const Scene& scene, const std::vector<std::size_t>& step_of,
+                                 History& history) const {
+    const std::size_t segments = scene.free_segments(), count = history.time.size();
+    const std::size_t first = width_ - segment_width * segments;
+    static constexpr std::array<double, obstacle_width> nothing{};
+    for (std::size_t i = 0; i < segments; ++i) {
+        const RigidBody& body = scene.barrier->segments[i].body;
+        const double height = scene.barrier->segments[i].mass_center_height;
+        std::vector<const double*> loads(rows(), nothing.data());
+        for (const ObstacleRow& row : obstacles_)
+            if (row.obstacle == i) loads[row.row] = row.values.data();
+        const auto at = [&](std::size_t row) {
+            return values_.data() + row * width_ + first + i * segment_width;
+        };
+        const auto time_at = [&](std::size_t row) { return values_[row * width_ + at_time]; };
+
+        SegmentHistory segment;
+        double yaw = 0.0, last_angle = 0.0;
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t row = step_of[k], next = rows() > 1 ? row + 1 : row;
+            const double *a = at(row), *b = at(next), dt = time_at(next) - time_at(row);
+            const double t = std::clamp(history.time[k] - time_at(row), 0.0, dt), s = dt > 0.0 ? t / dt : 1.0;
+            const StepView load{loads[row], loads[next], dt};
+            const auto pushed = [&](double until) -> Vec3 {
+                const Vec3 impulse = load.force_integral3(at_load, at_load_bend, until) +
+                                     load.share(until) * vec(load.b + at_load_impulse);
+                return body.inverse_mass * Vec3(impulse.x(), impulse.y(), 0.0);
+            };
+            const Vec3 v0 = vec(a + at_segment_velocity), v1 = vec(b + at_segment_velocity);
+            const Vec3 p0 = vec(a + at_segment_position), p1 = vec(b + at_segment_position);
+            const bool held = v0.isZero(0.0) && v1.isZero(0.0);  // throughout the step
+            segment.velocity.push_back(held || s == 1.0 ? v1
+                                                        : Vec3(v0 + pushed(t) + s * (v1 - v0 - pushed(dt))));
+            segment.position.push_back(p0 + (p1 - p0) * (s * s * (3.0 - 2.0 * s)) +
+                                       dt * s * (1.0 - s) * ((1.0 - s) * v0 - s * v1) -
+                                       height * Vec3::UnitZ());
+            segment.yaw_rate.push_back((1.0 - s) * a[at_segment_spin] + s * b[at_segment_spin]);
+            const Eigen::Map<const Eigen::Vector4d> qa(a + at_segment_orientation),
+                qb(b + at_segment_orientation);
+            const Eigen::Vector4d q = (1.0 - s) * qa + s * (qa.dot(qb) < 0.0 ? -1.0 : 1.0) * qb;
+            const double angle = 2.0 * std::atan2(q[2], q[3]);
+            if (k > 0) yaw += std::remainder(angle - last_angle, 2.0 * std::numbers::pi);
+            last_angle = angle;
+            segment.yaw.push_back(yaw);
+        }
+        history.segments.push_back(std::move(segment));
     }
 }
 

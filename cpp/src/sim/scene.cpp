@@ -184,8 +184,19 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
             obstacles.push_back({element.shape,
                                  Eigen::AngleAxisd(element.heading, Vec3::UnitZ()).toRotationMatrix(),
                                  element.position, barrier->friction, 0});
+    if (free_segments() > 0 && !settings.ground)
+        refuse("ground", "True where the barrier is free-standing", "False");
     for (std::size_t i = 0; i < obstacles.size(); ++i)
-        obstacles[i].structure = i > 0 && continues(obstacles[i].shape) ? obstacles[i - 1].structure : i;
+        obstacles[i].structure =
+            i > 0 && free_segments() == 0 && continues(obstacles[i].shape) ? obstacles[i - 1].structure : i;
+    joints = vehicle->joints;
+    if (free_segments() > 0 && barrier->free_standing->joint == SegmentJoint::pinned)
+        for (std::size_t i = 1; i < free_segments(); ++i) {
+            const Segment &one = barrier->segments[i - 1], &next = barrier->segments[i];
+            const std::size_t body = vehicle->units.size() + i;
+            joints.push_back({JointKind::pinned, body - 1, body, Vec3(0.0, one.half_length, 0.0),
+                              Vec3(0.0, -next.half_length, 0.0), 0.0});
+        }
     ground = obstacles.size();
     for (const Unit& unit : vehicle->units)
         skin_meets_ground.push_back(settings.ground && !unit.wheels.empty() && skin_above_ground(unit));
@@ -239,12 +250,24 @@ std::uint64_t Scene::fingerprint() const {
             hash.add(element.position);
             hash.add(element.heading);
         }
+        if (barrier->free_standing) {
+            hash.add(barrier->free_standing->density);
+            hash.add(barrier->free_standing->ground_friction);
+            hash.add(static_cast<double>(barrier->free_standing->joint));
+        }
     }
     return hash.value();
 }
 
 State Scene::initial_state() const {
     State state(*vehicle);
+    for (std::size_t i = 0; i < free_segments(); ++i) {
+        const Element& element = barrier->elements[i];
+        BodyState segment;
+        segment.orientation = from_roll_pitch_yaw({0.0, 0.0, element.heading});
+        segment.position = element.position + barrier->segments[i].mass_center_height * Vec3::UnitZ();
+        state.segments.push_back(segment);
+    }
     const double barrier_heading = barrier ? barrier->heading : 0.0;
     const Vec3 origin = barrier ? barrier->origin : Vec3::Zero();
     // At barrier heading 0 the line runs along +y: the path (sin, cos) meets it at the impact angle.

@@ -9,6 +9,7 @@
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/kernels/tires.hpp"
+#include "birm3d/sim/bodies.hpp"
 #include "birm3d/sim/obstacles.hpp"
 #include "birm3d/sim/structure_course.hpp"
 
@@ -47,7 +48,8 @@ Box box_of_structure(const Scene& scene, std::size_t i) {
 }
 
 // Moving away from every element, and either faster than any turning could bring a point back or already out of its
-// reach. On a straight path what recedes goes on receding.
+// reach. On a straight path what recedes goes on receding. From a segment that slides and will stop it recedes both as
+// that moves now and as it will stand.
 bool has_left(const Scene& scene, const State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Unit& unit = scene.vehicle->units[u];
@@ -56,11 +58,18 @@ bool has_left(const Scene& scene, const State& state) {
         for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
             const Obstacle& element = scene.obstacles[i];
             if (element.structure != i) continue;
-            const Placement seen = placement(element, body);
+            const Pose pose = pose_of(scene, i, state);
+            const Placement seen = placement(pose, body);
             const Vec3 from = from_hull(element.shape, box_of_structure(scene, i), seen.position);
             const double distance = from.norm();
             if (!(distance > 0.0)) return false;
-            const double away = (element.rotation.transpose() * body.velocity).dot(from) / distance;
+            const Vec3 direction = from / distance;
+            double away = (pose.rotation.transpose() * body.velocity).dot(from) / distance;
+            if (i < state.segments.size()) {
+                const Vec3 segment = pose.rotation.transpose() * state.segments[i].velocity;
+                away -= std::max(0.0, segment.dot(direction)) +
+                        fastest_point(scene.barrier->segments[i], state.segments[i]) - segment.norm();
+            }
             if (!(away > 0.0 && (away >= turning || distance > unit.trusses.reach))) return false;
         }
     }
@@ -97,6 +106,15 @@ double separation_speed(const Scene& scene, const State& state) {
         const Twist motion = twist(scene.vehicle->units[u].body, unit.body);
         power += unit.skin.contact.force.dot(motion.velocity) +
                  unit.skin.contact.torque.dot(motion.angular_velocity);
+        for (const Touch& touch : unit.touches) {
+            const int other = body_of_obstacle(scene, touch.obstacle);
+            if (other < 0) continue;
+            const auto b = static_cast<std::size_t>(other);
+            const Twist of = twist(rigid_body(scene, b), body_state(state, b));
+            const Vec3 arm = unit.body.position - body_state(state, b).position;
+            power -= touch.contact.force.dot(of.velocity + of.angular_velocity.cross(arm)) +
+                     touch.contact.torque.dot(of.angular_velocity);
+        }
         force += unit.skin.normal_force;
     }
     return force > 0.0 ? power / force : 0.0;
@@ -141,6 +159,27 @@ double time_to_release(const Scene& scene, const State& state) {
             i = end_of_structure(scene, unit.touches, i);
         }
     return latest;
+}
+
+// Segments that friction can stop have stopped.
+bool segments_rest(const Scene& scene, const State& state) {
+    if (state.segments.empty() || scene.settings.gravity == 0.0 ||
+        scene.barrier->free_standing->ground_friction == 0.0)
+        return true;
+    return fastest_segment(scene, state) == 0.0;
+}
+
+// A step at whose end the next segment that slides straight on, untouched, comes to rest (s): its way is exact then.
+double time_to_stop(const Scene& scene, const State& state) {
+    double earliest = infinity;
+    if (state.segments.empty() || touches(state)) return earliest;
+    const double deceleration = scene.settings.gravity * scene.barrier->free_standing->ground_friction;
+    if (!(deceleration > 0.0)) return earliest;
+    for (const BodyState& segment : state.segments) {
+        const double time = segment.velocity.norm() / deceleration;
+        if (time > tolerance::shortest_stop) earliest = std::min(earliest, time);
+    }
+    return earliest;
 }
 
 // Steps that an estimate asks for are taken from a ladder of sixteen lengths an octave: estimates are made of
@@ -210,7 +249,8 @@ void Simulation::take(Trial& trial) {
         throw std::runtime_error("the state is no longer finite at t = " + to_text(state_.time) +
                                  " s, step " + to_text(trial.dt) + " s");
     if (!state_.decided && scene_.barrier && state_.touched &&
-        ((!touches(state_) && has_left(scene_, state_) && !tips(scene_, state_)) ||
+        ((!touches(state_) && has_left(scene_, state_) && !tips(scene_, state_) &&
+          segments_rest(scene_, state_)) ||
          at_rest(scene_, state_))) {
         state_.decided = true;
         state_.decided_at = state_.time;
@@ -250,6 +290,7 @@ void Simulation::adaptive_step() {
         tolerance::step_error_per_tolerance * scene_.settings.tolerance * scene_.reference_speed();
     double dt =
         std::min({state_.next_step, tolerance::longest_step, remaining(), passing_step(scene_, state_)});
+    dt = std::min(dt, time_to_stop(scene_, state_));
     if (touches(state_))
         dt = std::min(dt, std::max(time_to_release(scene_, state_), tolerance::release_resolution));
     for (;;) {

@@ -21,6 +21,8 @@ class Skin {
     void hand_over();  // sums and touches, to the trial
 
   private:
+    static constexpr std::size_t several = static_cast<std::size_t>(-1);
+
     // Sums over blocks that saw one plane, or (by general detection) one obstacle.
     struct PlaneSums {
         std::size_t near;
@@ -66,9 +68,12 @@ class Skin {
     void share_out(std::size_t b, const TrussBlockState& next);
     void rub(std::size_t near, std::size_t b, const TrussBlockState& next, const Places& places,
              const BlockContact& contact);
+    // `near`: place in near_ of the obstacle that the block sees, or `several`.
     template <class Crush>
-    void crush_with_rate(const TrussBlockState& next, const Places& places, CrushSums& sums,
+    void crush_with_rate(std::size_t near, const TrussBlockState& next, const Places& places, CrushSums& sums,
                          const Crush& crush);
+    void find_rate_factor(std::size_t near, const TrussBlockState& next, const Places& places,
+                          Lanes& factor) const;
 
     const Scene& scene_;
     const Unit& unit_;
@@ -80,8 +85,9 @@ class Skin {
     const Mat3 R_;
     const bool along_;
     double full_speed_;
-    double margin_;  // how far a held node can have come off its surface within the step (m)
-    Twist motion_;   // body axes; only friction and the rate of deflection ask for it
+    double margin_;            // how far a held node can have come off its surface within the step (m)
+    Twist motion_;             // body axes; only friction and the rate of deflection ask for it
+    std::vector<Twist> away_;  // parallel to near_: the same, from an obstacle that moves too
 
     std::vector<NearObstacle>& near_;
     std::vector<std::size_t> seen_;  // by the block at hand, places in near_

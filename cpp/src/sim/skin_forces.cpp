@@ -6,6 +6,7 @@
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/friction.hpp"
 #include "birm3d/kernels/integrate.hpp"
+#include "birm3d/sim/bodies.hpp"
 #include "birm3d/sim/entered_face.hpp"
 #include "birm3d/sim/obstacles.hpp"
 #include "sim/skin.hpp"
@@ -36,16 +37,28 @@ Twist predicted_motion(const Unit& unit, const std::vector<Touch>& touches, doub
     return {R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
 }
 
+// The same of the segments of the barrier, in `now`.
+void predict_segments(const Scene& scene, const State& before, double dt, State& now) {
+    for (const UnitState& unit : before.units)
+        for (const Touch& touch : unit.touches) {
+            const int body = body_of_obstacle(scene, touch.obstacle);
+            if (body < 0) continue;
+            Load coming = scaled(touch.course.now, 0.5 * dt);
+            coming += scaled(touch.course.rate, dt * dt / 3.0);
+            kick_body(scene, static_cast<std::size_t>(body), reaction_of(coming), now);
+        }
+}
+
 // Obstacles that were touched an instant before are near, whatever the step has made of it.
-void add_touched(const Scene& scene, const UnitState& before, const BodyState& now,
+void add_touched(const Scene& scene, std::size_t u, const State& before, const State& now,
                  std::vector<NearObstacle>& near) {
-    for (const Touch& touch : before.touches) {
+    for (const Touch& touch : before.units[u].touches) {
         const auto place = std::lower_bound(
             near.begin(), near.end(), touch.obstacle,
             [](const NearObstacle& known, std::size_t obstacle) { return known.index < obstacle; });
         if (place != near.end() && place->index == touch.obstacle) continue;
-        const Obstacle& obstacle = scene.obstacles[touch.obstacle];
-        near.insert(place, {touch.obstacle, placement(obstacle, now), placement(obstacle, before.body)});
+        near.insert(place, {touch.obstacle, placement(pose_of(scene, touch.obstacle, now), now.units[u].body),
+                            placement(pose_of(scene, touch.obstacle, before), before.units[u].body)});
     }
 }
 
@@ -63,16 +76,28 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
       along_(scene.settings.contact_model == ContactModel::along_truss),
       full_speed_(std::max(tolerance::full_friction_speed * scene.reference_speed(),
                            trial.dt * before_.skin.friction_rate)),
-      margin_(trial.dt * std::max(fastest_point(unit_, before_.body), fastest_point(unit_, now_.body)) +
+      margin_(trial.dt * (std::max(fastest_point(unit_, before_.body), fastest_point(unit_, now_.body)) +
+                          std::max(fastest_segment(scene, from), fastest_segment(scene, trial.state))) +
               tolerance::touching_gap),
       near_(trial.near) {
-    find_near(scene, u, before_, now_.body, before_.touches.empty() ? 0.0 : margin_, near_);
-    add_touched(scene, before_, now_.body, near_);
+    find_near(scene, u, from, trial.state, before_.touches.empty() ? 0.0 : margin_, near_);
+    add_touched(scene, u, from, trial.state, near_);
     const bool rubs = std::any_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
         return scene.obstacles[obstacle.index].friction > 0.0;
     });
     if (rubs || mesh_.rate_sensitivity > 0.0)
         motion_ = predicted_motion(unit_, before_.touches, trial.dt, now_.body, R_);
+    away_.assign(near_.size(), motion_);
+    if (!trial.state.segments.empty() && (rubs || mesh_.rate_sensitivity > 0.0)) {
+        const std::vector<BodyState> drifted = trial.state.segments;
+        predict_segments(scene, from, trial.dt, trial.state);
+        for (std::size_t k = 0; k < near_.size(); ++k) {
+            const Twist other = obstacle_motion(scene, near_[k].index, trial.state, now_.body);
+            away_[k].velocity -= other.velocity;
+            away_[k].angular_velocity -= other.angular_velocity;
+        }
+        trial.state.segments = drifted;
+    }
     obstacles_.resize(near_.size());
 }
 
@@ -172,8 +197,8 @@ Skin::PlaneSums& Skin::sums_of_plane(std::size_t near, const HalfSpace& plane) {
 
 // The rate of deflection is taken where the nodes will be, so that a rate-sensitive block is first crushed without it.
 template <class Crush>
-void Skin::crush_with_rate(const TrussBlockState& next, const Places& places, CrushSums& sums,
-                           const Crush& crush) {
+void Skin::crush_with_rate(std::size_t near, const TrussBlockState& next, const Places& places,
+                           CrushSums& sums, const Crush& crush) {
     if (mesh_.rate_sensitivity == 0.0) {
         crush(nullptr, sums);
         return;
@@ -181,15 +206,30 @@ void Skin::crush_with_rate(const TrussBlockState& next, const Places& places, Cr
     CrushSums without;
     crush(nullptr, without);
     alignas(64) Lanes factor;
-    set_rate_factor(mesh_.rate_sensitivity, next.force, motion_, places, contact_, factor);
+    find_rate_factor(near, next, places, factor);
     crush(&factor, sums);
+}
+
+void Skin::find_rate_factor(std::size_t near, const TrussBlockState& next, const Places& places,
+                            Lanes& factor) const {
+    const auto set = [&](const Twist& away, Lanes& to) {
+        set_rate_factor(mesh_.rate_sensitivity, next.force, away, places, contact_, to);
+    };
+    if (near != several) return set(away_[near], factor);
+    if (trial_.state.segments.empty()) return set(motion_, factor);
+    alignas(64) Lanes own;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+        set(away_[seen_[k]], own);
+        for (std::size_t i = 0; i < lanes; ++i)
+            if (nearest_[i] == k) factor[i] = own[i];
+    }
 }
 
 void Skin::press_plane(PlaneSums& plane, std::size_t b) {
     TrussBlockState& next = now_.trusses.block[b];
     contact_.set_normal(plane.surface.face.normal);
     const Places places{next.x, next.y, next.z};
-    crush_with_rate(next, places, plane.sums, [&](const Lanes* factor, CrushSums& sums) {
+    crush_with_rate(plane.near, next, places, plane.sums, [&](const Lanes* factor, CrushSums& sums) {
         crush(plane.surface, mesh_, b, factor, from(b), next, contact_, sums);
     });
     if (next.touching) rub(plane.near, b, next, places, contact_);
@@ -200,9 +240,10 @@ void Skin::press_shapes(std::size_t b) {
     look(b);
     const bool alone = seen_.size() == 1;
     CrushSums& to = alone ? obstacles_[seen_[0]].sums : shared_;
-    crush_with_rate(next, contact_.places(), to, [&](const Lanes* factor, CrushSums& sums) {
-        crush(faces_, unit_.body, mesh_, b, factor, from(b), next, contact_, sums);
-    });
+    crush_with_rate(alone ? seen_[0] : several, next, contact_.places(), to,
+                    [&](const Lanes* factor, CrushSums& sums) {
+                        crush(faces_, unit_.body, mesh_, b, factor, from(b), next, contact_, sums);
+                    });
     if (!next.touching) return;
     if (alone)
         rub(seen_[0], b, next, contact_.places(), contact_);
@@ -351,7 +392,7 @@ void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, con
     ObstacleSums& sums = obstacles_[near];
     if (along_) sums.by_trusses += along_trusses(mesh_.block[b], next, contact);
     const double mu = scene_.obstacles[near_[near].index].friction;
-    if (mu > 0.0) add_friction(unit_.body, mu, full_speed_, motion_, places, contact, sums.friction);
+    if (mu > 0.0) add_friction(unit_.body, mu, full_speed_, away_[near], places, contact, sums.friction);
 }
 
 void Skin::hand_over() {

@@ -7,6 +7,7 @@
 
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
+#include "birm3d/sim/bodies.hpp"
 #include "birm3d/sim/half_kick.hpp"
 #include "birm3d/sim/skin_forces.hpp"
 #include "birm3d/sim/structure_course.hpp"
@@ -18,10 +19,18 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // A slope that changes within the step costs up to an eighth of the departure it makes (m/s).
-double error_of(const Unit& unit, const BodyState& body, const Load& departure, double dt) {
+// `segment`: what the load pushes on, or null where that is fixed.
+double error_of(const Unit& unit, const BodyState& body, const Segment* segment, const Load& departure,
+                double dt) {
     const double gyration = std::sqrt(0.5 * unit.body.inertia.trace() * unit.body.inverse_mass);
     const Vec3 turning = inverse_inertia_in_world(unit.body, body) * departure.wrench.torque;
-    return dt / 8.0 * (unit.body.inverse_mass * departure.wrench.force.norm() + gyration * turning.norm());
+    const double error =
+        dt / 8.0 * (unit.body.inverse_mass * departure.wrench.force.norm() + gyration * turning.norm());
+    if (segment == nullptr) return error;
+    const double turn = segment->body.inverse_inertia(2, 2) * std::abs(departure.reaction_torque.z());
+    return error +
+           dt / 8.0 *
+               (segment->body.inverse_mass * departure.wrench.force.norm() + segment->half_length * turn);
 }
 
 // What a bend of one adds over a step of dt that follows one of h: to the lead, and with the new bend's change to
@@ -78,9 +87,9 @@ Load correction(const LoadCourse& before, const LoadCourse& now) {
 // The loads of the touches of one structure at the new instant, their courses, and what the higher order adds to the
 // trapezoid rule. Returns the estimated error of the step's velocity (m/s). What hangs on signs and sizes is decided by
 // the structure's load as a whole; the rest is linear in the load.
-double load_and_correct(const Unit& unit, const BodyState& body, const LoadCourse& before, double dt,
-                        std::span<const LoadCourse> befores, std::span<const Load> loads,
-                        std::span<Touch> touches) {
+double load_and_correct(const Unit& unit, const BodyState& body, const Segment* segment,
+                        const LoadCourse& before, double dt, std::span<const LoadCourse> befores,
+                        std::span<const Load> loads, std::span<Touch> touches) {
     Load total;
     for (std::size_t i = 0; i < touches.size(); ++i) {
         total += loads[i];
@@ -90,11 +99,11 @@ double load_and_correct(const Unit& unit, const BodyState& body, const LoadCours
     }
     // Where nothing presses any more, the rate ends with the load: a straight line is the better course
     // through the corner that a release makes.
-    if (total.normal_force == 0.0) return error_of(unit, body, difference(total, before.now), dt);
+    if (total.normal_force == 0.0) return error_of(unit, body, segment, difference(total, before.now), dt);
 
     LoadCourse now = course_to(total, before, dt);
-    const double by_departure = error_of(unit, body, departure(before, now), dt);
-    const double by_change = error_of(unit, body, change(before, now), dt);
+    const double by_departure = error_of(unit, body, segment, departure(before, now), dt);
+    const double by_change = error_of(unit, body, segment, change(before, now), dt);
     now.bend_lasts = before.step > 0.0 && by_change < tolerance::lasting_bend * by_departure;
     const double pushing = share_that_pushes(correction(before, now), before, now, dt);
     for (std::size_t i = 0; i < touches.size(); ++i) {
@@ -115,15 +124,16 @@ const LoadCourse& course_at(const std::vector<Touch>& touches, std::size_t obsta
 
 // Load of a touch as both sides feel it: what turns the unit about its mass centre turns the obstacle about its own
 // point, the other way.
-Load load_of(const Scene& scene, const BodyState& body, const Touch& touch) {
+Load load_of(const Scene& scene, const State& state, const BodyState& body, const Touch& touch) {
     Wrench wrench = touch.contact;
     wrench += touch.friction;
-    const Vec3 arm = body.position - scene.obstacles[touch.obstacle].position;
+    const Vec3 arm = body.position - pose_of(scene, touch.obstacle, state).position;
     return {wrench, -wrench.torque - arm.cross(wrench.force), touch.normal_force};
 }
 
 // Returns the estimated error of the step's velocity (m/s).
-double correct(const Scene& scene, std::size_t u, const UnitState& from, double dt, UnitState& moved) {
+double correct(const Scene& scene, std::size_t u, const UnitState& from, double dt, State& now) {
+    UnitState& moved = now.units[u];
     double error = 0.0;
     const std::span<Touch> touches(moved.touches);
     std::vector<LoadCourse> befores;
@@ -138,9 +148,12 @@ double correct(const Scene& scene, std::size_t u, const UnitState& from, double 
             LoadCourse own = course_at(from.touches, touch.obstacle);
             own.step = before.step, own.step_before = before.step_before, own.bend_lasts = before.bend_lasts;
             befores.push_back(own);
-            loads.push_back(load_of(scene, moved.body, touch));
+            loads.push_back(load_of(scene, now, moved.body, touch));
         }
-        error += load_and_correct(scene.vehicle->units[u], moved.body, before, dt, befores, loads,
+        const Segment* segment = touches[i].obstacle < scene.free_segments()
+                                     ? &scene.barrier->segments[touches[i].obstacle]
+                                     : nullptr;
+        error += load_and_correct(scene.vehicle->units[u], moved.body, segment, before, dt, befores, loads,
                                   touches.subspan(i, end - i));
     }
     return error;
@@ -152,18 +165,34 @@ bool touches_barrier(const Scene& scene, const UnitState& unit) {
     });
 }
 
+// By how much a segment that gives way adds to the inverse effective mass of a contact, at the most: it is pushed at its
+// end.
+double share_of_segments(const Scene& scene, const RigidBody& body, const std::vector<Touch>& touches) {
+    double most = 0.0;
+    for (const Touch& touch : touches) {
+        if (!(touch.obstacle < scene.free_segments()) || !(touch.normal_force > 0.0)) continue;
+        const Segment& segment = scene.barrier->segments[touch.obstacle];
+        const Vec3& end = segment.corner[0];
+        most =
+            std::max(most, body.mass * (segment.body.inverse_mass + (end.x() * end.x() + end.y() * end.y()) *
+                                                                        segment.body.inverse_inertia(2, 2)));
+    }
+    return most;
+}
+
 // Infinite where nothing pushes.
-double critical_step(const SkinForces& skin) {
-    return skin.stiffness > 0.0 ? tolerance::critical_phase / std::sqrt(skin.stiffness) : infinity;
+double critical_step(const Scene& scene, const RigidBody& body, const UnitState& unit) {
+    const double stiffness = unit.skin.stiffness * (1.0 + share_of_segments(scene, body, unit.touches));
+    return stiffness > 0.0 ? tolerance::critical_phase / std::sqrt(stiffness) : infinity;
 }
 
 // A joint's force turns with its bodies, which the half kicks follow to second order: of a velocity omega r that
 // turns by phi = omega dt they miss about phi^3/12 (m/s).
 double joint_error(const Scene& scene, const State& state, double dt) {
     double most = 0.0;
-    for (const Joint& joint : scene.vehicle->joints) {
-        const auto spin = [&](std::size_t u) {
-            return angular_velocity(scene.vehicle->units[u].body, state.units[u].body).norm();
+    for (const Joint& joint : scene.joints) {
+        const auto spin = [&](std::size_t body) {
+            return angular_velocity(rigid_body(scene, body), body_state(state, body)).norm();
         };
         const double omega = std::max(spin(joint.leading), spin(joint.trailing)), turn = omega * dt;
         const double lever = joint.place_on_leading.norm() + joint.place_on_trailing.norm();
@@ -183,6 +212,7 @@ void clear(ContactImpulses& impulses) {
 
 void begin(const State& from, double dt, Trial& trial) {
     static_cast<Progress&>(trial.state) = from;
+    trial.state.segments = from.segments;
     trial.state.time += dt;
     trial.dt = dt;
     trial.error = 0.0;
@@ -212,8 +242,8 @@ void book_trusses(State& now) {
 
 void book_motion(const Scene& scene, State& now) {
     now.energies.kinetic = 0.0;
-    for (std::size_t u = 0; u < now.units.size(); ++u)
-        now.energies.kinetic += kinetic_energy(scene.vehicle->units[u].body, now.units[u].body);
+    for (std::size_t body = 0; body < body_count(now); ++body)
+        now.energies.kinetic += kinetic_energy(rigid_body(scene, body), body_state(now, body));
 }
 
 }  // namespace
@@ -243,6 +273,8 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
     begin(from, dt, trial);
     half_kick(scene, Stage::before_drift, options, trial);
 
+    for (std::size_t i = 0; i < now.segments.size(); ++i)
+        drift(scene.barrier->segments[i].body, dt, now.segments[i]);
     for (std::size_t u = 0; u < now.units.size(); ++u) {
         const Unit& unit = scene.vehicle->units[u];
         UnitState& moved = now.units[u];
@@ -252,8 +284,8 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
         if (!scene.obstacles.empty()) skin_forces(scene, u, from, trial);
         if (touches_barrier(scene, moved)) now.touched = true;
 
-        trial.error = std::max(trial.error, correct(scene, u, from.units[u], dt, moved));
-        trial.critical_step = std::min(trial.critical_step, critical_step(moved.skin));
+        trial.error = std::max(trial.error, correct(scene, u, from.units[u], dt, now));
+        trial.critical_step = std::min(trial.critical_step, critical_step(scene, unit.body, moved));
     }
 
     book_trusses(now);
@@ -275,6 +307,7 @@ void accept(Trial& trial, State& state) {
         trial.stale[u] = trial.active[u];
     }
     static_cast<Progress&>(state) = trial.state;
+    state.segments = trial.state.segments;
     StepStatistics& statistics = state.statistics;
     statistics.steps += 1;
     statistics.shortest_step = std::min(statistics.shortest_step, trial.dt);

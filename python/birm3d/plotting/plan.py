@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
 import numpy as np
@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from ..barrier_kinds import Jersey, RigidWall
+from ..free_standing import base_corners
 from ..plan_axes import PlanAxes, is_oblique
 from ..silhouette import silhouette
 from ..skin import skins_at
@@ -40,7 +41,8 @@ def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box:
 
     Seen from above, in m from the barrier's origin. An oblique impact has the barrier's line level and its
     traffic side above; in one above 45 degrees the vehicle comes from the left. Endless walls are drawn as
-    wide as the scene; the depth of a wall is only drawn.
+    wide as the scene; the depth of a wall is only drawn. Free-standing segments are drawn where they ended,
+    dashed where they stood.
 
     Parameters
     ----------
@@ -81,7 +83,7 @@ def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box:
     around = np.vstack([skin.world for units in skins for skin in units])
     if exit_box and _redirected(result):
         drawn.append(_exit_box(axes, result, plan))
-    _draw_barrier(axes, view, around, drawn)
+    _draw_barrier(axes, view, around, drawn, result)
     axes.set_xlabel(view.labels[0])
     axes.set_ylabel(view.labels[1])
     _fit(figure, axes, np.vstack(drawn))
@@ -90,7 +92,17 @@ def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box:
     return figure
 
 
-def _draw_barrier(axes: Axes, view: PlanAxes, world: Floats, drawn: list[Floats]) -> None:
+def _draw_barrier(axes: Axes, view: PlanAxes, world: Floats, drawn: list[Floats], result: Result) -> None:
+    if result.segment_yaw.shape[1]:
+        corners = view.plan(base_corners(result)[[0, -1]])
+        looks: tuple[dict[str, Any], ...] = (
+            {"fc": "none", "ec": "0.4", "ls": "--", "lw": 0.8, "label": "barrier at the start"},
+            {"fc": "0.75", "ec": "0.5", "lw": 0.6, "label": "barrier at the end"},
+        )
+        for base, look in zip(corners, looks, strict=True):
+            axes.add_collection(PolyCollection(list(base), zorder=1.5, **look))
+            drawn.extend(base)
+        return
     for part, (flat, faces) in enumerate(view.barrier(world, np.vstack(drawn))):
         label = "_" if part else "barrier"
         axes.add_collection(

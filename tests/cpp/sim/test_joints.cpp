@@ -162,6 +162,7 @@ TEST("a free double pendulum moves as Lagrange's equations say, to second order 
     Scene scene = floating(JointKind::fifth_wheel, 1e-3, time);
     scene.vehicle =
         std::make_shared<const Vehicle>(joined(units, {{JointKind::fifth_wheel, 0, 1, back, front, 0.1}}));
+    scene.joints = scene.vehicle->joints;
     const double mu = 8000.0 * 24000.0 / 32000.0;
     const Plane exact = runge_kutta({0.0, 0.0, 4.0, -2.5}, time, 100000, mu, a, b, 32000.0, 210000.0);
 
@@ -243,6 +244,7 @@ TEST("a fifth wheel carries a roll moment only where its plates touch") {
     const double limit = 2.0 * pi / 180.0;
     Scene scene = floating(JointKind::fifth_wheel, 1e-3, 0.5);
     scene.vehicle = pair(JointKind::fifth_wheel, limit);
+    scene.joints = scene.vehicle->joints;
     scene.settings.output_interval = 1e-3;
     // The trailer rolls about the line from its mass centre to the joint, so that the joint has nothing else to do.
     const double rate = 0.3;
@@ -272,6 +274,7 @@ TEST("a fifth wheel carries a roll moment only where its plates touch") {
 
     // Pitch and yaw are let go.
     scene.vehicle = pair(JointKind::fifth_wheel, limit);
+    scene.joints = scene.vehicle->joints;
     Simulation free = spinning(scene, {0.0, 0.2, 0.0}, {0.0, -0.3, 0.0});
     laboratory::run(free);
     for (const Vec3& moment : free.recorder().resample(free.scene()).joints[0].moment)

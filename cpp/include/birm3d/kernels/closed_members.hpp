@@ -18,13 +18,14 @@ struct PlacedShape {
     Placement placement;
     std::size_t obstacle = 0;
     double friction = 0.0;
+    Twist motion = {};  // its own, seen as if it were part of the body: about the body's origin, body axes
 };
 
 // How near an anchor must be to be at a surface within dt, whichever way it goes (m); `motion` in body axes.
 double member_margin(const TrussMesh& mesh, const Twist& motion, double dt);
 
 // Adds a contact for each anchor that is at the nearest of the surfaces or, as it now moves, will be within dt;
-// `motion` in body axes, contacts in world axes.
+// `motion` in body axes, contacts in world axes. Of obstacles that move too the relative motion counts.
 void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyState& state,
                          std::span<const PlacedShape> shapes, const Twist& motion, double dt,
                          std::vector<RigidContact>& contacts);

@@ -32,6 +32,8 @@ struct ContactBody {
     double inverse_mass = 0.0;
     Mat3 inverse_inertia = Mat3::Zero();
     Twist motion;
+    bool level =
+        false;  // moves along the ground and turns about the vertical only: the ground takes the rest
 };
 
 // Velocity of the contact's point along its normal, or turning about its axis, relative to the other body;
@@ -90,6 +92,7 @@ class ImpulseSolver {
     struct Root {
         double mass;
         Mat3 inertia;
+        bool level;
     };
 
     double tolerance_;         // of velocities (m/s)

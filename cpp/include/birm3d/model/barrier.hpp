@@ -2,10 +2,12 @@
 // heading 0, its traffic face looks to -x.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "birm3d/base/types.hpp"
 #include "birm3d/geometry/shape.hpp"
+#include "birm3d/model/segment.hpp"
 
 namespace birm3d {
 
@@ -17,8 +19,10 @@ struct Element {
 };
 
 struct Barrier {
-    // origin, heading: of the line. friction: Coulomb coefficient vehicle-barrier.
-    Barrier(std::vector<Element> elements, double friction, const Vec3& origin, double heading);
+    // origin, heading: of the line. friction: Coulomb coefficient vehicle-barrier. free_standing: absent where it is
+    // fixed; else all elements are prisms, see segment_of(), and pinned ones follow each other end to end along y.
+    Barrier(std::vector<Element> elements, double friction, const Vec3& origin, double heading,
+            const std::optional<FreeStanding>& free_standing = {});
 
     // Flat, without end. origin: a point of the traffic face's foot (m). heading: turn of the line about z (rad).
     static Barrier wall(double friction, const Vec3& origin, double heading);
@@ -32,6 +36,8 @@ struct Barrier {
     double friction;  // Coulomb coefficient vehicle-barrier (paper 5.4: 0.15 to 0.20 steel on concrete)
     Vec3 origin;      // m
     double heading;   // rad
+    std::optional<FreeStanding> free_standing;
+    std::vector<Segment> segments;  // (elements) where they are free-standing
 };
 
 }  // namespace birm3d

@@ -4,6 +4,7 @@
 //                kingpin, the trailing body's t axis, turns in it (yaw); about the axis across both the plates
 //                touch once the relative roll leaves +-roll_limit, and a moment is carried.
 //   welded       all six held.
+//   pinned       of bodies that stand on the ground: forces along the ground; they turn about the vertical.
 //
 // What a fifth wheel lets go, taken in this order (a Cardan joint): R_leading^T R_trailing = Ry(pitch) Rx(roll) Rz(yaw).
 #pragma once
@@ -14,7 +15,7 @@
 
 namespace birm3d {
 
-enum class JointKind { fifth_wheel, welded };
+enum class JointKind { fifth_wheel, welded, pinned };
 
 struct Joint {
     JointKind kind = JointKind::fifth_wheel;

@@ -12,7 +12,9 @@ namespace birm3d {
 
 struct ContactKick {
     std::vector<RigidContact> contacts;
-    std::vector<Wrench> on_ground, on_members;  // (units) friction impulses of tyres and of closed trusses
+    std::vector<Wrench> on_ground;   // (units) friction impulses of tyres
+    std::vector<Wrench> on_members;  // (bodies) of closed trusses
+    std::vector<Wrench> on_base;     // (segments) of the ground
 };
 
 // Where what is lost to friction on an obstacle is booked.
@@ -21,16 +23,23 @@ double& friction_of(const Scene& scene, std::size_t obstacle, Energies& energies
 double power(const Wrench& w, const Twist& motion);
 Twist mean(const Twist& a, const Twist& b);
 
+// (bodies)
 std::vector<Twist> motions(const Scene& scene, const State& state);
+// Of a unit from an obstacle, about the unit's mass centre, world axes: mean of the bodies' motions before and after.
+Twist relative_motion(const Scene& scene, const State& state, std::size_t unit, std::size_t obstacle,
+                      std::span<const Twist> before, std::span<const Twist> after);
+
 std::vector<ContactBody> contact_bodies(const Scene& scene, const State& state);
 
-// Solves for the impulses of contacts and their friction on top of the bodies' motion, and kicks the bodies.
-ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> contacts, State& state);
+// Solves for the impulses of contacts and their friction on top of the bodies' motion, and kicks the bodies. `pressed`:
+// (segments) with what else they press on the ground (N s).
+ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> contacts, const Column& pressed,
+                             State& state);
 
 // The same before a drift of dt, so that joints are closed after it (Ryckaert, Ciccotti and Berendsen, J. Comput.
 // Phys. 23, 1977, p. 327; with velocities that agree after it: Andersen, J. Comput. Phys. 52, 1983, p. 24).
 ContactKick kick_towards_closed_joints(const Scene& scene, double dt, std::vector<RigidContact> contacts,
-                                       State& state);
+                                       const Column& pressed, State& state);
 
 void add_impulses(const Scene& scene, const State& state, const ContactKick& kicked,
                   std::vector<ContactImpulses>& sums, std::vector<Wrench>& joints);

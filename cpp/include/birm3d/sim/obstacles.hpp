@@ -15,15 +15,30 @@ struct NearObstacle {
     Placement now, before;
 };
 
-// Of an obstacle, seen from a body.
-Placement placement(const Obstacle& obstacle, const BodyState& seen_from);
+// Where an obstacle stands: free-standing segments have moved.
+struct Pose {
+    Mat3 rotation;  // own axes to the world
+    Vec3 position;  // of the own axes' origin, world (m)
+};
+Pose pose_of(const Scene& scene, std::size_t obstacle, const State& state);
+
+// The same, seen from a body.
+Placement placement(const Pose& obstacle, const BodyState& seen_from);
+
+// Motion of an obstacle as if it were part of the body that sees it: about the body's mass centre, body axes. Zero of
+// what is fixed.
+Twist obstacle_motion(const Scene& scene, std::size_t obstacle, const State& state,
+                      const BodyState& seen_from);
 
 // Those that any node or anchor of the unit can be nearer to than `margin`, in their order.
-void find_near(const Scene& scene, std::size_t unit, const UnitState& before, const BodyState& now,
-               double margin, std::vector<NearObstacle>& near);
+void find_near(const Scene& scene, std::size_t unit, const State& before, const State& now, double margin,
+               std::vector<NearObstacle>& near);
 
 // Fastest any point of the unit moves (m/s).
 double fastest_point(const Unit& unit, const BodyState& body);
+
+// And of any free-standing segment of the barrier.
+double fastest_segment(const Scene& scene, const State& state);
 
 // Gap of the point that is nearest to an obstacle (m), infinite where there is none; exact, so that it does not hang on
 // how nodes are blocked. The ground counts only with `ground`; of the points, nodes and anchors as asked.

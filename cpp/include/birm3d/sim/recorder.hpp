@@ -38,6 +38,13 @@ struct ObstacleHistory {
     std::vector<Vec3> moment;  // about the element's foot (N m)
 };
 
+// A free-standing segment of the barrier.
+struct SegmentHistory {
+    std::vector<Vec3> position;  // foot of its axis, world (m)
+    std::vector<Vec3> velocity;  // mass centre, world (m/s)
+    Column yaw, yaw_rate;        // from the start, about the vertical (rad, rad/s)
+};
+
 struct JointHistory {
     std::vector<Vec3> force;          // on the leading unit, mean over the interval, world (N)
     std::vector<Vec3> moment;         // the same, about the joint's place (N m)
@@ -49,8 +56,10 @@ struct History {
     std::vector<UnitHistory> units;
     std::vector<ObstacleHistory> obstacles;  // of the elements that were touched
     std::vector<JointHistory> joints;
+    std::vector<SegmentHistory> segments;  // of a barrier that is free-standing, in the order of its elements
     Column kinetic, potential, stored, crushed;                                    // J
     Column barrier_friction, tire_friction, ground_friction, impacts, joint_work;  // J
+    Column segment_friction;                                                       // J
     double momentum_residual = 0.0;  // max |m a - sum of forces| / max |force|, over all units
 };
 
@@ -67,6 +76,7 @@ class Recorder {
   private:
     struct Loads {
         const std::vector<UnitState>& units;
+        const std::vector<BodyState>& segments;
         const std::vector<ContactImpulses>& impulses;
         const std::vector<Wrench>& joint_impulses;
         bool bent;  // does the step that leads to this row have a bend?
@@ -80,6 +90,8 @@ class Recorder {
                  const std::vector<BodyState>& bodies, const Loads& loads);
     ObstacleRow& obstacle_row(std::size_t row, std::size_t obstacle);
     void resample_obstacles(const std::vector<std::size_t>& step_of, History& history) const;
+    void resample_segments(const Scene& scene, const std::vector<std::size_t>& step_of,
+                           History& history) const;
     void resample_joints(const Scene& scene, const std::vector<std::size_t>& step_of, History& history) const;
 
     std::size_t width_;  // numbers in a row

@@ -27,8 +27,8 @@ struct Approach {
 // What the vehicle can touch: an element of the barrier, or the ground.
 struct Obstacle {
     Shape shape;                       // own axes
-    Mat3 rotation = Mat3::Identity();  // own axes to the world
-    Vec3 position = Vec3::Zero();      // of the own axes' origin, world (m)
+    Mat3 rotation = Mat3::Identity();  // own axes to the world, at the start
+    Vec3 position = Vec3::Zero();      // of the own axes' origin, world, at the start (m)
     double friction = 0.0;
     std::size_t structure =
         0;  // place of the first obstacle that this one is joined to, itself where it stands alone
@@ -45,10 +45,14 @@ struct Scene {
     Settings settings;
     std::optional<double> duration;  // s; absent: until the outcome is decided
 
+    std::vector<Joint> joints;        // the vehicle's, then the pins between free-standing segments
     std::vector<Obstacle> obstacles;  // the barrier's elements in their order, then the ground
     std::size_t ground;               // place of the ground among them; beyond the last where there is none
     std::vector<char>
         skin_meets_ground;  // (units) those that stand on wheels, with all of their skin above the ground
+
+    // How many of the obstacles, from the first, are free-standing segments: all of the barrier's or none.
+    std::size_t free_segments() const { return barrier ? barrier->segments.size() : 0; }
 
     State initial_state() const;
 

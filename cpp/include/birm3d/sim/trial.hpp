@@ -32,6 +32,7 @@ struct ContactImpulses {
 struct Impact {
     bool happened = false;
     std::vector<BodyState> bodies;          // (units) after an impact at the start, before one at the end
+    std::vector<BodyState> segments;        // the same of free-standing segments
     Energies energies;                      // the same
     std::vector<ContactImpulses> impulses;  // (units)
     std::vector<Wrench> joint_impulses;     // (joints) on the leading unit, about the joint (N s, N m s)

@@ -58,6 +58,11 @@ struct Load {
     }
 };
 
+// On the obstacle, about its own point.
+inline Wrench reaction_of(const Load& load) {
+    return {-load.wrench.force, load.reaction_torque};
+}
+
 inline Load scaled(const Load& load, double factor) {
     return {scaled(load.wrench, factor), factor * load.reaction_torque, factor * load.normal_force};
 }
@@ -121,7 +126,8 @@ struct RigidContact {
     bool held = false;              // acts both ways
     bool about_axis = false;        // turns the bodies about `normal` instead of pushing along it
     double friction = 0.0;          // Coulomb coefficient of a member
-    Vec3 rubbing = Vec3::Zero();    // result: its friction impulse (N s)
+    Vec3 sliding_surface = Vec3::Zero();  // velocity of the obstacle's surface there (m/s)
+    Vec3 rubbing = Vec3::Zero();          // result: its friction impulse (N s)
 };
 
 // What a unit impulse does to the body: force and torque about its mass centre. The other body's is the

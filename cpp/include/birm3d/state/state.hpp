@@ -38,10 +38,11 @@ struct Energies {
     double ground_friction = 0.0;   // lost to friction of the skin on the ground
     double impacts = 0.0;           // lost in rigid contacts
     double joints = 0.0;            // taken by what joints hold: zero but for the error of the steps
+    double segment_friction = 0.0;  // lost to friction of free-standing segments on the ground
 
     double total() const {
         return kinetic + potential + stored + crushed + barrier_friction + tire_friction + ground_friction +
-               impacts + joints;
+               impacts + joints + segment_friction;
     }
 };
 
@@ -76,19 +77,25 @@ struct State : Progress {
     }
 
     std::vector<UnitState> units;
+    std::vector<BodyState> segments;  // of the barrier, where they are free-standing; else none
 
     std::uint64_t hash() const {
         Hash hash;
         hash.add(time);
+        const auto add_body = [&hash](const BodyState& body) {
+            hash.add(body.position);
+            hash.add(body.orientation);
+            hash.add(body.velocity);
+            hash.add(body.angular_momentum);
+        };
         for (const UnitState& unit : units) {
-            hash.add(unit.body.position);
-            hash.add(unit.body.orientation);
-            hash.add(unit.body.velocity);
-            hash.add(unit.body.angular_momentum);
+            add_body(unit.body);
             unit.trusses.add_to(hash);
             for (const Dented& dented : unit.dented)
                 hash.add(Vec3(static_cast<double>(dented.obstacle), dented.panels, dented.passed));
         }
+        for (const BodyState& segment : segments)
+            add_body(segment);
         hash.add(energies.total());
         return hash.value();
     }

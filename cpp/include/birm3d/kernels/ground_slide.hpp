@@ -1,0 +1,44 @@
+// Coulomb friction of a slab that slides on the ground: at four corners of its base, each with a quarter of the load.
+//
+// Within half a step the friction impulses p_i at the corners and the motion v after them obey
+//   M (v - v0) = sum of J_i^T p_i,   p_i = -c u_i/|u_i| where the corner slides, |p_i| <= c where it does not,
+// with u_i = J_i v its velocity and c its share of the friction limit: v is the minimum of the convex function
+//   (v - v0) . M (v - v0) / 2 + sum of c |u_i|
+// (maximum dissipation: Moreau, in Unilateral Problems in Structural Analysis, 1985). So friction never reverses a
+// sliding, and a slab that can be held is at rest exactly.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "birm3d/model/vehicle.hpp"
+
+namespace birm3d {
+
+// Impulse of friction on the slab about its mass centre, along the ground and about the vertical (N s, N m s).
+// `arm`: from the mass centre to the corners, world axes, symmetric about it (m); `motion`: without the friction;
+// `limit`: friction coefficient times normal impulse of all corners (N s).
+Wrench slide_friction(const RigidBody& body, const std::array<Vec3, 4>& arm, double limit,
+                      const Twist& motion);
+
+// Slabs that pins hold together share one minimum, with what the pins hold as conditions: how far a chain is dragged
+// along and where it is held hangs on all of it.
+struct PinnedSlab {
+    const RigidBody* body;
+    std::array<Vec3, 4> arm;  // as above
+    double limit;             // N s
+    Twist motion;             // without friction and pins
+    Twist guess;              // of the motion with both
+};
+struct SlabPin {
+    std::size_t body, other;
+    Vec3 on_body, on_other;  // what a unit impulse does: force along x and y, torque about the vertical
+    double target;           // velocity wanted along the row (m/s)
+};
+
+// Friction of the ground on each slab. `guessed`: are the guesses worth a try?
+std::vector<Wrench> slide_friction(std::span<const PinnedSlab> slabs, std::span<const SlabPin> pins,
+                                   bool guessed);
+
+}  // namespace birm3d

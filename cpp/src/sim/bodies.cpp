@@ -1,0 +1,42 @@
+#include "birm3d/sim/bodies.hpp"
+
+#include <cmath>
+
+#include "birm3d/kernels/integrate.hpp"
+
+namespace birm3d {
+
+const RigidBody& rigid_body(const Scene& scene, std::size_t body) {
+    const std::size_t units = scene.vehicle->units.size();
+    return body < units ? scene.vehicle->units[body].body : scene.barrier->segments[body - units].body;
+}
+
+const BodyState& body_state(const State& state, std::size_t body) {
+    const std::size_t units = state.units.size();
+    return body < units ? state.units[body].body : state.segments[body - units];
+}
+
+BodyState& body_state(State& state, std::size_t body) {
+    const std::size_t units = state.units.size();
+    return body < units ? state.units[body].body : state.segments[body - units];
+}
+
+void kick_body(const Scene& scene, std::size_t body, const Wrench& impulse, State& state) {
+    Wrench part = impulse;
+    if (body >= state.units.size()) {
+        part.force.z() = 0.0;
+        part.torque.x() = part.torque.y() = 0.0;
+    }
+    kick(rigid_body(scene, body), part, body_state(state, body));
+}
+
+int body_of_obstacle(const Scene& scene, std::size_t obstacle) {
+    return obstacle < scene.free_segments() ? static_cast<int>(scene.vehicle->units.size() + obstacle) : -1;
+}
+
+double fastest_point(const Segment& segment, const BodyState& body) {
+    const double reach = Vec3(segment.corner[0].x(), segment.corner[0].y(), 0.0).norm();
+    return body.velocity.norm() + angular_velocity(segment.body, body).norm() * reach;
+}
+
+}  // namespace birm3d
