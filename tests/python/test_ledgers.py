@@ -123,7 +123,8 @@ def test_barrier_force_stands_on_its_normal(scene_result: Result) -> None:
     ):  # normals differ from node to node: what is left is a bound
         bound = math.hypot(1.0, r.scene.barrier.friction) * r.barrier_normal_force
         largest = r.barrier_normal_force.max()
-        assert (np.linalg.norm(r.barrier_force, axis=1) <= bound + 1e-8 * largest).all()
+        # Rows within a step follow parabolas, the force's components and the normal force each its own.
+        assert (np.linalg.norm(r.barrier_force, axis=1) <= bound + 1e-7 * largest).all()
         return
     along = r.barrier_force @ np.array(r.scene.barrier.core.normal)
     largest = r.barrier_normal_force.max()
