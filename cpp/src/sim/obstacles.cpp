@@ -132,6 +132,20 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
     return least;
 }
 
+double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, const TrussState& trusses,
+                    double far, double enough) {
+    double least = infinity;
+    alignas(64) DentLanes found;
+    for (std::size_t b = 0; b < mesh.blocks && least > enough; ++b) {
+        const TrussBlockState& block = trusses.block[b];
+        if ((mesh.panels_of[b] >> panel & 1U) == 0 || -most_inside(dent, box_of(block)) > far) continue;
+        dent_of(dent, block, found);
+        for (std::size_t i = 0; i < lanes; ++i)
+            if (mesh.block[b].panel[i] == static_cast<double>(panel)) least = std::min(least, found.gap[i]);
+    }
+    return least;
+}
+
 namespace {
 
 // Calls `use` with each dent that a post makes or would make, and how far the nodes of the panel are from it, at least
@@ -139,7 +153,6 @@ namespace {
 template <class Use>
 void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double far, bool whole,
                    const Use& use) {
-    alignas(64) DentLanes found;
     for (const Obstacle& obstacle : scene.obstacles) {
         const Post* post = std::get_if<Post>(&obstacle.shape);
         if (post == nullptr) continue;
@@ -155,15 +168,7 @@ void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& m
             } else if (!dent.overlaps(panel)) {
                 continue;
             }
-            double gap = infinity;
-            for (std::size_t b = 0; b < mesh.blocks; ++b) {
-                const TrussBlockState& block = unit.trusses.block[b];
-                if ((mesh.panels_of[b] >> p & 1U) == 0 || -most_inside(dent, box_of(block)) > far) continue;
-                dent_of(dent, block, found);
-                for (std::size_t i = 0; i < lanes; ++i)
-                    if (mesh.block[b].panel[i] == static_cast<double>(p)) gap = std::min(gap, found.gap[i]);
-            }
-            use(dent.fastest_growth(panel), gap);
+            use(dent.fastest_growth(panel), gap_of_panel(dent, p, mesh, unit.trusses, far, -infinity));
         }
     }
 }

@@ -52,7 +52,6 @@ class Skin {
     void find_dents();
     Dented dents_of(std::size_t near);
     bool was_before(std::size_t near, std::size_t panel);
-    double least_gap(const DentedPanel& dented, double enough);
     bool find_dents_of_block(std::size_t b);
     void leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) const;
     void draw_in(std::size_t b, const TrussBlockState& block);

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "birm3d/base/tolerances.hpp"
+#include "birm3d/sim/obstacles.hpp"
 #include "sim/skin.hpp"
 
 namespace birm3d {
@@ -32,15 +32,16 @@ Dented Skin::dents_of(std::size_t k) {
         const auto bit = static_cast<std::uint8_t>(1U << p);
         const bool dents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
         if (!panel.any || !stands_across(near_[k].now, panel, dents)) continue;
-        const DentedPanel dented{k, p, Dent(post, near_[k].now, panel, mesh_.dent_reach)};
-        if (!dents && !dented.dent.overlaps(panel)) continue;
+        const Dent dent(post, near_[k].now, panel, mesh_.dent_reach);
+        if (!dents && !dent.overlaps(panel)) continue;
         // How far in a post can have come within the step; of one that was in before, does it touch?
-        const double deepest = dents || passed ? 0.0 : 2.0 * margin_ * dented.dent.fastest_growth(panel);
-        const double gap = dents && pushes ? 0.0 : least_gap(dented, -deepest);
+        const double deepest = dents || passed ? 0.0 : 2.0 * margin_ * dent.fastest_growth(panel);
+        const double gap =
+            dents && pushes ? 0.0 : gap_of_panel(dent, p, mesh_, before_.trusses, 0.0, -deepest);
         if (gap > 0.0) continue;
         if (dents || (!passed && (gap > -deepest || was_before(k, p)))) {
             now.panels |= bit;
-            dents_.push_back(dented);
+            dents_.push_back({k, p, dent});
         } else {
             now.passed |= bit;
         }
@@ -52,25 +53,8 @@ Dented Skin::dents_of(std::size_t k) {
 bool Skin::was_before(std::size_t k, std::size_t p) {
     const Post& post = std::get<Post>(scene_.obstacles[near_[k].index].shape);
     const Panel& panel = mesh_.panel[p];
-    const DentedPanel then{k, p, Dent(post, near_[k].before, panel, mesh_.dent_reach)};
-    return then.dent.overlaps(panel) && least_gap(then, 0.0) > 0.0;
-}
-
-// Of the nodes of the panel, from the surface of the dent; infinite where all are far, any below `enough` will do.
-double Skin::least_gap(const DentedPanel& dented, double enough) {
-    double least = std::numeric_limits<double>::infinity();
-    alignas(64) DentLanes found;
-    for (std::size_t b = 0; b < mesh_.blocks; ++b) {
-        if ((mesh_.panels_of[b] >> dented.panel & 1U) == 0) continue;
-        const TrussBlockState& block = before_.trusses.block[b];
-        if (!block.touching && most_inside(dented.dent, block.box) < 0.0) continue;
-        dent_of(dented.dent, block, found);
-        for (std::size_t i = 0; i < lanes; ++i)
-            if (mesh_.block[b].panel[i] == static_cast<double>(dented.panel))
-                least = std::min(least, found.gap[i]);
-        if (least <= enough) break;
-    }
-    return least;
+    const Dent then(post, near_[k].before, panel, mesh_.dent_reach);
+    return then.overlaps(panel) && gap_of_panel(then, p, mesh_, before_.trusses, 0.0, 0.0) > 0.0;
 }
 
 // Which dents can reach the block? Their posts are among what it sees, then.

@@ -5,6 +5,7 @@
 
 #include "birm3d/geometry/placement.hpp"
 #include "birm3d/geometry/shape.hpp"
+#include "birm3d/kernels/dent.hpp"
 #include "birm3d/sim/scene.hpp"
 
 namespace birm3d {
@@ -48,6 +49,11 @@ struct Nearness {
     bool anchors = false;
 };
 double nearest_gap(const Scene& scene, const State& state, const Nearness& what);
+
+// Least gap of the nodes of a panel from a dent (m); infinite where all are further away than `far`. Any that is no more
+// than `enough` will do.
+double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, const TrussState& trusses,
+                    double far, double enough);
 
 // How far the dent of any post lies over nodes that it has come to from in front, but for any that would be deeper than
 // `deepest` (m): such a post stands beside the panel.
