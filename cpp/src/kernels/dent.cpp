@@ -200,10 +200,11 @@ double most_inside(const Dent& d, const Box& box) {
     const double deepest =
         d.stretch * d.radius + std::max(d.tilt * std::min(l0, d.top), d.tilt * std::min(l1, d.top));
     const double beside = std::max({w0 - d.radius, -d.radius - w1, 0.0}) + std::max(l0 - d.top, 0.0);
-    // Within reach the dent is the deeper the deeper the post; beyond, it does not come through the surface.
+    // Within reach the dent is the deeper the deeper the post; beyond, it comes through the surface only of a post that is
+    // so deep that the slope grows no more.
     const double depth = deepest - d.surface;
-    const double reaches =
-        beside < d.reach ? slope_at(depth, 1.0 / d.reach).slope * beside : std::max(depth, 0.0);
+    const double reaches = beside < d.reach ? slope_at(depth, 1.0 / d.reach).slope * beside
+                                            : std::min(std::max(depth, 0.0), steepest * beside);
     return deepest - reaches - outermost;
 }
 

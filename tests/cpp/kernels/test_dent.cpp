@@ -127,16 +127,23 @@ TEST("force and torque are what the depth of the dent asks for by virtual work")
     CHECK(beside > 1000);
 }
 
-TEST("no node is further inside than what the box says") {
+TEST("no node is further inside than what the box says, however deep the post") {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> share(-1.0, 1.0);
-    for (int round = 0; round < 200; ++round) {
+    int reached = 0;
+    for (int round = 0; round < 400; ++round) {
         const Post post(0.2 + 0.1 * share(random), 1.5 + 0.9 * share(random));
-        const Placement stands = standing({2.8 + share(random), 2.0 * share(random), -1.0},
+        const double deepest = round % 2 == 0 ? 1.0 : 4.0, reach = 0.6 + 0.3 * share(random);
+        const Placement stands = standing({2.8 + deepest * share(random), 2.0 * share(random), -1.0},
                                           0.4 * share(random), 0.4 * share(random));
-        const Dent dent(post, stands, front, 1.0);
-        const DentLanes found = dent_by(post, stands, 1.0);
+        const Dent dent(post, stands, front, reach);
+        const DentLanes found = dent_by(post, stands, reach);
         const double least = *std::min_element(found.gap.begin(), found.gap.end());
         CHECK(-least <= most_inside(dent, front.box) + 1e-12);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            CHECK(-found.gap[i] <= most_inside(dent, {node(i), Vec3::Zero()}) + 1e-12);
+            reached += found.gap[i] < 0.0 ? 1 : 0;
+        }
     }
+    CHECK(reached > 4000);
 }
