@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/kernels/closed_members.hpp"
 #include "birm3d/kernels/ground_slide.hpp"
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/kernels/joints.hpp"
+#include "birm3d/kernels/member_friction.hpp"
 #include "birm3d/kernels/tires.hpp"
 #include "birm3d/sim/bodies.hpp"
 #include "birm3d/sim/obstacles.hpp"

@@ -11,6 +11,9 @@ namespace {
 // Cosine above which two normals are of one smooth surface.
 constexpr double sharp_turn = 0.5;
 
+// Cosine above which two normals differ by rounding alone.
+constexpr double same_normal = 1.0 - 1e-12;
+
 // Nodes on a surface may be this far inside it: a curved one is followed by chords, an inner corner is cut (m).
 constexpr double shallow = 2e-3;
 
@@ -35,7 +38,8 @@ At nearest_of_all(const Scene& scene, std::span<const NearObstacle> near, std::s
 }  // namespace
 
 std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const NearObstacle> near,
-                                        std::span<const std::size_t> seen, const Vec3& place) {
+                                        std::span<const std::size_t> seen, const Vec3& place,
+                                        std::size_t nearest_now, const Vec3& normal_now) {
     const auto on_way = [&](double share) {
         return [&place, share](const NearObstacle& obstacle) -> Vec3 {
             return (1.0 - share) * obstacle.before.to_own(place) + share * obstacle.now.to_own(place);
@@ -44,6 +48,11 @@ std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const Near
     double outside = 0.0;
     At entry = nearest_of_all(scene, near, seen, on_way(outside));
     if (entry.nearest.gap < -shallow) return std::nullopt;
+    const NearObstacle& present = near[seen[nearest_now]];
+    // Straight before a face and then straight behind it: it went in there.
+    if (entry.seen == nearest_now && std::holds_alternative<Prism>(scene.obstacles[present.index].shape) &&
+        entry.nearest.normal.dot(present.now.direction_to_own(normal_now)) > same_normal)
+        return std::nullopt;
     if (entry.nearest.gap > tolerance::touching_gap) {
         double inside = 1.0;
         constexpr int halvings = 20;

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/kernels/closed_members.hpp"
 #include "birm3d/kernels/detect.hpp"
+#include "birm3d/kernels/detect_members.hpp"
 #include "birm3d/kernels/impulse.hpp"
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/kernels/joints.hpp"

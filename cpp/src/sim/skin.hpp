@@ -63,7 +63,7 @@ class Skin {
     void look_at(std::size_t b, const TrussBlockState& block);
     void turn_flat_faces();
     void settle_in_corners(const TrussBlockState& block);
-    void find_entered_faces(const TrussBlockState& block);
+    bool find_entered_faces(const TrussBlockState& block);
     void share_out(std::size_t b, const TrussBlockState& next);
     void rub(std::size_t near, std::size_t b, const TrussBlockState& next, const Places& places,
              const BlockContact& contact);

@@ -259,9 +259,10 @@ void Skin::look(std::size_t b) {
     contact_.set_normal(Vec3::UnitX());
     nearest_.fill(0);
     look_at(b, block);
-    find_entered_faces(block);
+    const bool changed = find_entered_faces(block);
     if (block.touching) turn_flat_faces();
-    settle_in_corners(block);
+    // Of one obstacle the nearest place lies in no corner.
+    if (changed || seen_.size() > 1) settle_in_corners(block);
     draw_in(b, block);
 }
 
@@ -350,8 +351,9 @@ void Skin::turn_flat_faces() {
 }
 
 // The nearest face can be the wrong one to nodes beside an edge: those that arrive, and those that seem to have changed
-// over to another face. Meshes do the like with all that come in.
-void Skin::find_entered_faces(const TrussBlockState& block) {
+// over to another face. Meshes do the like with all that come in. Was it the wrong one to any?
+bool Skin::find_entered_faces(const TrussBlockState& block) {
+    bool changed = false;
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!(faces_.gap[i] < 0.0)) continue;
         const Shape& shape = scene_.obstacles[near_[seen_[nearest_[i]]].index].shape;
@@ -359,14 +361,17 @@ void Skin::find_entered_faces(const TrussBlockState& block) {
         const double turn =
             contact_.nx[i] * faces_.bx[i] + contact_.ny[i] * faces_.by[i] + contact_.nz[i] * faces_.bz[i];
         if (block.force[i] > 0.0 && turn > same_face) continue;
-        const auto entered = entered_face(scene_, near_, seen_, {block.x[i], block.y[i], block.z[i]});
+        const auto entered = entered_face(scene_, near_, seen_, {block.x[i], block.y[i], block.z[i]},
+                                          nearest_[i], contact_.normal(i));
         if (!entered) continue;
+        changed = true;
         nearest_[i] = entered->seen;
         const Vec3 &n = entered->now.normal, &m = entered->normal_before;
         faces_.gap[i] = entered->now.gap;
         contact_.nx[i] = n.x(), contact_.ny[i] = n.y(), contact_.nz[i] = n.z();
         faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
     }
+    return changed;
 }
 
 // Nodes of one block that push on several obstacles: to each its own.

@@ -20,8 +20,10 @@ struct EnteredFace {
 
 // Follows the node `place` (body axes, m) from where it stood with the body an instant before to where it is now,
 // inside one of the obstacles `seen` (places in `near`). None where the face that is nearest now is as good: the node
-// was inside before, or has slid past the end of the face.
+// was inside before, or has slid past the end of the face. `nearest_now`: the one of the obstacles asked whose face that
+// is, `normal_now` its normal (body axes).
 std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const NearObstacle> near,
-                                        std::span<const std::size_t> seen, const Vec3& place);
+                                        std::span<const std::size_t> seen, const Vec3& place,
+                                        std::size_t nearest_now, const Vec3& normal_now);
 
 }  // namespace birm3d

@@ -1,4 +1,4 @@
-#include "birm3d/kernels/closed_members.hpp"
+#include "birm3d/kernels/detect_members.hpp"
 
 #include "birm3d/base/rotation.hpp"
 #include "check.hpp"

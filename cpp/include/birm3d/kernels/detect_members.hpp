@@ -30,10 +30,4 @@ void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyStat
                          std::span<const PlacedShape> shapes, const Twist& motion, double dt,
                          std::vector<RigidContact>& contacts);
 
-// Coulomb friction (paper 5.4) that goes with the normal impulses of closed members: sets their friction impulses
-// and returns the sum, linear and angular about the mass centre, world axes (N s, N m s). `full_speed`: sliding speed
-// of full friction.
-Wrench member_friction(std::span<RigidContact> contacts, std::size_t body, const RigidBody& model,
-                       double full_speed, const Twist& motion);
-
 }  // namespace birm3d
