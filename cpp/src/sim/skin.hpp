@@ -53,6 +53,7 @@ class Skin {
     Dented dents_of(std::size_t near);
     bool was_before(std::size_t near, std::size_t panel);
     bool find_dents_of_block(std::size_t b);
+    bool is_left_to_dents(std::size_t b, std::size_t near) const;
     void leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) const;
     void draw_in(std::size_t b, const TrussBlockState& block);
     void find_seen(const Box& box, double margin);

@@ -71,6 +71,13 @@ bool Skin::find_dents_of_block(std::size_t b) {
     return !block_dents_.empty();
 }
 
+// Do all nodes of the block hang on a dent of this post?
+bool Skin::is_left_to_dents(std::size_t b, std::size_t near) const {
+    return std::any_of(block_dents_.begin(), block_dents_.end(), [&](std::size_t d) {
+        return dents_[d].near == near && mesh_.panels_of[b] == 1U << dents_[d].panel;
+    });
+}
+
 // Nodes of a panel that a post dents do not see the post itself.
 void Skin::leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) const {
     for (const std::size_t d : block_dents_) {

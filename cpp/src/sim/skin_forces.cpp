@@ -269,6 +269,7 @@ void Skin::look(std::size_t b) {
 void Skin::look_at(std::size_t b, const TrussBlockState& block) {
     alignas(64) NearestLanes found;
     for (std::size_t k = 0; k < seen_.size(); ++k) {
+        if (is_left_to_dents(b, seen_[k])) continue;
         const NearObstacle& obstacle = near_[seen_[k]];
         const Shape& shape = scene_.obstacles[obstacle.index].shape;
         nearest_of(shape, obstacle.now, obstacle.before, block.x, block.y, block.z, found);
@@ -286,6 +287,7 @@ void Skin::look_at(std::size_t b, const TrussBlockState& block) {
     alignas(64) Lanes gap_before;
     gap_before.fill(infinity);
     for (const std::size_t k : seen_) {
+        if (is_left_to_dents(b, k)) continue;
         const NearObstacle& obstacle = near_[k];
         nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.before, obstacle.before, block.x, block.y,
                    block.z, found);
