@@ -138,7 +138,9 @@ double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, 
     alignas(64) DentLanes found;
     for (std::size_t b = 0; b < mesh.blocks && least > enough; ++b) {
         const TrussBlockState& block = trusses.block[b];
-        if ((mesh.panels_of[b] >> panel & 1U) == 0 || -most_inside(dent, box_of(block)) > far) continue;
+        if ((mesh.panels_of[b] >> panel & 1U) == 0 ||
+            -most_inside(dent, box_of(block)) > std::min(far, least))
+            continue;
         dent_of(dent, block, found);
         for (std::size_t i = 0; i < lanes; ++i)
             if (mesh.block[b].panel[i] == static_cast<double>(panel)) least = std::min(least, found.gap[i]);
@@ -198,8 +200,7 @@ double overlap_of_dents(const Scene& scene, const State& state, double deepest) 
     return most;
 }
 
-double untouched_step(const Scene& scene, const State& state) {
-    double longest = infinity;
+double untouched_step(const Scene& scene, const State& state, double longest) {
     struct Seen {
         const Shape* shape;
         Placement placement;

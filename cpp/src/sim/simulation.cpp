@@ -323,7 +323,7 @@ void Simulation::adaptive_step() {
         std::min(dt * std::min(4.0, growth), 0.9 * tolerance::stable_fraction * trial_.critical_step));
     if (scene_.barrier && !touches(state_)) {
         // Free flight: up to the first instant at which a node can be at the barrier.
-        next = std::max(tolerance::first_contact_step, std::min(next, untouched_step(scene_, state_)));
+        next = std::max(tolerance::first_contact_step, untouched_step(scene_, state_, next));
     }
     state_.next_step = next;
 }

@@ -59,9 +59,9 @@ double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, 
 // `deepest` (m): such a post stands beside the panel.
 double overlap_of_dents(const Scene& scene, const State& state, double deepest);
 
-// A step in which no node reaches an element of the barrier (s): straight on towards the surface that is nearest to it
-// now, and no further than another surface may lie.
-double untouched_step(const Scene& scene, const State& state);
+// A step of at most `longest` in which no node reaches an element of the barrier (s): straight on towards the surface that
+// is nearest to it now, and no further than another surface may lie.
+double untouched_step(const Scene& scene, const State& state, double longest);
 
 // A step in which no point of a unit goes further than a quarter through the thinnest obstacle in its reach (s): in a
 // longer one it could come out on the other side.
