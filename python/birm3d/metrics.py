@@ -8,14 +8,15 @@ exit angle of a vehicle that stands) is absent, never NaN.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
+from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from .element_loads import touched_elements
+from .element_loads import ElementLoad, touched_elements
 from .filters import cfc, moving_average
 from .free_standing import lateral_movement
 
@@ -69,6 +70,9 @@ JOINT_METRICS = ("max_articulation_angle", "peak_joint_force")
 SEGMENT_METRICS = ("barrier_deflection", "residual_barrier_deflection", "max_overturning_ratio")
 """Those that only a free-standing barrier has."""
 
+Floats = npt.NDArray[np.float64]
+_Metric = Callable[["_Run"], float | None]  # None: the run does not have it
+
 # Below this speed a direction of travel means nothing, m/s.
 _SLOWEST = 1e-3
 # Below this sine of its angle a path runs along the barrier's line.
@@ -78,7 +82,7 @@ _STANDSTILL = 0.1
 
 
 def compute_metrics(result: Result, names: Collection[str] | None = None) -> dict[str, float]:
-    """Return the scalars of a run, SI units and degrees; without those that take long and are not in `names`.
+    """Return the scalars of a run, SI units and degrees: all that it has, or those among `names`.
 
     Always: ``peak_deceleration`` (along r, unfiltered) [m/s^2], ``max_roll``, ``max_pitch``, ``max_yaw``
     (greatest magnitudes) [deg], ``exit_speed`` (of the mass centre along the ground, at the end) [m/s],
@@ -119,73 +123,152 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     ValueError
         If the run is shorter than the output interval.
     """
-    scene, statistics = result.scene, result.statistics
-    interval = scene.settings.output_interval
+    interval = result.scene.settings.output_interval
     if len(result.time) < 2:
         raise ValueError(f"output_interval must be shorter than the run for metrics, got {interval} s")
-    deceleration = -result.acceleration[:, 0]
-    energy = result.energy
-    scale = max(float(energy["kinetic"][0]), 0.5 * scene.vehicle.mass * _STANDSTILL**2)
-    metrics = {
-        "peak_deceleration": float(deceleration.max()),
-        "max_roll": float(np.abs(result.roll).max()),
-        "max_pitch": float(np.abs(result.pitch).max()),
-        "max_yaw": float(np.abs(result.yaw).max()),
-        "exit_speed": float(np.hypot(*result.final_velocity[:2])),
-        "energy_residual": float(np.abs(energy["residual"]).max() / scale),
-        "momentum_residual": result.momentum_residual,
-        "steps": float(statistics.steps),
-        "run_time": result.run_time,
-        "end_time": float(result.time[-1]),
-    }
-    filtered = interval * 60.0 <= 0.1
-    if filtered and (names is None or "peak_deceleration_cfc60" in names):
-        metrics["peak_deceleration_cfc60"] = float(cfc(deceleration, 60, interval).max())
-    if scene.vehicle.joint is not None:
-        metrics["max_articulation_angle"] = float(np.abs(result.articulation_angle).max())
-        metrics["peak_joint_force"] = float(np.linalg.norm(result.joint_force, axis=1).max())
-    if scene.barrier is None:
-        return metrics
-
-    force = result.barrier_normal_force
-    metrics["peak_normal_force"] = float(force.max())
-    if filtered and (names is None or "peak_normal_force_cfc60" in names):
-        metrics["peak_normal_force_cfc60"] = float(cfc(force, 60, interval).max())
-    metrics["peak_force_50ms"] = float(moving_average(force, 0.05, interval).max())
-    loads = touched_elements(result)
-    for metric, value in (
-        ("peak_element_force", "peak_force"),
-        ("peak_element_force_50ms", "peak_force_50ms"),
-        ("peak_overturning_moment", "peak_overturning_moment"),
-        ("peak_overturning_moment_50ms", "peak_overturning_moment_50ms"),
-    ):
-        metrics[metric] = max((getattr(load, value) for load in loads), default=0.0)
-    metrics["dynamic_crush"] = _greatest(result, "peak_deflection")
-    metrics["residual_crush"] = max(0.0, _greatest(result, "deflection"))
-    metrics["contact_overlap"] = statistics.deepest_point
-    if scene.barrier.core.segments:
-        movement = lateral_movement(result)
-        metrics["barrier_deflection"] = float(movement.max())
-        metrics["residual_barrier_deflection"] = float(movement[-1])
-        if scene.settings.gravity > 0.0:
-            metrics["max_overturning_ratio"] = float(result.overturning_ratio.max())
-    past = -np.asarray(scene.barrier.core.normal)
-    along = abs(math.sin(math.radians(scene.impact_angle))) < _ALONG
-    if not along and (names is None or "vehicle_penetration" in names):
-        metrics["vehicle_penetration"] = _penetration(result, past)
-    path = result.velocity[0] / max(float(np.linalg.norm(result.velocity[0])), _SLOWEST)
-    metrics.update(_motion(result, path if along else past, past))
-    return metrics
+    run = _Run(result)
+    found = {name: metric(run) for name, metric in _METRICS.items() if names is None or name in names}
+    return {name: value for name, value in found.items() if value is not None}
 
 
-def _penetration(result: Result, past: npt.NDArray[np.float64]) -> float:
+class _Run:
+    """What several metrics of a result share, each computed when it is first asked for."""
+
+    def __init__(self, result: Result) -> None:
+        self.result = result
+        self.scene = result.scene
+        self.interval = result.scene.settings.output_interval
+        self.barrier = result.scene.barrier
+        self.joined = result.scene.vehicle.joint is not None
+        self.segments = self.barrier is not None and bool(self.barrier.core.segments)
+        self.filtered = self.interval * 60.0 <= 0.1
+        self.along = abs(math.sin(math.radians(self.scene.impact_angle))) < _ALONG
+
+    @property
+    def deceleration(self) -> Floats:
+        """Along r [m/s^2]."""
+        return -self.result.acceleration[:, 0]
+
+    @property
+    def past(self) -> Floats:
+        """Square to the barrier's line, into it."""
+        assert self.barrier is not None
+        return -np.asarray(self.barrier.core.normal)
+
+    @property
+    def inward(self) -> Floats:
+        """The direction towards the barrier; of a path along its line that of the path."""
+        if not self.along:
+            return self.past
+        start = self.result.velocity[0]
+        return np.asarray(start / max(float(np.linalg.norm(start)), _SLOWEST))
+
+    @cached_property
+    def loads(self) -> list[ElementLoad]:
+        return list(touched_elements(self.result))
+
+    @cached_property
+    def dynamic_crush(self) -> float:
+        return _greatest(self.result, "peak_deflection")
+
+    @cached_property
+    def turn(self) -> tuple[int, float, float] | None:
+        """Where the motion towards the barrier ends: row before, share of the interval, speed of approach."""
+        approach = self.result.velocity @ self.inward
+        turned = np.flatnonzero(approach <= 0.0)
+        if not self.dynamic_crush > 0.0 or not len(turned) or turned[0] == 0:
+            return None
+        i = int(turned[0])
+        return i - 1, float(approach[i - 1] / (approach[i - 1] - approach[i])), float(approach[0])
+
+    @cached_property
+    def movement(self) -> Floats:
+        return lateral_movement(self.result)
+
+    def greatest_load(self, name: str) -> float | None:
+        if self.barrier is None:
+            return None
+        return max((getattr(load, name) for load in self.loads), default=0.0)
+
+
+def _energy_residual(run: _Run) -> float:
+    energy = run.result.energy
+    scale = max(float(energy["kinetic"][0]), 0.5 * run.scene.vehicle.mass * _STANDSTILL**2)
+    return float(np.abs(energy["residual"]).max() / scale)
+
+
+def _cfc60(run: _Run, values: Floats) -> float | None:
+    return float(cfc(values, 60, run.interval).max()) if run.filtered else None
+
+
+def _of_force(metric: Callable[[_Run, Floats], float | None]) -> _Metric:
+    """Of the history of the normal force."""
+    return lambda run: None if run.barrier is None else metric(run, run.result.barrier_normal_force)
+
+
+def _of_barrier(metric: _Metric) -> _Metric:
+    return lambda run: None if run.barrier is None else metric(run)
+
+
+def _of_segments(metric: _Metric) -> _Metric:
+    return lambda run: metric(run) if run.segments else None
+
+
+def _of_joint(metric: _Metric) -> _Metric:
+    return lambda run: metric(run) if run.joined else None
+
+
+def _max_displacement(run: _Run) -> float:
+    position = run.result.position
+    return float(((position - position[0]) @ run.inward - run.scene.standoff).max())
+
+
+def _impact_severity(run: _Run) -> float:
+    angle = math.radians(run.scene.impact_angle)
+    return 0.5 * run.scene.vehicle.mass * (run.scene.impact_speed * math.sin(angle)) ** 2
+
+
+def _delta_v(run: _Run) -> float:
+    return float(np.linalg.norm(run.result.velocity - run.result.velocity[0], axis=1).max())
+
+
+def _time_of_zero_velocity(run: _Run) -> float | None:
+    if run.turn is None:
+        return None
+    row, share, approach = run.turn
+    time = run.result.time
+    return float(time[row] + share * (time[row + 1] - time[row]) - run.scene.standoff / approach)
+
+
+def _restitution(run: _Run) -> float | None:
+    if run.turn is None:
+        return None
+    return max(0.0, -float(run.result.final_velocity @ run.inward)) / run.turn[2]
+
+
+def _exit_angle(run: _Run) -> float | None:
+    velocity, past = run.result.final_velocity, run.past
+    speed, away = float(np.hypot(*velocity[:2])), float(-(velocity @ past))
+    left = speed > _SLOWEST and away > 0.0 and run.result.barrier_normal_force[-1] == 0.0
+    if not left or not run.dynamic_crush > 0.0:
+        return None
+    along = float(np.hypot(*(velocity[:2] + away * past[:2])))
+    return math.degrees(math.atan2(away, along))
+
+
+def _max_overturning_ratio(run: _Run) -> float | None:
+    return float(run.result.overturning_ratio.max()) if run.scene.settings.gravity > 0.0 else None
+
+
+def _vehicle_penetration(run: _Run) -> float | None:
     """Greatest distance of an anchor past the barrier's line [m], see compute_metrics()."""
-    barrier, vehicle = result.scene.barrier, result.scene.vehicle
-    assert barrier is not None  # asked for with a barrier only
+    if run.barrier is None or run.along:
+        return None
+    result, past, origin = run.result, run.past, np.asarray(run.barrier.origin)
     greatest = 0.0
-    for u, unit in enumerate(vehicle.units):
+    for u, unit in enumerate(run.scene.vehicle.units):
         rows = result._history.unit(u)
-        center = (rows.position - np.asarray(barrier.origin)) @ past
+        center = (rows.position - origin) @ past
         # No anchor is further past the line than this.
         near = np.flatnonzero(center + np.linalg.norm(unit.anchors, axis=1).max() > greatest)
         roll, pitch, yaw = rows.roll_pitch_yaw[near].T
@@ -211,33 +294,46 @@ def _greatest(result: Result, name: str) -> float:
     return max(float(getattr(result.unit(u), name).max()) for u in units)
 
 
-def _motion(
-    result: Result, inward: npt.NDArray[np.float64], past: npt.NDArray[np.float64]
-) -> dict[str, float]:
-    """Scalars of the motion towards the barrier along `inward`; `past` is square to its line."""
-    scene = result.scene
-    approach = result.velocity @ inward
-    travel = (result.position - result.position[0]) @ inward - scene.standoff
-    velocity_change = np.linalg.norm(result.velocity - result.velocity[0], axis=1)
-    angle = math.radians(scene.impact_angle)
-    motion = {
-        "max_displacement": float(travel.max()),
-        "impact_severity": 0.5 * scene.vehicle.mass * (scene.impact_speed * math.sin(angle)) ** 2,
-        "delta_v": float(velocity_change.max()),
+def _all_metrics() -> dict[str, _Metric]:
+    return {
+        "peak_deceleration": lambda run: float(run.deceleration.max()),
+        "peak_deceleration_cfc60": lambda run: _cfc60(run, run.deceleration),
+        "peak_normal_force": _of_force(lambda run, force: float(force.max())),
+        "peak_normal_force_cfc60": _of_force(_cfc60),
+        "peak_force_50ms": _of_force(
+            lambda run, force: float(moving_average(force, 0.05, run.interval).max())
+        ),
+        "peak_element_force": lambda run: run.greatest_load("peak_force"),
+        "peak_element_force_50ms": lambda run: run.greatest_load("peak_force_50ms"),
+        "peak_overturning_moment": lambda run: run.greatest_load("peak_overturning_moment"),
+        "peak_overturning_moment_50ms": lambda run: run.greatest_load("peak_overturning_moment_50ms"),
+        "dynamic_crush": _of_barrier(lambda run: run.dynamic_crush),
+        "residual_crush": _of_barrier(lambda run: max(0.0, _greatest(run.result, "deflection"))),
+        "max_displacement": _of_barrier(_max_displacement),
+        "vehicle_penetration": _vehicle_penetration,
+        "contact_overlap": _of_barrier(lambda run: run.result.statistics.deepest_point),
+        "barrier_deflection": _of_segments(lambda run: float(run.movement.max())),
+        "residual_barrier_deflection": _of_segments(lambda run: float(run.movement[-1])),
+        "max_overturning_ratio": _of_segments(_max_overturning_ratio),
+        "time_of_zero_velocity": _of_barrier(_time_of_zero_velocity),
+        "restitution": _of_barrier(_restitution),
+        "delta_v": _of_barrier(_delta_v),
+        "impact_severity": _of_barrier(_impact_severity),
+        "exit_speed": lambda run: float(np.hypot(*run.result.final_velocity[:2])),
+        "exit_angle": _of_barrier(_exit_angle),
+        "max_roll": lambda run: float(np.abs(run.result.roll).max()),
+        "max_pitch": lambda run: float(np.abs(run.result.pitch).max()),
+        "max_yaw": lambda run: float(np.abs(run.result.yaw).max()),
+        "max_articulation_angle": _of_joint(lambda run: float(np.abs(run.result.articulation_angle).max())),
+        "peak_joint_force": _of_joint(
+            lambda run: float(np.linalg.norm(run.result.joint_force, axis=1).max())
+        ),
+        "energy_residual": _energy_residual,
+        "momentum_residual": lambda run: run.result.momentum_residual,
+        "steps": lambda run: float(run.result.statistics.steps),
+        "run_time": lambda run: run.result.run_time,
+        "end_time": lambda run: float(run.result.time[-1]),
     }
-    touched = _greatest(result, "peak_deflection") > 0.0
-    turned = np.flatnonzero(approach <= 0.0)
-    if touched and len(turned) and turned[0] > 0:
-        i = int(turned[0])
-        share = approach[i - 1] / (approach[i - 1] - approach[i])
-        first_touch = scene.standoff / approach[0]
-        interval = result.time[i] - result.time[i - 1]
-        motion["time_of_zero_velocity"] = float(result.time[i - 1] + share * interval - first_touch)
-        motion["restitution"] = float(max(0.0, -(result.final_velocity @ inward)) / approach[0])
-    horizontal = result.final_velocity[:2]
-    speed = float(np.hypot(*horizontal))
-    away = float(-(result.final_velocity @ past))
-    if touched and speed > _SLOWEST and away > 0.0 and result.barrier_normal_force[-1] == 0.0:
-        along = float(np.hypot(*(horizontal + away * past[:2])))
-        motion["exit_angle"] = math.degrees(math.atan2(away, along))
-    return motion
+
+
+_METRICS = MappingProxyType(_all_metrics())

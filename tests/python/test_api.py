@@ -20,6 +20,7 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle, Zone, scenes, units
+from birm3d.metrics import METRIC_UNITS, compute_metrics
 from matplotlib.figure import Figure
 
 
@@ -324,3 +325,12 @@ def test_threads_give_what_one_thread_gives() -> None:
         assert one.state_hash == other.state_hash
         assert np.array_equal(one.velocity, other.velocity)
         assert np.array_equal(one.barrier_force, other.barrier_force)
+
+
+def test_each_metric_alone_is_what_all_together_give() -> None:
+    result = scenes.oblique_car(mesh_density=0.2).run()
+    together = compute_metrics(result)
+    assert set(together) <= set(METRIC_UNITS)
+    for name in METRIC_UNITS:
+        alone = {name: together[name]} if name in together else {}
+        assert compute_metrics(result, (name,)) == alone
