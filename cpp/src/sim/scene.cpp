@@ -12,6 +12,7 @@
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/kernels/tires.hpp"
 #include "birm3d/sim/obstacles.hpp"
+#include "birm3d/sim/panel_dents.hpp"
 
 namespace birm3d {
 

@@ -11,6 +11,8 @@
 #include "birm3d/kernels/tires.hpp"
 #include "birm3d/sim/bodies.hpp"
 #include "birm3d/sim/obstacles.hpp"
+#include "birm3d/sim/panel_dents.hpp"
+#include "birm3d/sim/step_limits.hpp"
 #include "birm3d/sim/structure_course.hpp"
 
 namespace birm3d {

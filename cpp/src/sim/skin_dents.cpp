@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "birm3d/sim/obstacles.hpp"
+#include "birm3d/sim/panel_dents.hpp"
 #include "sim/skin.hpp"
 
 namespace birm3d {

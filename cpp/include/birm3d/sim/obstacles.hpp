@@ -5,7 +5,6 @@
 
 #include "birm3d/geometry/placement.hpp"
 #include "birm3d/geometry/shape.hpp"
-#include "birm3d/kernels/dent.hpp"
 #include "birm3d/sim/scene.hpp"
 
 namespace birm3d {
@@ -35,6 +34,12 @@ Twist obstacle_motion(const Scene& scene, std::size_t obstacle, const State& sta
 void find_near(const Scene& scene, std::size_t unit, const State& before, const State& now, double margin,
                std::vector<NearObstacle>& near);
 
+// Around the nodes of a block; that of its state is kept up only while nothing touches.
+Box box_of(const TrussBlockState& block);
+
+// Around all nodes of a unit, however they were drawn out.
+Box everything(const TrussMesh& mesh, const TrussState& trusses);
+
 // Fastest any point of the unit moves (m/s).
 double fastest_point(const Unit& unit, const BodyState& body);
 
@@ -49,22 +54,5 @@ struct Nearness {
     bool anchors = false;
 };
 double nearest_gap(const Scene& scene, const State& state, const Nearness& what);
-
-// Least gap of the nodes of a panel from a dent (m); infinite where all are further away than `far`. Any that is no more
-// than `enough` will do.
-double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, const TrussState& trusses,
-                    double far, double enough);
-
-// How far the dent of any post lies over nodes that it has come to from in front, but for any that would be deeper than
-// `deepest` (m): such a post stands beside the panel.
-double overlap_of_dents(const Scene& scene, const State& state, double deepest);
-
-// A step of at most `longest` in which no node reaches an element of the barrier (s): straight on towards the surface that
-// is nearest to it now, and no further than another surface may lie.
-double untouched_step(const Scene& scene, const State& state, double longest);
-
-// A step in which no point of a unit goes further than a quarter through the thinnest obstacle in its reach (s): in a
-// longer one it could come out on the other side.
-double passing_step(const Scene& scene, const State& state);
 
 }  // namespace birm3d
