@@ -26,6 +26,7 @@ std::vector<RigidContact> find_rigid_contacts(const Scene& scene, const State& s
                                               const StepOptions& options) {
     std::vector<RigidContact> contacts;
     std::vector<PlacedShape> placed;
+    std::vector<std::size_t> about;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Unit& unit = scene.vehicle->units[u];
         const BodyState& body = state.units[u].body;
@@ -35,7 +36,8 @@ std::vector<RigidContact> find_rigid_contacts(const Scene& scene, const State& s
         const Twist motion{R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
         placed.clear();
         const Box& anchors = unit.trusses.anchors;
-        for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+        scene.map.find(body.position, unit.trusses.reach + member_margin(unit.trusses, motion, dt), about);
+        for (const std::size_t i : about) {
             if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
             const Obstacle& obstacle = scene.obstacles[i];
             const Placement seen = placement(pose_of(scene, i, state), body);

@@ -71,7 +71,9 @@ void find_near(const Scene& scene, std::size_t u, const State& before, const Sta
                std::vector<NearObstacle>& near) {
     near.clear();
     const Box box = everything(scene.vehicle->units[u].trusses, before.units[u].trusses);
-    for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    std::vector<std::size_t> about;
+    scene.map.find(now.units[u].body.position, box.half.norm() + margin, about);
+    for (const std::size_t i : about) {
         if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
         const Placement seen = placement(pose_of(scene, i, now), now.units[u].body);
         if (within_reach(scene.obstacles[i].shape, seen, box, margin))

@@ -33,11 +33,12 @@ double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, 
 namespace {
 
 // Calls `use` with each dent that a post makes or would make, and how far the nodes of the panel are from it, at least
-// (m); infinite where that is more than `far`. `whole`: as if the panel had no ends.
+// (m); infinite where that is more than `far`. `about`: of the obstacles. `whole`: as if the panel had no ends.
 template <class Use>
-void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double far, bool whole,
-                   const Use& use) {
-    for (const Obstacle& obstacle : scene.obstacles) {
+void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& mesh,
+                   const std::vector<std::size_t>& about, double far, bool whole, const Use& use) {
+    for (const std::size_t i : about) {
+        const Obstacle& obstacle = scene.obstacles[i];
         const Post* post = std::get_if<Post>(&obstacle.shape);
         if (post == nullptr) continue;
         const Placement seen =
@@ -61,10 +62,13 @@ void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& m
 
 double overlap_of_dents(const Scene& scene, const State& state, double deepest) {
     double most = 0.0;
+    std::vector<std::size_t> about;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         if (mesh.dent_reach == 0.0) continue;
-        for_each_dent(scene, state.units[u], mesh, 0.0, false, [&](double, double gap) {
+        scene.map.find(state.units[u].body.position, everything(mesh, state.units[u].trusses).half.norm(),
+                       about);
+        for_each_dent(scene, state.units[u], mesh, about, 0.0, false, [&](double, double gap) {
             if (-gap < deepest) most = std::max(most, -gap);
         });
     }
@@ -73,7 +77,10 @@ double overlap_of_dents(const Scene& scene, const State& state, double deepest) 
 
 double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
                      double longest) {
-    for_each_dent(scene, unit, mesh, (2.0 + mesh.reach / mesh.dent_reach) * longest * fastest, true,
+    std::vector<std::size_t> about;
+    // A post dents what it comes into.
+    scene.map.find(unit.body.position, everything(mesh, unit.trusses).half.norm() + longest * fastest, about);
+    for_each_dent(scene, unit, mesh, about, (2.0 + mesh.reach / mesh.dent_reach) * longest * fastest, true,
                   [&](double growth, double gap) {
                       if (gap > 0.0)
                           longest = std::min(longest, (gap + tolerance::untouched_way) / (growth * fastest));

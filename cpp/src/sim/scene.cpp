@@ -204,6 +204,7 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
     if (std::any_of(skin_meets_ground.begin(), skin_meets_ground.end(), [](char meets) { return meets; }))
         obstacles.push_back(
             {HalfSpace{Vec3::UnitZ(), 0.0}, Mat3::Identity(), Vec3::Zero(), settings.mu_body, ground});
+    map = ObstacleMap(obstacles, free_segments());
 }
 
 double Scene::reference_speed() const {

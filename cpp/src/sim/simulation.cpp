@@ -291,7 +291,7 @@ void Simulation::adaptive_step() {
     const double allowed =
         tolerance::step_error_per_tolerance * scene_.settings.tolerance * scene_.reference_speed();
     double dt =
-        std::min({state_.next_step, tolerance::longest_step, remaining(), passing_step(scene_, state_)});
+        passing_step(scene_, state_, std::min({state_.next_step, tolerance::longest_step, remaining()}));
     dt = std::min(dt, time_to_stop(scene_, state_));
     if (touches(state_))
         dt = std::min(dt, std::max(time_to_release(scene_, state_), tolerance::release_resolution));

@@ -37,6 +37,7 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
         Twist motion;
     };
     std::vector<Seen> near;
+    std::vector<std::size_t> about;
     alignas(64) NearestLanes found, nearest;
     std::array<std::size_t, lanes> of;  // place in near
     const double segments = fastest_segment(scene, state);
@@ -50,7 +51,8 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
         const Vec3 w = R.transpose() * angular_velocity(model.body, unit.body);
         const Box all = everything(model.trusses, unit.trusses);
         near.clear();
-        for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+        scene.map.find(unit.body.position, all.half.norm() + longest * fastest, about);
+        for (const std::size_t i : about) {
             const Placement seen = placement(pose_of(scene, i, state), unit.body);
             if (i != scene.ground && within_reach(scene.obstacles[i].shape, seen, all, longest * fastest))
                 near.push_back(
@@ -114,8 +116,8 @@ double passing_time(const Shape& shape, const Pose& pose, const Vec3& velocity, 
 
 }  // namespace
 
-double passing_step(const Scene& scene, const State& state) {
-    double longest = infinity;
+double passing_step(const Scene& scene, const State& state, double longest) {
+    std::vector<std::size_t> about;
     const double segments = fastest_segment(scene, state);
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const BodyState& body = state.units[u].body;
@@ -123,14 +125,14 @@ double passing_step(const Scene& scene, const State& state) {
         const double speed = fastest_point(unit, body) + segments;
         if (!(speed > 0.0)) continue;
         const double turning = speed - body.velocity.norm();
-        for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+        const Box all = everything(unit.trusses, state.units[u].trusses);
+        scene.map.find(body.position, all.half.norm() + longest * speed, about);
+        for (const std::size_t i : about) {
             const Obstacle& obstacle = scene.obstacles[i];
             const Pose pose = pose_of(scene, i, state);
             const double time = passing_time(obstacle.shape, pose, body.velocity, turning);
             // Out of reach even after a step as long as this obstacle would allow.
-            if (time < longest &&
-                within_reach(obstacle.shape, placement(pose, body),
-                             everything(unit.trusses, state.units[u].trusses), time * speed))
+            if (time < longest && within_reach(obstacle.shape, placement(pose, body), all, time * speed))
                 longest = time;
         }
     }

@@ -8,6 +8,7 @@
 #include "birm3d/model/barrier.hpp"
 #include "birm3d/model/settings.hpp"
 #include "birm3d/model/vehicle.hpp"
+#include "birm3d/sim/obstacle_map.hpp"
 #include "birm3d/state/state.hpp"
 
 namespace birm3d {
@@ -48,6 +49,7 @@ struct Scene {
     std::vector<Joint> joints;        // the vehicle's, then the pins between free-standing segments
     std::vector<Obstacle> obstacles;  // the barrier's elements in their order, then the ground
     std::size_t ground;               // place of the ground among them; beyond the last where there is none
+    ObstacleMap map;                  // of the obstacles
     std::vector<char>
         skin_meets_ground;  // (units) those that stand on wheels, with all of their skin above the ground
 

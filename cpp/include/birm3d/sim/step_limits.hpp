@@ -9,8 +9,8 @@ namespace birm3d {
 // is nearest to it now, and no further than another surface may lie.
 double untouched_step(const Scene& scene, const State& state, double longest);
 
-// A step in which no point of a unit goes further than a quarter through the thinnest obstacle in its reach (s): in a
+// A step of at most `longest` in which no point of a unit goes further than a quarter through the thinnest obstacle in its reach (s): in a
 // longer one it could come out on the other side.
-double passing_step(const Scene& scene, const State& state);
+double passing_step(const Scene& scene, const State& state, double longest);
 
 }  // namespace birm3d
