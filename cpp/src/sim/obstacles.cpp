@@ -34,12 +34,15 @@ Box box_of(const TrussBlockState& block) {
     return Box::around(lanes, [&block](std::size_t i) { return Vec3(block.x[i], block.y[i], block.z[i]); });
 }
 
-Box everything(const TrussMesh& mesh, const TrussState& trusses) {
+Box everything(const TrussMesh& mesh, const UnitState& unit) {
     Box box{Vec3::Zero(), Vec3::Constant(mesh.reach)};
-    for (const TrussBlockState& block : trusses.block) {
-        if (!block.slack) continue;  // else no node is further away than where it was made
-        const Box around = box_of(block);
-        box.half = box.half.cwiseMax(around.center.cwiseAbs() + around.half);
+    for (std::size_t g = 0; g < unit.groups.size(); ++g) {
+        if (!unit.groups[g].slack) continue;  // else no node is further away than where it was made
+        for (std::size_t b = g * BlockGroup::size; b < std::min((g + 1) * BlockGroup::size, mesh.blocks);
+             ++b) {
+            const Box around = box_of(unit.trusses.block[b]);
+            box.half = box.half.cwiseMax(around.center.cwiseAbs() + around.half);
+        }
     }
     return box;
 }
@@ -70,7 +73,7 @@ Placement placement(const Pose& obstacle, const BodyState& seen_from) {
 void find_near(const Scene& scene, std::size_t u, const State& before, const State& now, double margin,
                std::vector<NearObstacle>& near) {
     near.clear();
-    const Box box = everything(scene.vehicle->units[u].trusses, before.units[u].trusses);
+    const Box box = everything(scene.vehicle->units[u].trusses, before.units[u]);
     std::vector<std::size_t> about;
     scene.map.find(now.units[u].body.position, box.half.norm() + margin, about);
     for (const std::size_t i : about) {
@@ -97,7 +100,7 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const UnitState& unit = state.units[u];
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
-        const Box all = everything(mesh, unit.trusses);
+        const Box all = everything(mesh, unit);
         for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
             if (i == scene.ground && !(what.ground && scene.skin_meets_ground[u])) continue;
             const Shape& shape = scene.obstacles[i].shape;

@@ -66,8 +66,7 @@ double overlap_of_dents(const Scene& scene, const State& state, double deepest) 
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         if (mesh.dent_reach == 0.0) continue;
-        scene.map.find(state.units[u].body.position, everything(mesh, state.units[u].trusses).half.norm(),
-                       about);
+        scene.map.find(state.units[u].body.position, everything(mesh, state.units[u]).half.norm(), about);
         for_each_dent(scene, state.units[u], mesh, about, 0.0, false, [&](double, double gap) {
             if (-gap < deepest) most = std::max(most, -gap);
         });
@@ -79,7 +78,7 @@ double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh&
                      double longest) {
     std::vector<std::size_t> about;
     // A post dents what it comes into.
-    scene.map.find(unit.body.position, everything(mesh, unit.trusses).half.norm() + longest * fastest, about);
+    scene.map.find(unit.body.position, everything(mesh, unit).half.norm() + longest * fastest, about);
     for_each_dent(scene, unit, mesh, about, (2.0 + mesh.reach / mesh.dent_reach) * longest * fastest, true,
                   [&](double growth, double gap) {
                       if (gap > 0.0)

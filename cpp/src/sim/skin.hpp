@@ -37,7 +37,9 @@ class Skin {
         SkinForces friction;
     };
 
-    void press(std::size_t b);
+    bool may_change(const BlockGroup& group) const;
+    void press_group(std::size_t g);
+    bool press(std::size_t b);
     void look_about(std::size_t b);
     void spring_back(std::size_t b);
     const TrussBlockState& from(std::size_t b) const {

@@ -104,13 +104,37 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
 void Skin::press_blocks() {
     trial_.active[u_].clear();
     now_.dented.clear();
-    const bool slack = std::any_of(before_.trusses.block.begin(), before_.trusses.block.end(),
-                                   [](const TrussBlockState& block) { return block.slack; });
+    const bool slack = std::any_of(before_.groups.begin(), before_.groups.end(),
+                                   [](const BlockGroup& group) { return group.slack; });
     if (near_.empty() && before_.touches.empty() && !slack) return;
     find_dents();
-    for (std::size_t b = 0; b < mesh_.blocks; ++b)
-        press(b);
+    for (std::size_t g = 0; g < before_.groups.size(); ++g)
+        if (may_change(before_.groups[g])) press_group(g);
     trial_.state.statistics.node_evaluations += trial_.active[u_].blocks().size() * lanes;
+}
+
+// Does any of the blocks push, hang slack, or come within reach of an obstacle or of a dent?
+bool Skin::may_change(const BlockGroup& group) const {
+    return group.touching || group.slack ||
+           std::any_of(near_.begin(), near_.end(),
+                       [&](const NearObstacle& near) {
+                           return within_reach(scene_.obstacles[near.index].shape, near.now, group.box, 0.0);
+                       }) ||
+           std::any_of(dents_.begin(), dents_.end(),
+                       [&](const DentedPanel& dented) { return most_inside(dented.dent, group.box) >= 0.0; });
+}
+
+void Skin::press_group(std::size_t g) {
+    const std::size_t first = g * BlockGroup::size, last = std::min(first + BlockGroup::size, mesh_.blocks);
+    bool changed = false;
+    for (std::size_t b = first; b < last; ++b)
+        changed |= press(b);
+    if (!changed) return;
+    // Blocks that this step left as they were are up to date in the state before it.
+    BlockGroup& now = now_.groups[g];
+    now = {};
+    for (std::size_t b = first; b < last; ++b)
+        now.add(trial_.active[u_].contains(b) ? now_.trusses.block[b] : before_.trusses.block[b], b == first);
 }
 
 // Nodes that an obstacle has drawn out beyond the free length of their trusses return to it once their way is free.
@@ -158,24 +182,26 @@ void Skin::look_about(std::size_t b) {
             seen_.push_back(k);
 }
 
-void Skin::press(std::size_t b) {
+// Is there anything to do?
+bool Skin::press(std::size_t b) {
     look_about(b);
     const bool drawn = find_dents_of_block(b);
-    if (seen_.empty() && !sprung_back_) return;
+    if (seen_.empty() && !sprung_back_) return false;
     trial_.active[u_].add(b);
     trial_.stale[u_].add(b);
     if (seen_.empty()) {
         now_.trusses.block[b] = sprung_;
-        return;
+        return true;
     }
     if (seen_.size() == 1 && !drawn) {
         const NearObstacle& only = near_[seen_[0]];
         if (const auto plane = flat_part(scene_.obstacles[only.index].shape, only.now, box_)) {
             press_plane(sums_of_plane(seen_[0], *plane), b);
-            return;
+            return true;
         }
     }
     press_shapes(b);
+    return true;
 }
 
 void Skin::find_seen(const Box& box, double margin) {

@@ -49,7 +49,7 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
         const Mat3 R = unit.body.orientation.toRotationMatrix();
         const Vec3 v = R.transpose() * unit.body.velocity;
         const Vec3 w = R.transpose() * angular_velocity(model.body, unit.body);
-        const Box all = everything(model.trusses, unit.trusses);
+        const Box all = everything(model.trusses, unit);
         near.clear();
         scene.map.find(unit.body.position, all.half.norm() + longest * fastest, about);
         for (const std::size_t i : about) {
@@ -58,7 +58,16 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
                 near.push_back(
                     {&scene.obstacles[i].shape, seen, obstacle_motion(scene, i, state, unit.body)});
         }
-        for (const TrussBlockState& block : unit.trusses.block) {
+        for (std::size_t b = 0; b < unit.trusses.block.size(); ++b) {
+            const BlockGroup& group = unit.groups[b / BlockGroup::size];
+            if (b % BlockGroup::size == 0 && !group.touching &&
+                std::none_of(near.begin(), near.end(), [&](const Seen& seen) {
+                    return within_reach(*seen.shape, seen.placement, group.box, longest * fastest);
+                })) {
+                b += BlockGroup::size - 1;
+                continue;
+            }
+            const TrussBlockState& block = unit.trusses.block[b];
             const Box box = box_of(block);
             if (near.size() == 1 && !block.slack) {
                 const auto* plane = std::get_if<HalfSpace>(near[0].shape);
@@ -125,7 +134,7 @@ double passing_step(const Scene& scene, const State& state, double longest) {
         const double speed = fastest_point(unit, body) + segments;
         if (!(speed > 0.0)) continue;
         const double turning = speed - body.velocity.norm();
-        const Box all = everything(unit.trusses, state.units[u].trusses);
+        const Box all = everything(unit.trusses, state.units[u]);
         scene.map.find(body.position, all.half.norm() + longest * speed, about);
         for (const std::size_t i : about) {
             const Obstacle& obstacle = scene.obstacles[i];

@@ -11,6 +11,12 @@ struct Box {
     Vec3 center = Vec3::Zero();
     Vec3 half = Vec3::Zero();  // edges
 
+    // The box around this one and a point.
+    Box with(const Vec3& point) const {
+        const Vec3 low = (center - half).cwiseMin(point), high = (center + half).cwiseMax(point);
+        return {0.5 * (low + high), 0.5 * (high - low)};
+    }
+
     // `point` gives the i-th of `count` >= 1 points.
     template <class Point>
     static Box around(std::size_t count, const Point& point) {

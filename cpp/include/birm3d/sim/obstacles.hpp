@@ -38,7 +38,7 @@ void find_near(const Scene& scene, std::size_t unit, const State& before, const 
 Box box_of(const TrussBlockState& block);
 
 // Around all nodes of a unit, however they were drawn out.
-Box everything(const TrussMesh& mesh, const TrussState& trusses);
+Box everything(const TrussMesh& mesh, const UnitState& unit);
 
 // Fastest any point of the unit moves (m/s).
 double fastest_point(const Unit& unit, const BodyState& body);

@@ -16,13 +16,20 @@ namespace birm3d {
 // What a unit has besides its trusses: small, copied whole with every step that is tried.
 struct UnitMotion {
     BodyState body;
-    SkinForces skin;             // at this instant
-    std::vector<Touch> touches;  // in the order of the obstacles
-    std::vector<Dented> dented;  // the same
+    SkinForces skin;                 // at this instant
+    std::vector<Touch> touches;      // in the order of the obstacles
+    std::vector<Dented> dented;      // the same
+    std::vector<BlockGroup> groups;  // of the blocks of its trusses, in their order
 };
 
 struct UnitState : UnitMotion {
-    explicit UnitState(const Unit& unit) : trusses(unit.trusses) {}
+    explicit UnitState(const Unit& unit) : trusses(unit.trusses) {
+        for (std::size_t b = 0; b < trusses.block.size(); ++b) {
+            const bool first = b % BlockGroup::size == 0;
+            if (first) groups.emplace_back();
+            groups.back().add(trusses.block[b], first);
+        }
+    }
 
     TrussState trusses;
 };

@@ -44,4 +44,21 @@ struct TrussState {
     }
 };
 
+// Neighbouring blocks, which are looked at together where nothing happens to any of them.
+struct BlockGroup {
+    static constexpr std::size_t size = 8;  // blocks of a group, but for the last
+
+    Box box;                // around the boxes of its blocks; kept up only while none of them touches
+    bool touching = false;  // any of them?
+    bool slack = false;     // the same
+
+    // `first`: of the group.
+    void add(const TrussBlockState& block, bool first) {
+        const Vec3 low = block.box.center - block.box.half, high = block.box.center + block.box.half;
+        box = first ? block.box : box.with(low).with(high);
+        touching |= block.touching;
+        slack |= block.slack;
+    }
+};
+
 }  // namespace birm3d
