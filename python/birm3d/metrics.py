@@ -52,6 +52,7 @@ METRIC_UNITS: Mapping[str, str] = MappingProxyType(
         "max_roll": "deg",
         "max_pitch": "deg",
         "max_yaw": "deg",
+        "wheel_climb": "m",
         "max_articulation_angle": "deg",
         "peak_joint_force": "N",
         "energy_residual": "",
@@ -85,10 +86,13 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     ``energy_residual`` (greatest magnitude relative to the initial kinetic energy), ``momentum_residual``,
     ``steps``, ``run_time`` [s], ``end_time`` [s].
 
+    With wheels and a ground: ``wheel_climb`` (greatest height of any wheel's lowest point above it) [m].
+
     With a barrier: ``peak_normal_force``, ``peak_force_50ms`` [N]; greatest of all its elements:
     ``peak_element_force``, ``peak_element_force_50ms`` [N], ``peak_overturning_moment`` and
     ``peak_overturning_moment_50ms`` [N m] (see :class:`birm3d.element_loads.ElementLoad`);
-    ``dynamic_crush``, ``residual_crush`` (greatest truss shortening, during the run and at its end) [m],
+    ``dynamic_crush``, ``residual_crush`` (greatest truss shortening, also of tyres, during the run and at its
+    end) [m],
     ``max_displacement`` (of the mass centre towards the barrier since t = 0 less the standoff; on a path
     along the barrier's line, towards its end) [m], ``contact_overlap`` (of the rigid body inside the barrier,
     what the steps leave) [m], ``impact_severity`` (1/2 m (v sin angle)^2) [J], ``delta_v`` (greatest change
@@ -138,6 +142,8 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
         "run_time": result.run_time,
         "end_time": float(result.time[-1]),
     }
+    if scene.settings.ground and len(scene.vehicle.wheels):
+        metrics["wheel_climb"] = _wheel_climb(result)
     filtered = interval * 60.0 <= 0.1
     if filtered and (names is None or "peak_deceleration_cfc60" in names):
         metrics["peak_deceleration_cfc60"] = float(cfc(deceleration, 60, interval).max())
@@ -178,6 +184,21 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     return metrics
 
 
+def _wheel_climb(result: Result) -> float:
+    """Greatest height of any wheel's lowest point above the ground at the output instants [m]."""
+    greatest = 0.0
+    for u, unit in enumerate(result.scene.vehicle.units):
+        rows = result._history.unit(u)
+        roll, pitch, _ = rows.roll_pitch_yaw.T
+        # World up in body axes, the last row of R = Rz(yaw) Ry(pitch) Rx(roll).
+        up = np.stack([-np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)])
+        upright = np.sqrt(1.0 - up[1] ** 2)  # of the radius, as the axle turns out of the level
+        for x, y, z, radius in unit.wheels:
+            height = rows.position[:, 2] + np.array([x, y, z]) @ up - radius * upright
+            greatest = max(greatest, float(height.max()))
+    return greatest
+
+
 def _penetration(result: Result, past: npt.NDArray[np.float64]) -> float:
     """Greatest distance of an anchor past the barrier's line [m], see compute_metrics()."""
     barrier, vehicle = result.scene.barrier, result.scene.vehicle
@@ -185,9 +206,10 @@ def _penetration(result: Result, past: npt.NDArray[np.float64]) -> float:
     greatest = 0.0
     for u, unit in enumerate(vehicle.units):
         rows = result._history.unit(u)
+        anchors = unit.anchors[unit.wheel_of_node < 0]
         center = (rows.position - np.asarray(barrier.origin)) @ past
         # No anchor is further past the line than this.
-        near = np.flatnonzero(center + np.linalg.norm(unit.anchors, axis=1).max() > greatest)
+        near = np.flatnonzero(center + np.linalg.norm(anchors, axis=1).max() > greatest)
         roll, pitch, yaw = rows.roll_pitch_yaw[near].T
         # The direction in body axes: R^T past, with R = Rz(yaw) Ry(pitch) Rx(roll) and past level.
         ahead = np.cos(yaw) * past[0] + np.sin(yaw) * past[1]
@@ -200,7 +222,7 @@ def _penetration(result: Result, past: npt.NDArray[np.float64]) -> float:
                 np.cos(roll) * up - np.sin(roll) * left,
             ]
         )
-        reach = center[near] + (unit.anchors @ direction).max(axis=0)
+        reach = center[near] + (anchors @ direction).max(axis=0)
         greatest = max(greatest, float(reach.max(initial=0.0)))
     return greatest
 

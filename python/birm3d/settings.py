@@ -32,6 +32,9 @@ class Settings:
         Tyre-pavement friction coefficient.
     mu_body
         Friction coefficient of the vehicle's body sliding on the ground.
+    mu_tire_barrier
+        Friction coefficient of tyres on a barrier. 0.6 is what rubber that slides on dry concrete has at some
+        speed (tests at walking pace give up to 0.8); no vehicle was tested for it.
     braking
         Share of the tyre-pavement friction that brakes, 0 to 1: 0 wheels roll, 1 they are locked and slide.
     cornering_stiffness
@@ -57,6 +60,7 @@ class Settings:
     ground: bool = True
     mu_tire: float = 0.8
     mu_body: float = 0.4
+    mu_tire_barrier: float = 0.6
     braking: float = 0.0
     cornering_stiffness: float = 10.0
     restitution: float = 0.1
@@ -85,6 +89,7 @@ class Settings:
             ground=self.ground,
             mu_tire=self.mu_tire,
             mu_body=self.mu_body,
+            mu_tire_barrier=self.mu_tire_barrier,
             braking=self.braking,
             cornering_stiffness=self.cornering_stiffness,
             restitution=self.restitution,

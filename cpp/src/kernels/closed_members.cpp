@@ -36,12 +36,12 @@ void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyStat
     for (const PlacedShape& shape : shapes)
         margin = std::max(margin, member_margin(mesh, relative(shape), dt));
     std::vector<const PlacedShape*> near;
-    for (std::size_t b = 0; b < mesh.blocks; ++b) {
+    for (std::size_t b = 0; b < mesh.skin_blocks; ++b) {
         near.clear();
         for (const PlacedShape& shape : shapes)
             if (within_reach(shape, mesh.anchor_box[b], margin)) near.push_back(&shape);
         if (near.empty()) continue;
-        for (std::size_t i = b * lanes; i < (b + 1) * lanes && i < mesh.count; ++i) {
+        for (std::size_t i = b * lanes; i < (b + 1) * lanes && i < mesh.skin; ++i) {
             const Vec3 anchor = mesh.anchor(i);
             // Of the nearest surface only: behind a neighbour's face its edges are no obstacle.
             const PlacedShape* at = nullptr;

@@ -63,7 +63,7 @@ double extent(const std::vector<Obstacle>& elements, const Vec3& direction) {
 
 // Does the skin of a unit as it stands in `state` lie above the ground?
 bool skin_above_ground(const Unit& unit) {
-    for (std::size_t i = 0; i < unit.trusses.count; ++i)
+    for (std::size_t i = 0; i < unit.trusses.skin; ++i)
         if (unit.trusses.node(i).z() + unit.mass_center_height < 0.0) return false;
     return true;
 }
@@ -83,7 +83,7 @@ void raise_to_ground(const Scene& scene, State& state) {
         for (const RigidContact& wheel : wheels)
             lowest = std::min(lowest, wheel.gap);
         if (scene.skin_meets_ground[u])
-            for (std::size_t i = 0; i < unit.trusses.count; ++i)
+            for (std::size_t i = 0; i < unit.trusses.skin; ++i)
                 lowest = std::min(lowest, (state.units[u].body.position +
                                            state.units[u].body.orientation * unit.trusses.node(i))
                                               .z());
@@ -227,6 +227,9 @@ std::uint64_t Scene::fingerprint() const {
         }
         hash.add(unit.trusses.rate_sensitivity);
         hash.add(unit.trusses.dent_reach);
+        for (const TreadBlock& tread : unit.trusses.tread)
+            for (const Lanes* lane : {&tread.turn_r, &tread.turn_t, &tread.axle_s, &tread.axle_t})
+                hash.add(*lane);
         for (const Wheel& wheel : unit.wheels) {
             hash.add(wheel.center);
             hash.add(wheel.radius);

@@ -55,7 +55,11 @@ class Skin {
     bool find_dents_of_block(std::size_t b);
     void leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) const;
     void draw_in(std::size_t b, const TrussBlockState& block);
-    void find_seen(const Box& box, double margin);
+    // Does the block meet what is near? Treads meet the barrier only: the wheels stand on the ground.
+    bool meets(std::size_t b, std::size_t near) const {
+        return b < mesh_.skin_blocks || near_[near].index != scene_.ground;
+    }
+    void find_seen(std::size_t b, const Box& box, double margin);
     PlaneSums& sums_of_plane(std::size_t near, const HalfSpace& plane);
     void press_plane(PlaneSums& plane, std::size_t b);
     void press_shapes(std::size_t b);
