@@ -183,36 +183,34 @@ TOE = [(0.3048, 0.0), (0.3048, 0.0762), (0.127, 0.3302)]
 
 
 @cache
-def height_on_toe(speed: float, angle: float, mu: float, braking: float = 0.0) -> float:
-    """Height to which the wheel that is ahead at the barrier has risen 0.1 s after the touch [m]."""
+def height_on_toe(speed: float, angle: float, time: float, mu: float, braking: float = 0.0) -> float:
+    """Height to which the wheel that is ahead at the barrier has risen at that time after the touch [m]."""
     settings = Settings(mu_tire_barrier=mu, braking=braking)
     barrier = Barrier.jersey(profile=TOE)
-    result = Simulation(car("pickup"), barrier, speed, angle, duration=0.1, settings=settings).run()
+    result = Simulation(car("pickup"), barrier, speed, angle, duration=time, settings=settings).run()
     wheel = result.scene.vehicle.wheels[1]  # front right: the barrier is on the right
     center, turn = result.pose([result.time[-1]])
     return float(center[0, 2] + (turn[0] @ wheel[:3])[2] - wheel[3] * np.sqrt(1.0 - turn[0][2, 1] ** 2))
 
 
-ON_TOE = [(20.0, 10.0), (27.8, 15.0), (27.8, 25.0)]
+# The first climb; faster or steeper, the toe is overrun and crushes the wheel.
+ON_TOE = [(20.0, 10.0, 0.1), (20.0, 5.0, 0.2)]
 
 
-@pytest.mark.parametrize(("speed", "angle"), ON_TOE)
-def test_more_friction_lifts_a_rolling_wheel_more(speed, angle):
-    """Of the first climb. Friction along the barrier slows it too, so that the whole run may climb less."""
-    heights = [height_on_toe(speed, angle, mu) for mu in (0.0, 0.3, 0.6, 0.9)]
-    assert heights[0] > 0.01  # the slope itself
-    # At 25 degrees the wheel has been on the toe and is on its way down.
-    rises = np.diff(heights)
-    assert (rises > (0.0 if angle < 20.0 else -1e-3)).all(), heights
-    assert heights[-1] > 1.08 * heights[0]
+@pytest.mark.parametrize(("speed", "angle", "time"), ON_TOE)
+def test_more_friction_lifts_a_rolling_wheel_more(speed, angle, time):
+    """Its tread goes down in front."""
+    heights = [height_on_toe(speed, angle, time, mu) for mu in (0.0, 0.3, 0.6, 0.9)]
+    assert heights[0] > 1e-3  # the slope itself
+    assert (np.diff(heights) > 0.05 * heights[0]).all(), heights
 
 
-@pytest.mark.parametrize(("speed", "angle"), ON_TOE)
-def test_a_locked_wheel_climbs_less_than_a_rolling_one(speed, angle):
-    """Its tread does not go down in front: friction holds it down instead of lifting it."""
-    locked = height_on_toe(speed, angle, 0.6, 1.0)
-    assert locked < 0.75 * height_on_toe(speed, angle, 0.6)
-    assert locked < height_on_toe(speed, angle, 0.0)
+@pytest.mark.parametrize(("speed", "angle", "time"), ON_TOE)
+def test_a_locked_wheel_climbs_less_than_a_rolling_one(speed, angle, time):
+    """Friction holds down what only slides up, and lifts a tread that goes down."""
+    locked = height_on_toe(speed, angle, time, 0.6, 1.0)
+    assert locked < height_on_toe(speed, angle, time, 0.0)
+    assert locked < 0.5 * height_on_toe(speed, angle, time, 0.6)
 
 
 @pytest.mark.parametrize("name", ["passenger_car", "minivan", "pickup", "cargo_truck"])
@@ -228,13 +226,8 @@ def test_a_wall_comes_to_the_skin_before_the_tires(name):
             beside = unit.wheel_of_node < 0
             beside &= (np.abs(unit.nodes[:, 0] - x) < radius + 0.1) & (unit.nodes[:, 1] * y > 0.0)
             met[wheel] = float(way[beside].max())
-    assert 1 in met
+    assert met[1] > 0.0  # front right, where the wall is; the car has not rolled yet
     assert not {0, 2} & set(met)  # on the left, away from the wall
-    gap = (
-        np.abs(unit.nodes[unit.wheel_of_node < 0, 1]).max()
-        - np.abs(unit.nodes[unit.wheel_of_node >= 0, 1]).max()
-    )
-    assert min(met.values()) >= 0.5 * gap > 0.0
 
 
 def test_treads_do_not_meet_the_ground():
