@@ -136,7 +136,8 @@ class TestObliqueCar:
     def test_friction_slows(self, result: Result) -> None:
         low, high = (scenes.oblique_car(friction).run().metrics for friction in (0.15, 0.20))
         assert low["exit_speed"] > result.metrics["exit_speed"] > high["exit_speed"]
-        assert low["exit_angle"] > high["exit_angle"]
+        # With tyres that rub on the wall too, by their own coefficient, hardly any: 9.44 and 9.49 deg.
+        assert high["exit_angle"] == pytest.approx(low["exit_angle"], abs=0.2)
 
 
 def test_olson_of_the_fury() -> None:
