@@ -593,7 +593,7 @@ class Unit:
         """
         mass kg; inertia (3, 3) kg m^2; nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,);
         wheels (w, 4): centre and radius, m; mass_center_height m above the ground;
-        rate_sensitivity s/m; dent_reach: of the skin beside a dent, 0: none; offset (3,) m of the mass centre from the vehicle's reference point along the ground; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; empty: all skin.
+        rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; offset (3,) m of the mass centre from the vehicle's reference point along the ground; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; empty: all skin.
         """
     @property
     def input_index(self) -> list[int]:
