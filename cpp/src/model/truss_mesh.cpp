@@ -136,17 +136,11 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
 }
 
 void TrussMesh::find_tread(const TrussInput& input, const std::vector<Wheel>& wheels) {
-    tread.resize(blocks - skin_blocks);
-    for (std::size_t t = 0; t < tread.size() * lanes; ++t) {
-        const std::size_t source = input_index[std::min(skin + t, count - 1)];
-        const Wheel& wheel = wheels[static_cast<std::size_t>(input.wheel_of[source])];
-        const Vec3 d = input.node[source] - wheel.center;
-        TreadBlock& to = tread[t / lanes];
-        const std::size_t i = t % lanes;
-        to.turn_r[i] = d.z() / wheel.radius;
-        to.turn_t[i] = -d.x() / wheel.radius;
-        to.axle_s[i] = wheel.center.y();
-        to.axle_t[i] = wheel.center.z();
+    for (std::size_t truss = skin; truss < count; ++truss) {
+        const std::size_t source = input_index[truss];
+        const auto w = static_cast<std::size_t>(input.wheel_of[source]);
+        const Vec3 d = input.node[source] - wheels[w].center;
+        tread.push_back({d.z() / wheels[w].radius, -d.x() / wheels[w].radius, w});
     }
 }
 

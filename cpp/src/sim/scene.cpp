@@ -227,9 +227,11 @@ std::uint64_t Scene::fingerprint() const {
         }
         hash.add(unit.trusses.rate_sensitivity);
         hash.add(unit.trusses.dent_reach);
-        for (const TreadBlock& tread : unit.trusses.tread)
-            for (const Lanes* lane : {&tread.turn_r, &tread.turn_t, &tread.axle_s, &tread.axle_t})
-                hash.add(*lane);
+        for (const TreadNode& node : unit.trusses.tread) {
+            hash.add(node.turn_r);
+            hash.add(node.turn_t);
+            hash.add(static_cast<double>(node.wheel));
+        }
         for (const Wheel& wheel : unit.wheels) {
             hash.add(wheel.center);
             hash.add(wheel.radius);

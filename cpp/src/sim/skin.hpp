@@ -8,6 +8,7 @@
 #include "birm3d/kernels/crush.hpp"
 #include "birm3d/kernels/dent.hpp"
 #include "birm3d/kernels/detect.hpp"
+#include "birm3d/kernels/friction_tread.hpp"
 #include "birm3d/sim/trial.hpp"
 
 namespace birm3d {
@@ -71,6 +72,8 @@ class Skin {
     void share_out(std::size_t b, const TrussBlockState& next);
     void rub(std::size_t near, std::size_t b, const TrussBlockState& next, const Places& places,
              const BlockContact& contact);
+    void note_treads(std::size_t near, std::size_t b, const Places& places, const BlockContact& contact);
+    void rub_treads();
     // `near`: place in near_ of the obstacle that the block sees, or `several`.
     template <class Crush>
     void crush_with_rate(std::size_t near, const TrussBlockState& next, const Places& places, CrushSums& sums,
@@ -99,6 +102,7 @@ class Skin {
     CrushSums shared_;                     // of blocks that saw several obstacles
     std::vector<DentedPanel> dents_;
     std::vector<std::size_t> block_dents_;  // by the block at hand, places in dents_
+    std::vector<TreadContact> treads_;      // that push
     TrussBlockState sprung_;                // the block at hand, if some of its nodes have sprung back
     bool sprung_back_ = false;
     Box box_;  // around the nodes of the block at hand

@@ -89,7 +89,7 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
     if (rubs || treads_rub || mesh_.rate_sensitivity > 0.0)
         motion_ = predicted_motion(unit_, before_.touches, trial.dt, now_.body, R_);
     away_.assign(near_.size(), motion_);
-    if (!trial.state.segments.empty() && (rubs || mesh_.rate_sensitivity > 0.0)) {
+    if (!trial.state.segments.empty() && (rubs || treads_rub || mesh_.rate_sensitivity > 0.0)) {
         const std::vector<BodyState> drifted = trial.state.segments;
         predict_segments(scene, from, trial.dt, trial.state);
         for (std::size_t k = 0; k < near_.size(); ++k) {
@@ -111,6 +111,7 @@ void Skin::press_blocks() {
     find_dents();
     for (std::size_t b = 0; b < mesh_.blocks; ++b)
         press(b);
+    if (!treads_.empty()) rub_treads();
     trial_.state.statistics.node_evaluations += trial_.active[u_].blocks().size() * lanes;
 }
 
@@ -394,11 +395,7 @@ void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, con
     ObstacleSums& sums = obstacles_[near];
     if (along_) sums.by_trusses += along_trusses(mesh_.block[b], next, contact);
     if (b >= mesh_.skin_blocks) {
-        const Settings& settings = scene_.settings;
-        if (settings.mu_tire_barrier > 0.0)
-            add_tread_friction(unit_.body, settings.mu_tire_barrier, full_speed_, motion_,
-                               mesh_.tread[b - mesh_.skin_blocks], settings.braking < 1.0, places, contact,
-                               sums.friction);
+        if (scene_.settings.mu_tire_barrier > 0.0) note_treads(near, b, places, contact);
         return;
     }
     const double mu = scene_.obstacles[near_[near].index].friction;

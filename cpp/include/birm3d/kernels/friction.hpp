@@ -4,11 +4,6 @@
 // Below `full_speed` the force falls in proportion to the sliding speed, so that it brings the sliding to
 // rest and never reverses it; the step sees to it that this speed is not below what the friction of all
 // nodes together would undo within one step.
-//
-// Nodes on a tread slide with the motion of the body and, while the wheel rolls, with that of the tread (TrussMesh): ahead
-// of the axle it goes down, so that friction lifts the wheel. The spin is that of free rolling by the body's speed, at
-// every instant: what it costs to spin the wheel up or down is left out, and the power of the friction is that on the
-// body, which a tread can also drive.
 #pragma once
 
 #include "birm3d/model/vehicle.hpp"
@@ -19,10 +14,5 @@ namespace birm3d {
 // `motion`: the vehicle's twist in body axes. Adds friction and its rate to `forces` (body axes).
 void add_friction(const RigidBody& body, double mu, double full_speed, const Twist& motion,
                   const Places& places, const BlockContact& contact, SkinForces& forces);
-
-// The same for a block of nodes on treads; wheels that do not roll are locked.
-void add_tread_friction(const RigidBody& body, double mu, double full_speed, const Twist& motion,
-                        const TreadBlock& tread, bool rolls, const Places& places,
-                        const BlockContact& contact, SkinForces& forces);
 
 }  // namespace birm3d

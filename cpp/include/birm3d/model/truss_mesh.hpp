@@ -69,11 +69,11 @@ struct alignas(64) Hinge {
     Lanes slope_change;  // N/m
 };
 
-// What nodes on a tread have in addition. A wheel that rolls freely turns with v/R about the axle, v the body's speed
-// along r there: its tread moves, seen from the body, with v (s x d)/R at d from the axle.
-struct alignas(64) TreadBlock {
-    Lanes turn_r, turn_t;  // (s x d)/R
-    Lanes axle_s, axle_t;  // the wheel's centre, body axes (m)
+// What a node on a tread has in addition. The tread of a wheel that turns as if it rolled with the speed v moves, seen
+// from the body, with v (s x d)/R at d from the axle.
+struct TreadNode {
+    double turn_r = 0.0, turn_t = 0.0;  // (s x d)/R
+    std::size_t wheel = 0;              // of the unit
 };
 
 struct TrussMesh {
@@ -93,7 +93,7 @@ struct TrussMesh {
     std::vector<StiffnessMoments> moments;  // (blocks) of all of them
     std::vector<Box> node_box;              // (blocks) around the uncrushed nodes
     std::vector<Box> anchor_box;            // (blocks)
-    std::vector<TreadBlock> tread;          // (blocks - skin_blocks)
+    std::vector<TreadNode> tread;           // (count - skin)
     Box anchors;                            // around those of the skin
     std::array<Panel, panels> panel;
     std::vector<std::uint8_t> panels_of;   // (blocks) bit by bit: which panels have nodes there?
