@@ -120,6 +120,16 @@ void register_simulation(py::module_& m) {
             },
             py::arg("unit") = 0,
             "Now: mass centre, (3,) m, world; rotation from body axes to the world's, (3, 3)")
+        .def(
+            "skin_load",
+            [](const Simulation& s, std::size_t unit) {
+                const SkinForces& skin = s.state().units.at(unit).skin;
+                return std::tuple(copy(skin.contact.force), copy(skin.friction.force), skin.normal_force);
+            },
+            py::arg("unit") = 0,
+            "Now: force of all that nodes push on, without friction, (3,) N, world; friction, (3,) N; sum of "
+            "the "
+            "nodes' normal forces, N")
         .def("nodes", &nodes_in_input_order, py::arg("unit") = 0, "(n, 3) m: shell nodes now, body axes")
         .def(
             "deflection",

@@ -445,6 +445,10 @@ class Simulation:
         """
         From the present state to the end; Ctrl-C stops it.
         """
+    def skin_load(self, unit: typing.SupportsInt | typing.SupportsIndex = 0) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], float]:
+        """
+        Now: force of all that nodes push on, without friction, (3,) N, world; friction, (3,) N; sum of the nodes' normal forces, N
+        """
     def snapshot(self) -> Snapshot:
         ...
     def step(self) -> bool:

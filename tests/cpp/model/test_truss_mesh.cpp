@@ -96,7 +96,7 @@ TEST("treads stand in blocks of their own behind the skin, which stays as it was
     }
     const TrussMesh skin(input), mesh(with, {wheel});
     CHECK(mesh.count == 133 && mesh.skin == 130);
-    CHECK(mesh.skin_blocks == 3 && mesh.blocks == 4 && mesh.tread.size() == 1);
+    CHECK(mesh.skin_blocks == 3 && mesh.blocks == 4 && mesh.tread.size() == 3);
     for (std::size_t b = 0; b < 3; ++b) {
         CHECK(mesh.block[b].node_y == skin.block[b].node_y && mesh.block[b].panel == skin.block[b].panel);
         CHECK(mesh.panels_of[b] == skin.panels_of[b]);
@@ -108,11 +108,11 @@ TEST("treads stand in blocks of their own behind the skin, which stays as it was
         CHECK(mesh.anchor(truss) == with.anchor[mesh.input_index[truss]]);
         CHECK((with.wheel_of[mesh.input_index[truss]] == 0) == (truss >= mesh.skin));
     }
-    const TreadBlock& tread = mesh.tread[0];
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec3 d = mesh.node(mesh.skin + i) - wheel.center;
-        CHECK_CLOSE(tread.turn_r[i], d.z() / 0.4, 1e-15, "rounding");
-        CHECK_CLOSE(tread.turn_t[i], -d.x() / 0.4, 1e-15, "rounding");
+        CHECK(mesh.tread[i].wheel == 0);
+        CHECK_CLOSE(mesh.tread[i].turn_r, d.z() / 0.4, 1e-15, "rounding");
+        CHECK_CLOSE(mesh.tread[i].turn_t, -d.x() / 0.4, 1e-15, "rounding");
         CHECK(mesh.block[3].k_unloading[i] == 0.5 * 60e6);
     }
     for (std::size_t i = 3; i < lanes; ++i)
