@@ -8,9 +8,9 @@ lengthways, for what a wheel resists in a crash head-on is already in the zones 
 that it hardly turns while it is pressed; its anchor is no point of the vehicle. Nodes near the ground are
 left out: there the wheel stands on it. Neither suspension nor steering is modelled.
 
-Treads rub on a barrier with a coefficient of their own (:attr:`birm3d.Settings.mu_tire_barrier`). A wheel that
-is not locked has the spin at which that friction has no torque about its axle, so that a barrier which meets
-it below and ahead of the axle pushes it up and back.
+Treads rub on a barrier with a coefficient of their own (:attr:`birm3d.Settings.mu_tire_barrier`). A wheel
+that is not locked has the spin at which that friction has no torque about its axle, so that a barrier which
+meets it below and ahead of the axle pushes it up and back.
 """
 
 from __future__ import annotations

@@ -144,8 +144,8 @@ def test_barrier_force_stands_on_its_normal(scene_result: Result) -> None:
     assert r.barrier_normal_force.min() >= -1e-9 * largest
     across = np.linalg.norm(r.barrier_force - along[:, None] * np.array(r.scene.barrier.core.normal), axis=1)
     # Friction is at most mu times the normal force. It is so at the ends of a step; between them both follow
-    # parabolas of their own, which part where the last nodes let go. Measured: 6e-9. A tread of few nodes that
-    # is the last parts them by 3e-5: with tyres the law is tested at the ends of steps, below.
+    # parabolas of their own, which part where the last nodes let go. Measured: 6e-9. A tread of few nodes
+    # that is the last parts them by 3e-5: with tyres the law is tested at the ends of steps, below.
     if not meets_with_tires(r) or greatest_friction(r) == 0.0:
         assert (across <= greatest_friction(r) * r.barrier_normal_force + 1e-8 * largest).all()
 
@@ -165,7 +165,7 @@ def test_friction_of_body_and_tires_keeps_to_coulomb_at_the_end_of_every_step(
     on_tires = scene.vehicle.wheel_of_node >= 0
     largest, over, tires_alone = 0.0, [], 0
     while run.step():
-        contact, friction, pressed = run._core.skin_load(0)
+        _, friction, pressed = run._core.skin_load(0)
         forces = run._core.truss_force(0)
         alone = not (forces[~on_tires] > 0.0).any()
         tires_alone += bool(alone and pressed > 0.0)

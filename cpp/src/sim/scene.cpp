@@ -126,11 +126,14 @@ void place(const Scene& scene, const Vec3& heading, State& state) {
         const BodyState& body = state.units[u].body;
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         const Mat3 R = body.orientation.toRotationMatrix();
+        const auto reach = [&](const Vec3& point) {
+            const double at = inward.dot(body.position + R * point);
+            front = std::max(front, at), rear = std::min(rear, at);
+        };
         for (std::size_t i = 0; i < mesh.count; ++i)
-            for (const Vec3& p : {mesh.node(i), mesh.anchor(i)}) {
-                const double at = inward.dot(body.position + R * p);
-                front = std::max(front, at), rear = std::min(rear, at);
-            }
+            reach(mesh.node(i));
+        for (std::size_t i = 0; i < mesh.skin; ++i)
+            reach(mesh.anchor(i));
     }
     const double pace = heading.dot(inward);
     const double to_plane = (first - scene.approach.standoff - front) / pace;
