@@ -136,8 +136,7 @@ class TestObliqueCar:
     def test_friction_slows(self, result: Result) -> None:
         low, high = (scenes.oblique_car(friction).run().metrics for friction in (0.15, 0.20))
         assert low["exit_speed"] > result.metrics["exit_speed"] > high["exit_speed"]
-        # With tyres that rub on the wall too, by their own coefficient, hardly any: 9.44 and 9.49 deg.
-        assert high["exit_angle"] == pytest.approx(low["exit_angle"], abs=0.2)
+        assert low["exit_angle"] > high["exit_angle"]
 
 
 def test_olson_of_the_fury() -> None:
@@ -179,8 +178,11 @@ class TestTruckAtBollards:
         assert result.metrics["energy_residual"] < 0.005
 
     def test_pitch_is_known_to_be_too_great(self, result: Result) -> None:
-        """A prediction that misses: 36.4 deg with the assumed row. Held so that a change of it is seen."""
-        assert result.metrics["max_pitch"] == pytest.approx(36.4, abs=2.0)
+        """A prediction that misses: 34.5 deg with the assumed row. Held so that a change of it is seen.
+
+        Posts that stand beside the wheels meet the tyres; without that it is 36.4 deg.
+        """
+        assert result.metrics["max_pitch"] == pytest.approx(34.5, abs=2.0)
 
     def test_lower_bollards_pitch_more(self, result: Result) -> None:
         """Couple about the mass centre, 1.28 m high: the lower the force, the more it turns."""
