@@ -258,6 +258,19 @@ def test_whether_a_vehicle_stays_upright_hangs_on_no_estimate(name, mass, streng
         assert met(name, mass, face, strength, mu).metrics["max_roll"] < 30.0, face
 
 
+def test_a_roll_goes_on_past_the_full_turn():
+    """A pickup at 30 m/s and 40 degrees climbs a New Jersey barrier and rolls over: its angle counts on."""
+    simulation = Simulation(car("pickup"), Barrier.jersey(), 30.0, 40.0, duration=3.0)
+    deepest = 0.0
+    while simulation.step():
+        deepest = max(deepest, simulation._core.deepest_node)
+    result = simulation.run()
+    assert result.metrics["max_roll"] > 360.0
+    assert np.abs(np.diff(result.roll)).max() < 5.0  # in 0.1 ms
+    assert result.metrics["energy_residual"] < 1e-3
+    assert deepest < 1e-4
+
+
 def test_tires_are_frictionless_where_the_barrier_is_unless_asked():
     def lost(friction: float, mu: float | None) -> float:
         barrier = Barrier.jersey(friction=friction)
