@@ -21,8 +21,10 @@ OutputArray in_input_order(const Simulation& simulation, std::size_t unit, Lanes
     const TrussState& trusses = simulation.state().units.at(unit).trusses;
     OutputArray result(static_cast<py::ssize_t>(mesh.count));
     auto at = result.mutable_unchecked<1>();
-    for (std::size_t i = 0; i < mesh.count; ++i)
-        at(static_cast<py::ssize_t>(mesh.input_index[i])) = (trusses.block[i / lanes].*column)[i % lanes];
+    for (std::size_t truss = 0; truss < mesh.count; ++truss) {
+        const std::size_t i = mesh.slot(truss);
+        at(static_cast<py::ssize_t>(mesh.input_index[truss])) = (trusses.block[i / lanes].*column)[i % lanes];
+    }
     return read_only(std::move(result));
 }
 
@@ -32,8 +34,9 @@ OutputArray nodes_in_input_order(const Simulation& simulation, std::size_t unit)
     const TrussState& trusses = simulation.state().units.at(unit).trusses;
     OutputArray nodes({static_cast<py::ssize_t>(mesh.count), py::ssize_t{3}});
     auto at = nodes.mutable_unchecked<2>();
-    for (std::size_t i = 0; i < mesh.count; ++i) {
-        const auto row = static_cast<py::ssize_t>(mesh.input_index[i]);
+    for (std::size_t truss = 0; truss < mesh.count; ++truss) {
+        const std::size_t i = mesh.slot(truss);
+        const auto row = static_cast<py::ssize_t>(mesh.input_index[truss]);
         const TrussBlockState& block = trusses.block[i / lanes];
         at(row, 0) = block.x[i % lanes], at(row, 1) = block.y[i % lanes], at(row, 2) = block.z[i % lanes];
     }
@@ -117,6 +120,16 @@ void register_simulation(py::module_& m) {
             },
             py::arg("unit") = 0,
             "Now: mass centre, (3,) m, world; rotation from body axes to the world's, (3, 3)")
+        .def(
+            "skin_load",
+            [](const Simulation& s, std::size_t unit) {
+                const SkinForces& skin = s.state().units.at(unit).skin;
+                return std::tuple(copy(skin.contact.force), copy(skin.friction.force), skin.normal_force);
+            },
+            py::arg("unit") = 0,
+            "Now: force of all that nodes push on, without friction, (3,) N, world; friction, (3,) N; sum of "
+            "the "
+            "nodes' normal forces, N")
         .def("nodes", &nodes_in_input_order, py::arg("unit") = 0, "(n, 3) m: shell nodes now, body axes")
         .def(
             "deflection",

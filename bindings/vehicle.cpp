@@ -18,11 +18,12 @@ void register_vehicle(py::module_& m) {
                          const InputArray& anchors, const std::vector<TrussCurve>& curves,
                          const std::vector<std::size_t>& curve_of, const InputArray& scale,
                          const InputArray& wheels, double mass_center_height, double rate_sensitivity,
-                         double dent_reach, const InputArray& offset) {
+                         double dent_reach, const InputArray& offset, const std::vector<int>& wheel_of) {
                  TrussInput trusses{points(nodes, "nodes"), points(anchors, "anchors"), curves, curve_of,
                                     numbers(scale, "scale")};
                  trusses.rate_sensitivity = rate_sensitivity;
                  trusses.dent_reach = dent_reach;
+                 trusses.wheel_of = wheel_of;
                  if (wheels.ndim() != 2 || wheels.shape(1) != 4)
                      refuse("wheels shape", "(w, 4)", shape_text(wheels));
                  std::vector<Wheel> discs;
@@ -34,13 +35,14 @@ void register_vehicle(py::module_& m) {
              py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("nodes"), py::arg("anchors"),
              py::arg("curves"), py::arg("curve_of"), py::arg("scale"), py::arg("wheels"),
              py::arg("mass_center_height"), py::arg("rate_sensitivity"), py::arg("dent_reach"),
-             py::arg("offset"),
+             py::arg("offset"), py::arg("wheel_of"),
              "mass kg; inertia (3, 3) kg m^2; nodes, anchors (n, 3) m; curves for the trusses with curve_of "
              "(n,) and scale (n,);\n"
              "wheels (w, 4): centre and radius, m; mass_center_height m above the ground;\n"
              "rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; offset (3,) m of the "
              "mass centre from the vehicle's reference point along "
-             "the ground.")
+             "the ground; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; "
+             "empty: all skin.")
         .def_property_readonly("n_trusses", [](const Unit& unit) { return unit.trusses.count; })
         .def_property_readonly(
             "input_index", [](const Unit& unit) { return unit.trusses.input_index; },

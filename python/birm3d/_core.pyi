@@ -409,7 +409,7 @@ class Settings:
     """
     How a scene is computed (SI). Immutable.
     """
-    def __init__(self, *, time_step: typing.SupportsFloat | typing.SupportsIndex | None, tolerance: typing.SupportsFloat | typing.SupportsIndex, output_interval: typing.SupportsFloat | typing.SupportsIndex, gravity: typing.SupportsFloat | typing.SupportsIndex, ground: bool, mu_tire: typing.SupportsFloat | typing.SupportsIndex, mu_body: typing.SupportsFloat | typing.SupportsIndex, braking: typing.SupportsFloat | typing.SupportsIndex, cornering_stiffness: typing.SupportsFloat | typing.SupportsIndex, restitution: typing.SupportsFloat | typing.SupportsIndex, contact_model: ContactModel, tire_model: TireModel) -> None:
+    def __init__(self, *, time_step: typing.SupportsFloat | typing.SupportsIndex | None, tolerance: typing.SupportsFloat | typing.SupportsIndex, output_interval: typing.SupportsFloat | typing.SupportsIndex, gravity: typing.SupportsFloat | typing.SupportsIndex, ground: bool, mu_tire: typing.SupportsFloat | typing.SupportsIndex, mu_body: typing.SupportsFloat | typing.SupportsIndex, mu_tire_barrier: typing.SupportsFloat | typing.SupportsIndex, braking: typing.SupportsFloat | typing.SupportsIndex, cornering_stiffness: typing.SupportsFloat | typing.SupportsIndex, restitution: typing.SupportsFloat | typing.SupportsIndex, contact_model: ContactModel, tire_model: TireModel) -> None:
         ...
 class Simulation:
     """
@@ -444,6 +444,10 @@ class Simulation:
     def run(self) -> None:
         """
         From the present state to the end; Ctrl-C stops it.
+        """
+    def skin_load(self, unit: typing.SupportsInt | typing.SupportsIndex = 0) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], float]:
+        """
+        Now: force of all that nodes push on, without friction, (3,) N, world; friction, (3,) N; sum of the nodes' normal forces, N
         """
     def snapshot(self) -> Snapshot:
         ...
@@ -589,11 +593,11 @@ class Unit:
     """
     A rigid body with its crushable skin and wheels; body axes r, s, t, origin at the mass centre.
     """
-    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex, dent_reach: typing.SupportsFloat | typing.SupportsIndex, offset: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
+    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex, dent_reach: typing.SupportsFloat | typing.SupportsIndex, offset: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheel_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]) -> None:
         """
         mass kg; inertia (3, 3) kg m^2; nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,);
         wheels (w, 4): centre and radius, m; mass_center_height m above the ground;
-        rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; offset (3,) m of the mass centre from the vehicle's reference point along the ground.
+        rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; offset (3,) m of the mass centre from the vehicle's reference point along the ground; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; empty: all skin.
         """
     @property
     def input_index(self) -> list[int]:

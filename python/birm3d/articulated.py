@@ -170,6 +170,10 @@ class ArticulatedVehicle(Vehicle):
         """Return the vehicle with :meth:`Vehicle.with_dent_reach` of both units."""
         return self._with([unit.with_dent_reach(dent_reach) for unit in self._units])
 
+    def without_tire_contact(self) -> ArticulatedVehicle:
+        """Return the vehicle with :meth:`Vehicle.without_tire_contact` of both units."""
+        return self._with([unit.without_tire_contact() for unit in self._units])
+
     def with_mesh_density(self, mesh_density: float) -> ArticulatedVehicle:
         """Return the vehicle with :meth:`Vehicle.with_mesh_density` of both units."""
         return self._with([unit.with_mesh_density(mesh_density) for unit in self._units])
@@ -281,6 +285,7 @@ def articulate(units: Sequence[Vehicle], joint: Joint, name: str | None) -> Arti
             shifted.append(rows)
         return np.concatenate(shifted)
 
+    wheel_numbers = trailing.wheel_of_node + np.where(trailing.wheel_of_node >= 0, len(leading.wheels), 0)
     zone_numbers = trailing.zone_of_node + np.where(trailing.zone_of_node >= 0, len(leading.zones), 0)
     return ArticulatedVehicle(
         name=name if name is not None else f"{leading.name} + {trailing.name}",
@@ -291,6 +296,7 @@ def articulate(units: Sequence[Vehicle], joint: Joint, name: str | None) -> Arti
         anchors=of_both("anchors"),
         area=np.concatenate([leading.area, trailing.area]),
         zone_of_node=np.concatenate([leading.zone_of_node, zone_numbers]),
+        wheel_of_node=np.concatenate([leading.wheel_of_node, wheel_numbers]),
         quads=np.concatenate([leading.quads, trailing.quads + len(leading.nodes)]),
         wheels=of_both("wheels"),
         mass_center_height=float(center[2]),

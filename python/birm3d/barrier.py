@@ -34,6 +34,8 @@ class Barrier:
     ----------
     friction
         Coulomb coefficient between vehicle and barrier; 0.15 to 0.20 for steel on concrete (paper 5.4).
+        Tyres have one of their own, :attr:`birm3d.Settings.mu_tire_barrier`; at 0 they slide without
+        friction too, unless the settings give them a number.
     origin
         A point of the barrier's line, at the foot of its traffic face, of posts of their axes; world axes,
         shape (3,) [m].

@@ -251,7 +251,7 @@ def _zones_of_quads(vehicle: VehicleFile, surface: _Surface) -> Ints:
     names = ("body", *(upper.name for upper in vehicle.exterior.upper))
     zone = np.full(len(middle), -1, dtype=np.int64)
     for index, law in enumerate(vehicle.zones):
-        match = np.isin(surface.panel, [_PANELS.index(panel) for panel in law.panels])
+        match = np.isin(surface.panel, [_PANELS.index(panel) for panel in law.panels if panel != "tire"])
         if law.blocks:
             match &= np.isin(surface.block, [names.index(block) for block in law.blocks])
         for axis, limits in ((0, law.x_m), (2, law.z_m)):

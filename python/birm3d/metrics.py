@@ -53,6 +53,7 @@ METRIC_UNITS: Mapping[str, str] = MappingProxyType(
         "max_roll": "deg",
         "max_pitch": "deg",
         "max_yaw": "deg",
+        "wheel_climb": "m",
         "max_articulation_angle": "deg",
         "peak_joint_force": "N",
         "energy_residual": "",
@@ -89,10 +90,13 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     ``energy_residual`` (greatest magnitude relative to the initial kinetic energy), ``momentum_residual``,
     ``steps``, ``run_time`` [s], ``end_time`` [s].
 
+    With wheels and a ground: ``wheel_climb`` (greatest height of any wheel's lowest point above it) [m].
+
     With a barrier: ``peak_normal_force``, ``peak_force_50ms`` [N]; greatest of all its elements:
     ``peak_element_force``, ``peak_element_force_50ms`` [N], ``peak_overturning_moment`` and
     ``peak_overturning_moment_50ms`` [N m] (see :class:`birm3d.element_loads.ElementLoad`);
-    ``dynamic_crush``, ``residual_crush`` (greatest truss shortening, during the run and at its end) [m],
+    ``dynamic_crush``, ``residual_crush`` (greatest truss shortening, also of tyres, during the run and at its
+    end) [m],
     ``max_displacement`` (of the mass centre towards the barrier since t = 0 less the standoff; on a path
     along the barrier's line, towards its end) [m], ``contact_overlap`` (of the rigid body inside the barrier,
     what the steps leave) [m], ``impact_severity`` (1/2 m (v sin angle)^2) [J], ``delta_v`` (greatest change
@@ -260,6 +264,23 @@ def _max_overturning_ratio(run: _Run) -> float | None:
     return float(run.result.overturning_ratio.max()) if run.scene.settings.gravity > 0.0 else None
 
 
+def _wheel_climb(run: _Run) -> float | None:
+    """Greatest height of any wheel's lowest point above the ground at the output instants [m]."""
+    if not run.scene.settings.ground or not len(run.scene.vehicle.wheels):
+        return None
+    greatest = 0.0
+    for u, unit in enumerate(run.scene.vehicle.units):
+        rows = run.result._history.unit(u)
+        roll, pitch, _ = rows.roll_pitch_yaw.T
+        # World up in body axes, the last row of R = Rz(yaw) Ry(pitch) Rx(roll).
+        up = np.stack([-np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)])
+        upright = np.sqrt(1.0 - up[1] ** 2)  # of the radius, as the axle turns out of the level
+        for x, y, z, radius in unit.wheels:
+            height = rows.position[:, 2] + np.array([x, y, z]) @ up - radius * upright
+            greatest = max(greatest, float(height.max()))
+    return greatest
+
+
 def _vehicle_penetration(run: _Run) -> float | None:
     """Greatest distance of an anchor past the barrier's line [m], see compute_metrics()."""
     if run.barrier is None or run.along:
@@ -268,9 +289,10 @@ def _vehicle_penetration(run: _Run) -> float | None:
     greatest = 0.0
     for u, unit in enumerate(run.scene.vehicle.units):
         rows = result._history.unit(u)
+        anchors = unit.anchors[unit.wheel_of_node < 0]
         center = (rows.position - origin) @ past
         # No anchor is further past the line than this.
-        near = np.flatnonzero(center + np.linalg.norm(unit.anchors, axis=1).max() > greatest)
+        near = np.flatnonzero(center + np.linalg.norm(anchors, axis=1).max() > greatest)
         roll, pitch, yaw = rows.roll_pitch_yaw[near].T
         # The direction in body axes: R^T past, with R = Rz(yaw) Ry(pitch) Rx(roll) and past level.
         ahead = np.cos(yaw) * past[0] + np.sin(yaw) * past[1]
@@ -283,7 +305,7 @@ def _vehicle_penetration(run: _Run) -> float | None:
                 np.cos(roll) * up - np.sin(roll) * left,
             ]
         )
-        reach = center[near] + (unit.anchors @ direction).max(axis=0)
+        reach = center[near] + (anchors @ direction).max(axis=0)
         greatest = max(greatest, float(reach.max(initial=0.0)))
     return greatest
 
@@ -324,6 +346,7 @@ def _all_metrics() -> dict[str, _Metric]:
         "max_roll": lambda run: float(np.abs(run.result.roll).max()),
         "max_pitch": lambda run: float(np.abs(run.result.pitch).max()),
         "max_yaw": lambda run: float(np.abs(run.result.yaw).max()),
+        "wheel_climb": _wheel_climb,
         "max_articulation_angle": _of_joint(lambda run: float(np.abs(run.result.articulation_angle).max())),
         "peak_joint_force": _of_joint(
             lambda run: float(np.linalg.norm(run.result.joint_force, axis=1).max())

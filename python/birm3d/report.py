@@ -105,6 +105,10 @@ def _left_out(result: Result) -> list[str]:
             )
         if scene.barrier.friction == 0.0:
             lines.append("barrier friction: its coefficient is 0")
+        if not (vehicle.wheel_of_node >= 0).any():
+            lines.append("tyres at the barrier: the vehicle has none that meet it")
+        elif scene.mu_tire_barrier == 0.0:
+            lines.append("tyre friction at the barrier: its coefficient is 0")
     if not settings.ground:
         lines.append("the ground: ground=False")
     elif len(vehicle.wheels) == 0:

@@ -171,6 +171,7 @@ class _Settings(Strict):
     ground: bool = Settings.ground
     mu_tire: float = Settings.mu_tire
     mu_body: float = Settings.mu_body
+    mu_tire_barrier: float | None = Settings.mu_tire_barrier
     braking: float = Settings.braking
     cornering_stiffness: float = Settings.cornering_stiffness
     restitution: float = Settings.restitution

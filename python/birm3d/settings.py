@@ -8,7 +8,10 @@ from typing import Literal
 
 from . import _core
 
-__all__ = ["Settings"]
+__all__ = ["MU_TIRE_BARRIER", "Settings"]
+
+MU_TIRE_BARRIER = 0.6
+"""Friction coefficient of tyres on a barrier where none is asked for, see :class:`Settings`."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,12 @@ class Settings:
         Tyre-pavement friction coefficient.
     mu_body
         Friction coefficient of the vehicle's body sliding on the ground.
+    mu_tire_barrier
+        Friction coefficient of tyres on a barrier, apart from that of the vehicle's body, which is the
+        barrier's own ``friction``. ``None``: 0.6, which is what rubber that slides on dry concrete has at
+        some speed (tests at walking pace give up to 0.8; no vehicle was tested for it); and 0 at a barrier
+        whose ``friction`` is 0, which is frictionless for all that meets it. A number holds at every barrier.
+        See :attr:`birm3d.simulation.Scene.mu_tire_barrier`.
     braking
         Share of the tyre-pavement friction that brakes, 0 to 1: 0 wheels roll, 1 they are locked and slide.
     cornering_stiffness
@@ -57,6 +66,7 @@ class Settings:
     ground: bool = True
     mu_tire: float = 0.8
     mu_body: float = 0.4
+    mu_tire_barrier: float | None = None
     braking: float = 0.0
     cornering_stiffness: float = 10.0
     restitution: float = 0.1
@@ -85,6 +95,7 @@ class Settings:
             ground=self.ground,
             mu_tire=self.mu_tire,
             mu_body=self.mu_body,
+            mu_tire_barrier=MU_TIRE_BARRIER if self.mu_tire_barrier is None else self.mu_tire_barrier,
             braking=self.braking,
             cornering_stiffness=self.cornering_stiffness,
             restitution=self.restitution,

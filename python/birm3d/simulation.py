@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from . import _core
 from .barrier import Barrier
 from .result import Result
-from .settings import Settings
+from .settings import MU_TIRE_BARRIER, Settings
 from .vehicle import Vehicle
 
 __all__ = ["Scene", "Simulation"]
@@ -30,6 +30,14 @@ class Scene:
     impact_roll: float
     duration: float | None
     settings: Settings
+
+    @property
+    def mu_tire_barrier(self) -> float:
+        """Friction coefficient of tyres at the barrier: what the settings ask for, or their default rule."""
+        asked = self.settings.mu_tire_barrier
+        if asked is not None:
+            return asked
+        return 0.0 if self.barrier is not None and self.barrier.friction == 0.0 else MU_TIRE_BARRIER
 
 
 class Simulation:
@@ -109,7 +117,7 @@ class Simulation:
             standoff=self._scene.standoff,
             yaw=math.radians(self._scene.impact_yaw),
             roll=math.radians(self._scene.impact_roll),
-            settings=self._scene.settings.core,
+            settings=replace(self._scene.settings, mu_tire_barrier=self._scene.mu_tire_barrier).core,
             duration=duration,
         )
         self._run_time = 0.0

@@ -47,9 +47,13 @@ class Vehicle:
     inertia : ndarray, shape (3, 3)
         About the mass centre [kg m^2].
     nodes, anchors : ndarray, shape (n, 3)
-        Uncrushed shell nodes and the points of the rigid body that their trusses start from [m].
+        Uncrushed nodes of the shell, then of the treads by which tyres meet barriers
+        (:mod:`birm3d.tread`), and the points that their trusses start from [m]; those of the shell are
+        points of the rigid body.
     area : ndarray, shape (n,)
         Tributary area of each node [m^2]; 1 for vehicles made from arrays.
+    wheel_of_node : ndarray of int, shape (n,)
+        Index of the wheel whose tread the node is on; -1 for nodes of the shell.
     zone_of_node : ndarray of int, shape (n,)
         Index into ``zones``; -1 for vehicles made from arrays.
     quads : ndarray of int, shape (m, 4)
@@ -79,6 +83,7 @@ class Vehicle:
     zones: Mapping[str, Zone]
     rate_sensitivity: float = 0.0
     dent_reach: float = 0.0
+    wheel_of_node: npt.NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.empty(0, np.int64))
     # What made the vehicle: laws per truss (m, N, N/m), or a file with its mesh density.
     _truss_laws: Floats | None = None
     _file: VehicleFile | None = None
@@ -89,6 +94,8 @@ class Vehicle:
     _load_density: float | None = None  # of the goods in the load space, where not the file's [kg/m^3]
 
     def __post_init__(self) -> None:
+        if len(self.wheel_of_node) == 0:
+            object.__setattr__(self, "wheel_of_node", np.full(len(self.nodes), -1, np.int64))
         for field in dataclasses.fields(self):
             value = getattr(self, field.name)
             if isinstance(value, np.ndarray):
@@ -338,6 +345,14 @@ class Vehicle:
         """
         return dataclasses.replace(self, dent_reach=float(dent_reach))
 
+    def without_tire_contact(self) -> Vehicle:
+        """Return the vehicle with tyres that meet the ground only, not barriers (:mod:`birm3d.tread`)."""
+        shell = self.wheel_of_node < 0
+        if shell.all():
+            return self
+        columns = ("nodes", "anchors", "area", "zone_of_node", "wheel_of_node")
+        return dataclasses.replace(self, **{name: getattr(self, name)[shell] for name in columns})
+
     def with_mesh_density(self, mesh_density: float) -> Vehicle:
         """Return the vehicle with another number of shell elements, relative to its file's choice."""
         if self._file is None:
@@ -427,6 +442,8 @@ class Vehicle:
 
     def _anew(self, vehicle: Vehicle) -> Vehicle:
         """Return a vehicle made anew from the file with what the file does not hold."""
+        if not (self.wheel_of_node >= 0).any():
+            vehicle = vehicle.without_tire_contact()
         return dataclasses.replace(
             vehicle, rate_sensitivity=self.rate_sensitivity, dent_reach=self.dent_reach
         )
@@ -475,12 +492,12 @@ class Vehicle:
 
     @property
     def n_nodes(self) -> int:
-        """Number of shell nodes."""
+        """Number of nodes of the shell and of the treads."""
         return len(self.nodes)
 
     @property
     def n_trusses(self) -> int:
-        """Number of trusses: one for each shell node."""
+        """Number of trusses: one for each node."""
         return len(self.nodes)
 
     @property
@@ -518,6 +535,7 @@ class Vehicle:
             rate_sensitivity=self.rate_sensitivity,
             dent_reach=self.dent_reach,
             offset=offset,
+            wheel_of=self.wheel_of_node.tolist(),
         )
 
     def __eq__(self, other: object) -> bool:
@@ -573,20 +591,24 @@ def _assemble(
     draft: bool,
     load_density: float | None,
 ) -> Vehicle:
+    from .tread import build_tread
+
     properties = _core.mass_properties(*solids_at(file, mass, load_density))
     center = np.array(properties.center_of_mass)
     center[2] += raised
     wheels = np.array([[*wheel.center_m, wheel.radius_m] for wheel in file.wheels], float).reshape(-1, 4)
     wheels[:, :3] -= center
+    tread = build_tread(file, mesh_density)
     return Vehicle(
         name=file.name,
         mass=properties.mass,
         center_of_mass=center,
         inertia=np.array(properties.inertia),
-        nodes=mesh.nodes - center,
-        anchors=mesh.anchors - center,
-        area=np.array(mesh.area),
-        zone_of_node=np.array(mesh.zone, np.int64),
+        nodes=np.concatenate([mesh.nodes, tread.nodes]) - center,
+        anchors=np.concatenate([mesh.anchors, tread.anchors]) - center,
+        area=np.concatenate([mesh.area, tread.area]),
+        zone_of_node=np.concatenate([mesh.zone, tread.zone]),
+        wheel_of_node=np.concatenate([np.full(len(mesh.nodes), -1), tread.wheel]),
         quads=np.array(mesh.quads, np.int64),
         wheels=wheels,
         mass_center_height=float(center[2]),

@@ -41,7 +41,7 @@ Positive: TypeAlias = Annotated[float, Field(gt=0.0)]
 NonNegative: TypeAlias = Annotated[float, Field(ge=0.0)]
 Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
 EnvelopePoint: TypeAlias = tuple[NonNegative, NonNegative]
-Panel: TypeAlias = Literal["front", "rear", "side", "top", "bottom"]
+Panel: TypeAlias = Literal["front", "rear", "side", "top", "bottom", "tire"]
 # Text that may be broken over several lines of the file.
 Text: TypeAlias = Annotated[str, Field(min_length=1), AfterValidator(lambda text: " ".join(text.split()))]
 Status: TypeAlias = Literal["measured", "published", "calibrated", "estimated"]
@@ -326,6 +326,9 @@ class Zone(Block):
     the element's middle (m, file axes). Zones are tried in the order of the file; the first match wins.
     Trusses start from the nearest point of the named core boxes, or of all.
 
+    The panel "tire", alone in its zone, is the treads of the wheels: ranges are of a wheel's middle, and the
+    area is the tread's. Without such a zone tyres meet the ground only.
+
     The law (Fig. 3): either k_initial, knee, k_hardening, f_max, or a general envelope with rows
     [deflection in m, stress in Pa] from [0, 0]; the stress stays constant after its last point.
     """
@@ -345,6 +348,10 @@ class Zone(Block):
 
     @model_validator(mode="after")
     def _check(self) -> Zone:
+        if "tire" in self.panels:
+            for key, value in (("blocks", self.blocks), ("core", self.core), ("panels", self.panels[1:])):
+                if value:
+                    reject(key, f"must not go with the panel 'tire', got {', '.join(value)}")
         for key, limits in (("x_m", self.x_m), ("z_m", self.z_m)):
             if limits is not None:
                 _check_order(key, limits, "must increase")

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable
 
 import numpy as np
 import pytest
-from birm3d import Result, Settings, scenes
+from birm3d import Result, Settings, Simulation, scenes
 from birm3d.barrier_kinds import RigidWall
 from scipy.spatial.transform import Rotation
 
@@ -63,17 +64,32 @@ def test_energy_terms_are_what_they_are_called(scene_result: Result, body_to_wor
     assert energy["stored"].min() >= 0.0
 
 
+def meets_with_tires(result: Result) -> bool:
+    return bool((result.scene.vehicle.wheel_of_node >= 0).any())
+
+
+def greatest_friction(result: Result) -> float:
+    """Coefficient at the barrier of body or tyres, whichever is greater."""
+    assert result.scene.barrier is not None
+    tires = result.scene.mu_tire_barrier if meets_with_tires(result) else 0.0
+    return max(result.scene.barrier.friction, tires)
+
+
 def test_what_is_lost_does_not_come_back(scene_result: Result) -> None:
     scale = energy_scale(scene_result)
     for name in ("crushed", "barrier_friction", "tire_friction"):
         assert np.diff(scene_result.energy[name]).min() >= -1e-14 * scale, name  # rounding of a sum
     # Rigid contacts that found a point inside push it out again: measured, up to 4e-7 of the kinetic energy.
-    assert np.diff(scene_result.energy["impacts"]).min() >= -1e-6 * scale
+    # Wheels that land one after the other take more within a ms than the first had given back (1.6e-6).
+    impacts = scene_result.energy["impacts"]
+    rows = max(1, round(1e-3 / scene_result.scene.settings.output_interval))
+    ahead = np.lib.stride_tricks.sliding_window_view(np.append(impacts, np.full(rows, impacts[-1])), rows + 1)
+    assert (ahead[:, 1:].max(axis=1) - impacts).min() >= -1e-6 * scale
 
 
 def test_barrier_friction_is_lost_where_there_is_friction(scene_result: Result) -> None:
     scene, lost = scene_result.scene, scene_result.energy["barrier_friction"]
-    if scene.barrier is None or scene.barrier.friction == 0.0:
+    if scene.barrier is None or greatest_friction(scene_result) == 0.0:
         assert np.abs(lost).max() == 0.0
     elif scene.impact_angle != 90.0:
         assert lost[-1] > 1e-3 * energy_scale(scene_result)
@@ -121,7 +137,7 @@ def test_barrier_force_stands_on_its_normal(scene_result: Result) -> None:
     if not isinstance(
         r.scene.barrier, RigidWall
     ):  # normals differ from node to node: what is left is a bound
-        bound = math.hypot(1.0, r.scene.barrier.friction) * r.barrier_normal_force
+        bound = math.hypot(1.0, greatest_friction(r)) * r.barrier_normal_force
         largest = r.barrier_normal_force.max()
         # Rows within a step follow parabolas, the force's components and the normal force each its own.
         assert (np.linalg.norm(r.barrier_force, axis=1) <= bound + 1e-7 * largest).all()
@@ -132,8 +148,37 @@ def test_barrier_force_stands_on_its_normal(scene_result: Result) -> None:
     assert r.barrier_normal_force.min() >= -1e-9 * largest
     across = np.linalg.norm(r.barrier_force - along[:, None] * np.array(r.scene.barrier.core.normal), axis=1)
     # Friction is at most mu times the normal force. It is so at the ends of a step; between them both follow
-    # parabolas of their own, which part where the last nodes let go. Measured: 6e-9.
-    assert (across <= r.scene.barrier.friction * r.barrier_normal_force + 1e-8 * largest).all()
+    # parabolas of their own, which part where the last nodes let go. Measured: 6e-9. A tread of few nodes
+    # that is the last parts them by 3e-5: with tyres the law is tested at the ends of steps, below.
+    if not meets_with_tires(r) or greatest_friction(r) == 0.0:
+        assert (across <= greatest_friction(r) * r.barrier_normal_force + 1e-8 * largest).all()
+
+
+@pytest.mark.parametrize("scene_name", ["oblique_car", "oblique_24_friction", "oblique_66_friction"])
+@pytest.mark.parametrize("mu_tire_barrier", [0.0, 0.1, 0.6])
+def test_friction_of_body_and_tires_keeps_to_coulomb_at_the_end_of_every_step(
+    scene_name: str, mu_tire_barrier: float, result_of: Callable[[str], Result]
+) -> None:
+    """Of what pushes on a wall, at most the greater coefficient; where only tyres push, at most theirs."""
+    scene = result_of(scene_name).scene
+    assert isinstance(scene.barrier, RigidWall)
+    assert meets_with_tires(result_of(scene_name))
+    settings = dataclasses.replace(scene.settings, mu_tire_barrier=mu_tire_barrier)
+    run = Simulation.from_scene(dataclasses.replace(scene, settings=settings))
+    normal = np.array(scene.barrier.core.normal)
+    on_tires = scene.vehicle.wheel_of_node >= 0
+    largest, over, tires_alone = 0.0, [], 0
+    while run.step():
+        _, friction, pressed = run._core.skin_load(0)
+        forces = run._core.truss_force(0)
+        alone = not (forces[~on_tires] > 0.0).any()
+        tires_alone += bool(alone and pressed > 0.0)
+        mu = mu_tire_barrier if alone else max(scene.barrier.friction, mu_tire_barrier)
+        largest = max(largest, pressed)
+        over.append(np.linalg.norm(friction) - mu * pressed)
+        assert abs(friction @ normal) <= 1e-12 * max(largest, 1.0)
+    assert max(over) <= 1e-12 * largest  # rounding
+    assert tires_alone > 0 or scene_name == "oblique_66_friction"
 
 
 @pytest.mark.parametrize("angle", [10.0, 24.0, 45.0, 66.0])

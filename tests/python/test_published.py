@@ -178,8 +178,11 @@ class TestTruckAtBollards:
         assert result.metrics["energy_residual"] < 0.005
 
     def test_pitch_is_known_to_be_too_great(self, result: Result) -> None:
-        """A prediction that misses: 36.4 deg with the assumed row. Held so that a change of it is seen."""
-        assert result.metrics["max_pitch"] == pytest.approx(36.4, abs=2.0)
+        """A prediction that misses: 34.5 deg with the assumed row. Held so that a change of it is seen.
+
+        Posts that stand beside the wheels meet the tyres; without that it is 36.4 deg.
+        """
+        assert result.metrics["max_pitch"] == pytest.approx(34.5, abs=2.0)
 
     def test_lower_bollards_pitch_more(self, result: Result) -> None:
         """Couple about the mass centre, 1.28 m high: the lower the force, the more it turns."""

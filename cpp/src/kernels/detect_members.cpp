@@ -35,7 +35,7 @@ void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyStat
     std::vector<const PlacedShape*> near;
     alignas(64) NearestLanes nearest, found;
     std::array<const PlacedShape*, lanes> at;
-    for (std::size_t b = 0; b < mesh.blocks; ++b) {
+    for (std::size_t b = 0; b < mesh.skin_blocks; ++b) {
         near.clear();
         for (const PlacedShape& shape : shapes)
             if (within_reach(*shape.shape, shape.placement, mesh.anchor_box[b], margin))
@@ -55,7 +55,7 @@ void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyStat
                 nearest.nx[i] = found.nx[i], nearest.ny[i] = found.ny[i], nearest.nz[i] = found.nz[i];
             }
         }
-        for (std::size_t i = 0; i < lanes && b * lanes + i < mesh.count; ++i) {
+        for (std::size_t i = 0; i < lanes && b * lanes + i < mesh.skin; ++i) {
             if (at[i] == nullptr) continue;
             const std::size_t truss = b * lanes + i;
             const Vec3 anchor = mesh.anchor(truss), normal(nearest.nx[i], nearest.ny[i], nearest.nz[i]);

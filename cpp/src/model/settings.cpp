@@ -15,6 +15,7 @@ void require_valid(const Settings& s) {
     require_not_negative("gravity", s.gravity);
     require_not_negative("mu_tire", s.mu_tire);
     require_not_negative("mu_body", s.mu_body);
+    require_not_negative("mu_tire_barrier", s.mu_tire_barrier);
     require_within("braking", s.braking, 0.0, 1.0);
     require_positive("cornering_stiffness", s.cornering_stiffness);
     require_within("restitution", s.restitution, 0.0, 1.0);

@@ -39,7 +39,7 @@ RigidBody::RigidBody(double mass_, const Mat3& inertia_)
 Unit::Unit(const RigidBody& body_, const TrussInput& trusses_, std::vector<Wheel> wheels_,
            double mass_center_height_, const Vec3& offset_)
     : body(body_),
-      trusses(trusses_),
+      trusses(trusses_, wheels_),
       wheels(std::move(wheels_)),
       mass_center_height(require_finite("mass_center_height", mass_center_height_)),
       offset(offset_) {

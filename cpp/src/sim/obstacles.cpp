@@ -112,7 +112,7 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
             };
             if (what.nodes)
                 least = nearest_in_blocks(
-                    shape, seen, mesh.blocks,
+                    shape, seen, i == scene.ground ? mesh.skin_blocks : mesh.blocks,
                     [&](std::size_t b) {
                         const TrussBlockState& block = unit.trusses.block[b];
                         return Points{box_of(block), &block.x, &block.y, &block.z};
@@ -120,7 +120,7 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
                     least);
             if (!what.anchors) continue;
             least = nearest_in_blocks(
-                shape, seen, mesh.blocks,
+                shape, seen, mesh.skin_blocks,
                 [&](std::size_t b) {
                     const TrussBlock& block = mesh.block[b];
                     return Points{mesh.anchor_box[b], &block.anchor_x, &block.anchor_y, &block.anchor_z};

@@ -64,7 +64,7 @@ double extent(const std::vector<Obstacle>& elements, const Vec3& direction) {
 
 // Does the skin of a unit as it stands in `state` lie above the ground?
 bool skin_above_ground(const Unit& unit) {
-    for (std::size_t i = 0; i < unit.trusses.count; ++i)
+    for (std::size_t i = 0; i < unit.trusses.skin; ++i)
         if (unit.trusses.node(i).z() + unit.mass_center_height < 0.0) return false;
     return true;
 }
@@ -84,7 +84,7 @@ void raise_to_ground(const Scene& scene, State& state) {
         for (const RigidContact& wheel : wheels)
             lowest = std::min(lowest, wheel.gap);
         if (scene.skin_meets_ground[u])
-            for (std::size_t i = 0; i < unit.trusses.count; ++i)
+            for (std::size_t i = 0; i < unit.trusses.skin; ++i)
                 lowest = std::min(lowest, (state.units[u].body.position +
                                            state.units[u].body.orientation * unit.trusses.node(i))
                                               .z());
@@ -127,11 +127,14 @@ void place(const Scene& scene, const Vec3& heading, State& state) {
         const BodyState& body = state.units[u].body;
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         const Mat3 R = body.orientation.toRotationMatrix();
+        const auto reach = [&](const Vec3& point) {
+            const double at = inward.dot(body.position + R * point);
+            front = std::max(front, at), rear = std::min(rear, at);
+        };
         for (std::size_t i = 0; i < mesh.count; ++i)
-            for (const Vec3& p : {mesh.node(i), mesh.anchor(i)}) {
-                const double at = inward.dot(body.position + R * p);
-                front = std::max(front, at), rear = std::min(rear, at);
-            }
+            reach(mesh.node(i));
+        for (std::size_t i = 0; i < mesh.skin; ++i)
+            reach(mesh.anchor(i));
     }
     const double pace = heading.dot(inward);
     const double to_plane = (first - scene.approach.standoff - front) / pace;
@@ -229,6 +232,11 @@ std::uint64_t Scene::fingerprint() const {
         }
         hash.add(unit.trusses.rate_sensitivity);
         hash.add(unit.trusses.dent_reach);
+        for (const TreadNode& node : unit.trusses.tread) {
+            hash.add(node.turn_r);
+            hash.add(node.turn_t);
+            hash.add(static_cast<double>(node.wheel));
+        }
         for (const Wheel& wheel : unit.wheels) {
             hash.add(wheel.center);
             hash.add(wheel.radius);

@@ -8,6 +8,7 @@
 #include "birm3d/kernels/crush.hpp"
 #include "birm3d/kernels/dent.hpp"
 #include "birm3d/kernels/detect.hpp"
+#include "birm3d/kernels/friction_tread.hpp"
 #include "birm3d/sim/trial.hpp"
 
 namespace birm3d {
@@ -58,7 +59,11 @@ class Skin {
     bool is_left_to_dents(std::size_t b, std::size_t near) const;
     void leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) const;
     void draw_in(std::size_t b, const TrussBlockState& block);
-    void find_seen(const Box& box, double margin);
+    // Does the block meet what is near? Treads meet the barrier only: the wheels stand on the ground.
+    bool meets(std::size_t b, std::size_t near) const {
+        return b < mesh_.skin_blocks || near_[near].index != scene_.ground;
+    }
+    void find_seen(std::size_t b, const Box& box, double margin);
     PlaneSums& sums_of_plane(std::size_t near, const HalfSpace& plane);
     void press_plane(PlaneSums& plane, std::size_t b);
     void press_shapes(std::size_t b);
@@ -70,6 +75,8 @@ class Skin {
     void share_out(std::size_t b, const TrussBlockState& next);
     void rub(std::size_t near, std::size_t b, const TrussBlockState& next, const Places& places,
              const BlockContact& contact);
+    void note_treads(std::size_t near, std::size_t b, const Places& places, const BlockContact& contact);
+    void rub_treads();
     // `near`: place in near_ of the obstacle that the block sees, or `several`.
     template <class Crush>
     void crush_with_rate(std::size_t near, const TrussBlockState& next, const Places& places, CrushSums& sums,
@@ -98,6 +105,7 @@ class Skin {
     CrushSums shared_;                     // of blocks that saw several obstacles
     std::vector<DentedPanel> dents_;
     std::vector<std::size_t> block_dents_;  // by the block at hand, places in dents_
+    std::vector<TreadContact> treads_;      // that push
     TrussBlockState sprung_;                // the block at hand, if some of its nodes have sprung back
     bool sprung_back_ = false;
     Box box_;  // around the nodes of the block at hand

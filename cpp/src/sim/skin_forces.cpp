@@ -85,10 +85,11 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
     const bool rubs = std::any_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
         return scene.obstacles[obstacle.index].friction > 0.0;
     });
-    if (rubs || mesh_.rate_sensitivity > 0.0)
+    const bool treads_rub = !mesh_.tread.empty() && scene.settings.mu_tire_barrier > 0.0 && !near_.empty();
+    if (rubs || treads_rub || mesh_.rate_sensitivity > 0.0)
         motion_ = predicted_motion(unit_, before_.touches, trial.dt, now_.body, R_);
     away_.assign(near_.size(), motion_);
-    if (!trial.state.segments.empty() && (rubs || mesh_.rate_sensitivity > 0.0)) {
+    if (!trial.state.segments.empty() && (rubs || treads_rub || mesh_.rate_sensitivity > 0.0)) {
         const std::vector<BodyState> drifted = trial.state.segments;
         predict_segments(scene, from, trial.dt, trial.state);
         for (std::size_t k = 0; k < near_.size(); ++k) {
@@ -110,6 +111,7 @@ void Skin::press_blocks() {
     find_dents();
     for (std::size_t g = 0; g < before_.groups.size(); ++g)
         if (may_change(before_.groups[g])) press_group(g);
+    if (!treads_.empty()) rub_treads();
     trial_.state.statistics.node_evaluations += trial_.active[u_].blocks().size() * lanes;
 }
 
@@ -151,6 +153,7 @@ void Skin::spring_back(std::size_t b) {
         const Vec3 place = anchor - (truss.length[i] - block.residual[i]) *
                                         (anchor - Vec3(block.x[i], block.y[i], block.z[i])).normalized();
         const bool free = std::all_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
+            if (b >= mesh_.skin_blocks && obstacle.index == scene_.ground) return true;
             return nearest(scene_.obstacles[obstacle.index].shape, obstacle.now.to_own(place)).gap >= 0.0;
         });
         if (!free) {
@@ -169,17 +172,17 @@ void Skin::look_about(std::size_t b) {
     spring_back(b);
     const TrussBlockState& block = from(b);
     // Where a flat surface is all there is, pushing nodes need no box.
-    const bool flat_only =
-        near_.size() == 1 && std::holds_alternative<HalfSpace>(scene_.obstacles[near_[0].index].shape);
+    const bool flat_only = near_.size() == 1 && meets(b, 0) &&
+                           std::holds_alternative<HalfSpace>(scene_.obstacles[near_[0].index].shape);
     box_ = block.touching && !flat_only ? box_around(block.x, block.y, block.z) : block.box;
     if (block.touching && flat_only)
         seen_.assign(1, 0);
     else
-        find_seen(box_, block.touching ? margin_ : 0.0);
+        find_seen(b, box_, block.touching ? margin_ : 0.0);
     // What pushes stays at what it pushes on until it is released, however far it was drawn off within the step.
     if (block.touching && seen_.empty())
         for (std::size_t k = 0; k < near_.size(); ++k)
-            seen_.push_back(k);
+            if (meets(b, k)) seen_.push_back(k);
 }
 
 // Is there anything to do?
@@ -204,10 +207,10 @@ bool Skin::press(std::size_t b) {
     return true;
 }
 
-void Skin::find_seen(const Box& box, double margin) {
+void Skin::find_seen(std::size_t b, const Box& box, double margin) {
     seen_.clear();
     for (std::size_t k = 0; k < near_.size(); ++k)
-        if (within_reach(scene_.obstacles[near_[k].index].shape, near_[k].now, box, margin))
+        if (meets(b, k) && within_reach(scene_.obstacles[near_[k].index].shape, near_[k].now, box, margin))
             seen_.push_back(k);
 }
 
@@ -424,6 +427,10 @@ void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, con
                const BlockContact& contact) {
     ObstacleSums& sums = obstacles_[near];
     if (along_) sums.by_trusses += along_trusses(mesh_.block[b], next, contact);
+    if (b >= mesh_.skin_blocks) {
+        if (scene_.settings.mu_tire_barrier > 0.0) note_treads(near, b, places, contact);
+        return;
+    }
     const double mu = scene_.obstacles[near_[near].index].friction;
     if (mu > 0.0) add_friction(unit_.body, mu, full_speed_, away_[near], places, contact, sums.friction);
 }

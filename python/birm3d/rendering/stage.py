@@ -109,7 +109,14 @@ class Stage:
         if self._result.scene.settings.ground:
             plotter.add_mesh(_ground(pv, low, high, -0.01), color=_GROUND, lighting=False)
             plotter.add_mesh(_grid(pv, low, high, -0.005), color=_GRID, line_width=1.0, lighting=False)
-        greatest = max(_LEAST_SCALE, *(float(skin.crush.max()) for units in self._skins for skin in units))
+        # Of what is shown: nodes on treads are no corners of it.
+        corners = [np.unique(shape.quads) for shape in unit_shapes(self._result.scene.vehicle)]
+        crushed = (
+            float(skin.crush[shown].max(initial=0.0))
+            for units in self._skins
+            for skin, shown in zip(units, corners, strict=True)
+        )
+        greatest = max(_LEAST_SCALE, *crushed)
         font = max(6, round(self._size[1] / 60.0))
         text = {"viewport": True, "color": "black"}
         plotter.add_text(title(self._result), position=(0.02, 0.935), font_size=round(0.85 * font), **text)

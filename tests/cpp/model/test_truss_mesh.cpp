@@ -82,3 +82,49 @@ TEST("what is no skin is refused") {
     refused([](TrussInput& bad) { bad.scale[5] = -1.0; });
     refused([](TrussInput& bad) { bad.curve[0].k_unloading = 1.0; });
 }
+
+TEST("treads stand in blocks of their own behind the skin, which stays as it was") {
+    TrussInput with = laboratory::front_face(laboratory::w2_curve(), columns, rows);
+    const Wheel wheel{Vec3(1.5, 0.8, -0.6), 0.4};
+    with.wheel_of.assign(130, -1);
+    for (const double up : {-0.3, 0.1, 0.3}) {  // before the skin in the caller's order
+        with.node.insert(with.node.begin(), Vec3(1.5 + up, 0.9, -0.6 + up));
+        with.anchor.insert(with.anchor.begin(), Vec3(9.0, 0.5, -0.6));
+        with.curve_of.insert(with.curve_of.begin(), 0);
+        with.scale.insert(with.scale.begin(), 0.5);
+        with.wheel_of.insert(with.wheel_of.begin(), 0);
+    }
+    const TrussMesh skin(input), mesh(with, {wheel});
+    CHECK(mesh.count == 133 && mesh.skin == 130);
+    CHECK(mesh.skin_blocks == 3 && mesh.blocks == 4 && mesh.tread.size() == 3);
+    for (std::size_t b = 0; b < 3; ++b) {
+        CHECK(mesh.block[b].node_y == skin.block[b].node_y && mesh.block[b].panel == skin.block[b].panel);
+        CHECK(mesh.panels_of[b] == skin.panels_of[b]);
+    }
+    CHECK(mesh.panels_of[3] == 0);
+    CHECK(mesh.anchors.half == skin.anchors.half);  // a tread's anchor is none of the rigid body
+    for (std::size_t truss = 0; truss < mesh.count; ++truss) {
+        CHECK(mesh.node(truss) == with.node[mesh.input_index[truss]]);
+        CHECK(mesh.anchor(truss) == with.anchor[mesh.input_index[truss]]);
+        CHECK((with.wheel_of[mesh.input_index[truss]] == 0) == (truss >= mesh.skin));
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 d = mesh.node(mesh.skin + i) - wheel.center;
+        CHECK(mesh.tread[i].wheel == 0);
+        CHECK_CLOSE(mesh.tread[i].turn_r, d.z() / 0.4, 1e-15, "rounding");
+        CHECK_CLOSE(mesh.tread[i].turn_t, -d.x() / 0.4, 1e-15, "rounding");
+        CHECK(mesh.block[3].k_unloading[i] == 0.5 * 60e6);
+    }
+    for (std::size_t i = 3; i < lanes; ++i)
+        CHECK(mesh.block[3].k_unloading[i] == 0.0);
+}
+
+TEST("treads of wheels that are not there are refused") {
+    TrussInput wrong = laboratory::front_face(laboratory::w2_curve(), 2, 2);
+    wrong.wheel_of = {-1, -1, 1, -1};
+    CHECK_THROWS(TrussMesh(wrong, {Wheel{Vec3::Zero(), 0.4}}), std::invalid_argument);
+    wrong.wheel_of = {0, 0, 0, 0};  // no skin
+    CHECK_THROWS(TrussMesh(wrong, {Wheel{Vec3::Zero(), 0.4}}), std::invalid_argument);
+    wrong.wheel_of = {-1, -1};
+    CHECK_THROWS(TrussMesh{wrong}, std::invalid_argument);
+}

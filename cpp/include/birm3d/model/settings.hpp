@@ -21,8 +21,9 @@ struct Settings {
     double output_interval = 1e-4;    // s
     double gravity = 9.80665;         // m/s^2
     bool ground = true;
-    double mu_tire = 0.8;  // tyre-pavement friction coefficient
-    double mu_body = 0.4;  // vehicle body-pavement, where it slides on the ground
+    double mu_tire = 0.8;          // tyre-pavement friction coefficient
+    double mu_body = 0.4;          // vehicle body-pavement, where it slides on the ground
+    double mu_tire_barrier = 0.6;  // tyre-barrier
     double braking = 0.0;  // share of the tyre-pavement friction that brakes: 0 rolling, 1 locked wheels
     double cornering_stiffness =
         10.0;                  // lateral force per normal load and radian of slip at small slip (1/rad)

@@ -4,6 +4,10 @@
 // Trusses are sorted along a space-filling curve and cut into blocks of `lanes`, so that nodes that touch
 // a barrier together stand together, a block that can not touch anything is left out by one test, and
 // kernels run over whole blocks without gathers. The last block is padded with trusses of no stiffness.
+//
+// Tyres that meet a barrier are nodes too, on the tread's outer edge, in blocks of their own after those of the skin.
+// They are no part of the rigid body: their anchors meet nothing. The ground is met by the wheels themselves
+// (kernels/tires.hpp), not by these nodes, and posts do not dent them.
 #pragma once
 
 #include <array>
@@ -16,6 +20,7 @@
 #include "birm3d/base/types.hpp"
 #include "birm3d/geometry/box.hpp"
 #include "birm3d/model/truss_law.hpp"
+#include "birm3d/model/wheel.hpp"
 
 namespace birm3d {
 
@@ -31,6 +36,8 @@ struct TrussInput {
     double rate_sensitivity = 0.0;
     // How far the dent that a post makes reaches beyond it (kernels/dent.hpp); zero: nodes know nothing of each other (m).
     double dent_reach = 0.0;
+    // (n) Number of the wheel whose tread the node is on, -1 for the skin; empty: all skin.
+    std::vector<int> wheel_of = {};
 };
 
 // Unloading stiffness of some trusses and its second moments about the mass centre, body axes.
@@ -62,12 +69,22 @@ struct alignas(64) Hinge {
     Lanes slope_change;  // N/m
 };
 
-struct TrussMesh {
-    explicit TrussMesh(const TrussInput& input);
+// What a node on a tread has in addition. The tread of a wheel that turns as if it rolled with the speed v moves, seen
+// from the body, with v (s x d)/R at d from the axle.
+struct TreadNode {
+    double turn_r = 0.0, turn_t = 0.0;  // (s x d)/R
+    std::size_t wheel = 0;              // of the unit
+};
 
-    std::size_t count = 0;   // trusses
-    std::size_t blocks = 0;  // blocks of `lanes`
-    std::size_t hinges = 0;  // slope changes of the longest envelope
+struct TrussMesh {
+    // Refuses what is not as TrussInput says; `wheels` are those that wheel_of counts.
+    explicit TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels = {});
+
+    std::size_t count = 0;        // trusses
+    std::size_t skin = 0;         // of the skin, before those of tyres
+    std::size_t blocks = 0;       // blocks of `lanes`
+    std::size_t skin_blocks = 0;  // the first of them
+    std::size_t hinges = 0;       // slope changes of the longest envelope
 
     std::vector<TrussBlock> block;  // (blocks)
     std::vector<Hinge> hinge;       // (blocks * hinges), a block's hinges together
@@ -76,30 +93,36 @@ struct TrussMesh {
     std::vector<StiffnessMoments> moments;  // (blocks) of all of them
     std::vector<Box> node_box;              // (blocks) around the uncrushed nodes
     std::vector<Box> anchor_box;            // (blocks)
-    Box anchors;                            // around all of them
+    std::vector<TreadNode> tread;           // (count - skin)
+    Box anchors;                            // around those of the skin
     std::array<Panel, panels> panel;
     std::vector<std::uint8_t> panels_of;   // (blocks) bit by bit: which panels have nodes there?
     std::vector<std::size_t> input_index;  // (count) the caller's number of each truss
 
+    // Place of a truss in the blocks: padding stands between skin and tyres.
+    std::size_t slot(std::size_t truss) const {
+        return truss < skin ? truss : skin_blocks * lanes + (truss - skin);
+    }
     Vec3 node(std::size_t truss) const {
-        const TrussBlock& b = block[truss / lanes];
-        const std::size_t i = truss % lanes;
+        const TrussBlock& b = block[slot(truss) / lanes];
+        const std::size_t i = slot(truss) % lanes;
         return {b.node_x[i], b.node_y[i], b.node_z[i]};
     }
     Vec3 anchor(std::size_t truss) const {
-        const TrussBlock& b = block[truss / lanes];
-        const std::size_t i = truss % lanes;
+        const TrussBlock& b = block[slot(truss) / lanes];
+        const std::size_t i = slot(truss) % lanes;
         return {b.anchor_x[i], b.anchor_y[i], b.anchor_z[i]};
     }
 
     double rate_sensitivity = 0.0;  // see TrussInput (s/m)
     double dent_reach = 0.0;        // see TrussInput
 
-    double reach = 0.0;  // greatest distance of a node or anchor from the mass centre (m)
+    double reach = 0.0;  // greatest distance of a node, or an anchor of the skin, from the mass centre (m)
 
   private:
     void add_stiffness(const TrussBlock& trusses);
     void find_panels();
+    void find_tread(const TrussInput& input, const std::vector<Wheel>& wheels);
     void fill_lane(const TrussInput& input, std::size_t source, bool padding, std::size_t b, std::size_t i);
 };
 

@@ -7,6 +7,7 @@
 #include "birm3d/base/types.hpp"
 #include "birm3d/model/joint.hpp"
 #include "birm3d/model/truss_mesh.hpp"
+#include "birm3d/model/wheel.hpp"
 
 namespace birm3d {
 
@@ -18,12 +19,6 @@ struct RigidBody {
     double inverse_mass;   // 1/kg
     Mat3 inertia;          // kg m^2, body axes
     Mat3 inverse_inertia;  // 1/(kg m^2), body axes
-};
-
-// A disc that rolls about the body's s axis; only its lowest point meets the ground.
-struct Wheel {
-    Vec3 center = Vec3::Zero();  // body axes (m)
-    double radius = 0.0;         // m
 };
 
 struct Unit {

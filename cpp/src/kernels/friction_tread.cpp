@@ -1,0 +1,66 @@
+#include "birm3d/kernels/friction_tread.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace birm3d {
+
+namespace {
+
+// Square of t_i below which the wheel's turning does not move the node along the surface.
+constexpr double no_turning = 1e-12;
+
+Vec3 along_surface(const Vec3& v, const Vec3& normal) {
+    return v - v.dot(normal) * normal;
+}
+
+// Sliding over its speed, or over that of full friction.
+Vec3 share_of_full(const TreadContact& node, double turning, double full_speed) {
+    const Vec3 u = node.sliding + turning * node.turning;
+    return u / std::max(u.norm(), full_speed);
+}
+
+}  // namespace
+
+TreadContact tread_contact(const TreadNode& node, std::size_t near, const Twist& motion, const Vec3& arm,
+                           const Vec3& normal, double pressure) {
+    const Vec3 u = motion.velocity + motion.angular_velocity.cross(arm);
+    const Vec3 t(node.turn_r, 0.0, node.turn_t);
+    return {node.wheel, near, arm, along_surface(u, normal), along_surface(t, normal), pressure};
+}
+
+double free_turning(double full_speed, std::span<const TreadContact> wheel) {
+    // Each node alone has no torque where it slides along its spoke, less below and more above: the torque of all
+    // grows with q, from below zero at the least of these to above zero at the greatest.
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const TreadContact& node : wheel) {
+        const double square = node.turning.squaredNorm();
+        if (!(square > no_turning) || !(node.pressure > 0.0)) continue;
+        const double own = -node.sliding.dot(node.turning) / square;
+        low = std::min(low, own);
+        high = std::max(high, own);
+    }
+    if (!(low <= high)) return 0.0;
+    const auto torque = [&](double q) {
+        double sum = 0.0;
+        for (const TreadContact& node : wheel)
+            sum += node.pressure * share_of_full(node, q, full_speed).dot(node.turning);
+        return sum;
+    };
+    // Halving finds the corners too that slow sliding makes; it ends where the numbers do.
+    for (double middle = 0.5 * (low + high); low < middle && middle < high; middle = 0.5 * (low + high))
+        (torque(middle) < 0.0 ? low : high) = middle;
+    return 0.5 * (low + high);
+}
+
+void add_tread_friction(const RigidBody& body, double mu, double full_speed, double turning,
+                        const TreadContact& node, SkinForces& forces) {
+    const Vec3 direction = -share_of_full(node, turning, full_speed);
+    const Vec3 c = node.arm.cross(direction);
+    const double limit = mu * node.pressure;
+    forces.friction += {limit * direction, limit * c};
+    // Inverse effective mass along the sliding direction (Eq. 1's denominator).
+    forces.friction_rate += limit * (body.inverse_mass + c.dot(body.inverse_inertia * c));
+}
+
+}  // namespace birm3d
