@@ -269,15 +269,50 @@ void Skin::press_shapes(std::size_t b) {
     look(b);
     const bool alone = seen_.size() == 1;
     CrushSums& to = alone ? obstacles_[seen_[0]].sums : shared_;
-    crush_with_rate(alone ? seen_[0] : several, next, contact_.places(), to,
-                    [&](const Lanes* factor, CrushSums& sums) {
-                        crush(faces_, unit_.body, mesh_, b, factor, from(b), next, contact_, sums);
-                    });
+    const CrushSums before = to;
+    const auto crush_block = [&] {
+        crush_with_rate(alone ? seen_[0] : several, next, contact_.places(), to,
+                        [&](const Lanes* factor, CrushSums& sums) {
+                            crush(faces_, unit_.body, mesh_, b, factor, from(b), next, contact_, sums);
+                        });
+    };
+    crush_block();
+    if (const double spared = let_go_into_another(b); spared > 0.0) {
+        to = before;
+        to.released_work -= spared;
+        look(b);
+        crush_block();
+    }
     if (!next.touching) return;
     if (alone)
         rub(seen_[0], b, next, contact_.places(), contact_);
     else
         share_out(b, next);
+}
+
+// A node that one face lets go may spring into another, in the corner between two slopes: it arrives there within the
+// step, its truss unloaded. Returns what such trusses had stored (J).
+double Skin::let_go_into_another(std::size_t b) {
+    const TrussBlockState& next = now_.trusses.block[b];
+    double stored = 0.0;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const double force = from(b).force[i];
+        if (!(force > 0.0 && next.force[i] == 0.0)) continue;
+        const Vec3 place(next.x[i], next.y[i], next.z[i]);
+        const bool inside = std::any_of(seen_.begin(), seen_.end(), [&](std::size_t k) {
+            const Shape& shape = scene_.obstacles[near_[k].index].shape;
+            return std::holds_alternative<Prism>(shape) &&
+                   nearest(shape, near_[k].now.to_own(place)).gap < -tolerance::touching_gap;
+        });
+        if (!inside) continue;
+        if (!sprung_back_) sprung_ = before_.trusses.block[b];
+        sprung_back_ = true;
+        stored += 0.5 * force * (sprung_.deflection[i] - sprung_.residual[i]);
+        sprung_.x[i] = place.x(), sprung_.y[i] = place.y(), sprung_.z[i] = place.z();
+        sprung_.force[i] = 0.0;
+        sprung_.deflection[i] = next.deflection[i];
+    }
+    return stored;
 }
 
 // What each node of a block sees: the nearest of the surfaces in its reach.
