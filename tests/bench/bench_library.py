@@ -21,7 +21,7 @@ from pathlib import Path
 
 from birm3d import Barrier, Simulation, Vehicle
 from birm3d.progress import progress_bar
-from watched_run import ANCHOR_DEPTH, NODE_DEPTH, Watched, text, watch
+from birm3d.study.watched import ANCHOR_DEPTH, NODE_DEPTH, Watched, text, watch
 
 RESULTS = Path(__file__).parent / "results/robustness/library.csv"
 BARRIERS = {

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass, fields
 
 import numpy as np
-from birm3d import Simulation
+
+from ..simulation import Simulation
 
 # Where three faces meet, as those of a barrier on the ground, a node may be this far inside at the end of a
 # step [m]: it goes onto two of them.
