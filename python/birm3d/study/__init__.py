@@ -2,6 +2,21 @@
 
 from __future__ import annotations
 
+from .precision_result import PrecisionRow, WorkPrecision
+from .recommendation import Recommendation
+from .stability import stability
+from .stability_result import Stability, StabilityRow
 from .table import Study, Summary
+from .work_precision import work_precision
 
-__all__ = ["Study", "Summary"]
+__all__ = [
+    "PrecisionRow",
+    "Recommendation",
+    "Stability",
+    "StabilityRow",
+    "Study",
+    "Summary",
+    "WorkPrecision",
+    "stability",
+    "work_precision",
+]

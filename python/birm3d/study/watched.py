@@ -3,24 +3,50 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from ..result import Result
 from ..simulation import Simulation
 
-# Where three faces meet, as those of a barrier on the ground, a node may be this far inside at the end of a
-# step [m]: it goes onto two of them.
-NODE_DEPTH = 5e-3
-# Closed trusses are held by rigid contact, which finds what is inside at the end of the step [m].
-ANCHOR_DEPTH = 1e-3
-ENERGY = 5e-3
-MOMENTUM = 1e-9
+__all__ = ["LIMITS", "Limits", "Watched", "step_through", "watch"]
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a run is judged by.
+
+    Parameters
+    ----------
+    node_depth
+        How far a node may be inside a barrier at the end of a step [m]. Where three faces meet, as those of a
+        barrier on the ground, it goes onto two of them.
+    anchor_depth
+        The same of the rigid body: closed trusses are held by rigid contact, which finds what is inside at
+        the end of the step [m].
+    energy, momentum
+        Greatest residuals of the ledgers, see :func:`birm3d.metrics.compute_metrics`.
+    """
+
+    node_depth: float = 5e-3
+    anchor_depth: float = 1e-3
+    energy: float = 5e-3
+    momentum: float = 1e-9
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not value >= 0.0:
+                raise ValueError(f"{field.name} must be >= 0, got {value}")
+
+
+LIMITS = Limits()
 
 
 @dataclass(frozen=True)
 class Watched:
-    """Outcome of one run; lengths in m, energies and forces relative."""
+    """Outcome of one run; lengths in m, energies and forces relative. NaN: the scene does not have it."""
 
     outcome: str
     steps: int
@@ -28,7 +54,7 @@ class Watched:
     crush: float
     penetration: float
     node_depth: float
-    deep_nodes: int  # steps that ended with a node deeper than NODE_DEPTH
+    deep_nodes: int  # steps that ended with a node deeper than the limit
     anchor_depth: float
     deep_anchors: int
     energy_residual: float
@@ -38,52 +64,71 @@ class Watched:
 
     @staticmethod
     def names() -> list[str]:
+        """Of the fields, in their order."""
         return [field.name for field in fields(Watched)]
 
 
-def watch(simulation: Simulation) -> Watched:
+def watch(simulation: Simulation, limits: Limits = LIMITS) -> Watched:
     """Run to the end, looking at every step; an error becomes a fault of the row."""
+    watched, error = step_through(simulation, limits)
+    if error is None:
+        return watched
+    told = f"{type(error).__name__}: {error}"
+    return replace(watched, fault=f"{told}; {watched.fault}" if watched.fault else told)
+
+
+def step_through(
+    simulation: Simulation, limits: Limits = LIMITS
+) -> tuple[Watched, ValueError | RuntimeError | None]:
+    """Run to the end, looking at every step; return what was seen, and the error that ended it."""
     core = simulation._core
     node = anchor = 0.0
     deep_nodes = deep_anchors = 0
-    error = ""
+    error: ValueError | RuntimeError | None = None
     try:
         while simulation.step():
             depth, anchored = core.deepest_node, core.deepest_anchor
             node, anchor = max(node, depth), max(anchor, anchored)
-            deep_nodes += depth > NODE_DEPTH
-            deep_anchors += anchored > ANCHOR_DEPTH
+            deep_nodes += depth > limits.node_depth
+            deep_anchors += anchored > limits.anchor_depth
     except (ValueError, RuntimeError) as raised:
-        error = f"{type(raised).__name__}: {raised}"
+        error = raised
     result = simulation.result()
-    metrics = result.metrics
-    energy, momentum = metrics["energy_residual"], metrics["momentum_residual"]
-    faults = [error] if error else []
-    if not (np.isfinite(result.position).all() and all(map(math.isfinite, (energy, momentum)))):
-        faults.append("not finite")
-    if not energy < ENERGY:
-        faults.append("energy")
-    if not momentum < MOMENTUM:
-        faults.append("momentum")
+    faults = []
+    metrics: dict[str, float] = {}
+    if error is None or len(result.time) > 1:  # a run that was refused at once has no metrics
+        metrics = dict(result.metrics)
+        if not _finite(result, metrics):
+            faults.append("not finite")
+        if not metrics["energy_residual"] < limits.energy:
+            faults.append("energy")
+        if not metrics["momentum_residual"] < limits.momentum:
+            faults.append("momentum")
     if deep_nodes:
         faults.append("node inside")
     if deep_anchors:
         faults.append("body inside")
-    return Watched(
+    watched = Watched(
         core.end_reason.name,
         core.statistics.steps,
-        metrics["run_time"],
-        metrics["dynamic_crush"],
-        metrics["vehicle_penetration"],
+        metrics.get("run_time", math.nan),
+        metrics.get("dynamic_crush", math.nan),
+        metrics.get("vehicle_penetration", math.nan),
         node,
         deep_nodes,
         anchor,
         deep_anchors,
-        energy,
-        momentum,
+        metrics.get("energy_residual", math.nan),
+        metrics.get("momentum_residual", math.nan),
         core.touched,
         "; ".join(faults),
     )
+    return watched, error
+
+
+def _finite(result: Result, metrics: dict[str, float]) -> bool:
+    arrays = (result.position, result.velocity, result.acceleration, result.roll, result.pitch, result.yaw)
+    return all(map(math.isfinite, metrics.values())) and all(np.isfinite(array).all() for array in arrays)
 
 
 def text(value: object) -> str:
