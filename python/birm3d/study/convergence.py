@@ -20,6 +20,10 @@ _ROUNDING = 1e-12
 # Extrapolated where each change is at most this share of the one before it: the limit is then at most four
 # times the last change away.
 _FALLS = 0.8
+# What is not extrapolated is uncertain by so many times the range of the last three answers.
+_NOISE = 2.0
+_LUCK = 0.25
+_SLOW = 4.0
 
 
 class Limit(NamedTuple):
@@ -59,9 +63,12 @@ def richardson(coarse: float, fine: float, ratio: float, order: float) -> float:
 def limit_of(h: Sequence[float], values: Sequence[float], scale: float) -> Limit:
     """Return what answers converge to, with its uncertainty.
 
-    Where the last two changes have one sign and the last is at most 0.8 of the one before, the limit is
-    extrapolated and uncertain by the whole correction; where they do not, it is the last answer, uncertain
-    by the range of the last three: then noise is what is left, such as where an event falls in a step.
+    Where the last three changes (two, if there are no more) have one sign and each is at most 0.8 of the one
+    before, the limit is extrapolated, uncertain by the whole correction, the last change or a quarter of the
+    one before, the greatest of them: noise may make the last change small. Where they have one sign but do
+    not fall so, it is the last answer, uncertain by four times the range of the last three, which covers
+    falls to 0.89. Where signs differ, noise is what is left, such as where an event falls in a step: it is
+    the last answer, uncertain by twice that range.
 
     Parameters
     ----------
@@ -82,13 +89,18 @@ def limit_of(h: Sequence[float], values: Sequence[float], scale: float) -> Limit
         raise ValueError(f"a limit needs three answers or more, got {len(answers)} at {len(steps)} of h")
     if not ((steps > 0.0).all() and (np.diff(steps) < 0.0).all()):
         raise ValueError(f"h must be > 0 and fall from answer to answer, got {steps.tolist()}")
-    before, last = np.diff(answers)[-2:].tolist()
-    if max(abs(before), abs(last)) <= _ROUNDING * scale:
+    changes = np.diff(answers)[-3:]
+    last = float(changes[-1])
+    if np.abs(changes[-2:]).max() <= _ROUNDING * scale:
         return Limit(float(answers[-1]), _ROUNDING * scale, None)
-    if before * last > 0.0 and abs(last) <= _FALLS * abs(before):
-        order = order_of(steps[-3:-1], [before, last])
-        ratio = float(steps[-2] / steps[-1])
+    spread = float(np.ptp(answers[-3:]))
+    if not (changes * last > 0.0).all():
+        return Limit(float(answers[-1]), _NOISE * spread, None)
+    if (np.abs(changes[1:]) <= _FALLS * np.abs(changes[:-1])).all():
+        order = order_of(steps[-3:-1], changes[-2:])
         if order is not None and order > 0.0:
-            value = richardson(float(answers[-2]), float(answers[-1]), ratio, order)
-            return Limit(value, max(abs(value - float(answers[-1])), _ROUNDING * scale), order)
-    return Limit(float(answers[-1]), float(np.ptp(answers[-3:])), None)
+            value = richardson(float(answers[-2]), float(answers[-1]), float(steps[-2] / steps[-1]), order)
+            correction = abs(value - float(answers[-1]))
+            lucky = _LUCK * abs(float(changes[-2]))
+            return Limit(value, max(correction, abs(last), lucky, _ROUNDING * scale), order)
+    return Limit(float(answers[-1]), _SLOW * spread, None)

@@ -20,6 +20,7 @@ J                                        the vehicle's kinetic energy at the lea
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from types import MappingProxyType
 
@@ -27,7 +28,7 @@ from .. import units
 from ..metrics import METRIC_UNITS
 from ..simulation import Scene
 
-__all__ = ["BOOKKEEPING", "LEDGERS", "compared_metrics", "least_scales"]
+__all__ = ["BOOKKEEPING", "LEDGERS", "compared_metrics", "least_scales", "relative_errors"]
 
 BOOKKEEPING = frozenset({"steps", "run_time", "end_time"})
 """How an answer was found, and how long its tail is: no part of the answer."""
@@ -78,3 +79,23 @@ def least_scales(scene: Scene, given: Mapping[str, float] | None = None) -> Mapp
             raise ValueError(f"scales[{name!r}] must be finite and > 0, got {scale}")
         scales[name] = float(scale)
     return MappingProxyType(scales)
+
+
+def relative_errors(
+    values: Mapping[str, float], converged: Mapping[str, float], least: Mapping[str, float]
+) -> dict[str, float]:
+    """Return |value - converged| / max(|converged|, least) of every converged metric.
+
+    Parameters
+    ----------
+    values, converged
+        Metric -> value, in its unit. A metric that ``values`` does not have has an infinite error.
+    least
+        Metric -> least scale; 0 where there is none: then a converged value of 0 leaves the departure itself.
+    """
+    errors = {}
+    for name, expected in converged.items():
+        departure = abs(values.get(name, math.inf) - expected)
+        scale = max(abs(expected), least.get(name, 0.0))
+        errors[name] = departure / scale if scale > 0.0 else departure
+    return errors

@@ -27,7 +27,7 @@ def plot_work_precision(study: WorkPrecision, metrics: Collection[str] | None = 
     """
     figure = Figure(figsize=(11.0, 4.6), layout="constrained")
     left, right = figure.subplots(1, 2, sharey=True)
-    lines = dict.fromkeys((row.variant, row.kind) for row in study.rows)
+    lines = dict.fromkeys((row.variant, row.kind) for row in study.rows if row.kind != "reference")
     for i, (variant, kind) in enumerate(lines):
         rows = [row for row in study.of(variant, kind) if not row.refused]
         errors = [max(row.error_of(metrics), _NIL) for row in rows]
@@ -61,8 +61,8 @@ def plot_requested_vs_achieved(study: WorkPrecision, metrics: Collection[str] | 
     rows = [row for row in study.of(AS_GIVEN, "tolerance") if not row.refused]
     asked = np.array([row.value for row in rows])
     names = [name for name in study.converged if metrics is None or name in metrics]
-    # The ten with the greatest errors have a name in the legend.
-    names.sort(key=lambda name: -max((row.errors[name] for row in rows), default=0.0))
+    # The ten that miss what was asked for by most have a name in the legend.
+    names.sort(key=lambda name: -max((row.errors[name] / row.value for row in rows), default=0.0))
     for i, name in enumerate(names):
         errors = _achieved(rows, name)
         color, label = (f"C{i}", name) if i < 10 else ("0.7", "_")

@@ -41,7 +41,8 @@ class PrecisionRow:
     variant
         ``"as given"``; another contact model or representation; ``"mesh"``.
     kind
-        ``"tolerance"``, ``"time_step"`` or ``"mesh_density"``: what ``value`` is.
+        ``"tolerance"``, ``"time_step"`` or ``"mesh_density"``: what ``value`` is; ``"reference"``: a
+        tolerance of the converged answer.
     value
         The tolerance, the step [s] or the density.
     settings

@@ -6,11 +6,11 @@ import statistics
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from ..result import Result
+from .._core import StepStatistics
 from ..scene_parameters import varied
 from ..simulation import Simulation
 from .convergence import Limit, limit_of
-from .errors import compared_metrics
+from .errors import compared_metrics, relative_errors
 from .precision_result import PrecisionRow
 
 __all__ = ["PrecisionRun", "limits_of", "row_of", "run_at"]
@@ -26,7 +26,8 @@ class PrecisionRun:
     simulation: Simulation
     without: Collection[str] = ()
     times: list[float] = field(default_factory=list)
-    result: Result | None = None
+    metrics: Mapping[str, float] = field(default_factory=dict)
+    counts: StepStatistics | None = None
     refused: str = ""
 
     def once(self) -> None:
@@ -35,21 +36,22 @@ class PrecisionRun:
             return
         try:
             result = self.simulation.run()
-            if self.result is None:
-                _ = result.metrics  # too short a run has none
+            if self.counts is None:
+                self.metrics = result.metrics  # too short a run has none
         except (ValueError, RuntimeError) as refused:  # UnstableError, or no longer finite
             self.refused = f"{type(refused).__name__}: {refused}"
             return
         self.times.append(result.run_time)
-        self.result = self.result or result
+        self.counts = result.statistics
+        self.simulation.reset()  # its record is larger than all that is kept
 
     @property
     def values(self) -> dict[str, float]:
         """Metrics that have errors; none of a refused run."""
-        if self.result is None or self.refused:
+        if self.refused:
             return {}
-        metrics = self.result.metrics
-        return {name: metrics[name] for name in compared_metrics(metrics) if name not in self.without}
+        names = compared_metrics(self.metrics)
+        return {name: self.metrics[name] for name in names if name not in self.without}
 
 
 def run_at(
@@ -80,25 +82,21 @@ def limits_of(
 def row_of(run: PrecisionRun, limits: Mapping[str, Limit], least: Mapping[str, float]) -> PrecisionRow:
     """Return a run with its errors against the converged values."""
     settings = run.simulation.scene.settings
-    if run.result is None or run.refused:
+    if run.counts is None or run.refused:
         return PrecisionRow(run.variant, run.kind, run.value, settings, {}, {}, refused=run.refused)
     values = {name: value for name, value in run.values.items() if name in limits}
-    statistics_of, ledgers = run.result.statistics, run.result.metrics
     return PrecisionRow(
         run.variant,
         run.kind,
         run.value,
         settings,
         values,
-        {
-            name: abs(value - limits[name].value) / max(abs(limits[name].value), least[name])
-            for name, value in values.items()
-        },
+        relative_errors(values, {name: limits[name].value for name in values}, least),
         run_time=statistics.median(run.times),
-        steps=statistics_of.steps,
-        redone=statistics_of.rejected,
-        force_evaluations=statistics_of.node_evaluations,
-        energy_residual=ledgers["energy_residual"],
-        momentum_residual=ledgers["momentum_residual"],
-        contact_overlap=ledgers.get("contact_overlap", 0.0),
+        steps=run.counts.steps,
+        redone=run.counts.rejected,
+        force_evaluations=run.counts.node_evaluations,
+        energy_residual=run.metrics["energy_residual"],
+        momentum_residual=run.metrics["momentum_residual"],
+        contact_overlap=run.metrics.get("contact_overlap", 0.0),
     )

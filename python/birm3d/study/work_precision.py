@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
+from .._core import StepStatistics
 from ..progress import progress_bar
-from ..result import Result
 from ..scene_parameters import varied
 from ..settings import Settings
 from ..simulation import Simulation
@@ -111,9 +112,13 @@ def work_precision(
     runs = [run_at(simulation, AS_GIVEN, "tolerance", value) for value in loose]
     first = next((run for run in runs if run.value <= own.tolerance), runs[-1])
     first.once()
-    if first.result is None:
+    if first.counts is None:
         raise ValueError(f"simulation must run at tolerance {first.value:g}; {first.refused}")
-    steps = _steps(first.result) if time_steps is None else _falling("time_steps", time_steps)
+    steps = (
+        _steps(first.counts, first.metrics["end_time"])
+        if time_steps is None
+        else _falling("time_steps", time_steps)
+    )
     if own.time_step is not None:
         steps = _falling("time_steps", {*steps, own.time_step})
     first.times.clear()  # a warm-up
@@ -162,6 +167,7 @@ def work_precision(
         limits = limits_of(finest + [run for run in sharp if run.variant == variant], wanted, least)
         if limits:
             of_variant[variant] = limits
+        mine += [replace(run, kind="reference") for run in sharp if run.variant == variant]
         rows += [row_of(run, limits, least) for run in mine]
     if AS_GIVEN not in of_variant:
         raise ValueError(f"references must be tolerances that the scene runs at; {_first_refusal(sharp)}")
@@ -211,11 +217,10 @@ def _densities(simulation: Simulation, given: Sequence[float] | None) -> list[fl
     return found
 
 
-def _steps(result: Result) -> list[float]:
-    """Return fixed steps for a scene, falling [s]."""
-    critical = result.statistics.least_critical_step
+def _steps(counts: StepStatistics, end: float) -> list[float]:
+    """Return fixed steps for a scene that ends at `end`, falling [s]."""
+    critical = counts.least_critical_step
     steps = [share * critical for share in _SHARES] if math.isfinite(critical) else list(_FREE_STEPS)
-    end = float(result.time[-1])
     return [step for step in steps if step < end and end / step <= _MOST_STEPS]
 
 
