@@ -167,7 +167,7 @@ def overview(studies: Mapping[str, WorkPrecision]) -> dict[str, Figure]:
         figure = Figure(figsize=(8.5, 5.0), layout="constrained")
         axes = figure.subplots()
         for i, (name, found) in enumerate(studies.items()):
-            rows = [row for row in found.of(kind="tolerance") if not row.refused]
+            rows = [row for row in found.of(kind="tolerance") if row.errors]
             x = [1e3 * row.run_time if file == "work_precision" else row.value for row in rows]
             axes.plot(x, [max(row.error, 1e-9) for row in rows], "o-", ms=3, color=f"C{i}", label=name)
         if file == "requested":

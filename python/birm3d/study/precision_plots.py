@@ -29,13 +29,15 @@ def plot_work_precision(study: WorkPrecision, metrics: Collection[str] | None = 
     left, right = figure.subplots(1, 2, sharey=True)
     lines = dict.fromkeys((row.variant, row.kind) for row in study.rows if row.kind != "reference")
     for i, (variant, kind) in enumerate(lines):
-        rows = [row for row in study.of(variant, kind) if not row.refused]
+        rows = [row for row in study.of(variant, kind) if row.errors]
+        if not rows:
+            continue
         errors = [max(row.error_of(metrics), _NIL) for row in rows]
         label = _LABELS[kind] if variant in (AS_GIVEN, "mesh") else f"{_LABELS[kind]}, {variant}"
         style = {"label": label, "color": f"C{i}", "ms": 4, "ls": "-" if variant == AS_GIVEN else "--"}
         left.plot([1e3 * row.run_time for row in rows], errors, "o", **style)
         right.plot([max(row.force_evaluations, 1) for row in rows], errors, "o", **style)
-    if not study.default.refused:
+    if study.default.errors:
         error = max(study.default.error_of(metrics), _NIL)
         left.plot([1e3 * study.default.run_time], [error], "k*", ms=11, label="the scene's own settings")
         right.plot([max(study.default.force_evaluations, 1)], [error], "k*", ms=11)
@@ -58,7 +60,7 @@ def plot_requested_vs_achieved(study: WorkPrecision, metrics: Collection[str] | 
     """Return a figure of the error of each metric against the tolerance asked for; log-log."""
     figure = Figure(figsize=(8.5, 5.2), layout="constrained")
     axes = figure.subplots()
-    rows = [row for row in study.of(AS_GIVEN, "tolerance") if not row.refused]
+    rows = [row for row in study.of(AS_GIVEN, "tolerance") if row.errors]
     asked = np.array([row.value for row in rows])
     names = [name for name in study.converged if metrics is None or name in metrics]
     # The ten that miss what was asked for by most have a name in the legend.

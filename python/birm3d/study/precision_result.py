@@ -87,7 +87,7 @@ class PrecisionRow:
 
     @property
     def error(self) -> float:
-        """Greatest of all metrics; infinite for a refused one."""
+        """Greatest of all metrics; infinite where there is none: refused, or nothing to compare with."""
         return self.errors[self.worst] if self.errors else math.inf
 
     def error_of(self, metrics: Collection[str] | None) -> float:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from .._core import StepStatistics
 from ..scene_parameters import varied
 from ..simulation import Simulation
 from .convergence import Limit, limit_of
@@ -27,7 +27,10 @@ class PrecisionRun:
     without: Collection[str] = ()
     times: list[float] = field(default_factory=list)
     metrics: Mapping[str, float] = field(default_factory=dict)
-    counts: StepStatistics | None = None
+    steps: int = 0
+    redone: int = 0
+    force_evaluations: int = 0
+    critical_step: float = math.inf
     refused: str = ""
 
     def once(self) -> None:
@@ -36,13 +39,16 @@ class PrecisionRun:
             return
         try:
             result = self.simulation.run()
-            if self.counts is None:
+            if not self.times:
                 self.metrics = result.metrics  # too short a run has none
         except (ValueError, RuntimeError) as refused:  # UnstableError, or no longer finite
             self.refused = f"{type(refused).__name__}: {refused}"
             return
         self.times.append(result.run_time)
-        self.counts = result.statistics
+        counts = result.statistics
+        self.steps, self.redone = counts.steps, counts.rejected
+        self.force_evaluations = counts.node_evaluations
+        self.critical_step = counts.least_critical_step
         self.simulation.reset()  # its record is larger than all that is kept
 
     @property
@@ -82,7 +88,7 @@ def limits_of(
 def row_of(run: PrecisionRun, limits: Mapping[str, Limit], least: Mapping[str, float]) -> PrecisionRow:
     """Return a run with its errors against the converged values."""
     settings = run.simulation.scene.settings
-    if run.counts is None or run.refused:
+    if run.refused or not run.times:
         return PrecisionRow(run.variant, run.kind, run.value, settings, {}, {}, refused=run.refused)
     values = {name: value for name, value in run.values.items() if name in limits}
     return PrecisionRow(
@@ -93,9 +99,9 @@ def row_of(run: PrecisionRun, limits: Mapping[str, Limit], least: Mapping[str, f
         values,
         relative_errors(values, {name: limits[name].value for name in values}, least),
         run_time=statistics.median(run.times),
-        steps=run.counts.steps,
-        redone=run.counts.rejected,
-        force_evaluations=run.counts.node_evaluations,
+        steps=run.steps,
+        redone=run.redone,
+        force_evaluations=run.force_evaluations,
         energy_residual=run.metrics["energy_residual"],
         momentum_residual=run.metrics["momentum_residual"],
         contact_overlap=run.metrics.get("contact_overlap", 0.0),

@@ -141,6 +141,8 @@ def report(study: WorkPrecision, error: float) -> str:
 def _outcome(row: PrecisionRow) -> str:
     if row.refused:
         return f"refused: {row.refused}"
+    if not row.errors:
+        return f"no converged answer to compare with, {_cost(row)}"
     energy = f"energy residual {row.energy_residual:.1e}"
     return f"{_percent(row.error):>9s} ({row.worst}), {_cost(row)}, {energy}"
 

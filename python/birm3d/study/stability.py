@@ -101,7 +101,6 @@ def _judged(case: Case, limits: Limits) -> StabilityRow:
         blank,
         outcome=watched.outcome,
         steps=watched.steps,
-        run_time=watched.run_time,
         energy_residual=watched.energy_residual,
         momentum_residual=watched.momentum_residual,
         node_depth=watched.node_depth,

@@ -49,7 +49,6 @@ class StabilityRow:
     reason: str = ""
     outcome: str = ""
     steps: int = 0
-    run_time: float = math.nan
     energy_residual: float = math.nan
     momentum_residual: float = math.nan
     node_depth: float = math.nan

@@ -7,7 +7,6 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from .._core import StepStatistics
 from ..progress import progress_bar
 from ..scene_parameters import varied
 from ..settings import Settings
@@ -112,10 +111,10 @@ def work_precision(
     runs = [run_at(simulation, AS_GIVEN, "tolerance", value) for value in loose]
     first = next((run for run in runs if run.value <= own.tolerance), runs[-1])
     first.once()
-    if first.counts is None:
+    if first.refused:
         raise ValueError(f"simulation must run at tolerance {first.value:g}; {first.refused}")
     steps = (
-        _steps(first.counts, first.metrics["end_time"])
+        _steps(first.critical_step, first.metrics["end_time"])
         if time_steps is None
         else _falling("time_steps", time_steps)
     )
@@ -217,9 +216,8 @@ def _densities(simulation: Simulation, given: Sequence[float] | None) -> list[fl
     return found
 
 
-def _steps(counts: StepStatistics, end: float) -> list[float]:
-    """Return fixed steps for a scene that ends at `end`, falling [s]."""
-    critical = counts.least_critical_step
+def _steps(critical: float, end: float) -> list[float]:
+    """Return fixed steps for a scene with a critical step, that ends at `end`, falling [s]."""
     steps = [share * critical for share in _SHARES] if math.isfinite(critical) else list(_FREE_STEPS)
     return [step for step in steps if step < end and end / step <= _MOST_STEPS]
 
