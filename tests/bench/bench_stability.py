@@ -2,9 +2,9 @@
 
     python tests/bench/bench_stability.py [--axes NAME ...] [--save]
 
-birm3d.study.stability: a car at 25 deg at a wall and head-on at bollards, a block head-on at a wall, and vehicles
-of laboratories. Ends with 1 if any scene neither held nor was refused with a reason. --save writes the table and
-the figure to results/robustness/stability.csv and .png.
+birm3d.study.stability: a car at 25 deg at a wall and head-on at bollards, a block head-on at a wall, and
+vehicles of laboratories. Ends with 1 if any scene neither held nor was refused with a reason. --save writes
+table and figure to results/robustness/stability.csv and .png.
 """
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ def stability(
     Stiffness x 1e-3 to 1e6; fixed steps x 1 to 1000 of the one that the program advises; 0.05 to 100 m/s;
     mass x 0.01 to 100; paths down to 0.05 deg from the barrier's line; slopes of unloading up to infinity
     and down to full elasticity; posts of 10 mm; a minute at rest; contact at t = 0; vehicles of one node and
-    of 100,000; ten rollovers.
+    of 100,000; ten rollovers; a barrier whose segments move.
 
     A run **held** if the energy and momentum ledgers close, every number is finite, no node or rigid body
     ended a step inside the barrier, and it did what the scene makes it do: met a barrier in its way, stayed

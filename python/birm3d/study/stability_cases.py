@@ -31,7 +31,7 @@ ADVISED = 0.25
 
 AXES = (
     *("stiffness", "fixed step", "speed", "mass", "grazing angle", "unloading", "thin posts", "rest"),
-    *("contact at t = 0", "nodes", "rollover"),
+    *("contact at t = 0", "nodes", "rollover", "free-standing"),
 )
 """What is taken to extremes."""
 
@@ -173,6 +173,16 @@ def laboratory_cases() -> list[Case]:
             lambda: Simulation(thrown(), kerb, 100.0, impact_yaw=90.0, duration=15.0),
             True,
             turns=TURNS,
+        ),
+        Case(
+            *("free-standing", "pickup, Jersey barrier of ten segments", "20 m/s, 25 deg"),
+            lambda: Simulation(
+                Vehicle.preset("pickup", mesh_density=0.2),
+                Barrier.jersey(length=30.0, segments=10, free_standing=True),
+                20.0,
+                25.0,
+            ),
+            True,
         ),
     ]
 
