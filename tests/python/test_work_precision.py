@@ -178,11 +178,14 @@ def test_bollards_in_triangles_have_no_loads_of_elements() -> None:
     assert triangulated(Barrier.jersey(length=10.0, segments=2, free_standing=True)) is None
 
 
-def test_scene_without_a_barrier() -> None:
+def test_scene_without_a_barrier(tmp_path: Path) -> None:
+    """Rolling has no errors at all and no forces of nodes: figures on logarithmic scales draw it all the same."""
     found = work_precision(scenes.rolling(0.3), mesh_densities=(), **QUICK)
     assert {row.variant for row in found.rows} == {"as given"}
     assert found.default.error < 1e-9
     assert "peak_deceleration" in found.converged
+    found.plot().savefig(tmp_path / "plot.png")
+    found.requested_vs_achieved().savefig(tmp_path / "requested.png")
 
 
 def test_fixed_step_of_the_scene_is_the_default() -> None:

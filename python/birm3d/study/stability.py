@@ -7,7 +7,6 @@ from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
-from scipy.integrate import trapezoid
 
 from ..progress import progress_bar
 from ..simulation import Simulation
@@ -125,6 +124,8 @@ def _missed(case: Case, simulation: Simulation, touched: bool) -> list[str]:
         if behind > case.behind:
             faults.append(f"the mass centre got {behind:.3g} m behind the barrier")
     if case.turns > 0.0:
+        from scipy.integrate import trapezoid
+
         turns = abs(float(trapezoid(result.angular_velocity[:, 0], result.time))) / 360.0
         if turns < case.turns:
             faults.append(f"{turns:.1f} turns instead of {case.turns:g} or more")
