@@ -179,7 +179,7 @@ def test_bollards_in_triangles_have_no_loads_of_elements() -> None:
 
 
 def test_scene_without_a_barrier(tmp_path: Path) -> None:
-    """Rolling has no errors at all and no forces of nodes: figures on logarithmic scales draw it all the same."""
+    """Rolling has no errors at all and no forces of nodes: figures on logarithmic scales draw it too."""
     found = work_precision(scenes.rolling(0.3), mesh_densities=(), **QUICK)
     assert {row.variant for row in found.rows} == {"as given"}
     assert found.default.error < 1e-9
