@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -120,7 +121,7 @@ def recommended(found: WorkPrecision, error: float) -> str:
 
 
 def page(studies: Mapping[str, WorkPrecision], claims: Sequence[Claim], facts: Mapping[str, str]) -> str:
-    cpu = f"{facts['cpu']}, {facts['core']} core"
+    cpu = f"{facts['cpu']}, core {facts['core']}, load average at the end {facts['load']}"
     lines = [
         "# How accurate, how fast",
         "",
@@ -169,7 +170,8 @@ def overview(studies: Mapping[str, WorkPrecision]) -> dict[str, Figure]:
         for i, (name, found) in enumerate(studies.items()):
             rows = [row for row in found.of(kind="tolerance") if row.errors]
             x = [1e3 * row.run_time if file == "work_precision" else row.value for row in rows]
-            axes.plot(x, [max(row.error, 1e-9) for row in rows], "o-", ms=3, color=f"C{i}", label=name)
+            form = "o-" if i < 10 else "s--"  # there are ten colours
+            axes.plot(x, [max(row.error, 1e-9) for row in rows], form, ms=3, color=f"C{i}", label=name)
         if file == "requested":
             axes.plot([1e-5, 1e-1], [1e-5, 1e-1], "k--", lw=1.0, label="achieved = requested")
             axes.plot([1e-5, 1e-1], [1e-4, 1e0], "k:", lw=1.0, label="ten times that")
@@ -236,6 +238,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print_case(name, studies[name], made)
             claims += made
             advance(1)
+    facts["load"] = f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "not known"
     text = page(studies, claims, facts)
     for folder in [options.folder] * bool(options.folder) + [RESULTS] * options.save:
         write(folder, studies, claims, text)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from .precision_result import AS_GIVEN
 
@@ -48,6 +49,7 @@ def plot_work_precision(study: WorkPrecision, metrics: Collection[str] | None = 
         axes.set_ylim(0.5 * min(shade, seen.min()), 2.0 * max(shade, seen.max()))
         axes.axhspan(0.1 * _NIL, shade, color="0.85", lw=0, zorder=0)
         axes.grid(alpha=0.3)
+        axes.xaxis.set_minor_formatter(NullFormatter())  # over less than a decade its labels overlap
     left.set_xlabel("run time, stepping only [ms]")
     right.set_xlabel("force evaluations of nodes")
     left.set_ylabel("greatest relative error of any metric")
