@@ -79,7 +79,7 @@ class Fragility:
 
     def plot(self) -> Figure:
         """Return a figure of counted probabilities with their intervals, and the fit with its band."""
-        from .study_plots import plot_fragility
+        from .study.plots import plot_fragility
 
         return plot_fragility(self)
 

@@ -30,6 +30,7 @@ os.environ["OMP_NUM_THREADS"] = "1"
 import birm3d
 import numpy as np
 from birm3d import Result, Settings, Simulation, scenes
+from birm3d.study.errors import relative_errors
 from numpy_reference import Answer, Block, Run
 
 SPEED = 22.352  # m/s
@@ -82,14 +83,11 @@ def exact_w2() -> dict[str, float]:
 
 def worst_error(values: Mapping[str, float], reference: Mapping[str, float]) -> tuple[float, str]:
     """Greatest relative error and the metric that has it."""
-    errors = {}
-    for name, expected in reference.items():
-        scale = max(abs(expected), FLOORS.get(name, 0.0))
-        departure = abs(values.get(name, math.nan) - expected)
-        errors[name] = departure / scale if scale > 0.0 else departure
-        if departure <= FLOORS.get(name, 0.0):
+    errors = relative_errors(values, reference, FLOORS)
+    for name, floor in FLOORS.items():
+        if name in errors and abs(values.get(name, math.inf) - reference[name]) <= floor:
             errors[name] = 0.0
-    worst = max(errors, key=lambda name: math.inf if math.isnan(errors[name]) else errors[name])
+    worst = max(errors, key=errors.__getitem__)
     return errors[worst], worst
 
 

@@ -21,7 +21,7 @@ from pathlib import Path
 
 from birm3d import Barrier, Simulation, Vehicle
 from birm3d.progress import progress_bar
-from watched_run import ANCHOR_DEPTH, NODE_DEPTH, Watched, text, watch
+from birm3d.study.watched import LIMITS, Watched, text, watch
 
 RESULTS = Path(__file__).parent / "results/robustness/library.csv"
 BARRIERS = {
@@ -90,8 +90,8 @@ def print_summary(rows: Sequence[Row]) -> None:
     for scene, fault in faults:
         print("FAULT", *(text(cell) for cell in scene), fault)
     print(
-        f"{len(rows)} scenes, {len(faults)} with a fault; limits of depth: nodes {1e3 * NODE_DEPTH:g} mm, "
-        f"anchors {1e3 * ANCHOR_DEPTH:g} mm"
+        f"{len(rows)} scenes, {len(faults)} with a fault; limits of depth: nodes "
+        f"{1e3 * LIMITS.node_depth:g} mm, anchors {1e3 * LIMITS.anchor_depth:g} mm"
     )
 
 

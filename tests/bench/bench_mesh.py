@@ -26,6 +26,7 @@ import numpy as np
 import numpy.typing as npt
 from birm3d import Barrier, Settings, Simulation, Vehicle, scenes
 from birm3d.progress import progress_bar
+from birm3d.study.convergence import order_of, richardson
 
 RESULTS = Path(__file__).parent / "results/convergence/mesh.csv"
 BARRIERS = ("wall", "pole", "jersey")
@@ -95,10 +96,7 @@ class Refinement:
 
     def order(self, changes: Floats) -> float | None:
         """Slope p of changes over h; None: a change is nil, as of yaw in a crash that has none."""
-        if len(changes) < 2 or not (changes > 0.0).all():
-            return None
-        h = np.array(self.elements[:-1], float) ** -0.5
-        return float(np.polyfit(np.log(h), np.log(changes), 1)[0])
+        return order_of(np.array(self.elements[:-1], float) ** -0.5, changes)
 
     def extrapolated(self, metric: int) -> float | None:
         """Value at h -> 0 by Richardson; None: the order is not fit for it."""
@@ -106,8 +104,7 @@ class Refinement:
         if p is None or p < LEAST_ORDER:
             return None
         coarse, fine = self.means[-2:, metric].tolist()
-        ratio = (self.elements[-1] / self.elements[-2]) ** (0.5 * p)
-        return fine + (fine - coarse) / (ratio - 1.0)
+        return richardson(coarse, fine, math.sqrt(self.elements[-1] / self.elements[-2]), p)
 
 
 def refine(name: str, scene: Scene, densities: Sequence[float], members: int) -> Refinement:

@@ -27,6 +27,7 @@ from pathlib import Path
 from bench_birm3d import machine, use_one_core
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle
 from birm3d.progress import progress_bar
+from birm3d.study.errors import relative_errors
 
 RESULTS = Path(__file__).parent / "results/pairs"
 PAIRS = {
@@ -94,11 +95,7 @@ class Row:
 
 def greatest_error(result: Result, reference: Mapping[str, float]) -> tuple[float, str]:
     """Greatest relative error of METRICS, and the metric that has it."""
-    errors = {}
-    for name, least in METRICS.items():
-        scale = max(abs(reference[name]), least)
-        departure = abs(result.metrics[name] - reference[name])
-        errors[name] = departure / scale if scale > 0.0 else departure
+    errors = relative_errors(result.metrics, {name: reference[name] for name in METRICS}, METRICS)
     worst = max(errors, key=errors.__getitem__)
     return errors[worst], worst
 

@@ -5,7 +5,7 @@
 
 Coarse presets and a laboratory block at 1 to 60 m/s and 5 to 90 deg against posts of 0.1 to 0.5 m, sloped
 profiles, walls without end, finite and in segments, and meshes of walls and posts; every fifth group
-with skins that posts do not dent. Watched step by step (watched_run.py):
+with skins that posts do not dent. Watched step by step (birm3d.study.watched):
 
 - missed: the straight path of some node leads 5 cm or more into the barrier, and nothing touched;
 - ghost: the wall is flat and endless for the vehicle, friction is nil, and some force acts along it (relative
@@ -32,7 +32,7 @@ import numpy as np
 import numpy.typing as npt
 from birm3d import Barrier, Settings, Simulation, Vehicle, scenes
 from birm3d.progress import progress_bar
-from watched_run import Watched, text, watch
+from birm3d.study.watched import Watched, text, watch
 
 RESULTS = Path(__file__).parent / "results/robustness/random_impacts.csv"
 Floats = npt.NDArray[np.float64]

@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ._version import __version__
-from .scene_parameters import unit_of
+from .._version import __version__
+from ..scene_parameters import unit_of
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from .run_store import Outcome
+    from ..run_store import Outcome
 
 __all__ = ["Study", "Summary"]
 
@@ -248,7 +248,7 @@ class Study:
 
     def plot(self, x: str, y: str, by: str | None = None) -> Figure:
         """Return a figure of column `y` against `x`, a line for each value of `by`, without failed runs."""
-        from .study_plots import plot_study
+        from .plots import plot_study
 
         return plot_study(self, x, y, by)
 

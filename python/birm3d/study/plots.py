@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 if TYPE_CHECKING:
-    from .fragility import Fragility
-    from .study import Study
+    from ..fragility import Fragility
+    from .table import Study
 
 __all__ = ["plot_fragility", "plot_study"]
 
