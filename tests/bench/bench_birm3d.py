@@ -67,16 +67,16 @@ class Row:
     state_hash: str
 
 
-def exact_crush(law: Mapping[str, float]) -> dict[str, float]:
+def exact_crush(law: Mapping[str, float], mass: float = MASS, speed: float = SPEED) -> dict[str, float]:
     """Two straight segments, then unloading: closed form from the energy."""
     knee_force = law["k_initial"] * law["knee"]
-    rest = 0.5 * MASS * SPEED**2 - 0.5 * knee_force * law["knee"]
+    rest = 0.5 * mass * speed**2 - 0.5 * knee_force * law["knee"]
     beyond = (math.sqrt(knee_force**2 + 2.0 * law["k_hardening"] * rest) - knee_force) / law["k_hardening"]
     peak = knee_force + law["k_hardening"] * beyond
     return {
         "dynamic_crush": law["knee"] + beyond,
         "peak_normal_force": peak,
-        "exit_speed": peak / math.sqrt(law["k_unloading"] * MASS),
+        "exit_speed": peak / math.sqrt(law["k_unloading"] * mass),
     }
 
 

@@ -94,13 +94,17 @@ class Run:
         self.force, self.last_force = np.empty((2, n))
         self.pushing, self.inside, self.released = np.empty((3, n), bool)
 
-    def run(self) -> Answer:
-        block, dt, lean = self.block, self.time_step, self.lean
-        node = self.node
-        node[:] = block.nodes.T
+    def start(self) -> None:
+        """Uncrush all trusses."""
+        self.node[:] = self.block.nodes.T
         for column in (self.residual, self.peak, self.last_force, self.last_deflection):
             column.fill(0.0)
         self.pushing.fill(False)
+
+    def run(self) -> Answer:
+        block, dt, lean = self.block, self.time_step, self.lean
+        self.start()
+        node = self.node
         mass = block.mass
         aim = math.sin(self.angle), math.cos(self.angle)
         velocity = [self.speed * aim[0], self.speed * aim[1], 0.0]
@@ -130,7 +134,7 @@ class Run:
                 axes = rotation(turn)
             # The plane n . p <= 0 with n = (-1, 0, 0), seen from the body.
             normal = np.array((-axes[0], -axes[1], -axes[2]))
-            pressure, moment = self._wall(normal, position[0])
+            pressure, moment = self.press(normal, position[0])
             force = (-pressure, 0.0, 0.0)
             turning = np.cross(moment, normal).tolist()
             if self.friction > 0.0 and pressure > 0.0:
@@ -161,7 +165,7 @@ class Run:
         speed = math.hypot(velocity[0], velocity[1])
         return Answer(float(self.peak.max()), float(forces[:steps].max()), speed, steps, run_time)
 
-    def _wall(self, normal: Floats, offset: float) -> tuple[float, Floats]:
+    def press(self, normal: Floats, offset: float) -> tuple[float, Floats]:
         """Hold the nodes on the plane normal . p = offset; return the sums of p and p r over the nodes."""
         block, node, arm, move = self.block, self.node, self.arm, self.move
         gap, size, d, envelope, line = self.gap, self.size, self.deflection, self.envelope, self.line
@@ -220,7 +224,7 @@ class Run:
     def _friction(
         self, normal: Floats, velocity: list[float], momentum: list[float]
     ) -> tuple[list[float], list[float]]:
-        """Force and moment against the sliding of the nodes that :meth:`_wall` has just pressed; body axes."""
+        """Force and moment against the sliding of the nodes that :meth:`press` just pressed; body axes."""
         slip, node, size = self.move, self.node, self.size
         spin = np.array([p / i for p, i in zip(momentum, self.block.inertia, strict=True)])
         for k in range(3):

@@ -2,12 +2,14 @@
 
 A body of 6,804 kg, inertia (5,000, 40,000, 42,000) kg m^2, no gravity, no tyres, 22.352 m/s along the wall's
 normal; n equal trusses on a flat front face of 2.4 m by 1.6 m, 3 m ahead of the mass centre, which touches at
-t = 0. Stiffness is shared equally, so that the answer does not depend on n.
+t = 0. Stiffness is shared equally, so that the answer of W1 and W2 does not depend on n.
 
 W1: elastic, 3 MN/m. W2: 3 MN/m to 0.4 m, then 6, unloading 60 MN/m. W3: W2 at 25 degrees to the wall with a
-friction coefficient of 0.2, free to turn.
+friction coefficient of 0.2, free to turn, for 0.2 s; its trusses, 2 m long, lie along the wall's normal at the
+first touch, not along the body's axis: those would be slanted by 65 degrees, and it would be the rigid body
+that the wall stops.
 
-A run ends where the wall force has ended and the body moves away. Errors are the greatest relative one of
+A run of W1 and W2 ends where the wall force has ended and the body moves away. Errors are the greatest relative one of
 crush, peak force and rebound speed. W3 has no closed form: its answer is that of BIRM3D at the finest
 tolerance, which an independent integrator confirms (oblique.py).
 """
@@ -25,15 +27,16 @@ from bench_birm3d import COMPARED, LAW, MASS, SPEED, exact_crush, worst_error
 from birm3d import Vehicle, scenes
 from numpy_reference import Answer, Block
 
-__all__ = ["CASES", "COMPARED", "MASS", "SPEED", "Absent", "Answer", "Case", "Rival", "Run", "vehicle"]
+__all__ = ["CASES", "COMPARED", "MASS", "SPEED", "AbsentError", "Answer", "Case", "Rival", "Run", "vehicle"]
 
 NODES = (100, 316, 1000, 3162, 10000)
 TARGETS = (0.01, 1e-3, 1e-4)
+TRUSS = 2.0  # m, length
 # Steps from coarse to fine, by the root of two [s].
 STEPS = tuple(8e-3 * 2.0 ** (-0.5 * i) for i in range(17))
 
 
-class Absent(Exception):
+class AbsentError(Exception):
     """What a rival needs is not there; the message says what."""
 
 
@@ -43,6 +46,9 @@ class Case:
     law: Mapping[str, float]  # of all trusses together, N/m and m
     angle: float = 90.0  # deg, between path and wall
     friction: float = 0.0
+    duration: float | None = None  # s; None: until the body has left
+    speed: float = SPEED  # m/s
+    mass: float = MASS  # kg
     exact: Mapping[str, float] = field(default_factory=dict)
 
     def error(self, answer: Answer) -> tuple[float, str]:
@@ -53,7 +59,8 @@ class Case:
 ELASTIC = {"k_initial": 3e6, "knee": 0.4, "k_hardening": 3e6, "k_unloading": 3e6}
 W1 = Case("W1", ELASTIC, exact=exact_crush(ELASTIC))
 W2 = Case("W2", LAW, exact=exact_crush(LAW))
-CASES = {"W1": W1, "W2": W2}
+W3 = Case("W3", LAW, angle=25.0, friction=0.2, duration=0.2)
+CASES = {"W1": W1, "W2": W2, "W3": W3}
 
 
 # Takes a setting (a step in seconds or a tolerance), steps until the body has left, and tells.
@@ -68,12 +75,23 @@ class Rival(Protocol):
     wrong: Mapping[str, str]  # case -> why its physics is not that of the case
 
     def build(self, case: Case, n: int) -> Run:
-        """Build the scene; not timed. Raises Absent."""
+        """Build the scene; not timed. Raises AbsentError."""
         ...
 
 
 def vehicle(case: Case, n: int) -> Vehicle:
-    return scenes.laboratory_block(n, **case.law)
+    body = scenes.laboratory_block(n, **case.law).with_gvw(case.mass)
+    if case.angle == 90.0:
+        return body
+    each = {name: value if name == "knee" else value / n for name, value in case.law.items()}
+    return Vehicle.from_arrays(
+        name="laboratory_block",
+        mass=body.mass,
+        inertia=body.inertia,
+        nodes=body.nodes,
+        anchors=body.nodes + TRUSS * heading(case),
+        **each,
+    )
 
 
 def block(case: Case, n: int) -> Block:
