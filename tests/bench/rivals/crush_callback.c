@@ -32,6 +32,7 @@ typedef struct {
     double vx, vy, vz, wx, wy, wz; /* of the body */
 } Pose;
 
+/* clang-format off: it would break the pragma. */
 /* One pass over the nodes, body axes: sums of F (-b . n) and of it times the place of the node; friction. KEEP takes
  * on the state, RUB has friction: four loops from one text, so that each is vectorised without what it does not need. */
 #define PRESS(NAME, KEEP, RUB)                                                                             \
@@ -48,9 +49,8 @@ typedef struct {
         const double vx = at->vx, vy = at->vy, vz = at->vz, wx = at->wx, wy = at->wy, wz = at->wz;         \
         double force = 0, mx = 0, my = 0, mz = 0, peak = 0, released = 0;                                  \
         double fx = 0, fy = 0, fz = 0, tx = 0, ty = 0, tz = 0;                                             \
-        _Pragma(                                                                                           \
-            "omp simd reduction(+ : force, mx, my, mz, released, fx, fy, fz, tx, ty, tz) reduction(max : " \
-            "peak)") for (int i = 0; i < n; ++i) {                                                         \
+        _Pragma("omp simd reduction(+:force,mx,my,mz,released,fx,fy,fz,tx,ty,tz) reduction(max:peak)") \
+        for (int i = 0; i < n; ++i) {                                                         \
             const double gap = nx * X[i] + ny * Y[i] + nz * Z[i] - offset;                                 \
             const double held = gap < 0.0 || last[i] > 0.0 ? 1.0 : 0.0;                                    \
             const double way = held * gap;                                                                 \
@@ -95,6 +95,7 @@ PRESS(press_trial, 0, 0)
 PRESS(press_accepted, 1, 0)
 PRESS(rub_trial, 0, 1)
 PRESS(rub_accepted, 1, 1)
+/* clang-format on */
 
 /* Few nodes a step let go: they stay at the residual length of their truss, along the truss. */
 static void release(const Crush* c) {

@@ -1,17 +1,17 @@
 """What all rivals compute: the body, the loads W1 to W3, the exact answers, and what an answer is.
 
-A body of 6,804 kg, inertia (5,000, 40,000, 42,000) kg m^2, no gravity, no tyres, 22.352 m/s along the wall's
-normal; n equal trusses on a flat front face of 2.4 m by 1.6 m, 3 m ahead of the mass centre, which touches at
-t = 0. Stiffness is shared equally, so that the answer of W1 and W2 does not depend on n.
+A body of 6,804 kg, inertia (5,000, 40,000, 42,000) kg m^2, no gravity, no tyres, 22.352 m/s along the
+wall's normal; n equal trusses on a flat front face of 2.4 m by 1.6 m, 3 m ahead of the mass centre, which
+touches at t = 0. Stiffness is shared equally, so that the answer of W1 and W2 does not depend on n.
 
-W1: elastic, 3 MN/m. W2: 3 MN/m to 0.4 m, then 6, unloading 60 MN/m. W3: W2 at 25 degrees to the wall with a
-friction coefficient of 0.2, free to turn, for 0.2 s; its trusses, 2 m long, lie along the wall's normal at the
-first touch, not along the body's axis: those would be slanted by 65 degrees, and it would be the rigid body
-that the wall stops.
+W1: elastic, 3 MN/m. W2: 3 MN/m to 0.4 m, then 6, unloading 60 MN/m. W3: W2 at 25 degrees to the wall with
+a friction coefficient of 0.2, free to turn, for 0.2 s; its trusses, 2 m long, lie along the wall's normal
+at the first touch, not along the body's axis: those would be slanted by 65 degrees, and it would be the
+rigid body that the wall stops.
 
-A run of W1 and W2 ends where the wall force has ended and the body moves away. Errors are the greatest relative one of
-crush, peak force and rebound speed. W3 has no closed form: its answer is that of BIRM3D at the finest
-tolerance, which an independent integrator confirms (oblique.py).
+A run of W1 and W2 ends where the wall force has ended and the body moves away. Errors are the greatest
+relative one of crush, peak force and rebound speed. W3 has no closed form: its answer is that of BIRM3D
+at the finest tolerance, which an independent integrator confirms (oblique.py).
 """
 
 from __future__ import annotations
@@ -33,11 +33,15 @@ NODES = (100, 316, 1000, 3162, 10000)
 TARGETS = (0.01, 1e-3, 1e-4)
 TRUSS = 2.0  # m, length
 # Steps from coarse to fine, by the root of two [s].
-STEPS = tuple(8e-3 * 2.0 ** (-0.5 * i) for i in range(17))
+STEPS = tuple(32e-3 * 2.0 ** (-0.5 * i) for i in range(21))
 
 
 class AbsentError(Exception):
     """What a rival needs is not there; the message says what."""
+
+
+class RefusedError(Exception):
+    """A rival refuses a setting."""
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,10 @@
 """Exudyn: a rigid body on n spring connectors (W1), and our law as a user force in NumPy (W2).
 
-Its connectors are elastic or have one slope and one unloading slope, so that the second segment of W2 is a user
-function; a Python function for each of n springs would be slower than one for all, and that is the row. Its
-springs hold both ways, which does not matter before the body has left, where the run ends. Velocity Verlet, one
-thread, nothing written. GeneralContact is left out: its small spheres lose a wall that comes deeper than their
-radius, and large ones are dear.
+Its connectors are elastic or have one slope and one unloading slope, so that the second segment of W2 is
+a user function; a Python function for each of n springs would be slower than one for all, and that is the
+row. Its springs hold both ways, which does not matter before the body has left, where the run ends.
+Velocity Verlet, one thread, nothing written. GeneralContact is left out: its small spheres lose a wall
+that comes deeper than their radius, and large ones are dear.
 """
 
 from __future__ import annotations
@@ -123,7 +123,9 @@ class UserForce:
             law.start()
             mbs = exu.SystemContainer().AddSystem()
             free = mbs.CreateMassPoint(
-                physicsMass=body.mass, referencePosition=[0.0, 0.0, 0.0], initialVelocity=[case.speed, 0.0, 0.0]
+                physicsMass=body.mass,
+                referencePosition=[0.0, 0.0, 0.0],
+                initialVelocity=[case.speed, 0.0, 0.0],
             )
             node = mbs.GetObject(free)["nodeNumber"]
             place = exu.OutputVariableType.Position

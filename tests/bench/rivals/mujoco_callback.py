@@ -1,9 +1,9 @@
 """MuJoCo with our law in a compiled callback: the honest closest rival.
 
-The callback (crush_callback.c) and the loop over mj_step are compiled by the benchmark, for this machine, with
-value-changing optimisations allowed; nothing of a run is Python. Constraints are switched off: no collision
-search, no solver. Semi-implicit Euler is leapfrog here, as nothing pushes at t = 0; Runge-Kutta of fourth order is
-the other row.
+The callback (crush_callback.c) and the loop over mj_step are compiled by the benchmark, for this machine,
+with value-changing optimisations allowed; nothing of a run is Python. Constraints are switched off: no
+collision search, no solver. Semi-implicit Euler is leapfrog here, as nothing pushes at t = 0; Runge-Kutta
+of fourth order is the other row.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """MuJoCo with its own soft contact: one free body, n spheres, one plane. Elastic: W1 only.
 
-Newton, warm start, contacts without friction (condim 1), direct stiffness. With equal impedances dd all along,
-MuJoCo solves (A + R) f = aref - a0 with R = (1 - dd) / dd / m and aref = s / dd r for a solref of (-s, 0): n nodes
-at a depth r share f = n s m r / (dd n + 1 - dd), which gives s of a wanted stiffness.
+Newton, warm start, contacts without friction (condim 1), direct stiffness. With equal impedances dd all
+along, MuJoCo solves (A + R) f = aref - a0 with R = (1 - dd) / dd / m and aref = s / dd r for a solref of
+(-s, 0): n nodes at a depth r share f = n s m r / (dd n + 1 - dd), which gives s of a wanted stiffness.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class SoftContact:
             steps, last = 0, case.speed
             step = mujoco.mj_step
             begin = time.perf_counter()
-            while True:
+            while steps * setting < 1.0:
                 step(model, data)
                 steps += 1
                 now = float(speed[0])

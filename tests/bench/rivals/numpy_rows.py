@@ -1,4 +1,4 @@
-"""Our law in NumPy as an expert would write it: numpy_reference.py, whose docstring says what it leaves out."""
+"""Our law in NumPy as an expert would write it; what numpy_reference.py leaves out its docstring says.
 
 from __future__ import annotations
 

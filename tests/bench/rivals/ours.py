@@ -1,21 +1,22 @@
-"""BIRM3D, by tolerance and with fixed steps; all ledgers, histories and the 20 ms after the end are in its time."""
+"""BIRM3D, by tolerance and with fixed steps; all ledgers, histories and the 20 ms after the end are in its
+time."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from birm3d import Barrier, Settings, Simulation
+from birm3d import Barrier, Settings, Simulation, UnstableError
 
-from .definition import COMPARED, STEPS, Answer, Case, Run, vehicle
+from .definition import COMPARED, STEPS, Answer, Case, RefusedError, Run, vehicle
 
-TOLERANCES = tuple(1e-2 * 10.0 ** (-0.25 * i) for i in range(21))
+TOLERANCES = tuple(1e-1 * 10.0 ** (-0.25 * i) for i in range(25))
 
 
 def simulation(case: Case, n: int, **changes: float) -> Simulation:
     return Simulation(
         vehicle(case, n),
         Barrier.rigid_wall(friction=case.friction),
-        SPEED,
+        case.speed,
         case.angle,
         duration=case.duration,
         settings=Settings(gravity=0.0, ground=False, **changes),
@@ -38,7 +39,10 @@ class Ours:
         def run(setting: float) -> Answer:
             # Building a scene is not stepping.
             scene = scenes.setdefault(setting, simulation(case, n, **{self._keyword: setting}))
-            result = scene.run()
+            try:
+                result = scene.run()
+            except UnstableError as error:
+                raise RefusedError(str(error)) from None
             numbers = (result.metrics[name] for name in COMPARED)
             return Answer(*numbers, result.statistics.steps, result.run_time)
 

@@ -1,7 +1,8 @@
 """Error against time, and the time at equal error.
 
-A setting is good for an error if it and all finer ones that were tried are within it: an error that is small by
-chance at one step is no merit. Every run of a table is timed in turn (A B A B ...) and the median is taken.
+A setting is good for an error if it and all finer ones that were tried are within it: an error that is
+small by chance at one step is no merit. Every run of a table is timed in turn (A B A B ...) and the
+median is taken.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from .definition import TARGETS, AbsentError, Answer, Case, Rival, Run
+from .definition import TARGETS, AbsentError, Answer, Case, RefusedError, Rival, Run
 
 # A rival whose error is this far below the smallest target need not be tried with finer settings.
 FINE_ENOUGH = 0.3 * min(TARGETS)
@@ -53,7 +54,7 @@ def enter(rivals: Iterable[Rival], case: Case, n: int) -> list[Entry]:
         try:
             run = rival.build(case, n)
         except AbsentError as error:
-            entries.append(Entry(rival, None, f"not installed: {error}"))
+            entries.append(Entry(rival, None, str(error)))
         else:
             entries.append(Entry(rival, run, build_time=time.perf_counter() - begin))
     return entries
@@ -71,17 +72,18 @@ def sweep(case: Case, entries: Sequence[Entry], repeats: int) -> dict[str, list[
         if entry.run is None:
             continue
         points: list[Point] = []
-        entry.run(entry.rival.settings[0])  # warm up
+        entry.run(entry.rival.settings[len(entry.rival.settings) // 2])  # warm up
         for setting in entry.rival.settings:
             if points and points[-1].time * 2.0 > LONGEST:
                 break
-            points.append(measured(case, setting, entry.run(setting)))
+            try:
+                points.append(measured(case, setting, entry.run(setting)))
+            except RefusedError:
+                continue
             if all(point.error < FINE_ENOUGH for point in points[-3:]) and len(points) >= 3:
                 break
         found[entry.rival.name] = points
-    again = [
-        (entry.run, point, []) for entry in entries if entry.run for point in found[entry.rival.name]
-    ]
+    again = [(entry.run, point, []) for entry in entries if entry.run for point in found[entry.rival.name]]
     for _ in range(repeats - 1):
         for run, point, times in again:
             times.append(run(point.setting).run_time)
@@ -119,7 +121,7 @@ def setting_for(points: Sequence[Point], target: float) -> float | None:
 def at_equal_error(
     case: Case, entries: Sequence[Entry], points: dict[str, list[Point]], repeats: int
 ) -> dict[tuple[str, float], Point | None]:
-    """(Rival, target) -> its time there; None: no setting reaches it. Settings are those that `points` chose."""
+    """(Rival, target) -> its time there; None: no setting reaches it. `points` choose the settings."""
     chosen: dict[tuple[str, float], Point | None] = {}
     timed: dict[tuple[str, float], tuple[Run, list[float]]] = {}  # by rival and setting
     settings: dict[tuple[str, float], float] = {}
