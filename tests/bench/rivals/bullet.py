@@ -1,5 +1,4 @@
-"""Bullet by pybullet: one compound body of n spheres on a static plane, per-contact stiffness. Elastic: W1
-only."""
+"""Bullet by pybullet: one compound body of n spheres on a plane, contact stiffness. Elastic: W1 only."""
 
 from __future__ import annotations
 

@@ -90,8 +90,10 @@ class Connectors:
             )
             ground = mbs.CreateGround()
             for place in body.nodes.tolist():
-                pair = [mbs.AddMarker(exu.utilities.MarkerBodyPosition(bodyNumber=number, localPosition=place))
-                        for number in (ground, free)]  # fmt: skip
+                pair = [
+                    mbs.AddMarker(exu.utilities.MarkerBodyPosition(bodyNumber=number, localPosition=place))
+                    for number in (ground, free)
+                ]
                 mbs.AddObject(
                     exu.utilities.CartesianSpringDamper(
                         markerNumbers=pair, stiffness=[body.k_initial, 0.0, 0.0], damping=[0.0, 0.0, 0.0]

@@ -1,4 +1,4 @@
-"""Our law in NumPy as an expert would write it; what numpy_reference.py leaves out its docstring says.
+"""Our law in NumPy as an expert would write it; numpy_reference.py says what it leaves out."""
 
 from __future__ import annotations
 

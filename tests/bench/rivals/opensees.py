@@ -1,5 +1,4 @@
-"""OpenSeesPy on one dimension: a mass, n zero-length springs in parallel to the ground, explicit
-integration.
+"""OpenSeesPy on one dimension: a mass, n parallel zero-length springs, explicit integration.
 
 Hysteretic: three slopes of the envelope, unloading on the first one. With a first slope of k_unloading
 over a micrometre, then k_initial to the knee and k_hardening, that is W2 to 1e-5; loaded to a force of

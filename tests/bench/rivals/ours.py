@@ -1,5 +1,4 @@
-"""BIRM3D, by tolerance and with fixed steps; all ledgers, histories and the 20 ms after the end are in its
-time."""
+"""BIRM3D, by tolerance and with fixed steps; ledgers, histories and 20 ms beyond the end included."""
 
 from __future__ import annotations
 
