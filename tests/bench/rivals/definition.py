@@ -16,6 +16,7 @@ at the finest tolerance, which an independent integrator confirms (oblique.py).
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -100,10 +101,17 @@ def vehicle(case: Case, n: int) -> Vehicle:
 
 def block(case: Case, n: int) -> Block:
     """The body of a case for rivals, stiffness of one truss."""
-    body = vehicle(case, n)
+    body = _usual(n)
+    anchors = body.anchors if case.angle == 90.0 else body.nodes + TRUSS * heading(case)
     each = {name: value if name == "knee" else value / n for name, value in case.law.items()}
-    x, y, z = np.diag(body.inertia).tolist()
-    return Block(mass=body.mass, inertia=(x, y, z), nodes=body.nodes, anchors=body.anchors, **each)
+    x, y, z = (np.diag(body.inertia) * (case.mass / body.mass)).tolist()
+    return Block(mass=case.mass, inertia=(x, y, z), nodes=body.nodes, anchors=anchors, **each)
+
+
+@functools.lru_cache
+def _usual(n: int) -> Vehicle:
+    """Geometry for rivals, which must not pay for ours in a batch."""
+    return scenes.laboratory_block(n, **LAW)
 
 
 def heading(case: Case) -> npt.NDArray[np.float64]:

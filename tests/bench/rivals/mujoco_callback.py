@@ -81,6 +81,15 @@ def body_xml(mass: float, inertia: Sequence[float], integrator: str, more: str =
     <inertial pos="0 0 0" mass="{mass}" diaginertia="{diagonal}"/>%s</body></worldbody></mujoco>"""
 
 
+@functools.cache
+def free_body(integrator: str) -> tuple[Any, Any]:
+    """Model and data of a free body; its mass is set anew for each run, which spares a batch the compiler."""
+    mujoco = engine()
+    off = 'constraint="disable" contact="disable"'
+    model = mujoco.MjModel.from_xml_string(body_xml(1.0, (1.0, 1.0, 1.0), integrator, flags=off) % ("", ""))
+    return model, mujoco.MjData(model)
+
+
 class Callback:
     does_more = "joints, actuators, general collision and convex friction, all switched off here"
     settings = STEPS
@@ -97,11 +106,7 @@ class Callback:
         drive, step, hook = compiled()
         mujoco = engine()
         body = block(case, n)
-        off = 'constraint="disable" contact="disable"'
-        model = mujoco.MjModel.from_xml_string(
-            body_xml(body.mass, body.inertia, self.integrator, flags=off) % ("", "")
-        )
-        data = mujoco.MjData(model)
+        model, data = free_body(self.integrator)
         columns = {name: np.zeros(n) for name in COLUMNS}
         crush = Crush(n=n, mu=case.friction)
         for name in ("k_initial", "knee", "k_hardening", "k_unloading"):
@@ -117,6 +122,9 @@ class Callback:
         def run(setting: float) -> Answer:
             mujoco.mj_resetData(model, data)
             model.opt.timestep = setting
+            model.body_mass[1] = body.mass
+            model.body_inertia[1] = body.inertia
+            mujoco.mj_setConst(model, data)
             for name, values in zip(("x", "y", "z"), body.nodes.T, strict=True):
                 columns[name][:] = values
             for name in ("residual", "force", "deflection"):
