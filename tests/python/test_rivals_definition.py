@@ -127,3 +127,27 @@ def test_runner_writes_a_table(tmp_path: Path) -> None:
         assert 0.0 < float(row["time_ms"]) < math.inf
     assert "**W2, N = 100**" in (tmp_path / "table.md").read_text(encoding="utf-8")
     assert (tmp_path / "work_precision_w2.png").stat().st_size > 10_000
+
+
+def test_scaling_tells_cost_and_error() -> None:
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-W",
+            "error",
+            BENCH / "bench_scaling.py",
+            "--quick",
+            "--axes",
+            "touched",
+            "untouched",
+        ],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "touched: time ~ nodes^" in done.stdout
+    assert "ten times the untouched nodes" in done.stdout
+    errors = [float(line.split()[5]) for line in done.stdout.splitlines() if line.endswith("exit_speed")]
+    assert len(errors) == 6
+    assert max(errors) < 1e-3

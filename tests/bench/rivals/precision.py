@@ -100,9 +100,13 @@ def judge(entries: Sequence[Entry], points: dict[str, list[Point]]) -> list[Entr
     """Strike out rivals whose finest answer is wrong."""
     kept = []
     for entry in entries:
-        least = min((point.error for point in points.get(entry.rival.name, ())), default=math.nan)
+        tried = points.get(entry.rival.name, [])
+        least = min((point.error for point in tried), default=math.nan)
         if entry.run is not None and not least <= WRONG:
-            reason = f"wrong: its best answer is off by {least:.1%}"
+            # One that converges is not wrong but slow.
+            falls = len(tried) > 2 and tried[-1].error < 0.8 * tried[-3].error
+            what = f"slow: in {LONGEST:g} s" if falls else "wrong:"
+            reason = f"{what} its best answer is off by {least:.1%}"
             entry = Entry(entry.rival, None, reason)
         kept.append(entry)
     return kept
