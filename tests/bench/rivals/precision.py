@@ -32,6 +32,7 @@ class Point:
     steps: int
     time: float  # s, stepping only
     extrapolated: bool = False
+    best: float = math.nan  # s, least of all runs: what a busy machine disturbs least
 
 
 @dataclass(frozen=True)
@@ -134,7 +135,9 @@ def at_equal_error(
         if entry.run is None:
             continue
         name = entry.rival.name
-        last: Point | None = None
+        # A few long steps tell what a step takes with this many nodes.
+        first_setting = points[name][0].setting
+        last = measured(case, first_setting, entry.run(first_setting))
         for target in sorted(TARGETS, reverse=True):
             setting = setting_for(points[name], target)
             if setting is None:
@@ -144,13 +147,12 @@ def at_equal_error(
             if (name, setting) in firsts:
                 continue
             tried = next(point for point in points[name] if point.setting == setting)
-            if last is not None:
-                ahead = last.time / last.steps * tried.steps
-                if ahead > LONGEST:
-                    firsts[name, setting] = Point(
-                        setting, tried.error, tried.worst, tried.steps, ahead, extrapolated=True
-                    )
-                    continue
+            ahead = last.time / last.steps * tried.steps
+            if ahead > LONGEST:
+                firsts[name, setting] = Point(
+                    setting, tried.error, tried.worst, tried.steps, ahead, extrapolated=True
+                )
+                continue
             last = measured(case, setting, entry.run(setting))
             firsts[name, setting] = last
             timed[name, setting] = (entry.run, [])
@@ -160,7 +162,8 @@ def at_equal_error(
     for (name, target), setting in settings.items():
         first = firsts[name, setting]
         if (name, setting) in timed:
-            middle = statistics.median(timed[name, setting][1])
-            first = Point(setting, first.error, first.worst, first.steps, middle)
+            taken = timed[name, setting][1]
+            middle = statistics.median(taken)
+            first = Point(setting, first.error, first.worst, first.steps, middle, best=min(taken))
         chosen[name, target] = first
     return chosen

@@ -22,6 +22,7 @@ HEAD = (
     "error",
     "of",
     "time_ms",
+    "best_ms",
     "times_ours",
     "note",
 )
@@ -42,11 +43,11 @@ class Row:
     def cells(self) -> tuple[str, ...]:
         p = self.point
         if p is None:
-            return (self.case, str(self.n), self.rival, f"{self.target:g}", "", "", "", "", "", "", self.note)
+            return (self.case, str(self.n), self.rival, f"{self.target:g}", *[""] * 7, self.note)
         ratio = "" if self.times_ours is None else f"{self.times_ours:.3g}"
         return (
             self.case, str(self.n), self.rival, f"{self.target:g}", f"{p.setting:.3g}", str(p.steps),
-            f"{p.error:.1e}", p.worst, f"{1e3 * p.time:.4g}", ratio, self.note,
+            f"{p.error:.1e}", p.worst, f"{1e3 * p.time:.4g}", "" if p.extrapolated else f"{1e3 * p.best:.4g}", ratio, self.note,
         )  # fmt: skip
 
 
