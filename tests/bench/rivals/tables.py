@@ -45,9 +45,10 @@ class Row:
         if p is None:
             return (self.case, str(self.n), self.rival, f"{self.target:g}", *[""] * 7, self.note)
         ratio = "" if self.times_ours is None else f"{self.times_ours:.3g}"
+        best = "" if p.extrapolated else f"{1e3 * p.best:.4g}"
         return (
             self.case, str(self.n), self.rival, f"{self.target:g}", f"{p.setting:.3g}", str(p.steps),
-            f"{p.error:.1e}", p.worst, f"{1e3 * p.time:.4g}", "" if p.extrapolated else f"{1e3 * p.best:.4g}", ratio, self.note,
+            f"{p.error:.1e}", p.worst, f"{1e3 * p.time:.4g}", best, ratio, self.note,
         )  # fmt: skip
 
 
