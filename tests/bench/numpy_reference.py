@@ -4,9 +4,9 @@ Nodes are columns of (3, n) arrays that are allocated once; every operation writ
 is done node by node in Python, and the few numbers of the body itself are plain floats, not small arrays.
 Same physics, by leapfrog (kick, drift, kick) with a fixed step: a body that turns, nodes held on a plane,
 the three-segment truss law with unloading and release, the truss force projected on the normal, its torque,
-the energy ledger of the trusses.
+Coulomb friction where there is any, the energy ledger of the trusses.
 
-Left out, in NumPy's favour: friction, tyres and ground, closed trusses, the error estimate and the stability
+Left out, in NumPy's favour: tyres and ground, closed trusses, the error estimate and the stability
 bound, the broad phase, the histories (it keeps one number a step, the wall force), and the 20 ms that BIRM3D
 runs on after the vehicle has left. The `lean` rival also leaves out the turning of the body and the ledger: a
 program for W2 alone.
@@ -54,13 +54,32 @@ class Answer:
 
 
 class Run:
-    """A head-on run into the plane x = 0; :meth:`run` may be called again and again."""
+    """A run into the plane x = 0; :meth:`run` may be called again and again.
 
-    def __init__(self, block: Block, speed: float, time_step: float, *, lean: bool = False) -> None:
+    `angle` [deg] between path and plane, nose ahead. `duration` [s]; None: until the body has left.
+    """
+
+    def __init__(
+        self,
+        block: Block,
+        speed: float,
+        time_step: float,
+        *,
+        lean: bool = False,
+        angle: float = 90.0,
+        friction: float = 0.0,
+        duration: float | None = None,
+    ) -> None:
+        if lean and (friction > 0.0 or angle != 90.0):
+            raise ValueError(f"lean is head-on and without friction, got {angle} deg and {friction}")
         self.block = block
         self.speed = speed
         self.time_step = time_step
         self.lean = lean
+        self.angle = math.radians(angle)
+        self.friction = friction
+        self.steps = math.ceil((1.0 if duration is None else duration) / time_step - 1e-9)
+        self.whole = duration is not None
         n = len(block.nodes)
         # Everything a step touches.
         self.node = np.empty((3, n))
@@ -75,25 +94,33 @@ class Run:
         self.force, self.last_force = np.empty((2, n))
         self.pushing, self.inside, self.released = np.empty((3, n), bool)
 
-    def run(self) -> Answer:
-        block, dt, lean = self.block, self.time_step, self.lean
-        node = self.node
-        node[:] = block.nodes.T
+    def start(self) -> None:
+        """Uncrush all trusses."""
+        self.node[:] = self.block.nodes.T
         for column in (self.residual, self.peak, self.last_force, self.last_deflection):
             column.fill(0.0)
         self.pushing.fill(False)
+
+    def run(self) -> Answer:
+        block, dt, lean = self.block, self.time_step, self.lean
+        self.start()
+        node = self.node
         mass = block.mass
-        position, velocity = [-float(node[0].max()), 0.0, 0.0], [self.speed, 0.0, 0.0]
-        momentum = [0.0, 0.0, 0.0]  # angular, world axes
-        turn = (1.0, 0.0, 0.0, 0.0)
+        aim = math.sin(self.angle), math.cos(self.angle)
+        velocity = [self.speed * aim[0], self.speed * aim[1], 0.0]
+        yaw = 0.5 * (0.5 * math.pi - self.angle)
+        turn = (math.cos(yaw), 0.0, 0.0, math.sin(yaw))
         axes = rotation(turn)
+        position = [-float(np.dot(axes[:3], node).max()), 0.0, 0.0]
+        momentum = [0.0, 0.0, 0.0]  # angular, world axes
         force, torque = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-        forces = np.empty(math.ceil(1.0 / dt))
-        ledger = np.empty((math.ceil(1.0 / dt), 3))
+        forces = np.empty(self.steps)
+        ledger = np.empty((self.steps, 3))
         work, steps = 0.0, 0
+        self.last_push = force
 
         start = time.perf_counter()
-        while True:
+        while steps < self.steps:
             kick = 0.5 * dt / mass
             velocity[0] += kick * force[0]
             velocity[1] += kick * force[1]
@@ -107,13 +134,22 @@ class Run:
                 axes = rotation(turn)
             # The plane n . p <= 0 with n = (-1, 0, 0), seen from the body.
             normal = np.array((-axes[0], -axes[1], -axes[2]))
-            pressure, moment = self._wall(normal, position[0])
+            pressure, moment = self.press(normal, position[0])
             force = (-pressure, 0.0, 0.0)
+            turning = np.cross(moment, normal).tolist()
+            if self.friction > 0.0 and pressure > 0.0:
+                # At the end of the step, as the last force would have it.
+                ahead = [v + kick * f for v, f in zip(velocity, self.last_push, strict=True)]
+                spin = [p + 0.5 * dt * t for p, t in zip(momentum, torque, strict=True)]
+                rub, rub_moment = self._friction(normal, seen(axes, ahead), seen(axes, spin))
+                force = tuple(f + r for f, r in zip(force, turned(axes, rub), strict=True))
+                turning = [t + r for t, r in zip(turning, rub_moment, strict=True)]
+            self.last_push = force
             velocity[0] += kick * force[0]
             velocity[1] += kick * force[1]
             velocity[2] += kick * force[2]
             if not lean:
-                torque = turned(axes, np.cross(moment, normal).tolist())
+                torque = turned(axes, turning)
                 momentum = [p + 0.5 * dt * t for p, t in zip(momentum, torque, strict=True)]
                 work += self._work()
                 ledger[steps] = (
@@ -123,12 +159,13 @@ class Run:
                 )
             forces[steps] = pressure
             steps += 1
-            if pressure == 0.0 and velocity[0] < 0.0:
+            if pressure == 0.0 and velocity[0] < 0.0 and not self.whole:
                 break
         run_time = time.perf_counter() - start
-        return Answer(float(self.peak.max()), float(forces[:steps].max()), -velocity[0], steps, run_time)
+        speed = math.hypot(velocity[0], velocity[1])
+        return Answer(float(self.peak.max()), float(forces[:steps].max()), speed, steps, run_time)
 
-    def _wall(self, normal: Floats, offset: float) -> tuple[float, Floats]:
+    def press(self, normal: Floats, offset: float) -> tuple[float, Floats]:
         """Hold the nodes on the plane normal . p = offset; return the sums of p and p r over the nodes."""
         block, node, arm, move = self.block, self.node, self.arm, self.move
         gap, size, d, envelope, line = self.gap, self.size, self.deflection, self.envelope, self.line
@@ -184,6 +221,30 @@ class Run:
             self.last_deflection, self.deflection = d, self.last_deflection
         return float(envelope.sum()), node @ envelope
 
+    def _friction(
+        self, normal: Floats, velocity: list[float], momentum: list[float]
+    ) -> tuple[list[float], list[float]]:
+        """Force and moment against the sliding of the nodes that :meth:`press` just pressed; body axes."""
+        slip, node, size = self.move, self.node, self.size
+        spin = np.array([p / i for p, i in zip(momentum, self.block.inertia, strict=True)])
+        for k in range(3):
+            i, j = (k + 1) % 3, (k + 2) % 3
+            np.multiply(node[j], spin[i], out=slip[k])
+            np.multiply(node[i], spin[j], out=size)
+            slip[k] -= size
+            slip[k] += velocity[k]
+        np.dot(normal, slip, out=size)
+        for k in range(3):
+            np.multiply(size, normal[k], out=self.line)
+            slip[k] -= self.line
+        np.einsum("in,in->n", slip, slip, out=size)
+        np.sqrt(size, out=size)
+        np.maximum(size, 1e-9, out=size)
+        np.divide(self.envelope, size, out=size)
+        size *= -self.friction
+        slip *= size
+        return slip.sum(axis=1).tolist(), np.cross(node, slip, axis=0).sum(axis=1).tolist()
+
     def _work(self) -> float:
         """Work done on the trusses in the last step, trapezoid rule [J]; turns over the columns."""
         line = self.line
@@ -212,6 +273,12 @@ def turned(m: tuple[float, ...], v: list[float]) -> tuple[float, float, float]:
     """Body axes to world axes."""
     x, y, z = v
     return (m[0] * x + m[1] * y + m[2] * z, m[3] * x + m[4] * y + m[5] * z, m[6] * x + m[7] * y + m[8] * z)
+
+
+def seen(m: tuple[float, ...], v: list[float]) -> list[float]:
+    """World axes to body axes."""
+    x, y, z = v
+    return [m[0] * x + m[3] * y + m[6] * z, m[1] * x + m[4] * y + m[7] * z, m[2] * x + m[5] * y + m[8] * z]
 
 
 def drift(q: Quaternion, momentum: list[float], inertia: tuple[float, float, float], dt: float) -> Quaternion:
