@@ -16,9 +16,11 @@ from .channel import Channel
 from .channel_checks import check_channel
 from .comparison import CurveComparison, compare_curves
 from .element_loads import ElementLoad
+from .ensemble import ensemble
 from .fragility import fragility
 from .free_standing import FreeStanding
 from .impact_point import critical_impact_point
+from .ledger import LedgerWarning
 from .monte_carlo import monte_carlo
 from .result import Result
 from .result_file import load
@@ -39,6 +41,7 @@ __all__ = [
     "ElementLoad",
     "FreeStanding",
     "Joint",
+    "LedgerWarning",
     "Result",
     "Scene",
     "Settings",
@@ -55,6 +58,7 @@ __all__ = [
     "check_channel",
     "compare_curves",
     "critical_impact_point",
+    "ensemble",
     "fragility",
     "load",
     "monte_carlo",

@@ -11,7 +11,7 @@ import os
 import pickle
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from concurrent.futures import (
     FIRST_COMPLETED,
     Executor,
@@ -44,7 +44,7 @@ class ExecutorError(Exception):
 
 
 def run_all(
-    simulation: Simulation,
+    simulation: Simulation | None,
     names: tuple[str, ...],
     metrics: tuple[str, ...],
     todo: Chunk,
@@ -52,6 +52,8 @@ def run_all(
     finish: Callable[[Finished], None],
 ) -> None:
     """Run all of `todo` (number of the run, values) and hand what is finished to `finish`, in any order.
+
+    Without a `simulation` to vary the one value of each run is its scene.
 
     At most two chunks a worker are under way, so that memory does not grow with the number of runs.
 
@@ -151,7 +153,7 @@ _unpacked = lru_cache(maxsize=2)(pickle.loads)
 
 
 def _run_chunk(
-    simulation: Simulation,
+    simulation: Simulation | None,
     names: tuple[str, ...],
     metrics: tuple[str, ...],
     chunk: Chunk,
@@ -162,14 +164,23 @@ def _run_chunk(
     for run, row in chunk:
         if stop is not None and stop.is_set():
             break
-        finished.append((run, _outcome(simulation, dict(zip(names, row, strict=True)), metrics)))
+        finished.append((run, _outcome(simulation, names, row, metrics)))
     return finished, time.perf_counter() - start
 
 
-def _outcome(simulation: Simulation, changes: Mapping[str, Any], metrics: tuple[str, ...]) -> Outcome:
+def _scene(simulation: Simulation | None, names: tuple[str, ...], row: tuple[Any, ...]) -> Simulation:
+    if simulation is not None:
+        return varied(simulation, dict(zip(names, row, strict=True)))
+    (given,) = row
+    return varied(given if isinstance(given, Simulation) else given(), {})
+
+
+def _outcome(
+    simulation: Simulation | None, names: tuple[str, ...], row: tuple[Any, ...], metrics: tuple[str, ...]
+) -> Outcome:
     """Run one scene; whatever goes wrong is its reason."""
     try:
-        result = varied(simulation, changes).run()
+        result = _scene(simulation, names, row).run()
         found = compute_metrics(result, metrics)
         for name in metrics:
             if math.isnan(found.get(name, 0.0)):

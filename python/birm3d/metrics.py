@@ -23,7 +23,7 @@ from .free_standing import lateral_movement
 if TYPE_CHECKING:
     from .result import Result
 
-__all__ = ["JOINT_METRICS", "METRIC_UNITS", "SEGMENT_METRICS", "compute_metrics"]
+__all__ = ["JOINT_METRICS", "METRIC_UNITS", "SEGMENT_METRICS", "compute_metrics", "energy_residual"]
 
 METRIC_UNITS: Mapping[str, str] = MappingProxyType(
     {
@@ -195,9 +195,10 @@ class _Run:
         return max((getattr(load, name) for load in self.loads), default=0.0)
 
 
-def _energy_residual(run: _Run) -> float:
-    energy = run.result.energy
-    scale = max(float(energy["kinetic"][0]), 0.5 * run.scene.vehicle.mass * _STANDSTILL**2)
+def energy_residual(result: Result) -> float:
+    """Greatest residual of the energy ledger, relative to the initial kinetic energy."""
+    energy = result.energy
+    scale = max(float(energy["kinetic"][0]), 0.5 * result.scene.vehicle.mass * _STANDSTILL**2)
     return float(np.abs(energy["residual"]).max() / scale)
 
 
@@ -351,7 +352,7 @@ def _all_metrics() -> dict[str, _Metric]:
         "peak_joint_force": _of_joint(
             lambda run: float(np.linalg.norm(run.result.joint_force, axis=1).max())
         ),
-        "energy_residual": _energy_residual,
+        "energy_residual": lambda run: energy_residual(run.result),
         "momentum_residual": lambda run: run.result.momentum_residual,
         "steps": lambda run: float(run.result.statistics.steps),
         "run_time": lambda run: run.result.run_time,

@@ -11,7 +11,7 @@ __all__ = ["progress_bar"]
 
 @contextmanager
 def progress_bar(
-    wanted: bool | None, title: str, total: int, done: int = 0
+    wanted: bool | None, title: str, total: int | None, done: int = 0
 ) -> Iterator[Callable[[int], None]]:
     """Show a bar on stderr and yield what moves it on.
 
@@ -20,7 +20,7 @@ def progress_bar(
     wanted
         ``None``: if stderr is a terminal.
     title, total, done
-        What the bar says, how many there are and how many are done already.
+        What the bar says, how many there are (``None``: not known) and how many are done already.
     """
     if wanted is None:
         wanted = sys.stderr.isatty()

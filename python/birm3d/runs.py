@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from .executors import Finished
     from .run_store import Outcome, RunStore
 
-__all__ = ["StudyInterrupted", "StudyStoppedError", "run_study"]
+__all__ = ["StudyInterrupted", "StudyStoppedError", "checked_metrics", "run_study"]
 
 # The wall time of a run is no property of the scene: it would make every study differ from every other.
 _STUDY_METRICS = tuple(name for name in METRIC_UNITS if name != "run_time")
@@ -104,7 +104,7 @@ def run_study(
     joined = simulation.scene.vehicle.joint is not None or "vehicle" in names
     barrier = simulation.scene.barrier
     free = (barrier is not None and bool(barrier.core.segments)) or "barrier" in names
-    wanted = _checked_metrics(metrics, joined, free)
+    wanted = checked_metrics(metrics, joined, free)
     table = [tuple(_plain(value) for value in row) for row in rows]
     _check_rows(simulation, names, table)
     units = {name: METRIC_UNITS[name] for name in wanted}
@@ -147,7 +147,7 @@ def run_study(
     return study(outcomes, grid=grid)
 
 
-def _checked_metrics(metrics: Sequence[str] | None, joined: bool, free: bool) -> tuple[str, ...]:
+def checked_metrics(metrics: Sequence[str] | None, joined: bool, free: bool) -> tuple[str, ...]:
     """Return the metrics of a study; those of joints and segments by themselves only where there may be."""
     absent = (() if joined else JOINT_METRICS) + (() if free else SEGMENT_METRICS)
     usual = tuple(name for name in _STUDY_METRICS if name not in absent)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 from . import _core
 from .barrier import Barrier
+from .ledger import warn_if_open
 from .result import Result
 from .settings import MU_TIRE_BARRIER, Settings
 from .vehicle import Vehicle
@@ -161,6 +162,8 @@ class Simulation:
         ------
         UnstableError
             If a fixed time step is beyond what the scene allows; the message names one that would do.
+        LedgerWarning
+            As a warning, if a fixed time step is stable and the energy ledger does not close with it.
         ValueError
             If the frames are more than the result's rows or outside the run.
         """
@@ -170,6 +173,8 @@ class Simulation:
         self._core.run()
         self._run_time += time.perf_counter() - start
         result = self.result()
+        if self._scene.settings.time_step is not None:
+            warn_if_open(result)
         return result if frames is None else result.with_frames(frames)
 
     def step(self) -> bool:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from birm3d import Barrier, Result, Settings, Simulation, UnstableError, Vehicle, Zone, scenes
+from birm3d import Barrier, LedgerWarning, Result, Settings, Simulation, UnstableError, Vehicle, Zone, scenes
 
 NAN, INF = math.nan, math.inf
 
@@ -292,6 +292,7 @@ def test_a_checkpoint_of_another_scene_is_refused() -> None:
     ],
     ids=["w1", "w2", "nhtsa_10146", "oblique"],
 )
+@pytest.mark.filterwarnings("ignore::birm3d.LedgerWarning")
 def test_a_step_that_is_too_long_is_refused_and_a_good_one_named(
     make: Callable[[Settings], Simulation],
 ) -> None:
@@ -314,6 +315,25 @@ def test_a_step_that_is_too_long_is_refused_and_a_good_one_named(
     assert result.metrics["energy_residual"] < 0.15
 
 
+@pytest.mark.parametrize(
+    "barrier", [Barrier.bollards(), Barrier.pole(), Barrier.rigid_wall(width=3.0, height=1.0)]
+)
+def test_a_step_that_could_jump_over_a_barrier_is_refused(barrier: Barrier) -> None:
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    simulation = Simulation(car, barrier, 15.0, settings=Settings(time_step=0.7))
+    with pytest.raises(UnstableError, match="time_step must be below"):
+        simulation.run()
+
+
+def test_a_step_that_is_stable_and_too_long_is_warned_of() -> None:
+    settings = Settings(time_step=5e-3, gravity=0.0, ground=False)
+    with pytest.warns(
+        LedgerWarning, match=r"energy_residual must be at most 0\.005, got .*time_step = 0\.005"
+    ):
+        coarse = scenes.w2(4, settings).run()
+    assert coarse.metrics["energy_residual"] > 5e-3
+
+
 def test_the_refusal_leaves_the_state_as_it_was() -> None:
     simulation = scenes.w2(4, Settings(time_step=0.02, gravity=0.0, ground=False))
     state = []
@@ -328,6 +348,7 @@ def test_the_refusal_leaves_the_state_as_it_was() -> None:
     assert (simulation.state_hash(), simulation.time) == state[-1]
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.LedgerWarning")
 def test_the_limit_is_the_root_of_three_over_omega() -> None:
     """A mass on one spring: the scheme is stable below sqrt(3) sqrt(m/k)."""
     k, mass = 1e6, 1000.0

@@ -262,6 +262,8 @@ void Simulation::take(Trial& trial) {
 void Simulation::fixed_step() {
     const double step = *scene_.settings.time_step;
     const double dt = std::min(step, remaining());
+    const double passing = passing_step(scene_, state_, dt);
+    if (passing < dt) refuse_step(dt, passing);
     try_step(scene_, state_, dt, {}, trial_);
     double critical = trial_.critical_step;
     if (trial_.body_held()) {
@@ -282,7 +284,8 @@ void Simulation::refuse_step(double dt, double critical) const {
     adaptive.time_step.reset();
     Simulation other(Scene(scene_.vehicle, scene_.barrier, scene_.approach, adaptive, scene_.duration));
     other.run([] {});
-    const double would_do = tolerance::advised_fraction * other.state().statistics.least_critical_step;
+    const double would_do =
+        tolerance::advised_fraction * std::min(critical, other.state().statistics.least_critical_step);
     throw UnstableError(dt, critical, state_.time,
                         "a step of " + to_text(would_do, 3) + " s would do for the whole run");
 }

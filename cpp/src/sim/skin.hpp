@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "birm3d/kernels/crush.hpp"
@@ -67,7 +68,7 @@ class Skin {
     PlaneSums& sums_of_plane(std::size_t near, const HalfSpace& plane);
     void press_plane(PlaneSums& plane, std::size_t b);
     void press_shapes(std::size_t b);
-    double let_go_into_another(std::size_t b);
+    std::optional<double> let_go_into_another(std::size_t b);
     void look(std::size_t b);
     void look_at(std::size_t b, const TrussBlockState& block);
     void turn_flat_faces();

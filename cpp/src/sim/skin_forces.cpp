@@ -277,9 +277,9 @@ void Skin::press_shapes(std::size_t b) {
                         });
     };
     crush_block();
-    if (const double spared = let_go_into_another(b); spared > 0.0) {
+    if (const auto work = let_go_into_another(b)) {
         to = before;
-        to.released_work -= spared;
+        to.released_work += *work;
         look(b);
         crush_block();
     }
@@ -291,10 +291,11 @@ void Skin::press_shapes(std::size_t b) {
 }
 
 // A node that one face lets go may spring into another, in the corner between two slopes: it arrives there within the
-// step, its truss unloaded. Returns what such trusses had stored (J).
-double Skin::let_go_into_another(std::size_t b) {
+// step, its truss unloaded. Returns the work done on such trusses up to there (J).
+std::optional<double> Skin::let_go_into_another(std::size_t b) {
+    const TrussBlock& truss = mesh_.block[b];
     const TrussBlockState& next = now_.trusses.block[b];
-    double stored = 0.0;
+    std::optional<double> work;
     for (std::size_t i = 0; i < lanes; ++i) {
         const double force = from(b).force[i];
         if (!(force > 0.0 && next.force[i] == 0.0)) continue;
@@ -307,12 +308,16 @@ double Skin::let_go_into_another(std::size_t b) {
         if (!inside) continue;
         if (!sprung_back_) sprung_ = before_.trusses.block[b];
         sprung_back_ = true;
-        stored += 0.5 * force * (sprung_.deflection[i] - sprung_.residual[i]);
+        // The face held it to the end of the step, but where it moved off by itself: see release() in crush.cpp.
+        const Vec3 held(contact_.px[i], contact_.py[i], contact_.pz[i]);
+        const double length = (held - Vec3(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i])).norm();
+        const double let_go = faces_.gap[i] > 0.0 ? next.deflection[i] : truss.length[i] - length;
+        work = work.value_or(0.0) + 0.5 * force * (let_go - sprung_.deflection[i]);
         sprung_.x[i] = place.x(), sprung_.y[i] = place.y(), sprung_.z[i] = place.z();
         sprung_.force[i] = 0.0;
         sprung_.deflection[i] = next.deflection[i];
     }
-    return stored;
+    return work;
 }
 
 // What each node of a block sees: the nearest of the surfaces in its reach.

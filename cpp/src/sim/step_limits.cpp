@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "birm3d/base/tolerances.hpp"
@@ -19,13 +18,11 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Gap of the nearest place of a box (body axes) to a plane that all of the box moves away from (m); `motion` of the box
-// against the plane. None where some of it approaches.
-std::optional<double> gap_left_behind(const HalfSpace& plane, const Twist& motion, const Box& box) {
+// Does all of a box (body axes) move away from a plane? `motion` of the box against the plane.
+bool is_left_behind(const HalfSpace& plane, const Twist& motion, const Box& box) {
     const Vec3& n = plane.normal;
     const double leaving = n.dot(motion.velocity + motion.angular_velocity.cross(box.center));
-    if (leaving < n.cross(motion.angular_velocity).cwiseAbs().dot(box.half)) return std::nullopt;
-    return plane.gap(box.center) - n.cwiseAbs().dot(box.half);
+    return leaving >= n.cross(motion.angular_velocity).cwiseAbs().dot(box.half);
 }
 
 }  // namespace
@@ -72,10 +69,11 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
             if (near.size() == 1 && !block.slack) {
                 const auto* plane = std::get_if<HalfSpace>(near[0].shape);
                 const Twist away{v - near[0].motion.velocity, w - near[0].motion.angular_velocity};
-                const auto gap = plane ? gap_left_behind(near[0].placement.plane_from_own(*plane), away, box)
-                                       : std::nullopt;
-                if (gap) {
-                    longest = std::min(longest, (std::max(*gap, 0.0) + tolerance::untouched_way) / fastest);
+                if (plane && is_left_behind(near[0].placement.plane_from_own(*plane), away, box)) {
+                    nearest_of(*near[0].shape, near[0].placement, near[0].placement, block.x, block.y,
+                               block.z, found);
+                    const double gap = std::max(*std::min_element(found.gap.begin(), found.gap.end()), 0.0);
+                    longest = std::min(longest, (gap + tolerance::untouched_way) / fastest);
                     continue;
                 }
             }

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
 
+from ..ledger import warn_if_open
 from ..progress import progress_bar
 from ..simulation import Simulation
 from .stability_cases import AXES, Case, default_scenes, laboratory_cases, varied_cases
-from .stability_result import FAULT, HELD, REFUSED, Stability, StabilityRow
+from .stability_result import FAULT, HELD, REFUSED, WARNED, Stability, StabilityRow
 from .watched import LIMITS, Limits, step_through
 
 __all__ = ["stability"]
@@ -39,8 +41,9 @@ def stability(
 
     A run **held** if the energy and momentum ledgers close, every number is finite, no node or rigid body
     ended a step inside the barrier, and it did what the scene makes it do: met a barrier in its way, stayed
-    in front of a post at its middle, stayed at rest. It was **refused** if an error said why not. All else
-    is a **FAULT**: an answer that its ledgers contradict.
+    in front of a post at its middle, stayed at rest. It was **refused** if an error said why not, **warned**
+    of if the run of a fixed step tells that its energy ledger is open (:class:`birm3d.LedgerWarning`). All
+    else is a **FAULT**: an answer that its ledgers contradict.
 
     Parameters
     ----------
@@ -109,6 +112,12 @@ def _judged(case: Case, limits: Limits) -> StabilityRow:
         return replace(row, reason=_told(error))
     faults = [watched.fault] if watched.fault else []
     faults += _missed(case, simulation, watched.touched)
+    if faults == ["energy"] and simulation.scene.settings.time_step is not None:
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            warn_if_open(simulation.result())
+        if told:
+            return replace(row, verdict=WARNED, reason=str(told[0].message))
     return replace(row, verdict=FAULT if faults else HELD, reason="; ".join(faults))
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
-from .stability_result import FAULT, HELD, REFUSED
+from .stability_result import FAULT, HELD, REFUSED, WARNED
 
 if TYPE_CHECKING:
     from .stability_result import Stability
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["plot_stability"]
 
 _LEAST = 1e-16
-_STYLES = {HELD: ("o", "C2"), REFUSED: ("x", "C7"), FAULT: ("D", "C3")}
+_STYLES = {HELD: ("o", "C2"), REFUSED: ("x", "C7"), WARNED: ("^", "C1"), FAULT: ("D", "C3")}
 
 
 def plot_stability(study: Stability) -> Figure:

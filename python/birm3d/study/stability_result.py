@@ -20,9 +20,10 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-__all__ = ["FAULT", "HELD", "REFUSED", "Stability", "StabilityRow"]
+__all__ = ["FAULT", "HELD", "REFUSED", "WARNED", "Stability", "StabilityRow"]
 
-HELD, REFUSED, FAULT = "held", "refused", "FAULT"
+HELD, REFUSED, WARNED, FAULT = "held", "refused", "warned", "FAULT"
+_VERDICTS = (HELD, REFUSED, WARNED, FAULT)
 
 
 @dataclass(frozen=True)
@@ -34,10 +35,11 @@ class StabilityRow:
     axis, scene, value
         What is taken to which extreme in which scene.
     verdict
-        ``"held"``: every ledger is within its limit; ``"refused"``: an error said why not; ``"FAULT"``: the
-        program gave an answer that its ledgers contradict, or failed without a reason.
+        ``"held"``: every ledger is within its limit; ``"refused"``: an error said why not; ``"warned"``: the
+        program gave an answer with a :class:`birm3d.LedgerWarning`; ``"FAULT"``: it gave one that its ledgers
+        contradict, or failed without a reason.
     reason
-        Of a refusal or a fault.
+        Of all but ``"held"``.
     steps, energy_residual, momentum_residual, node_depth, anchor_depth
         Of the run as far as it went; relative, relative, m, m. NaN: it did not begin.
     """
@@ -71,7 +73,7 @@ class Stability:
 
     @property
     def faults(self) -> tuple[StabilityRow, ...]:
-        """Rows that neither held nor were refused."""
+        """Rows that are wrong without a word."""
         return tuple(row for row in self.rows if row.verdict == FAULT)
 
     @property
@@ -97,19 +99,20 @@ class Stability:
 
     def report(self) -> str:
         """Return how many held, were refused or are wrong, by axis, and every fault and refusal in words."""
-        lines = [f"{'':18s}{HELD:>8s}{REFUSED:>9s}{FAULT:>7s}{'energy residual':>17s}"]
+        lines = ["".join(f"{title:>9s}" for title in ("", "", *_VERDICTS)) + f"{'energy residual':>17s}"]
         for axis in dict.fromkeys(row.axis for row in self.rows):
             rows = [row for row in self.rows if row.axis == axis]
             count = Counter(row.verdict for row in rows)
             energy = max((row.energy_residual for row in rows if row.verdict == HELD), default=math.nan)
             shown = "" if math.isnan(energy) else f"{energy:.1e}"
-            lines.append(f"{axis:18s}{count[HELD]:8d}{count[REFUSED]:9d}{count[FAULT]:7d}{shown:>17s}")
+            counts = "".join(f"{count[verdict]:9d}" for verdict in _VERDICTS)
+            lines.append(f"{axis:18s}{counts}{shown:>17s}")
         limits = self.limits
         lines.append(
             f"limits: energy {limits.energy:g} of the initial kinetic energy, momentum {limits.momentum:g}, "
             f"nodes {1e3 * limits.node_depth:g} mm and rigid body {1e3 * limits.anchor_depth:g} mm inside"
         )
-        for verdict in (FAULT, REFUSED):
+        for verdict in (FAULT, WARNED, REFUSED):
             for row in self.rows:
                 if row.verdict == verdict:
                     lines.append(f"{verdict}: {row.axis} {row.value}, {row.scene}: {row.reason}")
@@ -123,5 +126,5 @@ class Stability:
 
     def __repr__(self) -> str:
         count = Counter(row.verdict for row in self.rows)
-        told = ", ".join(f"{count[verdict]} {verdict}" for verdict in (HELD, REFUSED, FAULT))
+        told = ", ".join(f"{count[verdict]} {verdict}" for verdict in _VERDICTS)
         return f"Stability({len(self.rows)} scenes: {told})"

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from ..ledger import ENERGY_LIMIT
 from ..result import Result
 from ..simulation import Simulation
 
@@ -31,7 +32,7 @@ class Limits:
 
     node_depth: float = 5e-3
     anchor_depth: float = 1e-3
-    energy: float = 5e-3
+    energy: float = ENERGY_LIMIT
     momentum: float = 1e-9
 
     def __post_init__(self) -> None:

@@ -1,0 +1,102 @@
+"""Thousands of scenes, each its own, from one call."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterable, Sequence, Sized
+from typing import TYPE_CHECKING, Any
+
+from .metrics import METRIC_UNITS
+from .progress import progress_bar
+from .runs import StudyInterrupted, StudyStoppedError, checked_metrics
+from .simulation import Simulation
+from .study import Study
+
+if TYPE_CHECKING:
+    from .executors import Finished
+    from .run_store import Outcome
+
+__all__ = ["ensemble"]
+
+# So many scenes are under way at once, at most: what a run needs is gone when the next are made.
+_UNDER_WAY = 1024
+
+
+def ensemble(
+    simulations: Iterable[Simulation | Callable[[], Simulation]],
+    *,
+    metrics: Sequence[str] | None = None,
+    executor: Any = None,
+    progress: bool | None = None,
+) -> Study:
+    """Run many scenes on all cores and return their metrics, in the order of the scenes.
+
+    A run depends on its scene alone: the same bits come out for any executor, number of threads and order.
+    Memory does not grow with the number of runs, but for a row of numbers each, if the scenes are made one by
+    one, as a generator makes them.
+
+    Parameters
+    ----------
+    simulations
+        The scenes; each is run from its start and not changed. A scene can also be a function without
+        arguments that makes it: what it raises is the error of that run.
+    metrics
+        Names of the metrics wanted; ``None``: all but ``run_time``, which is not the same twice. Few are
+        faster.
+    executor
+        Any :class:`concurrent.futures.Executor`, or a ``dask.distributed.Client``; ``None``: a thread for
+        each core of the machine.
+    progress
+        Bar on stderr; ``None``: if that is a terminal.
+
+    Returns
+    -------
+    Study
+        One row a scene. A run that fails does not stop the others: it is a row with its reason in ``error``
+        and NaN as metrics.
+
+    Raises
+    ------
+    ValueError
+        If there are no scenes, or a metric is unknown.
+    StudyStoppedError
+        If the executor dies. Finished runs are in its ``study``.
+    StudyInterrupted
+        A KeyboardInterrupt, with the finished runs in its ``study``.
+
+    Examples
+    --------
+    >>> scenes = (birm3d.Simulation(car, posts, speed, 90.0) for speed in speeds)
+    >>> birm3d.ensemble(scenes, metrics=["vehicle_penetration"])["vehicle_penetration"]
+    """
+    from .executors import ExecutorError, run_all
+
+    wanted = checked_metrics(metrics, joined=True, free=True)
+    units = {name: METRIC_UNITS[name] for name in wanted}
+    outcomes: dict[int, Outcome] = {}
+
+    def study() -> Study:
+        return Study._of("ensemble", (), [], units, outcomes)
+
+    total = len(simulations) if isinstance(simulations, Sized) else None
+    scenes = iter(simulations)
+    try:
+        with progress_bar(progress, "ensemble", total) as advance:
+
+            def finish(finished: Finished) -> None:
+                outcomes.update(finished)
+                advance(len(finished))
+
+            while some := list(itertools.islice(scenes, _UNDER_WAY)):
+                todo = [(run, (scene,)) for run, scene in enumerate(some, start=len(outcomes))]
+                run_all(None, (), wanted, todo, executor, finish)
+    except KeyboardInterrupt:
+        message = f"stopped: {len(outcomes)} runs are finished and kept in the error's 'study'"
+        raise StudyInterrupted(message, study()) from None
+    except ExecutorError as died:
+        cause = died.__cause__
+        message = f"the executor died ({type(cause).__name__}: {cause}); {len(outcomes)} runs are finished"
+        raise StudyStoppedError(message, study()) from cause
+    if not outcomes:
+        raise ValueError("simulations must have at least one scene, got none")
+    return study()
