@@ -13,7 +13,9 @@ namespace birm3d {
 BIRM3D_DECLARE(baseline)
 #if defined(BIRM3D_X86_PATHS)
 BIRM3D_DECLARE(avx2)
+#if !defined(BIRM3D_UP_TO_AVX2)
 BIRM3D_DECLARE(avx512)
+#endif
 #endif
 #undef BIRM3D_DECLARE
 
@@ -22,8 +24,10 @@ std::vector<PressFunctions> press_functions() {
 #if defined(BIRM3D_X86_PATHS)
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx2")) can.push_back({"avx2", avx2::press_flat, avx2::press_curved});
+#if !defined(BIRM3D_UP_TO_AVX2)
     if (__builtin_cpu_supports("avx512f"))
         can.push_back({"avx512f", avx512::press_flat, avx512::press_curved});
+#endif
 #endif
     return can;
 }

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 import statistics
+import warnings
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from ..ledger import LedgerWarning
 from ..scene_parameters import varied
 from ..simulation import Simulation
 from .convergence import Limit, limit_of
@@ -38,7 +40,9 @@ class PrecisionRun:
         if self.refused:
             return
         try:
-            result = self.simulation.run()
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", LedgerWarning)  # what is off shows as the error
+                result = self.simulation.run()
             if not self.times:
                 self.metrics = result.metrics  # too short a run has none
         except (ValueError, RuntimeError) as refused:  # UnstableError, or no longer finite

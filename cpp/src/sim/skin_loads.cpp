@@ -1,0 +1,98 @@
+// The loads of a block's nodes on each obstacle, with friction, and their sums for the step.
+#include <algorithm>
+
+#include "birm3d/kernels/friction.hpp"
+#include "birm3d/sim/obstacles.hpp"
+#include "sim/skin.hpp"
+
+namespace birm3d {
+
+namespace {
+
+Wrench turned(const Wrench& w, const Mat3& R) {
+    return {R * w.force, R * w.torque};
+}
+
+}  // namespace
+
+// Nodes of one block that push on several obstacles: to each its own.
+void Skin::share_out(std::size_t b, const TrussBlockState& next) {
+    BlockContact part = contact_;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+        ObstacleSums& sums = obstacles_[seen_[k]];
+        double force = 0.0;
+        for (std::size_t i = 0; i < lanes; ++i) {
+            part.pressure[i] = nearest_[i] == k ? contact_.pressure[i] : 0.0;
+            if (!(part.pressure[i] > 0.0)) continue;
+            const Vec3 push = part.pressure[i] * part.normal(i);
+            sums.contact += {push, part.pressure[i] * contact_.torque(i)};
+            force += part.pressure[i];
+        }
+        sums.normal_force += force;
+        if (force > 0.0) rub(seen_[k], b, next, contact_.places(), part);
+    }
+}
+
+void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, const Places& places,
+               const BlockContact& contact) {
+    ObstacleSums& sums = obstacles_[near];
+    if (along_) sums.by_trusses += along_trusses(mesh_.block[b], next, contact);
+    if (b >= mesh_.skin_blocks) {
+        if (scene_.settings.mu_tire_barrier > 0.0) note_treads(near, b, places, contact);
+        return;
+    }
+    const double mu = scene_.obstacles[near_[near].index].friction;
+    if (mu > 0.0) add_friction(unit_.body, mu, full_speed_, away_[near], places, contact, sums.friction);
+}
+
+void Skin::hand_over() {
+    SkinForces& skin = now_.skin;
+    skin = {};
+    std::vector<Touch>& touches = trial_.touches;
+    touches.clear();
+    const auto add = [&skin](const CrushSums& sums) {
+        skin.work += 0.5 * row_sum(sums.nodes.twice_work) + sums.released_work;
+        skin.stored += 0.5 * row_sum(sums.nodes.twice_stored);
+        skin.stiffness += sums.stiffness;
+    };
+    add(shared_);
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+        ObstacleSums& sums = obstacles_[k];
+        Touch touch;
+        touch.obstacle = near_[k].index;
+        touch.contact = sums.contact;
+        touch.contact += total_wrench(sums.sums);
+        touch.normal_force = sums.normal_force + row_sum(sums.sums.nodes.force);
+        add(sums.sums);
+        for (const PlaneSums& plane : planes_) {
+            if (plane.near != k) continue;
+            touch.contact += total_wrench(plane.surface, plane.sums);
+            touch.normal_force += row_sum(plane.sums.nodes.force);
+            add(plane.sums);
+        }
+        if (along_) touch.contact = sums.by_trusses;
+        touch.contact = turned(touch.contact, R_);
+        touch.friction = turned(sums.friction.friction, R_);
+        skin.friction_rate += sums.friction.friction_rate;
+        skin.contact += touch.contact;
+        skin.friction += touch.friction;
+        skin.normal_force += touch.normal_force;
+        if (touch.normal_force > 0.0) touches.push_back(touch);
+    }
+    // What was touched before and is not now ends its course: at once, or, as part of a structure that is, in the
+    // steps by which the structure's course reaches back.
+    for (const Touch& last : before_.touches) {
+        const Load &rate = last.course.rate, &bend = last.course.bend;
+        if (!(last.normal_force > 0.0) && rate.normal_force == 0.0 && bend.normal_force == 0.0) continue;
+        const auto place = std::lower_bound(
+            touches.begin(), touches.end(), last.obstacle,
+            [](const Touch& touch, std::size_t obstacle) { return touch.obstacle < obstacle; });
+        if (place != touches.end() && place->obstacle == last.obstacle) continue;
+        Touch ended;
+        ended.obstacle = last.obstacle;
+        touches.insert(place, ended);
+    }
+    now_.touches = touches;
+}
+
+}  // namespace birm3d

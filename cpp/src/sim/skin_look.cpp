@@ -1,0 +1,145 @@
+// What the nodes of a block see of the obstacles about them: gaps and normals now, and normals an instant before.
+#include <limits>
+
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/sim/entered_face.hpp"
+#include "birm3d/sim/obstacles.hpp"
+#include "sim/skin.hpp"
+
+namespace birm3d {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Cosine above which the normals of two instants are of the same face.
+constexpr double same_face = 0.9;
+
+}  // namespace
+
+// What each node of a block sees: the nearest of the surfaces in its reach.
+void Skin::look(std::size_t b) {
+    const TrussBlockState& block = from(b);
+    faces_.gap.fill(infinity);
+    faces_.per_force.fill(0.0);
+    contact_.set_normal(Vec3::UnitX());
+    nearest_.fill(0);
+    look_at(b, block);
+    const bool changed = find_entered_faces(block);
+    if (block.touching) turn_flat_faces();
+    // Of one obstacle the nearest place lies in no corner.
+    if (changed || seen_.size() > 1) settle_in_corners(block);
+    draw_in(b, block);
+}
+
+void Skin::look_at(std::size_t b, const TrussBlockState& block) {
+    alignas(64) NearestLanes found;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+        if (is_left_to_dents(b, seen_[k])) continue;
+        const NearObstacle& obstacle = near_[seen_[k]];
+        const Shape& shape = scene_.obstacles[obstacle.index].shape;
+        nearest_of(shape, obstacle.now, obstacle.before, block.x, block.y, block.z, found);
+        leave_to_dents(b, seen_[k], found);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            if (!(found.gap[i] < faces_.gap[i])) continue;
+            nearest_[i] = k;
+            faces_.gap[i] = found.gap[i];
+            contact_.nx[i] = found.nx[i], contact_.ny[i] = found.ny[i], contact_.nz[i] = found.nz[i];
+        }
+    }
+    faces_.bx = contact_.nx, faces_.by = contact_.ny, faces_.bz = contact_.nz;
+    if (!block.touching) return;
+    // Of all surfaces at that instant: segments of a wall take over from each other.
+    alignas(64) Lanes gap_before;
+    gap_before.fill(infinity);
+    for (const std::size_t k : seen_) {
+        if (is_left_to_dents(b, k)) continue;
+        const NearObstacle& obstacle = near_[k];
+        nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.before, obstacle.before, block.x, block.y,
+                   block.z, found);
+        leave_to_dents(b, k, found);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            if (!(found.gap[i] < gap_before[i])) continue;
+            gap_before[i] = found.gap[i];
+            faces_.bx[i] = found.nx[i];
+            faces_.by[i] = found.ny[i];
+            faces_.bz[i] = found.nz[i];
+        }
+    }
+}
+
+// Where a node that leaves one surface would get into another, in the corner between a barrier and the ground or of two
+// slopes, it goes onto both: the corner pushes it straight there.
+void Skin::settle_in_corners(const TrussBlockState& block) {
+    const auto is_prism = [&](std::size_t k) {
+        return std::holds_alternative<Prism>(scene_.obstacles[near_[k].index].shape);
+    };
+    if (seen_.empty() || (seen_.size() == 1 && !is_prism(seen_[0]))) return;
+    const auto inside = [&](std::size_t i) { return faces_.gap[i] < -tolerance::touching_gap; };
+    alignas(64) Lanes x = block.x, y = block.y, z = block.z;
+    bool any = false;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!inside(i)) continue;
+        any = true;
+        x[i] -= faces_.gap[i] * contact_.nx[i];
+        y[i] -= faces_.gap[i] * contact_.ny[i];
+        z[i] -= faces_.gap[i] * contact_.nz[i];
+    }
+    if (!any) return;
+    constexpr double parallel = 0.01;  // square of the sine below which two faces make no corner
+    alignas(64) NearestLanes found;
+    for (const std::size_t k : seen_) {
+        const NearObstacle& obstacle = near_[k];
+        nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.now, obstacle.now, x, y, z, found);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            if (!inside(i) || !(found.gap[i] < -tolerance::touching_gap)) continue;
+            const Vec3 first = contact_.normal(i), second(found.nx[i], found.ny[i], found.nz[i]);
+            const Vec3 along = second - second.dot(first) * first;
+            const double square = along.squaredNorm();
+            if (square < parallel) continue;
+            const Vec3 way = -faces_.gap[i] * first - found.gap[i] / square * along;
+            const double length = way.norm();
+            const Vec3 n = way / length;
+            faces_.gap[i] = -length;
+            contact_.nx[i] = faces_.bx[i] = n.x();
+            contact_.ny[i] = faces_.by[i] = n.y();
+            contact_.nz[i] = faces_.bz[i] = n.z();
+        }
+    }
+}
+
+// A flat face, or an edge, had the same normal in its own axes an instant before, whatever was nearest then.
+void Skin::turn_flat_faces() {
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const NearObstacle& obstacle = near_[seen_[nearest_[i]]];
+        if (std::holds_alternative<Post>(scene_.obstacles[obstacle.index].shape)) continue;
+        const Vec3 m = obstacle.before.direction_from_own(obstacle.now.direction_to_own(contact_.normal(i)));
+        faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
+    }
+}
+
+// The nearest face can be the wrong one to nodes beside an edge: those that arrive, and those that seem to have changed
+// over to another face. Meshes do the like with all that come in. Was it the wrong one to any?
+bool Skin::find_entered_faces(const TrussBlockState& block) {
+    bool changed = false;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!(faces_.gap[i] < 0.0)) continue;
+        const Shape& shape = scene_.obstacles[near_[seen_[nearest_[i]]].index].shape;
+        if (std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<TriangleMesh>(shape)) continue;
+        const double turn =
+            contact_.nx[i] * faces_.bx[i] + contact_.ny[i] * faces_.by[i] + contact_.nz[i] * faces_.bz[i];
+        if (block.force[i] > 0.0 && turn > same_face) continue;
+        const auto entered = entered_face(scene_, near_, seen_, {block.x[i], block.y[i], block.z[i]},
+                                          nearest_[i], contact_.normal(i));
+        if (!entered) continue;
+        changed = true;
+        nearest_[i] = entered->seen;
+        const Vec3 &n = entered->now.normal, &m = entered->normal_before;
+        faces_.gap[i] = entered->now.gap;
+        contact_.nx[i] = n.x(), contact_.ny[i] = n.y(), contact_.nz[i] = n.z();
+        faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
+    }
+    return changed;
+}
+
+}  // namespace birm3d
