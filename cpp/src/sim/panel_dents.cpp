@@ -32,11 +32,11 @@ double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, 
 
 namespace {
 
-// Calls `use` with each dent that a post makes or would make, and how far the nodes of the panel are from it, at least
-// (m); infinite where that is more than `far`. `about`: of the obstacles. `whole`: as if the panel had no ends.
+// Calls `use` with each dent that a post makes or would make, and its panel's number. `about`: of the obstacles. `whole`:
+// as if the panel had no ends.
 template <class Use>
 void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& mesh,
-                   const std::vector<std::size_t>& about, double far, bool whole, const Use& use) {
+                   const std::vector<std::size_t>& about, bool whole, const Use& use) {
     for (const std::size_t i : about) {
         const Obstacle& obstacle = scene.obstacles[i];
         const Post* post = std::get_if<Post>(&obstacle.shape);
@@ -53,7 +53,7 @@ void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& m
             } else if (!dent.overlaps(panel)) {
                 continue;
             }
-            use(dent.fastest_growth(panel), gap_of_panel(dent, p, mesh, unit.trusses, far, -infinity));
+            use(dent, p);
         }
     }
 }
@@ -67,7 +67,8 @@ double overlap_of_dents(const Scene& scene, const State& state, double deepest) 
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         if (mesh.dent_reach == 0.0) continue;
         scene.map.find(state.units[u].body.position, everything(mesh, state.units[u]).half.norm(), about);
-        for_each_dent(scene, state.units[u], mesh, about, 0.0, false, [&](double, double gap) {
+        for_each_dent(scene, state.units[u], mesh, about, false, [&](const Dent& dent, std::size_t panel) {
+            const double gap = gap_of_panel(dent, panel, mesh, state.units[u].trusses, 0.0, -infinity);
             if (-gap < deepest) most = std::max(most, -gap);
         });
     }
@@ -79,11 +80,12 @@ double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh&
     std::vector<std::size_t> about;
     // A post dents what it comes into.
     scene.map.find(unit.body.position, everything(mesh, unit).half.norm() + longest * fastest, about);
-    for_each_dent(scene, unit, mesh, about, (2.0 + mesh.reach / mesh.dent_reach) * longest * fastest, true,
-                  [&](double growth, double gap) {
-                      if (gap > 0.0)
-                          longest = std::min(longest, (gap + tolerance::untouched_way) / (growth * fastest));
-                  });
+    for_each_dent(scene, unit, mesh, about, true, [&](const Dent& dent, std::size_t panel) {
+        const double grows = dent.fastest_growth(mesh.panel[panel]) * fastest;
+        const double far = grows * longest - tolerance::untouched_way;
+        const double gap = far > 0.0 ? gap_of_panel(dent, panel, mesh, unit.trusses, far, 0.0) : infinity;
+        if (gap > 0.0) longest = std::min(longest, (gap + tolerance::untouched_way) / grows);
+    });
     return longest;
 }
 
