@@ -140,10 +140,10 @@ void Skin::spring_back(std::size_t b) {
         const Vec3 anchor(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
         const Vec3 place = anchor - (truss.length[i] - block.residual[i]) *
                                         (anchor - Vec3(block.x[i], block.y[i], block.z[i])).normalized();
-        const bool free = std::all_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
-            if (b >= mesh_.skin_blocks && obstacle.index == scene_.ground) return true;
-            return nearest(scene_.obstacles[obstacle.index].shape, obstacle.now.to_own(place)).gap >= 0.0;
-        });
+        bool free = true;
+        for (std::size_t k = 0; k < near_.size() && free; ++k)
+            free = !meets(b, k) ||
+                   nearest(scene_.obstacles[near_[k].index].shape, near_[k].now.to_own(place)).gap >= 0.0;
         if (!free) {
             sprung_.slack = true;
             continue;
