@@ -10,16 +10,17 @@ namespace birm3d {
 
 namespace {
 
-// What a turn within the step adds to a point's straight way: its centripetal part.
-double bend(const TrussMesh& mesh, const Twist& motion, double dt) {
-    return tolerance::touching_gap + 0.5 * motion.angular_velocity.squaredNorm() * mesh.reach * dt * dt;
+// How far a point that comes with `approach` can get within the step: a turn adds its centripetal part. However short the
+// step, points that would share an impact are found.
+double way(const TrussMesh& mesh, const Twist& motion, double approach, double dt) {
+    const double bend = 0.5 * motion.angular_velocity.squaredNorm() * mesh.reach * dt * dt;
+    return std::max(tolerance::joint_impact_gap, tolerance::touching_gap + bend + dt * approach);
 }
 
 }  // namespace
 
 double member_margin(const TrussMesh& mesh, const Twist& motion, double dt) {
-    return bend(mesh, motion, dt) +
-           dt * (motion.velocity.norm() + motion.angular_velocity.norm() * mesh.reach);
+    return way(mesh, motion, motion.velocity.norm() + motion.angular_velocity.norm() * mesh.reach, dt);
 }
 
 void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyState& state,
@@ -62,7 +63,7 @@ void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyStat
             const double gap = nearest.gap[i];
             const Twist there = relative(*at[i]);
             const double approach = -normal.dot(there.velocity + there.angular_velocity.cross(anchor));
-            if (gap >= bend(mesh, there, dt) + dt * std::max(0.0, approach)) continue;
+            if (gap >= way(mesh, there, std::max(0.0, approach), dt)) continue;
             RigidContact contact;
             contact.source = ContactSource::member;
             contact.index = truss;

@@ -74,9 +74,13 @@ bool approaches_hard(const RigidContact& contact, std::span<const ContactBody> b
 void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpulses>& before_drift,
                          std::span<const ContactBody> bodies, std::vector<RigidContact>& contacts) {
     if (stage == Stage::before_drift) {
-        for (RigidContact& contact : contacts)
-            contact.target =
-                contact.held ? -contact.gap / dt : std::min(-contact.gap / dt, tolerance::recovery_speed);
+        for (RigidContact& contact : contacts) {
+            contact.target = -contact.gap / dt;
+            if (!contact.held)
+                contact.target =
+                    std::min(contact.target, std::clamp(-contact.gap / tolerance::recovery_time,
+                                                        tolerance::slow_recovery, tolerance::recovery_speed));
+        }
         return;
     }
     std::erase_if(contacts, [&](const RigidContact& contact) {
@@ -90,21 +94,29 @@ void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpuls
 }
 
 // Impacts, Eq. 1: leaves the contacts that take part, none where nothing approaches hard. Points that arrive
-// together by all but a hair share one impact: their order would be chance.
+// together by all but a hair share one impact, or their order would be chance: the later one comes, the faster it may
+// still approach afterwards, up to any speed a hair away. So the outcome is a continuous function of the gaps.
 void set_impact_targets(double restitution, double reach, std::span<const ContactBody> bodies,
                         std::vector<RigidContact>& contacts) {
-    const bool impact = std::any_of(contacts.begin(), contacts.end(), [&](const RigidContact& contact) {
-        const double way = std::max(tolerance::touching_gap, -reach * separation_velocity(contact, bodies));
-        return !contact.held && contact.gap <= way && approaches_hard(contact, bodies);
-    });
+    double fastest = 0.0;
+    for (const RigidContact& contact : contacts) {
+        const double v = separation_velocity(contact, bodies);
+        if (approaches_hard(contact, bodies) && contact.gap <= std::max(tolerance::touching_gap, -reach * v))
+            fastest = std::max(fastest, -v);
+    }
+    // Of its gap, what the coming `reach` leaves.
+    const auto late = [&](const RigidContact& contact) {
+        return std::max(0.0, contact.gap + reach * std::min(0.0, separation_velocity(contact, bodies)));
+    };
     std::erase_if(contacts, [&](const RigidContact& contact) {
-        const double way =
-            std::max(tolerance::joint_impact_gap, -reach * separation_velocity(contact, bodies));
-        return !impact || (!contact.held && contact.gap > way);
+        return fastest == 0.0 || (!contact.held && late(contact) >= tolerance::joint_impact_gap);
     });
     for (RigidContact& contact : contacts) {
         const double v = separation_velocity(contact, bodies);
         contact.target = approaches_hard(contact, bodies) ? -restitution * v : 0.0;
+        if (contact.held) continue;
+        const double by = late(contact);
+        contact.target -= fastest * by / (tolerance::joint_impact_gap - by);
     }
 }
 

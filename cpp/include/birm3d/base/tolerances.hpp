@@ -68,7 +68,12 @@ inline constexpr double full_friction_speed = 0.01;
 // sum. Large: which turn is the last hangs on rounding, and left and right do not mirror each other.
 inline constexpr double friction_settled = 1e-9;
 
-// Rigid contacts: how fast a point found inside a surface is pushed out at the most (m/s).
+// Rigid contacts: a point found inside a surface is pushed out within the step, but no faster than this (m/s), or the
+// thousandth of a millimetre that a turn has left would be a jump after a short step.
+inline constexpr double slow_recovery = 0.02;
+
+// A deep one: within this time (s), and no faster than this (m/s).
+inline constexpr double recovery_time = 1e-3;
 inline constexpr double recovery_speed = 0.5;
 
 // Points nearer than this to a rigid surface count as touching it (m).
