@@ -86,8 +86,10 @@ BIRM3D_IN_LANE_LOOP Rise rise_at(const Numbers& d, double a) {
             round ? -d.stretch * a / root : (a < 0.0 ? steepest : -steepest), root};
 }
 
-BIRM3D_LANE_LOOP void dent_of_block(const Numbers& d, const Lanes& x, const Lanes& y, const Lanes& z,
-                                    DentLanes& out) {
+// `gap_only`: `all` is not used.
+template <bool gap_only>
+BIRM3D_IN_LANE_LOOP void dent_in_loop(const Numbers& d, const Lanes& x, const Lanes& y, const Lanes& z,
+                                      Lanes& gap, [[maybe_unused]] DentLanes* all) {
     const double ex = d.ex, ey = d.ey, ez = d.ez, wx = d.wx, wy = d.wy, wz = d.wz, lx = d.lx, ly = d.ly,
                  lz = d.lz, ox = d.ox, oy = d.oy, oz = d.oz;
     BIRM3D_INDEPENDENT
@@ -108,8 +110,10 @@ BIRM3D_LANE_LOOP void dent_of_block(const Numbers& d, const Lanes& x, const Lane
         const Rise rise = rise_at(d, a);
         const double at = d.tilt * up + rise.rise;
         const double beside = w > a ? w - a : a - w;
-        out.gap[i] = e - (at - s * (beside + (l - up)));
+        gap[i] = e - (at - s * (beside + (l - up)));
+        if constexpr (gap_only) continue;
 
+        DentLanes& out = *all;
         // As the post goes deeper, the slope grows.
         const double less = slope.grows * (beside + (l - up));
         const double rises = above ? -s : d.tilt, leans = above ? 0.0 : d.tilt;
@@ -143,6 +147,16 @@ BIRM3D_LANE_LOOP void dent_of_block(const Numbers& d, const Lanes& x, const Lane
         out.ty[i] = per * (oz * nx - ox * nz + qy);
         out.tz[i] = per * (ox * ny - oy * nx + qz);
     }
+}
+
+BIRM3D_LANE_LOOP void dent_of_block(const Numbers& d, const Lanes& x, const Lanes& y, const Lanes& z,
+                                    DentLanes& out) {
+    dent_in_loop<false>(d, x, y, z, out.gap, &out);
+}
+
+BIRM3D_LANE_LOOP void gap_of_block(const Numbers& d, const Lanes& x, const Lanes& y, const Lanes& z,
+                                   Lanes& gap) {
+    dent_in_loop<true>(d, x, y, z, gap, nullptr);
 }
 
 }  // namespace
@@ -189,6 +203,20 @@ bool stands_across(const Placement& post, const Panel& panel, bool dents) {
     return sine < (dents ? overturned : most_tilted);
 }
 
+namespace {
+
+// Of a skin `beside` a post that is at most this deep: greatest of p - slope(p) beside over depths p. Within reach the
+// deepest post draws it in most; beyond, one of some depth, or one so deep that the slope grows no more.
+double most_drawn_in(double deepest, double beside, double reach) {
+    const double by_deepest = deepest - slope_at(deepest, 1.0 / reach).slope * beside;
+    if (beside <= reach) return by_deepest;
+    const double further = std::sqrt(beside * beside - reach * reach);
+    return deepest * further < reach * reach * least_slope ? by_deepest
+                                                           : std::max(by_deepest, -least_slope * further);
+}
+
+}  // namespace
+
 double most_inside(const Dent& d, const Box& box) {
     const auto range = [&](const Vec3& way) {
         const double middle = (box.center - d.foot).dot(way), half = box.half.dot(way.cwiseAbs());
@@ -200,12 +228,12 @@ double most_inside(const Dent& d, const Box& box) {
     const double deepest =
         d.stretch * d.radius + std::max(d.tilt * std::min(l0, d.top), d.tilt * std::min(l1, d.top));
     const double beside = std::max({w0 - d.radius, -d.radius - w1, 0.0}) + std::max(l0 - d.top, 0.0);
-    // Within reach the dent is the deeper the deeper the post; beyond, it comes through the surface only of a post that is
-    // so deep that the slope grows no more.
     const double depth = deepest - d.surface;
-    const double reaches = beside < d.reach ? slope_at(depth, 1.0 / d.reach).slope * beside
-                                            : std::min(std::max(depth, 0.0), steepest * beside);
-    return deepest - reaches - outermost;
+    return d.surface + most_drawn_in(depth, beside, d.reach) - outermost;
+}
+
+void gap_of(const Dent& dent, const TrussBlockState& nodes, Lanes& gap) {
+    gap_of_block(numbers_of(dent), nodes.x, nodes.y, nodes.z, gap);
 }
 
 void dent_of(const Dent& dent, const TrussBlockState& nodes, DentLanes& out) {

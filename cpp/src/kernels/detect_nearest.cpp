@@ -1,3 +1,9 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
 #include "kernels/detect_lanes.hpp"
 
 namespace birm3d {
@@ -49,22 +55,79 @@ BIRM3D_LANE_LOOP void begin_prism(EdgeLanes& best, Lanes& side) {
     }
 }
 
-BIRM3D_LANE_LOOP void ask_edges(const PrismEdge* edges, std::size_t count, const OwnLanes& own, Lanes& side,
-                                EdgeLanes& best) {
-    for (std::size_t e = 0; e < count; ++e) {
-        const PrismEdge edge = edges[e];
-        BIRM3D_INDEPENDENT
-        for (std::size_t i = 0; i < lanes; ++i) {
-            const NearestEdge b =
-                nearer_edge(edge, own.x[i], own.z[i],
-                            {best.square[i], best.ahead[i], best.past[i], best.tx[i], best.tz[i]});
-            best.square[i] = b.square;
-            best.ahead[i] = b.ahead;
-            best.past[i] = b.past;
-            best.tx[i] = b.tx;
-            best.tz[i] = b.tz;
-            side[i] = side_after_edge(edge, own.x[i], own.z[i], side[i]);
-        }
+BIRM3D_LANE_LOOP void ask_edge(const PrismEdge& edge, const OwnLanes& own, EdgeLanes& best) {
+    const PrismEdge e = edge;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const NearestEdge b = nearer_edge(
+            e, own.x[i], own.z[i], {best.square[i], best.ahead[i], best.past[i], best.tx[i], best.tz[i]});
+        best.square[i] = b.square;
+        best.ahead[i] = b.ahead;
+        best.past[i] = b.past;
+        best.tx[i] = b.tx;
+        best.tz[i] = b.tz;
+    }
+}
+
+BIRM3D_LANE_LOOP void cross_edge(const PrismEdge& edge, const OwnLanes& own, Lanes& side) {
+    const PrismEdge e = edge;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i)
+        side[i] = side_after_edge(e, own.x[i], own.z[i], side[i]);
+}
+
+// Around the points of a block, in the plane of the profile.
+struct Extent {
+    double x_low, x_high, z_low, z_high;
+};
+
+BIRM3D_LANE_LOOP void find_extent(const OwnLanes& own, Extent& out) {
+    double x0 = own.x[0], x1 = own.x[0], z0 = own.z[0], z1 = own.z[0];
+    for (std::size_t i = 1; i < lanes; ++i) {
+        x0 = own.x[i] < x0 ? own.x[i] : x0;
+        x1 = own.x[i] > x1 ? own.x[i] : x1;
+        z0 = own.z[i] < z0 ? own.z[i] : z0;
+        z1 = own.z[i] > z1 ? own.z[i] : z1;
+    }
+    out = {x0, x1, z0, z1};
+}
+
+// Squares of what the distances of all points of the block from an edge lie between (m^2).
+struct Range {
+    double least, most;
+};
+
+Range distances(const PrismEdge& edge, const Extent& block) {
+    const double x = 0.5 * (block.x_low + block.x_high) - edge.x,
+                 z = 0.5 * (block.z_low + block.z_high) - edge.z;
+    const double half_x = 0.5 * (block.x_high - block.x_low), half_z = 0.5 * (block.z_high - block.z_low);
+    const double ahead = std::abs(x * edge.tz - z * edge.tx), along = x * edge.tx + z * edge.tz;
+    const double half_ahead = half_x * std::abs(edge.tz) + half_z * std::abs(edge.tx);
+    const double half_along = half_x * std::abs(edge.tx) + half_z * std::abs(edge.tz);
+    const auto past = [&](double half) {
+        return std::max({0.0, edge.low - along - half, along - half - edge.high});
+    };
+    const double nearest = std::max(0.0, ahead - half_ahead), furthest = ahead + half_ahead;
+    const double least = past(half_along), most = past(-half_along);
+    return {nearest * nearest + least * least, furthest * furthest + most * most};
+}
+
+// Asks those edges that can be the nearest to some point of the block: the result is that of all. `most`: square of a
+// distance that no point is further from the edges asked before.
+void ask_edges(const std::vector<PrismEdge>& edges, const OwnLanes& own, const Extent& block, double& most,
+               Lanes& side, EdgeLanes& best) {
+    constexpr double rounding = 1.0 + 1e-9;
+    std::array<double, 16> least{};  // of the first edges; the others are asked anyway
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const Range range = distances(edges[e], block);
+        most = std::min(most, rounding * range.most);
+        if (e < least.size()) least[e] = range.least;
+    }
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const PrismEdge& edge = edges[e];
+        if (e >= least.size() || least[e] <= most) ask_edge(edge, own, best);
+        const bool beside = block.z_low < edge.z_high && block.z_high >= edge.z_low;
+        if (beside) cross_edge(edge, own, side);
     }
 }
 
@@ -108,9 +171,12 @@ struct Block {
         alignas(64) Lanes side;
         to_own(turn, x, y, z, own);
         begin_prism(faces, side);
-        ask_edges(prism.edges().data(), prism.edges().size(), own, side, faces);
+        Extent block;
+        find_extent(own, block);
+        double most = std::numeric_limits<double>::infinity();
+        ask_edges(prism.edges(), own, block, most, side, faces);
         outline = faces;
-        ask_edges(prism.covered_edges().data(), prism.covered_edges().size(), own, side, outline);
+        ask_edges(prism.covered_edges(), own, block, most, side, outline);
         finish_prism(turn, prism.y_low(), prism.y_high(), prism.low_end_is_surface(),
                      prism.high_end_is_surface(), own, side, faces, outline, out);
     }

@@ -16,17 +16,28 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, const TrussState& trusses,
                     double far, double enough) {
-    double least = infinity;
-    alignas(64) DentLanes found;
-    for (std::size_t b = 0; b < mesh.blocks && least > enough; ++b) {
-        const TrussBlockState& block = trusses.block[b];
-        if ((mesh.panels_of[b] >> panel & 1U) == 0 ||
-            -most_inside(dent, box_of(block)) > std::min(far, least))
-            continue;
-        dent_of(dent, block, found);
-        for (std::size_t i = 0; i < lanes; ++i)
-            if (mesh.block[b].panel[i] == static_cast<double>(panel)) least = std::min(least, found.gap[i]);
+    // No node of the block is nearer than this. The block that may be nearest comes first: few others are left to ask.
+    const auto no_less = [&](std::size_t b) {
+        return (mesh.panels_of[b] >> panel & 1U) != 0 ? -most_inside(dent, box_of(trusses.block[b]))
+                                                      : infinity;
+    };
+    std::size_t first = 0;
+    double nearest = infinity;
+    for (std::size_t b = 0; b < mesh.blocks; ++b) {
+        const double bound = no_less(b);
+        if (bound < nearest) nearest = bound, first = b;
     }
+    double least = infinity;
+    alignas(64) Lanes gap;
+    const auto ask = [&](std::size_t b) {
+        gap_of(dent, trusses.block[b], gap);
+        for (std::size_t i = 0; i < lanes; ++i)
+            if (mesh.block[b].panel[i] == static_cast<double>(panel)) least = std::min(least, gap[i]);
+    };
+    if (nearest > far) return least;
+    ask(first);
+    for (std::size_t b = 0; b < mesh.blocks && least > enough; ++b)
+        if (b != first && no_less(b) <= std::min(far, least)) ask(b);
     return least;
 }
 

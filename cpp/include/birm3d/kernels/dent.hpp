@@ -62,7 +62,8 @@ struct alignas(64) DentLanes {
     Lanes tx, ty, tz;  // torque on the body for each unit of normal force, about its mass centre (m)
 };
 
-// For a block of nodes.
+// For a block of nodes; the same gaps.
+void gap_of(const Dent& dent, const TrussBlockState& nodes, Lanes& gap);
 void dent_of(const Dent& dent, const TrussBlockState& nodes, DentLanes& out);
 
 }  // namespace birm3d
