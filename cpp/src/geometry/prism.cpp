@@ -202,14 +202,6 @@ Prism Prism::with_covered_ends(bool low_end, bool high_end) const {
 }
 
 Nearest Prism::nearest(const Vec3& p) const {
-    return nearest_to(p, false);
-}
-
-double Prism::gap_of_solid(const Vec3& p) const {
-    return nearest_to(p, true).gap;
-}
-
-Nearest Prism::nearest_to(const Vec3& p, bool covered_too) const {
     NearestEdge face;
     double side = 1.0;
     for (const PrismEdge& edge : outline_->edges) {
@@ -222,14 +214,25 @@ Nearest Prism::nearest_to(const Vec3& p, bool covered_too) const {
         side = side_after_edge(edge, p.x(), p.z(), side);
     }
     const double past_end = p.y() - std::clamp(p.y(), y_low_, y_high_);
-    FromSurface v = from_edge(covered_too ? outline : face, past_end);
-    if (low_end_ || (covered_too && std::isfinite(y_low_)))
-        v = nearer_end(outline, side, p.y() - y_low_, -1.0, v);
-    if (high_end_ || (covered_too && std::isfinite(y_high_)))
-        v = nearer_end(outline, side, p.y() - y_high_, 1.0, v);
+    FromSurface v = from_edge(face, past_end);
+    if (low_end_) v = nearer_end(outline, side, p.y() - y_low_, -1.0, v);
+    if (high_end_) v = nearer_end(outline, side, p.y() - y_high_, 1.0, v);
     Nearest out;
     signed_distance(v, past_end == 0.0 ? side : 1.0, out.gap, out.normal.x(), out.normal.y(), out.normal.z());
     return out;
+}
+
+double Prism::no_nearer(const Box& box) const {
+    const Vec3 low = box.center - box.half, high = box.center + box.half;
+    const Rectangle all{low.x(), high.x(), low.z(), high.z()};
+    double least = infinity, side = 1.0;
+    for (const auto* edges : {&outline_->edges, &outline_->covered_edges}) {
+        for (const PrismEdge& edge : *edges) {
+            least = std::min(least, distances(edge, all).least);
+            side = side_after_edge(edge, box.center.x(), box.center.z(), side);
+        }
+    }
+    return side > 0.0 ? std::sqrt(least) : 0.0;
 }
 
 Box Prism::bounds() const {

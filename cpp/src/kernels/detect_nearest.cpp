@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -76,12 +75,7 @@ BIRM3D_LANE_LOOP void cross_edge(const PrismEdge& edge, const OwnLanes& own, Lan
         side[i] = side_after_edge(e, own.x[i], own.z[i], side[i]);
 }
 
-// Around the points of a block, in the plane of the profile.
-struct Extent {
-    double x_low, x_high, z_low, z_high;
-};
-
-BIRM3D_LANE_LOOP void find_extent(const OwnLanes& own, Extent& out) {
+BIRM3D_LANE_LOOP void find_rectangle(const OwnLanes& own, Rectangle& out) {
     double x0 = own.x[0], x1 = own.x[0], z0 = own.z[0], z1 = own.z[0];
     for (std::size_t i = 1; i < lanes; ++i) {
         x0 = own.x[i] < x0 ? own.x[i] : x0;
@@ -92,34 +86,14 @@ BIRM3D_LANE_LOOP void find_extent(const OwnLanes& own, Extent& out) {
     out = {x0, x1, z0, z1};
 }
 
-// Squares of what the distances of all points of the block from an edge lie between (m^2).
-struct Range {
-    double least, most;
-};
-
-Range distances(const PrismEdge& edge, const Extent& block) {
-    const double x = 0.5 * (block.x_low + block.x_high) - edge.x,
-                 z = 0.5 * (block.z_low + block.z_high) - edge.z;
-    const double half_x = 0.5 * (block.x_high - block.x_low), half_z = 0.5 * (block.z_high - block.z_low);
-    const double ahead = std::abs(x * edge.tz - z * edge.tx), along = x * edge.tx + z * edge.tz;
-    const double half_ahead = half_x * std::abs(edge.tz) + half_z * std::abs(edge.tx);
-    const double half_along = half_x * std::abs(edge.tx) + half_z * std::abs(edge.tz);
-    const auto past = [&](double half) {
-        return std::max({0.0, edge.low - along - half, along - half - edge.high});
-    };
-    const double nearest = std::max(0.0, ahead - half_ahead), furthest = ahead + half_ahead;
-    const double least = past(half_along), most = past(-half_along);
-    return {nearest * nearest + least * least, furthest * furthest + most * most};
-}
-
 // Asks those edges that can be the nearest to some point of the block: the result is that of all. `most`: square of a
 // distance that no point is further from the edges asked before.
-void ask_edges(const std::vector<PrismEdge>& edges, const OwnLanes& own, const Extent& block, double& most,
+void ask_edges(const std::vector<PrismEdge>& edges, const OwnLanes& own, const Rectangle& block, double& most,
                Lanes& side, EdgeLanes& best) {
     constexpr double rounding = 1.0 + 1e-9;
     std::array<double, 16> least{};  // of the first edges; the others are asked anyway
     for (std::size_t e = 0; e < edges.size(); ++e) {
-        const Range range = distances(edges[e], block);
+        const SquareRange range = distances(edges[e], block);
         most = std::min(most, rounding * range.most);
         if (e < least.size()) least[e] = range.least;
     }
@@ -171,8 +145,8 @@ struct Block {
         alignas(64) Lanes side;
         to_own(turn, x, y, z, own);
         begin_prism(faces, side);
-        Extent block;
-        find_extent(own, block);
+        Rectangle block;
+        find_rectangle(own, block);
         double most = std::numeric_limits<double>::infinity();
         ask_edges(prism.edges(), own, block, most, side, faces);
         outline = faces;

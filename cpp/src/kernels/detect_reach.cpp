@@ -33,7 +33,7 @@ struct Reach {
                !too_far(nearest(post, box.center).gap - radius);
     }
     bool operator()(const Prism& prism) const {
-        return within(prism.bounds(), [&] { return prism.gap_of_solid(box.center); });
+        return !too_far(distance(prism.bounds(), box)) && !too_far(prism.no_nearer(box));
     }
     bool operator()(const TriangleMesh& mesh) const {
         // Behind an open mesh a point is inside wherever its nearest point is not on the rim: no bounds.

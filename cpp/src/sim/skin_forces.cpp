@@ -100,7 +100,6 @@ void Skin::press_blocks() {
     for (std::size_t g = 0; g < before_.groups.size(); ++g)
         if (may_change(before_.groups[g])) press_group(g);
     if (!treads_.empty()) rub_treads();
-    trial_.state.statistics.node_evaluations += trial_.active[u_].blocks().size() * lanes;
 }
 
 // Does any of the blocks push, hang slack, or come within reach of an obstacle or of a dent?
@@ -178,20 +177,25 @@ bool Skin::press(std::size_t b) {
     look_about(b);
     const bool drawn = find_dents_of_block(b);
     if (seen_.empty() && !sprung_back_) return false;
-    trial_.active[u_].add(b);
-    trial_.stale[u_].add(b);
-    if (seen_.empty()) {
-        now_.trusses.block[b] = sprung_;
-        return true;
-    }
+    trial_.state.statistics.node_evaluations += lanes;
+    std::optional<HalfSpace> plane;
     if (seen_.size() == 1 && !drawn) {
         const NearObstacle& only = near_[seen_[0]];
-        if (const auto plane = flat_part(scene_.obstacles[only.index].shape, only.now, box_)) {
-            press_plane(sums_of_plane(seen_[0], *plane), b);
-            return true;
-        }
+        plane = flat_part(scene_.obstacles[only.index].shape, only.now, box_);
     }
-    press_shapes(b);
+    if (!plane && !seen_.empty()) {
+        look(b);
+        const bool clear = *std::min_element(faces_.gap.begin(), faces_.gap.end()) >= 0.0;
+        if (clear && !from(b).touching && !from(b).slack && !sprung_back_) return false;
+    }
+    trial_.active[u_].add(b);
+    trial_.stale[u_].add(b);
+    if (seen_.empty())
+        now_.trusses.block[b] = sprung_;
+    else if (plane)
+        press_plane(sums_of_plane(seen_[0], *plane), b);
+    else
+        press_shapes(b);
     return true;
 }
 
@@ -254,7 +258,6 @@ void Skin::press_plane(PlaneSums& plane, std::size_t b) {
 
 void Skin::press_shapes(std::size_t b) {
     TrussBlockState& next = now_.trusses.block[b];
-    look(b);
     const bool alone = seen_.size() == 1;
     CrushSums& to = alone ? obstacles_[seen_[0]].sums : shared_;
     const CrushSums before = to;

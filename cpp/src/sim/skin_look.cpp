@@ -48,7 +48,11 @@ void Skin::look_at(std::size_t b, const TrussBlockState& block) {
         }
     }
     faces_.bx = contact_.nx, faces_.by = contact_.ny, faces_.bz = contact_.nz;
-    if (!block.touching) return;
+    // What pushes on no more than dents had their direction then, too.
+    bool pushes = false;
+    for (std::size_t i = 0; i < lanes; ++i)
+        pushes |= faces_.gap[i] < (block.force[i] > 0.0 ? infinity : 0.0);
+    if (!block.touching || !pushes) return;
     // Of all surfaces at that instant: segments of a wall take over from each other.
     alignas(64) Lanes gap_before;
     gap_before.fill(infinity);

@@ -56,7 +56,26 @@ TEST("nothing is pushed out through the ground, nor through a covered end") {
     check_nearest(wall.with_covered_ends(false, true), {0.1, -1.999, 0.5}, -0.001, -Vec3::UnitY());
     // The corners of an end that stands on the ground belong to the end.
     check_nearest(wall, {0.2, 2.04, -0.03}, 0.05, {0.0, 0.8, -0.6});
-    CHECK_CLOSE(segment.gap_of_solid({0.2, 0.0, -0.3}), 0.3, 1e-15, "the solid has a bottom");
+    CHECK_CLOSE(segment.no_nearer({{0.2, 0.0, -0.3}, Vec3::Zero()}), 0.3, 1e-15, "the solid has a bottom");
+}
+
+TEST("no point of a box is nearer than its bound, and of a small one it is hardly less") {
+    laboratory::Random random(9);
+    for (const Prism& prism : {Prism::symmetric(jersey_half, infinity, 1.0), Prism(notched, -1.0, 1.0, {})}) {
+        double slack = 0.0;
+        for (int i = 0; i < 4000; ++i) {
+            const Box box{random.point({-1.5, -0.8, -0.5}, {2.0, 0.8, 2.0}),
+                          0.2 * random.point({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0})};
+            const double bound = prism.no_nearer(box);
+            for (int j = 0; j < 10; ++j) {
+                const Vec3 p = box.center + box.half.cwiseProduct(random.point({-1, -1, -1}, {1, 1, 1}));
+                CHECK(bound == 0.0 || prism.nearest(p).gap >= bound - 1e-12);  // rounding
+            }
+            const double gap = prism.nearest(box.center).gap;
+            if (gap > 0.0 && box.center.z() > 0.0) slack = std::max(slack, gap - prism.no_nearer({box.center, Vec3::Constant(1e-6)}));
+        }
+        CHECK(slack < 2e-6);
+    }
 }
 
 TEST("a wall cut into segments is the same wall") {

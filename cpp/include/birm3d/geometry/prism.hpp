@@ -44,8 +44,9 @@ class Prism {
     // Of a point in own axes.
     Nearest nearest(const Vec3& p) const;
 
-    // Signed distance from the solid, whose faces all count, covered or not (m).
-    double gap_of_solid(const Vec3& p) const;
+    // No point of the box is nearer than this to the solid, whose faces all count, covered or not (m); 0 where some may be
+    // inside. Of an endless prism: the part that its ends add is left out.
+    double no_nearer(const Box& box) const;
 
     Box bounds() const;        // as of a Shape
     double thickness() const;  // as of a Shape
@@ -66,7 +67,6 @@ class Prism {
 
     Prism(std::shared_ptr<const Outline> outline, double y_low, double y_high, bool cover_low,
           bool cover_high);
-    Nearest nearest_to(const Vec3& p, bool covered_too) const;
     static std::shared_ptr<const Outline> outline_of(const Profile& profile,
                                                      const std::vector<std::size_t>& covered);
 

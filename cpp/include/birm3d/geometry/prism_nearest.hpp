@@ -5,6 +5,7 @@
 // are not covered; the number of edges that a line from the point along +x crosses gives the sign.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -57,6 +58,30 @@ BIRM3D_IN_LANE_LOOP double side_after_edge(const PrismEdge& edge, double x, doub
     const double below_top = z < edge.z_high ? -side : side;
     const double beside = z >= edge.z_low ? below_top : side;
     return x < crossing ? beside : side;
+}
+
+// Around some points, in the plane of the profile (m).
+struct Rectangle {
+    double x_low, x_high, z_low, z_high;
+};
+
+// Squares that the squares of the distances of all points of the rectangle from an edge lie between (m^2).
+struct SquareRange {
+    double least, most;
+};
+
+inline SquareRange distances(const PrismEdge& edge, const Rectangle& all) {
+    const double x = 0.5 * (all.x_low + all.x_high) - edge.x, z = 0.5 * (all.z_low + all.z_high) - edge.z;
+    const double half_x = 0.5 * (all.x_high - all.x_low), half_z = 0.5 * (all.z_high - all.z_low);
+    const double ahead = std::abs(x * edge.tz - z * edge.tx), along = x * edge.tx + z * edge.tz;
+    const double half_ahead = half_x * std::abs(edge.tz) + half_z * std::abs(edge.tx);
+    const double half_along = half_x * std::abs(edge.tx) + half_z * std::abs(edge.tz);
+    const auto past = [&](double half) {
+        return std::max({0.0, edge.low - along - half, along - half - edge.high});
+    };
+    const double nearest = std::max(0.0, ahead - half_ahead), furthest = ahead + half_ahead;
+    const double least = past(half_along), most = past(-half_along);
+    return {nearest * nearest + least * least, furthest * furthest + most * most};
 }
 
 // Vector from the nearest point of the surface, its square, and the normal of the face it lies on.
