@@ -75,15 +75,34 @@ BIRM3D_LANE_LOOP void cross_edge(const PrismEdge& edge, const OwnLanes& own, Lan
         side[i] = side_after_edge(e, own.x[i], own.z[i], side[i]);
 }
 
-BIRM3D_LANE_LOOP void find_rectangle(const OwnLanes& own, Rectangle& out) {
-    double x0 = own.x[0], x1 = own.x[0], z0 = own.z[0], z1 = own.z[0];
-    for (std::size_t i = 1; i < lanes; ++i) {
-        x0 = own.x[i] < x0 ? own.x[i] : x0;
-        x1 = own.x[i] > x1 ? own.x[i] : x1;
-        z0 = own.z[i] < z0 ? own.z[i] : z0;
-        z1 = own.z[i] > z1 ? own.z[i] : z1;
+struct Interval {
+    double low, high;
+};
+
+BIRM3D_LANE_LOOP void find_interval(const Lanes& values, Interval& out) {
+    constexpr std::size_t row = 8;
+    double low[row], high[row];
+    for (std::size_t j = 0; j < row; ++j)
+        low[j] = high[j] = values[j];
+    for (std::size_t i = row; i < lanes; i += row) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t j = 0; j < row; ++j) {
+            const double v = values[i + j];
+            low[j] = v < low[j] ? v : low[j];
+            high[j] = v > high[j] ? v : high[j];
+        }
     }
-    out = {x0, x1, z0, z1};
+    for (std::size_t j = 1; j < row; ++j) {
+        low[0] = low[j] < low[0] ? low[j] : low[0];
+        high[0] = high[j] > high[0] ? high[j] : high[0];
+    }
+    out = {low[0], high[0]};
+}
+
+void cross_edges(const std::vector<PrismEdge>& edges, const OwnLanes& own, const Rectangle& block,
+                 Lanes& side) {
+    for (const PrismEdge& edge : edges)
+        if (block.z_low < edge.z_high && block.z_high >= edge.z_low) cross_edge(edge, own, side);
 }
 
 // Asks those edges that can be the nearest to some point of the block: the result is that of all. `most`: square of a
@@ -97,12 +116,9 @@ void ask_edges(const std::vector<PrismEdge>& edges, const OwnLanes& own, const R
         most = std::min(most, rounding * range.most);
         if (e < least.size()) least[e] = range.least;
     }
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-        const PrismEdge& edge = edges[e];
-        if (e >= least.size() || least[e] <= most) ask_edge(edge, own, best);
-        const bool beside = block.z_low < edge.z_high && block.z_high >= edge.z_low;
-        if (beside) cross_edge(edge, own, side);
-    }
+    for (std::size_t e = 0; e < edges.size(); ++e)
+        if (e >= least.size() || least[e] <= most) ask_edge(edges[e], own, best);
+    cross_edges(edges, own, block, side);
 }
 
 BIRM3D_LANE_LOOP void finish_prism(const Turn& t, double y_low, double y_high, bool low_end, bool high_end,
@@ -141,18 +157,31 @@ struct Block {
     void operator()(const Prism& prism) const {
         const Turn turn = turn_of(now);
         OwnLanes own;
-        EdgeLanes faces, outline;
+        EdgeLanes faces;
         alignas(64) Lanes side;
         to_own(turn, x, y, z, own);
         begin_prism(faces, side);
-        Rectangle block;
-        find_rectangle(own, block);
+        Interval along_x, along_y, along_z;
+        find_interval(own.x, along_x);
+        find_interval(own.y, along_y);
+        find_interval(own.z, along_z);
+        const Rectangle block{along_x.low, along_x.high, along_z.low, along_z.high};
         double most = std::numeric_limits<double>::infinity();
         ask_edges(prism.edges(), own, block, most, side, faces);
-        outline = faces;
-        ask_edges(prism.covered_edges(), own, block, most, side, outline);
-        finish_prism(turn, prism.y_low(), prism.y_high(), prism.low_end_is_surface(),
-                     prism.high_end_is_surface(), own, side, faces, outline, out);
+        // An end that is further away than a face is nearest to no point.
+        const auto is_far = [most](double distance) { return distance > 0.0 && distance * distance > most; };
+        const bool low_end = prism.low_end_is_surface() && !is_far(along_y.low - prism.y_low()),
+                   high_end = prism.high_end_is_surface() && !is_far(prism.y_high() - along_y.high);
+        EdgeLanes with_covered;
+        EdgeLanes* outline = &faces;
+        if (low_end || high_end) {
+            with_covered = faces;
+            outline = &with_covered;
+            ask_edges(prism.covered_edges(), own, block, most, side, *outline);
+        } else {
+            cross_edges(prism.covered_edges(), own, block, side);
+        }
+        finish_prism(turn, prism.y_low(), prism.y_high(), low_end, high_end, own, side, faces, *outline, out);
     }
     void operator()(const TriangleMesh& mesh) const { nearest_of_mesh(mesh, now, before, x, y, z, out); }
 };
