@@ -1,8 +1,8 @@
 #include "birm3d/kernels/detect.hpp"
 
-namespace birm3d {
+#include "kernels/detect_lanes.hpp"
 
-namespace {
+namespace birm3d {
 
 BIRM3D_LANE_LOOP void extent(const Lanes& values, double& low, double& high) {
     alignas(64) Lanes least = values, most = values;
@@ -16,8 +16,6 @@ BIRM3D_LANE_LOOP void extent(const Lanes& values, double& low, double& high) {
     low = least[0];
     high = most[0];
 }
-
-}  // namespace
 
 Box box_around(const Lanes& x, const Lanes& y, const Lanes& z) {
     Vec3 low, high;

@@ -24,6 +24,9 @@ struct alignas(64) OwnLanes {
 
 void to_own(const Turn& turn, const Lanes& x, const Lanes& y, const Lanes& z, OwnLanes& own);
 
+// Of some values.
+void extent(const Lanes& values, double& low, double& high);
+
 // nearest_of, for a mesh.
 void nearest_of_mesh(const TriangleMesh& mesh, const Placement& now, const Placement& before, const Lanes& x,
                      const Lanes& y, const Lanes& z, NearestLanes& out);

@@ -75,30 +75,6 @@ BIRM3D_LANE_LOOP void cross_edge(const PrismEdge& edge, const OwnLanes& own, Lan
         side[i] = side_after_edge(e, own.x[i], own.z[i], side[i]);
 }
 
-struct Interval {
-    double low, high;
-};
-
-BIRM3D_LANE_LOOP void find_interval(const Lanes& values, Interval& out) {
-    constexpr std::size_t row = 8;
-    double low[row], high[row];
-    for (std::size_t j = 0; j < row; ++j)
-        low[j] = high[j] = values[j];
-    for (std::size_t i = row; i < lanes; i += row) {
-        BIRM3D_INDEPENDENT
-        for (std::size_t j = 0; j < row; ++j) {
-            const double v = values[i + j];
-            low[j] = v < low[j] ? v : low[j];
-            high[j] = v > high[j] ? v : high[j];
-        }
-    }
-    for (std::size_t j = 1; j < row; ++j) {
-        low[0] = low[j] < low[0] ? low[j] : low[0];
-        high[0] = high[j] > high[0] ? high[j] : high[0];
-    }
-    out = {low[0], high[0]};
-}
-
 void cross_edges(const std::vector<PrismEdge>& edges, const OwnLanes& own, const Rectangle& block,
                  Lanes& side) {
     for (const PrismEdge& edge : edges)
@@ -161,17 +137,17 @@ struct Block {
         alignas(64) Lanes side;
         to_own(turn, x, y, z, own);
         begin_prism(faces, side);
-        Interval along_x, along_y, along_z;
-        find_interval(own.x, along_x);
-        find_interval(own.y, along_y);
-        find_interval(own.z, along_z);
-        const Rectangle block{along_x.low, along_x.high, along_z.low, along_z.high};
+        Rectangle block;
+        double y_low, y_high;
+        extent(own.x, block.x_low, block.x_high);
+        extent(own.y, y_low, y_high);
+        extent(own.z, block.z_low, block.z_high);
         double most = std::numeric_limits<double>::infinity();
         ask_edges(prism.edges(), own, block, most, side, faces);
         // An end that is further away than a face is nearest to no point.
         const auto is_far = [most](double distance) { return distance > 0.0 && distance * distance > most; };
-        const bool low_end = prism.low_end_is_surface() && !is_far(along_y.low - prism.y_low()),
-                   high_end = prism.high_end_is_surface() && !is_far(prism.y_high() - along_y.high);
+        const bool low_end = prism.low_end_is_surface() && !is_far(y_low - prism.y_low()),
+                   high_end = prism.high_end_is_surface() && !is_far(prism.y_high() - y_high);
         EdgeLanes with_covered;
         EdgeLanes* outline = &faces;
         if (low_end || high_end) {

@@ -1,6 +1,7 @@
 #include "birm3d/kernels/friction_tread.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace birm3d {
@@ -47,9 +48,26 @@ double free_turning(double full_speed, std::span<const TreadContact> wheel) {
             sum += node.pressure * share_of_full(node, q, full_speed).dot(node.turning);
         return sum;
     };
-    // Halving finds the corners too that slow sliding makes; it ends where the numbers do.
-    for (double middle = 0.5 * (low + high); low < middle && middle < high; middle = 0.5 * (low + high))
-        (torque(middle) < 0.0 ? low : high) = middle;
+    // The Illinois method (Dowell and Jarratt, BIT 11, 1971, p. 168). Every third round halves: that finds the corners too
+    // which slow sliding makes.
+    constexpr double as_good = 1e-14;
+    double below = torque(low), above = torque(high);
+    int side = 0;  // on which the last place lay
+    for (int round = 1; high - low > as_good * (std::abs(low) + std::abs(high)); ++round) {
+        const double middle = 0.5 * (low + high), secant = low - below * (high - low) / (above - below);
+        const double q = round % 3 != 0 && low < secant && secant < high ? secant : middle;
+        if (!(low < q && q < high)) break;
+        const double there = torque(q);
+        if (there < 0.0) {
+            low = q, below = there;
+            if (side < 0) above *= 0.5;
+            side = -1;
+        } else {
+            high = q, above = there;
+            if (side > 0) below *= 0.5;
+            side = 1;
+        }
+    }
     return 0.5 * (low + high);
 }
 

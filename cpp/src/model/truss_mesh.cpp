@@ -1,9 +1,11 @@
 #include "birm3d/model/truss_mesh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
+#include <span>
 #include <string>
+#include <tuple>
 
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/tolerances.hpp"
@@ -47,42 +49,58 @@ void require_valid(const TrussInput& input, std::size_t wheels) {
     }
 }
 
-// Interleaved bits of the three coordinates: near in space, near in order.
-std::uint64_t morton_code(const Vec3& p, const Vec3& low, double inverse_size) {
-    std::uint64_t code = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double unit = std::clamp((p[axis] - low[axis]) * inverse_size, 0.0, 1.0);
-        const auto cell = static_cast<std::uint64_t>(unit * 2097151.0);  // 21 bits
-        for (int bit = 0; bit < 21; ++bit)
-            code |= ((cell >> bit) & 1U) << (3 * bit + axis);
-    }
-    return code;
-}
-
 Box box_around(const std::vector<Vec3>& points) {
     return Box::around(points.size(), [&](std::size_t i) { return points[i]; });
 }
 
-// Of those points that `chosen` names.
-std::vector<std::size_t> spatial_order(const std::vector<Vec3>& all, const std::vector<std::size_t>& chosen) {
-    std::vector<Vec3> points;
-    for (const std::size_t i : chosen)
-        points.push_back(all[i]);
-    const Box box = box_around(points);
-    const Vec3 low = box.center - box.half;
-    const double size = 2.0 * box.half.maxCoeff();
-    const double inverse_size = size > 0.0 ? 1.0 / size : 0.0;
+// What makes trusses neighbours: where the node is, and where the truss points, as a way of half a metre: round a corner
+// of the vehicle there is another surface.
+using Site = std::array<double, 6>;
 
-    std::vector<std::uint64_t> code(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i)
-        code[i] = morton_code(points[i], low, inverse_size);
-    std::vector<std::size_t> order(points.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return code[a] < code[b]; });
-    for (std::size_t& place : order)
-        place = chosen[place];
-    return order;
+Site site_of(const Vec3& node, const Vec3& anchor) {
+    constexpr double way = 0.5;
+    const Vec3 points = way * (anchor - node).normalized();
+    return {node.x(), node.y(), node.z(), points.x(), points.y(), points.z()};
+}
+
+using Places = std::span<std::size_t>;
+
+std::size_t widest_axis(const std::vector<Site>& site, Places some) {
+    std::size_t widest = 0;
+    double width = -1.0;
+    for (std::size_t axis = 0; axis < std::tuple_size_v<Site>; ++axis) {
+        const auto [low, high] =
+            std::minmax_element(some.begin(), some.end(),
+                                [&](std::size_t a, std::size_t b) { return site[a][axis] < site[b][axis]; });
+        const double wide = site[*high][axis] - site[*low][axis];
+        if (wide > width) width = wide, widest = axis;
+    }
+    return widest;
+}
+
+// Cuts the trusses in two across their widest extent until each part is a block. All blocks are full but the last.
+void cut_into_blocks(const std::vector<Site>& site, Places some) {
+    if (some.size() <= lanes) {
+        std::sort(some.begin(), some.end());
+        return;
+    }
+    const std::size_t axis = widest_axis(site, some);
+    const std::size_t parts = (some.size() + lanes - 1) / lanes, first = parts / 2 * lanes;
+    std::nth_element(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(first), some.end(),
+                     [&](std::size_t a, std::size_t b) {
+                         return std::tie(site[a][axis], site[a], a) < std::tie(site[b][axis], site[b], b);
+                     });
+    cut_into_blocks(site, some.first(first));
+    cut_into_blocks(site, some.subspan(first));
+}
+
+// The chosen trusses, neighbours together.
+std::vector<std::size_t> spatial_order(const TrussInput& input, std::vector<std::size_t> chosen) {
+    std::vector<Site> site;
+    for (std::size_t i = 0; i < input.node.size(); ++i)
+        site.push_back(site_of(input.node[i], input.anchor[i]));
+    cut_into_blocks(site, chosen);
+    return chosen;
 }
 
 // Of a truss that points `inward`: 2 for each axis, the positive way first.
@@ -113,11 +131,9 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
     for (const TrussCurve& curve : input.curve)
         hinges = std::max(hinges, curve.slope.size());
 
-    input_index = spatial_order(input.node, of_skin);
-    if (!of_tires.empty()) {
-        const std::vector<std::size_t> order = spatial_order(input.node, of_tires);
-        input_index.insert(input_index.end(), order.begin(), order.end());
-    }
+    input_index = spatial_order(input, of_skin);
+    const std::vector<std::size_t> treads = spatial_order(input, of_tires);
+    input_index.insert(input_index.end(), treads.begin(), treads.end());
     anchors = Box::around(skin, [&](std::size_t i) { return input.anchor[input_index[i]]; });
     block.resize(blocks);
     hinge.resize(blocks * hinges);
