@@ -14,40 +14,64 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, const TrussState& trusses,
-                    double far, double enough) {
-    // No node of the block is nearer than this. The block that may be nearest comes first: few others are left to ask.
-    const auto no_less = [&](std::size_t b) {
-        return (mesh.panels_of[b] >> panel & 1U) != 0 ? -most_inside(dent, box_of(trusses.block[b]))
-                                                      : infinity;
-    };
-    std::size_t first = 0;
-    double nearest = infinity;
-    for (std::size_t b = 0; b < mesh.blocks; ++b) {
-        const double bound = no_less(b);
-        if (bound < nearest) nearest = bound, first = b;
+namespace {
+
+// No node of a block, or of a group of them, is nearer than `gap`.
+struct Bound {
+    double gap;
+    std::size_t of;
+
+    bool operator<(const Bound& other) const { return gap < other.gap; }
+};
+
+// Of those groups that can come within `far`, the nearest first. The boxes of groups that touch are not kept up.
+std::vector<Bound> groups_by_gap(const Dent& dent, const UnitState& unit, double far) {
+    std::vector<Bound> bounds;
+    for (std::size_t g = 0; g < unit.groups.size(); ++g) {
+        const BlockGroup& group = unit.groups[g];
+        const double gap = group.touching ? -infinity : -most_inside(dent, group.box);
+        if (gap <= far) bounds.push_back({gap, g});
     }
+    std::sort(bounds.begin(), bounds.end());
+    return bounds;
+}
+
+}  // namespace
+
+double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, const UnitState& unit,
+                    double far, double enough) {
     double least = infinity;
+    std::vector<Bound> blocks;
     alignas(64) Lanes gap;
-    const auto ask = [&](std::size_t b) {
-        gap_of(dent, trusses.block[b], gap);
-        for (std::size_t i = 0; i < lanes; ++i)
-            if (mesh.block[b].panel[i] == static_cast<double>(panel)) least = std::min(least, gap[i]);
-    };
-    if (nearest > far) return least;
-    ask(first);
-    for (std::size_t b = 0; b < mesh.blocks && least > enough; ++b)
-        if (b != first && no_less(b) <= std::min(far, least)) ask(b);
+    for (const Bound& group : groups_by_gap(dent, unit, far)) {
+        if (group.gap > least) break;
+        blocks.clear();
+        const std::size_t first = group.of * BlockGroup::size;
+        for (std::size_t b = first; b < std::min(first + BlockGroup::size, mesh.blocks); ++b) {
+            if ((mesh.panels_of[b] >> panel & 1U) == 0) continue;
+            const double bound = -most_inside(dent, box_of(unit.trusses.block[b]));
+            if (bound <= std::min(far, least)) blocks.push_back({bound, b});
+        }
+        std::sort(blocks.begin(), blocks.end());
+        for (const Bound& block : blocks) {
+            if (block.gap > least) break;
+            gap_of(dent, unit.trusses.block[block.of], gap);
+            for (std::size_t i = 0; i < lanes; ++i)
+                if (mesh.block[block.of].panel[i] == static_cast<double>(panel))
+                    least = std::min(least, gap[i]);
+            if (least <= enough) return least;
+        }
+    }
     return least;
 }
 
 namespace {
 
-// Calls `use` with each dent that a post makes or would make, and its panel's number. `about`: of the obstacles. `whole`:
-// as if the panel had no ends.
+// Calls `use` with each dent that a post makes or would make, and its panel's number. `about`: of the obstacles. `way`: by
+// which posts beside, before or below a panel count too, as if it had no ends (m).
 template <class Use>
 void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& mesh,
-                   const std::vector<std::size_t>& about, bool whole, const Use& use) {
+                   const std::vector<std::size_t>& about, double way, const Use& use) {
     for (const std::size_t i : about) {
         const Obstacle& obstacle = scene.obstacles[i];
         const Post* post = std::get_if<Post>(&obstacle.shape);
@@ -58,11 +82,10 @@ void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& m
             const Panel& panel = mesh.panel[p];
             if (!panel.any || !stands_across(seen, panel, false)) continue;
             Dent dent(*post, seen, panel, mesh.dent_reach);
-            if (whole) {
+            if (!dent.overlaps(panel, way)) continue;
+            if (way > 0.0) {
                 dent.low = -infinity;
                 dent.high = infinity;
-            } else if (!dent.overlaps(panel)) {
-                continue;
             }
             use(dent, p);
         }
@@ -78,8 +101,8 @@ double overlap_of_dents(const Scene& scene, const State& state, double deepest) 
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         if (mesh.dent_reach == 0.0) continue;
         scene.map.find(state.units[u].body.position, everything(mesh, state.units[u]).half.norm(), about);
-        for_each_dent(scene, state.units[u], mesh, about, false, [&](const Dent& dent, std::size_t panel) {
-            const double gap = gap_of_panel(dent, panel, mesh, state.units[u].trusses, 0.0, -infinity);
+        for_each_dent(scene, state.units[u], mesh, about, 0.0, [&](const Dent& dent, std::size_t panel) {
+            const double gap = gap_of_panel(dent, panel, mesh, state.units[u], 0.0, -infinity);
             if (-gap < deepest) most = std::max(most, -gap);
         });
     }
@@ -90,11 +113,12 @@ double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh&
                      double longest) {
     std::vector<std::size_t> about;
     // A post dents what it comes into.
-    scene.map.find(unit.body.position, everything(mesh, unit).half.norm() + longest * fastest, about);
-    for_each_dent(scene, unit, mesh, about, true, [&](const Dent& dent, std::size_t panel) {
+    const double way = longest * fastest;
+    scene.map.find(unit.body.position, everything(mesh, unit).half.norm() + way, about);
+    for_each_dent(scene, unit, mesh, about, way, [&](const Dent& dent, std::size_t panel) {
         const double grows = dent.fastest_growth(mesh.panel[panel]) * fastest;
         const double far = grows * longest - tolerance::untouched_way;
-        const double gap = far > 0.0 ? gap_of_panel(dent, panel, mesh, unit.trusses, far, 0.0) : infinity;
+        const double gap = far > 0.0 ? gap_of_panel(dent, panel, mesh, unit, far, 0.0) : infinity;
         if (gap > 0.0) longest = std::min(longest, (gap + tolerance::untouched_way) / grows);
     });
     return longest;

@@ -37,8 +37,7 @@ Dented Skin::dents_of(std::size_t k) {
         if (!dents && !dent.overlaps(panel)) continue;
         // How far in a post can have come within the step; of one that was in before, does it touch?
         const double deepest = dents || passed ? 0.0 : 2.0 * margin_ * dent.fastest_growth(panel);
-        const double gap =
-            dents && pushes ? 0.0 : gap_of_panel(dent, p, mesh_, before_.trusses, 0.0, -deepest);
+        const double gap = dents && pushes ? 0.0 : gap_of_panel(dent, p, mesh_, before_, 0.0, -deepest);
         if (gap > 0.0) continue;
         if (dents || (!passed && (gap > -deepest || was_before(k, p)))) {
             now.panels |= bit;
@@ -55,16 +54,21 @@ bool Skin::was_before(std::size_t k, std::size_t p) {
     const Post& post = std::get<Post>(scene_.obstacles[near_[k].index].shape);
     const Panel& panel = mesh_.panel[p];
     const Dent then(post, near_[k].before, panel, mesh_.dent_reach);
-    return then.overlaps(panel) && gap_of_panel(then, p, mesh_, before_.trusses, 0.0, 0.0) > 0.0;
+    return then.overlaps(panel) && gap_of_panel(then, p, mesh_, before_, 0.0, 0.0) > 0.0;
 }
 
-// Which dents can reach the block? Their posts are among what it sees, then.
+// Which dents can reach the block? Their posts are among what it sees, then. What pushes stays at its dent until it is
+// released: of a block that touches, a dent counts that its nodes can have come off within the step.
 bool Skin::find_dents_of_block(std::size_t b) {
     block_dents_.clear();
+    const auto can_reach = [&](const DentedPanel& dented) {
+        const double off =
+            from(b).touching ? 2.0 * margin_ * dented.dent.fastest_growth(mesh_.panel[dented.panel]) : 0.0;
+        return most_inside(dented.dent, box_) >= -off;
+    };
     for (std::size_t d = 0; d < dents_.size(); ++d) {
         const DentedPanel& dented = dents_[d];
-        if ((mesh_.panels_of[b] >> dented.panel & 1U) == 0) continue;
-        if (!from(b).touching && most_inside(dented.dent, box_) < 0.0) continue;
+        if ((mesh_.panels_of[b] >> dented.panel & 1U) == 0 || !can_reach(dented)) continue;
         block_dents_.push_back(d);
         if (std::find(seen_.begin(), seen_.end(), dented.near) == seen_.end())
             seen_.insert(std::lower_bound(seen_.begin(), seen_.end(), dented.near), dented.near);

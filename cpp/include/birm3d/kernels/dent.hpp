@@ -41,8 +41,8 @@ struct Dent {
     double surface;            // into, of the outermost node of the panel
     double reach;
 
-    // Does any of the post stand before, in or behind the panel?
-    bool overlaps(const Panel& panel) const;
+    // Does any of the post stand before, in or behind the panel, or of one that reaches further `by` so much (m)?
+    bool overlaps(const Panel& panel, double by = 0.0) const;
 
     // How fast it can grow at any node while the post comes with 1 m/s.
     double fastest_growth(const Panel& panel) const;

@@ -8,7 +8,7 @@ namespace birm3d {
 
 // Least gap of the nodes of a panel from a dent (m); infinite where all are further away than `far`. Any that is no more
 // than `enough` will do.
-double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, const TrussState& trusses,
+double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, const UnitState& unit,
                     double far, double enough);
 
 // How far the dent of any post lies over nodes that it has come to from in front, but for any that would be deeper than
