@@ -35,14 +35,16 @@ Box box_of(const TrussBlockState& block) {
 }
 
 Box everything(const TrussMesh& mesh, const UnitState& unit) {
-    Box box{Vec3::Zero(), Vec3::Constant(mesh.reach)};
+    Box box = mesh.anchors;
     for (std::size_t g = 0; g < unit.groups.size(); ++g) {
-        if (!unit.groups[g].slack) continue;  // else no node is further away than where it was made
-        for (std::size_t b = g * BlockGroup::size; b < std::min((g + 1) * BlockGroup::size, mesh.blocks);
-             ++b) {
-            const Box around = box_of(unit.trusses.block[b]);
-            box.half = box.half.cwiseMax(around.center.cwiseAbs() + around.half);
+        const BlockGroup& group = unit.groups[g];
+        if (!group.touching) {
+            box = box.with(group.box);
+            continue;
         }
+        const std::size_t first = g * BlockGroup::size;
+        for (std::size_t b = first; b < std::min(first + BlockGroup::size, mesh.blocks); ++b)
+            box = box.with(box_of(unit.trusses.block[b]));
     }
     return box;
 }
@@ -75,7 +77,7 @@ void find_near(const Scene& scene, std::size_t u, const State& before, const Sta
     near.clear();
     const Box box = everything(scene.vehicle->units[u].trusses, before.units[u]);
     std::vector<std::size_t> about;
-    scene.map.find(now.units[u].body.position, box.half.norm() + margin, about);
+    scene.map.find(now.units[u].body.position, box.radius() + margin, about);
     for (const std::size_t i : about) {
         if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
         const Placement seen = placement(pose_of(scene, i, now), now.units[u].body);

@@ -100,7 +100,7 @@ double overlap_of_dents(const Scene& scene, const State& state, double deepest) 
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         if (mesh.dent_reach == 0.0) continue;
-        scene.map.find(state.units[u].body.position, everything(mesh, state.units[u]).half.norm(), about);
+        scene.map.find(state.units[u].body.position, everything(mesh, state.units[u]).radius(), about);
         for_each_dent(scene, state.units[u], mesh, about, 0.0, [&](const Dent& dent, std::size_t panel) {
             const double gap = gap_of_panel(dent, panel, mesh, state.units[u], 0.0, -infinity);
             if (-gap < deepest) most = std::max(most, -gap);
@@ -114,7 +114,7 @@ double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh&
     std::vector<std::size_t> about;
     // A post dents what it comes into.
     const double way = longest * fastest;
-    scene.map.find(unit.body.position, everything(mesh, unit).half.norm() + way, about);
+    scene.map.find(unit.body.position, everything(mesh, unit).radius() + way, about);
     for_each_dent(scene, unit, mesh, about, way, [&](const Dent& dent, std::size_t panel) {
         const double grows = dent.fastest_growth(mesh.panel[panel]) * fastest;
         const double far = grows * longest - tolerance::untouched_way;

@@ -1,5 +1,6 @@
 // Posts that dent the skin: see kernels/dent.hpp.
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "birm3d/sim/obstacles.hpp"
@@ -93,25 +94,44 @@ void Skin::leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) 
     }
 }
 
+namespace {
+
+// Nodes of the panel to which this dent is nearer than what they have seen so far hang on it.
+BIRM3D_LANE_LOOP void take_nearer(const DentLanes& dent, const Lanes& panel_of, double panel, double into_x,
+                                  double into_y, double into_z, std::size_t seen, NodeFaces& faces,
+                                  BlockContact& contact, std::array<std::size_t, lanes>& nearest) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const bool takes = panel_of[i] == panel && dent.gap[i] < faces.gap[i];
+        nearest[i] = takes ? seen : nearest[i];
+        faces.gap[i] = takes ? dent.gap[i] : faces.gap[i];
+        faces.per_force[i] = takes ? dent.per_force[i] : faces.per_force[i];
+        faces.bx[i] = takes ? into_x : faces.bx[i];
+        faces.by[i] = takes ? into_y : faces.by[i];
+        faces.bz[i] = takes ? into_z : faces.bz[i];
+        contact.nx[i] = takes ? dent.nx[i] : contact.nx[i];
+        contact.ny[i] = takes ? dent.ny[i] : contact.ny[i];
+        contact.nz[i] = takes ? dent.nz[i] : contact.nz[i];
+        contact.px[i] = takes ? dent.px[i] : contact.px[i];
+        contact.py[i] = takes ? dent.py[i] : contact.py[i];
+        contact.pz[i] = takes ? dent.pz[i] : contact.pz[i];
+        contact.tx[i] = takes ? dent.tx[i] : contact.tx[i];
+        contact.ty[i] = takes ? dent.ty[i] : contact.ty[i];
+        contact.tz[i] = takes ? dent.tz[i] : contact.tz[i];
+    }
+}
+
+}  // namespace
+
 void Skin::draw_in(std::size_t b, const TrussBlockState& block) {
     alignas(64) DentLanes found;
     for (const std::size_t d : block_dents_) {
         const DentedPanel& dented = dents_[d];
         const Vec3& into = dented.dent.into;
         dent_of(dented.dent, block, found);
-        const auto seen =
-            static_cast<std::size_t>(std::find(seen_.begin(), seen_.end(), dented.near) - seen_.begin());
-        for (std::size_t i = 0; i < lanes; ++i) {
-            if (mesh_.block[b].panel[i] != static_cast<double>(dented.panel)) continue;
-            if (!(found.gap[i] < faces_.gap[i])) continue;
-            nearest_[i] = seen;
-            faces_.gap[i] = found.gap[i];
-            faces_.per_force[i] = found.per_force[i];
-            faces_.bx[i] = into.x(), faces_.by[i] = into.y(), faces_.bz[i] = into.z();
-            contact_.nx[i] = found.nx[i], contact_.ny[i] = found.ny[i], contact_.nz[i] = found.nz[i];
-            contact_.px[i] = found.px[i], contact_.py[i] = found.py[i], contact_.pz[i] = found.pz[i];
-            contact_.tx[i] = found.tx[i], contact_.ty[i] = found.ty[i], contact_.tz[i] = found.tz[i];
-        }
+        const auto seen = std::find(seen_.begin(), seen_.end(), dented.near) - seen_.begin();
+        take_nearer(found, mesh_.block[b].panel, static_cast<double>(dented.panel), into.x(), into.y(),
+                    into.z(), static_cast<std::size_t>(seen), faces_, contact_, nearest_);
     }
 }
 

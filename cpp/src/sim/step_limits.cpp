@@ -48,7 +48,7 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
         const Vec3 w = R.transpose() * angular_velocity(model.body, unit.body);
         const Box all = everything(model.trusses, unit);
         near.clear();
-        scene.map.find(unit.body.position, all.half.norm() + longest * fastest, about);
+        scene.map.find(unit.body.position, all.radius() + longest * fastest, about);
         for (const std::size_t i : about) {
             const Placement seen = placement(pose_of(scene, i, state), unit.body);
             if (i != scene.ground && within_reach(scene.obstacles[i].shape, seen, all, longest * fastest))
@@ -133,7 +133,7 @@ double passing_step(const Scene& scene, const State& state, double longest) {
         if (!(speed > 0.0)) continue;
         const double turning = speed - body.velocity.norm();
         const Box all = everything(unit.trusses, state.units[u]);
-        scene.map.find(body.position, all.half.norm() + longest * speed, about);
+        scene.map.find(body.position, all.radius() + longest * speed, about);
         for (const std::size_t i : about) {
             const Obstacle& obstacle = scene.obstacles[i];
             const Pose pose = pose_of(scene, i, state);

@@ -17,6 +17,14 @@ struct Box {
         return {0.5 * (low + high), 0.5 * (high - low)};
     }
 
+    // The box around both.
+    Box with(const Box& other) const {
+        return with(other.center - other.half).with(other.center + other.half);
+    }
+
+    // No point of it is further from the origin (m).
+    double radius() const { return (center.cwiseAbs() + half).norm(); }
+
     // `point` gives the i-th of `count` >= 1 points.
     template <class Point>
     static Box around(std::size_t count, const Point& point) {

@@ -54,8 +54,7 @@ struct BlockGroup {
 
     // `first`: of the group.
     void add(const TrussBlockState& block, bool first) {
-        const Vec3 low = block.box.center - block.box.half, high = block.box.center + block.box.half;
-        box = first ? block.box : box.with(low).with(high);
+        box = first ? block.box : box.with(block.box);
         touching |= block.touching;
         slack |= block.slack;
     }
