@@ -1,4 +1,5 @@
 // What the nodes of a block see of the obstacles about them: gaps and normals now, and normals an instant before.
+#include <array>
 #include <limits>
 
 #include "birm3d/base/tolerances.hpp"
@@ -112,13 +113,33 @@ void Skin::settle_in_corners(const TrussBlockState& block) {
     }
 }
 
+namespace {
+
+// Normals that nodes of one obstacle had before, by its turn since.
+BIRM3D_LANE_LOOP void turn_back(const double* turn, std::size_t seen,
+                                const std::array<std::size_t, lanes>& nearest, const BlockContact& contact,
+                                NodeFaces& faces) {
+    const double xx = turn[0], yx = turn[1], zx = turn[2], xy = turn[3], yy = turn[4], zy = turn[5],
+                 xz = turn[6], yz = turn[7], zz = turn[8];
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const double x = contact.nx[i], y = contact.ny[i], z = contact.nz[i];
+        const bool of_this = nearest[i] == seen;
+        faces.bx[i] = of_this ? xx * x + xy * y + xz * z : faces.bx[i];
+        faces.by[i] = of_this ? yx * x + yy * y + yz * z : faces.by[i];
+        faces.bz[i] = of_this ? zx * x + zy * y + zz * z : faces.bz[i];
+    }
+}
+
+}  // namespace
+
 // A flat face, or an edge, had the same normal in its own axes an instant before, whatever was nearest then.
 void Skin::turn_flat_faces() {
-    for (std::size_t i = 0; i < lanes; ++i) {
-        const NearObstacle& obstacle = near_[seen_[nearest_[i]]];
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+        const NearObstacle& obstacle = near_[seen_[k]];
         if (std::holds_alternative<Post>(scene_.obstacles[obstacle.index].shape)) continue;
-        const Vec3 m = obstacle.before.direction_from_own(obstacle.now.direction_to_own(contact_.normal(i)));
-        faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
+        const Mat3 turn = obstacle.before.rotation.transpose() * obstacle.now.rotation;
+        turn_back(turn.data(), k, nearest_, contact_, faces_);
     }
 }
 
