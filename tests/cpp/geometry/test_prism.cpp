@@ -72,7 +72,8 @@ TEST("no point of a box is nearer than its bound, and of a small one it is hardl
                 CHECK(bound == 0.0 || prism.nearest(p).gap >= bound - 1e-12);  // rounding
             }
             const double gap = prism.nearest(box.center).gap;
-            if (gap > 0.0 && box.center.z() > 0.0) slack = std::max(slack, gap - prism.no_nearer({box.center, Vec3::Constant(1e-6)}));
+            if (gap > 0.0 && box.center.z() > 0.0)
+                slack = std::max(slack, gap - prism.no_nearer({box.center, Vec3::Constant(1e-6)}));
         }
         CHECK(slack < 2e-6);
     }
