@@ -77,18 +77,18 @@ bool Skin::find_dents_of_block(std::size_t b) {
     return !block_dents_.empty();
 }
 
-// Do all nodes of the block hang on a dent of this post?
+// Are all nodes of the block on a panel that this post dents?
 bool Skin::is_left_to_dents(std::size_t b, std::size_t near) const {
-    return std::any_of(block_dents_.begin(), block_dents_.end(), [&](std::size_t d) {
-        return dents_[d].near == near && mesh_.panels_of[b] == 1U << dents_[d].panel;
+    return std::any_of(dents_.begin(), dents_.end(), [&](const DentedPanel& dented) {
+        return dented.near == near && mesh_.panels_of[b] == 1U << dented.panel;
     });
 }
 
-// Nodes of a panel that a post dents do not see the post itself.
+// Nodes of a panel that a post dents do not see the post itself, near or far.
 void Skin::leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) const {
-    for (const std::size_t d : block_dents_) {
-        if (dents_[d].near != near) continue;
-        const auto panel = static_cast<double>(dents_[d].panel);
+    for (const DentedPanel& dented : dents_) {
+        if (dented.near != near || (mesh_.panels_of[b] >> dented.panel & 1U) == 0) continue;
+        const auto panel = static_cast<double>(dented.panel);
         for (std::size_t i = 0; i < lanes; ++i)
             if (mesh_.block[b].panel[i] == panel) found.gap[i] = std::numeric_limits<double>::infinity();
     }
