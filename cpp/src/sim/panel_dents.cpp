@@ -118,8 +118,10 @@ double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh&
     for_each_dent(scene, unit, mesh, about, way, [&](const Dent& dent, std::size_t panel) {
         const double grows = dent.fastest_growth(mesh.panel[panel]) * fastest;
         const double far = grows * longest - tolerance::untouched_way;
-        const double gap = far > 0.0 ? gap_of_panel(dent, panel, mesh, unit, far, 0.0) : infinity;
-        if (gap > 0.0) longest = std::min(longest, (gap + tolerance::untouched_way) / grows);
+        // Nodes that a dent has just let go lie on it but for rounding: it has come already.
+        constexpr double come = tolerance::touching_gap;
+        const double gap = far > 0.0 ? gap_of_panel(dent, panel, mesh, unit, far, come) : infinity;
+        if (gap > come) longest = std::min(longest, (gap + tolerance::untouched_way) / grows);
     });
     return longest;
 }
