@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Iterable, Sequence, Sized
 from typing import TYPE_CHECKING, Any
 
@@ -17,9 +16,6 @@ if TYPE_CHECKING:
     from .run_store import Outcome
 
 __all__ = ["ensemble"]
-
-# So many scenes are under way at once, at most: what a run needs is gone when the next are made.
-_UNDER_WAY = 1024
 
 
 def ensemble(
@@ -79,7 +75,7 @@ def ensemble(
         return Study._of("ensemble", (), [], units, outcomes)
 
     total = len(simulations) if isinstance(simulations, Sized) else None
-    scenes = iter(simulations)
+    todo = ((run, (scene,)) for run, scene in enumerate(simulations))
     try:
         with progress_bar(progress, "ensemble", total) as advance:
 
@@ -87,9 +83,7 @@ def ensemble(
                 outcomes.update(finished)
                 advance(len(finished))
 
-            while some := list(itertools.islice(scenes, _UNDER_WAY)):
-                todo = [(run, (scene,)) for run, scene in enumerate(some, start=len(outcomes))]
-                run_all(None, (), wanted, todo, executor, finish)
+            run_all(None, (), wanted, todo, total, executor, finish)
     except KeyboardInterrupt:
         message = f"stopped: {len(outcomes)} runs are finished and kept in the error's 'study'"
         raise StudyInterrupted(message, study()) from None

@@ -57,6 +57,10 @@ struct Scene {
     std::size_t free_segments() const { return barrier ? barrier->segments.size() : 0; }
 
     State initial_state() const;
+    void start(State& state) const;  // the same in the memory of a state of the vehicle
+
+    // Another start; refuses what the constructor refuses.
+    void set_approach(const Approach& approach);
 
     // Hash of the vehicle and the barrier: equal for equal scenes, wherever they were made.
     std::uint64_t fingerprint() const;

@@ -1,0 +1,53 @@
+#include "birm3d/ensemble/runner.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+namespace birm3d {
+
+namespace {
+
+void find_greatest_deflections(const Simulation& simulation, Outcome& outcome) {
+    outcome.deflection = outcome.peak_deflection = -std::numeric_limits<double>::infinity();
+    const State& state = simulation.state();
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const TrussMesh& mesh = simulation.scene().vehicle->units[u].trusses;
+        for (std::size_t truss = 0; truss < mesh.count; ++truss) {
+            const std::size_t i = mesh.slot(truss);
+            const TrussBlockState& block = state.units[u].trusses.block[i / lanes];
+            outcome.deflection = std::max(outcome.deflection, block.deflection[i % lanes]);
+            outcome.peak_deflection = std::max(outcome.peak_deflection, block.peak_deflection[i % lanes]);
+        }
+    }
+}
+
+}  // namespace
+
+Outcome Runner::run(const Scene& scene, const Approach& approach, const ExtremeGroups& wanted,
+                    const std::function<void()>& poll) {
+    Scene own(scene);
+    own.set_approach(approach);
+    if (simulation_)
+        simulation_->start(own);
+    else
+        simulation_.emplace(std::move(own));
+
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    simulation_->run(poll);
+    Outcome outcome;
+    outcome.run_time = std::chrono::duration<double>(Clock::now() - start).count();
+
+    const State& state = simulation_->state();
+    outcome.end_reason = simulation_->end_reason();
+    outcome.state_hash = state.hash();
+    outcome.statistics = state.statistics;
+    outcome.final_velocity = state.units.front().body.velocity;
+    find_greatest_deflections(*simulation_, outcome);
+    simulation_->recorder().resample(simulation_->scene(), wanted.channels(), history_);
+    outcome.extremes = extremes_of(history_, wanted);
+    return outcome;
+}
+
+}  // namespace birm3d
