@@ -1,5 +1,7 @@
 #include <pybind11/stl.h>
 
+#include <tuple>
+
 #include "arrays.hpp"
 #include "birm3d/base/rotation.hpp"
 #include "birm3d/sim/extremes.hpp"
@@ -124,8 +126,11 @@ void register_history(py::module_& m) {
         .def_readonly("last", &Extremes::NormalForce::last, "N, in the last interval");
     py::class_<Extremes::Motion>(m, "ExtremeMotion", "Of unit 0.")
         .def_property_readonly(
-            "towards", [](const Extremes::Motion& self) { return copy(self.towards); },
-            "(3,) unit vector towards the barrier, world; of a path along its line that of the path")
+            "towards",
+            [](const Extremes::Motion& self) {
+                return std::tuple(self.towards.x(), self.towards.y(), self.towards.z());
+            },
+            "unit vector towards the barrier, world; of a path along its line that of the path")
         .def_readonly("approach_speed", &Extremes::Motion::approach_speed,
                       "m/s, towards the barrier, at the start")
         .def_readonly("turn_time", &Extremes::Motion::turn_time,

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <exception>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -70,8 +71,12 @@ void register_runner(py::module_& m) {
         .def_readonly("statistics", &Outcome::statistics)
         .def_readonly("run_time", &Outcome::run_time, "s, wall time of the stepping")
         .def_property_readonly(
-            "final_velocity", [](const Outcome& outcome) { return copy(outcome.final_velocity); },
-            "(3,) m/s, of unit 0, world")
+            "final_velocity",
+            [](const Outcome& outcome) {
+                const Vec3& v = outcome.final_velocity;
+                return std::tuple(v.x(), v.y(), v.z());
+            },
+            "m/s, of unit 0, world")
         .def_readonly("deflection", &Outcome::deflection, "m, greatest of all trusses, at the end")
         .def_readonly("peak_deflection", &Outcome::peak_deflection, "m, and during the run")
         .def_readonly("extremes", &Outcome::extremes);

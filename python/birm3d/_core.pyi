@@ -183,9 +183,9 @@ class ExtremeMotion:
         m/s^2, greatest along r, interval means
         """
     @property
-    def towards(self) -> numpy.typing.NDArray[numpy.float64]:
+    def towards(self) -> tuple[float, float, float]:
         """
-        (3,) unit vector towards the barrier, world; of a path along its line that of the path
+        unit vector towards the barrier, world; of a path along its line that of the path
         """
     @property
     def turn_time(self) -> float | None:
@@ -464,9 +464,9 @@ class Outcome:
     def extremes(self) -> Extremes:
         ...
     @property
-    def final_velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+    def final_velocity(self) -> tuple[float, float, float]:
         """
-        (3,) m/s, of unit 0, world
+        m/s, of unit 0, world
         """
     @property
     def peak_deflection(self) -> float:

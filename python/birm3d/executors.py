@@ -23,7 +23,6 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
-from dataclasses import replace
 from functools import lru_cache, partial
 from typing import Any
 
@@ -244,8 +243,8 @@ def _start(
 ) -> tuple[_core.Simulation, Scene]:
     """Return a simulation of the core that has all of a scene but its approach, and the scene."""
     if simulation is not None and all(name in APPROACH for name in names):
-        numbers: dict[str, Any] = {name: float(value) for name, value in zip(names, row, strict=True)}
-        return simulation._core, replace(simulation.scene, **numbers)
+        numbers = {name: float(value) for name, value in zip(names, row, strict=True)}
+        return simulation._core, simulation.scene.approached(numbers)
     made = _scene(simulation, names, row)
     return made._core, made.scene
 

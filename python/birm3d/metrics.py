@@ -87,6 +87,7 @@ SEGMENT_METRICS = ("barrier_deflection", "residual_barrier_deflection", "max_ove
 """Those that only a free-standing barrier has."""
 
 Floats = npt.NDArray[np.float64]
+_Vector = tuple[float, float, float]
 _Function = Callable[["_Run"], float | None]  # None: the run does not have it
 
 # Below this speed a direction of travel means nothing, m/s.
@@ -149,7 +150,7 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     if not isinstance(history, _core.History):
         saved = result.metrics
         return {name: saved[name] for name in saved if names is None or name in names}
-    groups = {metric.needs for name, metric in _METRICS.items() if names is None or name in names}
+    groups = {_METRICS[name].needs for name in (_METRICS if names is None else names)}
     extremes = history.extremes(_groups(groups))
     return _found(_Run(result.scene, _ResultOutcome(result, extremes), result), names)
 
@@ -182,7 +183,7 @@ def _require_rows(scene: Scene, rows: int) -> None:
 
 
 def _found(run: _Run, names: Collection[str] | None) -> dict[str, float]:
-    found = {name: metric.of(run) for name, metric in _METRICS.items() if names is None or name in names}
+    found = {name: _METRICS[name].of(run) for name in (_METRICS if names is None else names)}
     return {name: value for name, value in found.items() if value is not None}
 
 
@@ -191,7 +192,8 @@ class _ResultOutcome:
 
     def __init__(self, result: Result, extremes: _core.Extremes) -> None:
         self.extremes = extremes
-        self.final_velocity: Floats = result.final_velocity
+        x, y, z = result.final_velocity.tolist()
+        self.final_velocity: _Vector = (x, y, z)
         self.statistics: _core.StepStatistics | Stored = result.statistics
         self.run_time = result.run_time
         self._result = result
@@ -323,6 +325,10 @@ def _impact_severity(run: _Run) -> float:
     return 0.5 * run.scene.vehicle.mass * (run.scene.impact_speed * math.sin(angle)) ** 2
 
 
+def _dot(a: _Vector, b: _Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
 def _time_of_zero_velocity(run: _Run) -> float | None:
     if run.turn_time is None:
         return None
@@ -332,16 +338,16 @@ def _time_of_zero_velocity(run: _Run) -> float | None:
 def _restitution(run: _Run) -> float | None:
     if run.turn_time is None:
         return None
-    return max(0.0, -float(run.outcome.final_velocity @ run.motion.towards)) / run.motion.approach_speed
+    return max(0.0, -_dot(run.outcome.final_velocity, run.motion.towards)) / run.motion.approach_speed
 
 
 def _exit_angle(run: _Run) -> float | None:
-    velocity, past = run.outcome.final_velocity, run.past
-    speed, away = float(np.hypot(*velocity[:2])), float(-(velocity @ past))
+    velocity, past = run.outcome.final_velocity, run.past.tolist()
+    speed, away = math.hypot(*velocity[:2]), -_dot(velocity, past)
     left = speed > _SLOWEST and away > 0.0 and run.normal_force.last == 0.0
     if not left or not run.dynamic_crush > 0.0:
         return None
-    along = float(np.hypot(*(velocity[:2] + away * past[:2])))
+    along = math.hypot(velocity[0] + away * past[0], velocity[1] + away * past[1])
     return math.degrees(math.atan2(away, along))
 
 
@@ -437,7 +443,7 @@ def _all_metrics() -> dict[str, _Metric]:
         "restitution": motion(_of_barrier(_restitution)),
         "delta_v": motion(_of_barrier(lambda run: run.motion.velocity_change)),
         "impact_severity": end(_of_barrier(_impact_severity)),
-        "exit_speed": end(lambda run: float(np.hypot(*run.outcome.final_velocity[:2]))),
+        "exit_speed": end(lambda run: math.hypot(*run.outcome.final_velocity[:2])),
         "exit_angle": normal_force(_of_barrier(_exit_angle)),
         "max_roll": attitude(lambda run: math.degrees(run.attitude.roll)),
         "max_pitch": attitude(lambda run: math.degrees(run.attitude.pitch)),

@@ -13,11 +13,15 @@ void find_greatest_deflections(const Simulation& simulation, Outcome& outcome) {
     const State& state = simulation.state();
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const TrussMesh& mesh = simulation.scene().vehicle->units[u].trusses;
-        for (std::size_t truss = 0; truss < mesh.count; ++truss) {
-            const std::size_t i = mesh.slot(truss);
-            const TrussBlockState& block = state.units[u].trusses.block[i / lanes];
-            outcome.deflection = std::max(outcome.deflection, block.deflection[i % lanes]);
-            outcome.peak_deflection = std::max(outcome.peak_deflection, block.peak_deflection[i % lanes]);
+        for (std::size_t b = 0; b < mesh.blocks; ++b) {
+            const TrussBlockState& block = state.units[u].trusses.block[b];
+            const std::size_t left = b < mesh.skin_blocks
+                                         ? mesh.skin - b * lanes
+                                         : mesh.count - mesh.skin - (b - mesh.skin_blocks) * lanes;
+            for (std::size_t i = 0; i < std::min(lanes, left); ++i) {
+                outcome.deflection = std::max(outcome.deflection, block.deflection[i]);
+                outcome.peak_deflection = std::max(outcome.peak_deflection, block.peak_deflection[i]);
+            }
         }
     }
 }

@@ -113,6 +113,7 @@ class Skin {
     Box box_;  // around the nodes of the block at hand
     NodeFaces faces_;
     BlockContact contact_;
+    std::optional<Vec3> plane_normal_;        // of all nodes in contact_, where they saw one plane
     std::array<std::size_t, lanes> nearest_;  // place in seen_ of each node's obstacle
 };
 

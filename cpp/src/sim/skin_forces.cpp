@@ -244,7 +244,8 @@ void Skin::find_rate_factor(std::size_t near, const TrussBlockState& next, const
 
 void Skin::press_plane(PlaneSums& plane, std::size_t b) {
     TrussBlockState& next = now_.trusses.block[b];
-    contact_.set_normal(plane.surface.face.normal);
+    if (!plane_normal_ || *plane_normal_ != plane.surface.face.normal)
+        contact_.set_normal(plane_normal_.emplace(plane.surface.face.normal));
     const Places places{next.x, next.y, next.z};
     crush_with_rate(plane.near, next, places, plane.sums, [&](const Lanes* factor, CrushSums& sums) {
         crush(plane.surface, mesh_, b, factor, from(b), next, contact_, sums);
