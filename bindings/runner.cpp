@@ -42,11 +42,14 @@ std::vector<Run> run_all(Runner& runner, const std::vector<Job>& jobs, const Ext
     };
     std::vector<Run> runs;
     runs.reserve(jobs.size());
+    const Simulation* last = nullptr;
     for (const auto& [simulation, approach] : jobs) {
         Run run;
         try {
             poll();
-            run.outcome = runner.run(simulation->scene(), approach, wanted, poll);
+            if (simulation != std::exchange(last, nullptr)) runner.set_scene(simulation->scene());
+            last = simulation;
+            run.outcome = runner.run(approach, wanted, poll);
         } catch (const Stopped&) {
             break;
         } catch (...) {

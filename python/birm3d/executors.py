@@ -39,6 +39,9 @@ __all__ = ["ExecutorError", "Finished", "run_all"]
 _CHUNK_TIME = 0.2
 _LONGEST_CHUNK = 256
 
+# Enumerators of the core look for their name each time.
+_END_REASONS = {int(reason): name for name, reason in _core.EndReason.__members__.items()}
+
 Chunk = list[tuple[int, tuple[Any, ...]]]
 Finished = list[tuple[int, Outcome]]
 Timed = tuple[Finished, float]  # and what it took to run them [s]
@@ -231,7 +234,7 @@ def _without_histories(
             if scene.settings.time_step is not None:
                 warn_if_open(scene, end.extremes.energy)
             values = _values(metrics_of_outcome(scene, end, metrics), metrics)
-            outcome = Outcome(values, end.end_reason.name, f"{end.state_hash:016x}")
+            outcome = Outcome(values, _END_REASONS[int(end.end_reason)], f"{end.state_hash:016x}")
         except Exception as error:
             outcome = _failed(error, metrics)
         finished.append((run, outcome))

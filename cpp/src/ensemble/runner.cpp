@@ -28,14 +28,19 @@ void find_greatest_deflections(const Simulation& simulation, Outcome& outcome) {
 
 }  // namespace
 
-Outcome Runner::run(const Scene& scene, const Approach& approach, const ExtremeGroups& wanted,
-                    const std::function<void()>& poll) {
-    Scene own(scene);
-    own.set_approach(approach);
+void Runner::set_scene(const Scene& scene) {
+    at_start_ = false;
     if (simulation_)
-        simulation_->start(own);
+        simulation_->start(scene);
     else
-        simulation_.emplace(std::move(own));
+        simulation_.emplace(scene);
+    at_start_ = true;
+}
+
+Outcome Runner::run(const Approach& approach, const ExtremeGroups& wanted,
+                    const std::function<void()>& poll) {
+    if (!(at_start_ && approach == simulation_->scene().approach)) simulation_->start(approach);
+    at_start_ = false;
 
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();

@@ -186,7 +186,12 @@ bool Skin::press(std::size_t b) {
     }
     if (seen_.size() == 1 && !drawn) {
         const NearObstacle& only = near_[seen_[0]];
-        if (const auto plane = flat_part(scene_.obstacles[only.index].shape, only.now, box_)) {
+        const Shape& shape = scene_.obstacles[only.index].shape;
+        if (std::holds_alternative<HalfSpace>(shape) && !planes_.empty() && planes_.back().near == seen_[0]) {
+            press_plane(planes_.back(), b);  // the same plane to all blocks
+            return true;
+        }
+        if (const auto plane = flat_part(shape, only.now, box_)) {
             press_plane(sums_of_plane(seen_[0], *plane), b);
             return true;
         }

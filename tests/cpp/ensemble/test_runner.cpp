@@ -25,6 +25,11 @@ std::vector<Scene> scenes() {
 
 const auto nothing = [] {};
 
+Outcome run(Runner& runner, const Scene& scene, const ExtremeGroups& wanted = {}) {
+    runner.set_scene(scene);
+    return runner.run(scene.approach, wanted, nothing);
+}
+
 void check_same(const Outcome& found, const Scene& scene) {
     Simulation alone(scene);
     laboratory::run(alone);
@@ -49,17 +54,18 @@ TEST("a run in used memory has the bits of a run in its own") {
     const std::vector<Scene> all = scenes();
     Runner runner;
     for (const std::size_t i : {0, 1, 0, 2, 3, 2, 1, 3, 0})
-        check_same(runner.run(all[i], all[i].approach, {}, nothing), all[i]);
+        check_same(run(runner, all[i]), all[i]);
 }
 
 TEST("an approach of its own is that of a scene made with it") {
     const Scene base = scenes().back();
     Runner runner;
+    runner.set_scene(base);
     for (const double speed : {5.0, 25.0, 10.0}) {
         Approach approach = base.approach;
         approach.speed = speed;
         approach.angle = 0.3 + 0.02 * speed;
-        check_same(runner.run(base, approach, {}, nothing),
+        check_same(runner.run(approach, {}, nothing),
                    Scene(base.vehicle, base.barrier, approach, base.settings, base.duration));
     }
 }
@@ -68,25 +74,27 @@ TEST("a run that fails, or that is ended, leaves nothing behind") {
     const std::vector<Scene> all = scenes();
     Runner runner;
     for (int i = 0; i < 2; ++i) {
-        CHECK_THROWS(runner.run(all[3], Approach{-1.0}, {}, nothing), std::invalid_argument);
+        runner.set_scene(all[3]);
+        CHECK_THROWS(runner.run(Approach{-1.0}, {}, nothing), std::invalid_argument);
+        check_same(runner.run(all[3].approach, {}, nothing), all[3]);
         Scene fixed = all[0];
         fixed.settings.time_step = 0.05;
-        CHECK_THROWS(runner.run(fixed, fixed.approach, {}, nothing), std::runtime_error);
+        CHECK_THROWS(run(runner, fixed), std::runtime_error);
         Scene long_run = all[2];
         long_run.settings.time_step = 1e-5;
-        CHECK_THROWS(runner.run(long_run, long_run.approach, {}, [] { throw std::length_error("enough"); }),
+        runner.set_scene(long_run);
+        CHECK_THROWS(runner.run(long_run.approach, {}, [] { throw std::length_error("enough"); }),
                      std::length_error);
-        check_same(runner.run(all[0], all[0].approach, {}, nothing), all[0]);
-        check_same(runner.run(all[2], all[2].approach, {}, nothing), all[2]);
+        check_same(run(runner, all[0]), all[0]);
+        check_same(run(runner, all[2]), all[2]);
     }
 }
 
 TEST("groups that are not wanted are absent, the others are the same") {
     const Scene scene = scenes()[1];
     Runner runner;
-    const Outcome whole = runner.run(scene, scene.approach, {}, nothing);
-    const Outcome force =
-        runner.run(scene, scene.approach, {.motion = false, .attitude = false, .energy = false}, nothing);
+    const Outcome whole = run(runner, scene);
+    const Outcome force = run(runner, scene, {.motion = false, .attitude = false, .energy = false});
     CHECK(force.extremes.normal_force->peak == whole.extremes.normal_force->peak);
     CHECK(!force.extremes.motion && !force.extremes.attitude && !force.extremes.energy);
     CHECK(whole.extremes.motion && whole.extremes.attitude && whole.extremes.energy);

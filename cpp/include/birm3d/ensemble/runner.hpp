@@ -23,13 +23,16 @@ struct Outcome {
 
 class Runner {
   public:
-    // From the start of a scene, with an approach of its own, to the end. What comes out hangs on nothing that was run
-    // before. Throws what Simulation throws, and what `poll` throws, which is called now and then.
-    Outcome run(const Scene& scene, const Approach& approach, const ExtremeGroups& wanted,
-                const std::function<void()>& poll);
+    // What is run from now on.
+    void set_scene(const Scene& scene);
+
+    // From the start of the scene, with an approach of its own, to the end. What comes out hangs on nothing that was
+    // run before. Throws what Simulation throws, and what `poll` throws, which is called now and then.
+    Outcome run(const Approach& approach, const ExtremeGroups& wanted, const std::function<void()>& poll);
 
   private:
     std::optional<Simulation> simulation_;
+    bool at_start_ = false;
     History history_;
 };
 

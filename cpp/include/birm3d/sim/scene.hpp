@@ -23,6 +23,8 @@ struct Approach {
     double standoff = 0.0;  // m between the nearest node and the barrier, >= 0
     double yaw = 0.0;       // rad by which the nose points to the left of the path
     double roll = 0.0;      // rad
+
+    bool operator==(const Approach&) const = default;
 };
 
 // What the vehicle can touch: an element of the barrier, or the ground.
