@@ -38,6 +38,7 @@ __all__ = ["ExecutorError", "Finished", "run_all"]
 # A chunk takes about this long [s]: long beside what it costs to hand it over, short to wait for or to lose.
 _CHUNK_TIME = 0.2
 _LONGEST_CHUNK = 256
+_MOST_SCENES = 64  # of a chunk that has scenes of its own, which are held until it is done
 
 # Enumerators of the core look for their name each time.
 _END_REASONS = {int(reason): name for name, reason in _core.EndReason.__members__.items()}
@@ -88,11 +89,12 @@ def run_all(
     pending: set[Future[Timed]] = set()
     left = iter(todo)
     at, done_runs, seconds, more = 0, 0, 0.0, True
+    longest = _LONGEST_CHUNK if simulation is not None else _MOST_SCENES
     try:
         while more or pending:
             while more and len(pending) < 2 * workers:
                 cost = max(seconds / done_runs, 1e-6) if done_runs else _CHUNK_TIME
-                size = max(1, min(int(_CHUNK_TIME / cost), _LONGEST_CHUNK))
+                size = max(1, min(int(_CHUNK_TIME / cost), longest))
                 if total is not None:  # no worker has all of the last ones
                     size = max(1, min(size, math.ceil((total - at) / (2 * workers))))
                 chunk = list(itertools.islice(left, size))

@@ -32,7 +32,6 @@ void Recorder::restart(const Scene& scene, const State& start) {
     }
     width_ += joint_width * scene.vehicle->joints.size() + segment_width * start.segments.size();
     values_.clear();
-    values_.reserve(512 * width_);
     obstacles_.clear();
     add_row(scene, start.time, start.energies, bodies_of(start),
             {start.units, start.segments, none, std::vector<Wrench>(scene.vehicle->joints.size()), false});
@@ -40,6 +39,7 @@ void Recorder::restart(const Scene& scene, const State& start) {
 
 void Recorder::add(const Scene& scene, const Trial& accepted) {
     const State& state = accepted.state;
+    if (rows() == 1) values_.reserve(512 * width_);  // a simulation that is never run has no use for it
     if (accepted.at_start.happened) {
         // The forces of that instant are those of the row before.
         const std::size_t before = values_.size() - width_;
