@@ -340,7 +340,7 @@ class Result:
         return MappingProxyType(compute_metrics(self))
 
     @property
-    def energy_extremes(self) -> _core.ExtremeEnergy:
+    def _energy_extremes(self) -> _core.ExtremeEnergy:
         """Extremes of the energy ledger, of a result that was not read from a file [J]."""
         assert isinstance(self._history, _core.History)
         return self._history.extremes(_core.ExtremeGroups(energy=True)).energy

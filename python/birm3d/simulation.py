@@ -191,7 +191,7 @@ class Simulation:
         self._run_time += time.perf_counter() - start
         result = self.result()
         if self._scene.settings.time_step is not None:
-            warn_if_open(result.scene, result.energy_extremes)
+            warn_if_open(result.scene, result._energy_extremes)
         return result if frames is None else result.with_frames(frames)
 
     def step(self) -> bool:

@@ -202,7 +202,7 @@ def main() -> int:
         alone = 2.0 / min(row.cpu for row in within)
         told = "holds   " if best >= MARK else "MISSED  "
         print(
-            f"{told}at least {MARK:,.0f} W2 runs a second on two cores at N = 1,000, error at most {limit:.1%}: "
+            f"{told}at least {MARK:,.0f} W2 runs a second on two cores at N = 1,000, error <= {limit:.1%}: "
             f"{best:,.0f}; by the CPU times, had two cores nothing else to do: {alone:,.0f}"
         )
     print(

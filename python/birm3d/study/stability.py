@@ -116,7 +116,7 @@ def _judged(case: Case, limits: Limits) -> StabilityRow:
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always")
             result = simulation.result()
-            warn_if_open(result.scene, result.energy_extremes)
+            warn_if_open(result.scene, result._energy_extremes)
         if told:
             return replace(row, verdict=WARNED, reason=str(told[0].message))
     return replace(row, verdict=FAULT if faults else HELD, reason="; ".join(faults))
