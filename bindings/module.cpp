@@ -11,4 +11,5 @@ PYBIND11_MODULE(_core, m) {
     register_settings(m);
     register_history(m);
     register_simulation(m);
+    register_runner(m);
 }

@@ -13,5 +13,6 @@ void register_barrier(pybind11::module_& m);
 void register_settings(pybind11::module_& m);
 void register_history(pybind11::module_& m);
 void register_simulation(pybind11::module_& m);
+void register_runner(pybind11::module_& m);
 
 }  // namespace birm3d::bindings

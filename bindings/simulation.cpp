@@ -64,19 +64,22 @@ void register_simulation(py::module_& m) {
         .def_readonly("least_critical_step", &StepStatistics::least_critical_step,
                       "s, sqrt(3)/omega of the trusses in contact");
 
+    py::class_<Approach>(m, "Approach", "How the vehicle comes (SI, rad). Immutable.")
+        .def(py::init([](double speed, double angle, double offset, double standoff, double yaw,
+                         double roll) { return Approach{speed, angle, offset, standoff, yaw, roll}; }),
+             py::kw_only(), py::arg("speed"), py::arg("angle"), py::arg("offset"), py::arg("standoff"),
+             py::arg("yaw"), py::arg("roll"));
+
     py::class_<Simulation::Snapshot>(m, "Snapshot", "A checkpoint: state and record.")
         .def_property_readonly("time", [](const Simulation::Snapshot& s) { return s.state.time; }, "s");
 
     py::class_<Simulation>(m, "Simulation", "A run of one scene (SI, rad).")
         .def(py::init([](std::shared_ptr<Vehicle> vehicle,
-                         const std::vector<std::shared_ptr<Barrier>>& barriers, double speed, double angle,
-                         double offset, double standoff, double yaw, double roll, const Settings& settings,
-                         std::optional<double> duration) {
-                 return Simulation(Scene(std::move(vehicle), only(barriers),
-                                         {speed, angle, offset, standoff, yaw, roll}, settings, duration));
+                         const std::vector<std::shared_ptr<Barrier>>& barriers, const Approach& approach,
+                         const Settings& settings, std::optional<double> duration) {
+                 return Simulation(Scene(std::move(vehicle), only(barriers), approach, settings, duration));
              }),
-             py::kw_only(), py::arg("vehicle"), py::arg("barriers"), py::arg("speed"), py::arg("angle"),
-             py::arg("offset"), py::arg("standoff"), py::arg("yaw"), py::arg("roll"), py::arg("settings"),
+             py::kw_only(), py::arg("vehicle"), py::arg("barriers"), py::arg("approach"), py::arg("settings"),
              py::arg("duration"))
         .def("step", &Simulation::step, py::call_guard<py::gil_scoped_release>(),
              "One accepted step; False when the run is over.")

@@ -6,7 +6,13 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Barrier', 'ContactModel', 'Element', 'EndReason', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tumble']
+__all__: list[str] = ['Approach', 'Barrier', 'ContactModel', 'Element', 'EndReason', 'ExtremeAttitude', 'ExtremeEnergy', 'ExtremeGroups', 'ExtremeMotion', 'ExtremeNormalForce', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tumble']
+class Approach:
+    """
+    How the vehicle comes (SI, rad). Immutable.
+    """
+    def __init__(self, *, speed: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, offset: typing.SupportsFloat | typing.SupportsIndex, standoff: typing.SupportsFloat | typing.SupportsIndex, yaw: typing.SupportsFloat | typing.SupportsIndex, roll: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
 class Barrier:
     """
     Elements that stand on the ground. Immutable.
@@ -132,6 +138,107 @@ class EndReason:
     @property
     def value(self) -> int:
         ...
+class ExtremeAttitude:
+    """
+    Greatest magnitudes, rad; yaw from the start.
+    """
+    @property
+    def pitch(self) -> float:
+        ...
+    @property
+    def roll(self) -> float:
+        ...
+    @property
+    def yaw(self) -> float:
+        ...
+class ExtremeEnergy:
+    @property
+    def residual(self) -> float:
+        """
+        J, greatest departure of the sum of all terms
+        """
+    @property
+    def start(self) -> float:
+        """
+        J, kinetic
+        """
+class ExtremeGroups:
+    """
+    Which groups of extremes are wanted.
+    """
+    def __init__(self, *, normal_force: bool = False, motion: bool = False, attitude: bool = False, energy: bool = False) -> None:
+        ...
+class ExtremeMotion:
+    """
+    Of unit 0.
+    """
+    @property
+    def approach_speed(self) -> float:
+        """
+        m/s, towards the barrier, at the start
+        """
+    @property
+    def deceleration(self) -> float:
+        """
+        m/s^2, greatest along r, interval means
+        """
+    @property
+    def towards(self) -> tuple[float, float, float]:
+        """
+        unit vector towards the barrier, world; of a path along its line that of the path
+        """
+    @property
+    def turn_time(self) -> float | None:
+        """
+        s, when that speed has come down to zero; None where it never has
+        """
+    @property
+    def velocity_change(self) -> float:
+        """
+        m/s, greatest from the start
+        """
+    @property
+    def way(self) -> float:
+        """
+        m, greatest towards the barrier
+        """
+class ExtremeNormalForce:
+    @property
+    def last(self) -> float:
+        """
+        N, in the last interval
+        """
+    @property
+    def peak(self) -> float:
+        """
+        N, sum over all units, interval means
+        """
+class Extremes:
+    """
+    Of a history, over its output instants; a group that was not wanted raises.
+    """
+    @property
+    def attitude(self) -> ExtremeAttitude:
+        ...
+    @property
+    def end_time(self) -> float:
+        """
+        s, the last of them
+        """
+    @property
+    def energy(self) -> ExtremeEnergy:
+        ...
+    @property
+    def motion(self) -> ExtremeMotion:
+        ...
+    @property
+    def normal_force(self) -> ExtremeNormalForce:
+        ...
+    @property
+    def rows(self) -> int:
+        """
+        output instants
+        """
 class FreeStanding:
     """
     Segments that slide on the ground.
@@ -144,6 +251,8 @@ class History:
     """
     Evenly spaced output of a run; read-only views.
     """
+    def extremes(self, wanted: ExtremeGroups) -> Extremes:
+        ...
     def joint(self, index: typing.SupportsInt | typing.SupportsIndex) -> JointHistory:
         """
         Of one joint of the vehicle.
@@ -339,6 +448,61 @@ class ObstacleHistory:
         """
         (n, 3) N m about the element's foot, interval means, world
         """
+class Outcome:
+    """
+    What a run came to (SI).
+    """
+    @property
+    def deflection(self) -> float:
+        """
+        m, greatest of all trusses, at the end
+        """
+    @property
+    def end_reason(self) -> EndReason:
+        ...
+    @property
+    def extremes(self) -> Extremes:
+        ...
+    @property
+    def final_velocity(self) -> tuple[float, float, float]:
+        """
+        m/s, of unit 0, world
+        """
+    @property
+    def peak_deflection(self) -> float:
+        """
+        m, and during the run
+        """
+    @property
+    def run_time(self) -> float:
+        """
+        s, wall time of the stepping
+        """
+    @property
+    def state_hash(self) -> int:
+        ...
+    @property
+    def statistics(self) -> StepStatistics:
+        ...
+class Run:
+    """
+    A run that is over.
+    """
+    def outcome(self) -> Outcome:
+        """
+        What it came to; raises what went wrong.
+        """
+class Runner:
+    """
+    Runs one after the other in the same memory, of which no histories are kept.
+    """
+    def __init__(self) -> None:
+        ...
+    def run(self, jobs: collections.abc.Sequence[tuple[Simulation, Approach]], wanted: ExtremeGroups, stop: Stop) -> list[Run]:
+        """
+        Run scenes from their starts, each with an approach of its own; the simulations stay as they are. Returns those that
+        were run before `stop` was set.
+        """
 class Segment:
     """
     A free-standing segment of a barrier.
@@ -415,7 +579,7 @@ class Simulation:
     """
     A run of one scene (SI, rad).
     """
-    def __init__(self, *, vehicle: Vehicle, barriers: collections.abc.Sequence[Barrier], speed: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, offset: typing.SupportsFloat | typing.SupportsIndex, standoff: typing.SupportsFloat | typing.SupportsIndex, yaw: typing.SupportsFloat | typing.SupportsIndex, roll: typing.SupportsFloat | typing.SupportsIndex, settings: Settings, duration: typing.SupportsFloat | typing.SupportsIndex | None) -> None:
+    def __init__(self, *, vehicle: Vehicle, barriers: collections.abc.Sequence[Barrier], approach: Approach, settings: Settings, duration: typing.SupportsFloat | typing.SupportsIndex | None) -> None:
         ...
     def deflection(self, unit: typing.SupportsInt | typing.SupportsIndex = 0) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -528,6 +692,16 @@ class StepStatistics:
         """
     @property
     def steps(self) -> int:
+        ...
+class Stop:
+    """
+    Ends runs from another thread.
+    """
+    def __init__(self) -> None:
+        ...
+    def is_set(self) -> bool:
+        ...
+    def set(self) -> None:
         ...
 class TireModel:
     """

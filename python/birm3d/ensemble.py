@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Iterable, Sequence, Sized
 from typing import TYPE_CHECKING, Any
 
@@ -18,9 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["ensemble"]
 
-# So many scenes are under way at once, at most: what a run needs is gone when the next are made.
-_UNDER_WAY = 1024
-
 
 def ensemble(
     simulations: Iterable[Simulation | Callable[[], Simulation]],
@@ -35,14 +31,18 @@ def ensemble(
     Memory does not grow with the number of runs, but for a row of numbers each, if the scenes are made one by
     one, as a generator makes them.
 
+    Where no metric needs histories (see :func:`birm3d.metrics.extremes_for`), none are made, and a chunk of
+    runs is one call of the core; the numbers are the same bits. Scenes that differ in how the vehicle comes
+    only are faster as a :func:`birm3d.sweep` with ``mode="list"``, which makes nothing anew but the numbers.
+
     Parameters
     ----------
     simulations
         The scenes; each is run from its start and not changed. A scene can also be a function without
         arguments that makes it: what it raises is the error of that run.
     metrics
-        Names of the metrics wanted; ``None``: all but ``run_time``, which is not the same twice. Few are
-        faster.
+        Names of the metrics wanted; ``None``: all but ``run_time``, which is not the same twice. Those that
+        need no histories are many times faster for small scenes.
     executor
         Any :class:`concurrent.futures.Executor`, or a ``dask.distributed.Client``; ``None``: a thread for
         each core of the machine.
@@ -79,7 +79,7 @@ def ensemble(
         return Study._of("ensemble", (), [], units, outcomes)
 
     total = len(simulations) if isinstance(simulations, Sized) else None
-    scenes = iter(simulations)
+    todo = ((run, (scene,)) for run, scene in enumerate(simulations))
     try:
         with progress_bar(progress, "ensemble", total) as advance:
 
@@ -87,9 +87,7 @@ def ensemble(
                 outcomes.update(finished)
                 advance(len(finished))
 
-            while some := list(itertools.islice(scenes, _UNDER_WAY)):
-                todo = [(run, (scene,)) for run, scene in enumerate(some, start=len(outcomes))]
-                run_all(None, (), wanted, todo, executor, finish)
+            run_all(None, (), wanted, todo, total, executor, finish)
     except KeyboardInterrupt:
         message = f"stopped: {len(outcomes)} runs are finished and kept in the error's 'study'"
         raise StudyInterrupted(message, study()) from None

@@ -2,16 +2,19 @@
 
 A run depends on its scene alone, so results are the same bits for every executor, number of threads, chunk
 and order. Other processes get the base scene once a chunk of runs, as bytes that they unpack once.
+
+Where no metric needs histories, a chunk is one call of the core, which runs scene after scene in the same
+memory without the interpreter's lock.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 import pickle
-import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import (
     FIRST_COMPLETED,
     Executor,
@@ -23,16 +26,22 @@ from concurrent.futures import (
 from functools import lru_cache, partial
 from typing import Any
 
-from .metrics import compute_metrics
+from . import _core
+from .ledger import warn_if_open
+from .metrics import compute_metrics, extremes_for, metrics_of_outcome
 from .run_store import Outcome
 from .scene_parameters import varied
-from .simulation import Simulation
+from .simulation import APPROACH, Scene, Simulation
 
 __all__ = ["ExecutorError", "Finished", "run_all"]
 
 # A chunk takes about this long [s]: long beside what it costs to hand it over, short to wait for or to lose.
 _CHUNK_TIME = 0.2
-_LONGEST_CHUNK = 64
+_LONGEST_CHUNK = 256
+_MOST_SCENES = 64  # of a chunk that has scenes of its own, which are held until it is done
+
+# Enumerators of the core look for their name each time.
+_END_REASONS = {int(reason): name for name, reason in _core.EndReason.__members__.items()}
 
 Chunk = list[tuple[int, tuple[Any, ...]]]
 Finished = list[tuple[int, Outcome]]
@@ -47,15 +56,17 @@ def run_all(
     simulation: Simulation | None,
     names: tuple[str, ...],
     metrics: tuple[str, ...],
-    todo: Chunk,
+    todo: Iterable[tuple[int, tuple[Any, ...]]],
+    total: int | None,
     executor: Any,
     finish: Callable[[Finished], None],
 ) -> None:
     """Run all of `todo` (number of the run, values) and hand what is finished to `finish`, in any order.
 
-    Without a `simulation` to vary the one value of each run is its scene.
+    Without a `simulation` to vary the one value of each run is its scene. `total` is how many there are, if
+    known.
 
-    At most two chunks a worker are under way, so that memory does not grow with the number of runs.
+    At most two chunks a worker are taken from `todo`, so that memory does not grow with the number of runs.
 
     Raises
     ------
@@ -64,9 +75,9 @@ def run_all(
     TypeError
         If `executor` is none.
     """
-    if not todo:
+    if total == 0:
         return
-    stop = threading.Event()
+    stop = _core.Stop()
     own = ThreadPoolExecutor(os.cpu_count() or 1) if executor is None else None
     pool, workers = _pool(own or executor)
     task: tuple[Any, ...]  # a function and its arguments before the chunk
@@ -76,15 +87,23 @@ def run_all(
         packed = pickle.dumps((simulation, names, metrics), pickle.HIGHEST_PROTOCOL)
         task = (_run_packed, _shipped(executor, packed))
     pending: set[Future[Timed]] = set()
-    at, done_runs, seconds = 0, 0, 0.0
+    left = iter(todo)
+    at, done_runs, seconds, more = 0, 0, 0.0, True
+    longest = _LONGEST_CHUNK if simulation is not None else _MOST_SCENES
     try:
-        while at < len(todo) or pending:
-            while at < len(todo) and len(pending) < 2 * workers:
+        while more or pending:
+            while more and len(pending) < 2 * workers:
                 cost = max(seconds / done_runs, 1e-6) if done_runs else _CHUNK_TIME
-                share = math.ceil((len(todo) - at) / (2 * workers))  # no worker has all of the last ones
-                size = max(1, min(int(_CHUNK_TIME / cost), share, _LONGEST_CHUNK))
-                pending.add(_submit(pool, *task, todo[at : at + size]))
-                at += size
+                size = max(1, min(int(_CHUNK_TIME / cost), longest))
+                if total is not None:  # no worker has all of the last ones
+                    size = max(1, min(size, math.ceil((total - at) / (2 * workers))))
+                chunk = list(itertools.islice(left, size))
+                at += len(chunk)
+                more = len(chunk) == size
+                if chunk:
+                    pending.add(_submit(pool, *task, chunk))
+            if not pending:
+                break
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
                 finished, spent = _result(future)
                 finish(finished)
@@ -157,36 +176,98 @@ def _run_chunk(
     names: tuple[str, ...],
     metrics: tuple[str, ...],
     chunk: Chunk,
-    stop: threading.Event | None = None,
+    stop: _core.Stop | None = None,
 ) -> Timed:
     start = time.perf_counter()
+    stop = stop or _core.Stop()
+    run_them = _with_histories if extremes_for(metrics) is None else _without_histories
+    finished = run_them(simulation, names, metrics, chunk, stop)
+    return finished, time.perf_counter() - start
+
+
+def _with_histories(
+    simulation: Simulation | None,
+    names: tuple[str, ...],
+    metrics: tuple[str, ...],
+    chunk: Chunk,
+    stop: _core.Stop,
+) -> Finished:
     finished: Finished = []
     for run, row in chunk:
-        if stop is not None and stop.is_set():
+        if stop.is_set():
             break
-        finished.append((run, _outcome(simulation, names, row, metrics)))
-    return finished, time.perf_counter() - start
+        try:
+            made = _scene(simulation, names, row)
+            if simulation is None:  # what is given is not changed
+                made = Simulation.from_scene(made.scene)
+            result = made.run()
+            values = _values(compute_metrics(result, metrics), metrics)
+            outcome = Outcome(values, result.end_reason, f"{result.state_hash:016x}")
+        except Exception as error:
+            outcome = _failed(error, metrics)
+        finished.append((run, outcome))
+    return finished
+
+
+def _without_histories(
+    simulation: Simulation | None,
+    names: tuple[str, ...],
+    metrics: tuple[str, ...],
+    chunk: Chunk,
+    stop: _core.Stop,
+) -> Finished:
+    finished: Finished = []
+    jobs: list[tuple[_core.Simulation, _core.Approach]] = []
+    numbers: list[tuple[int, Scene]] = []
+    for run, row in chunk:
+        try:
+            core, scene = _start(simulation, names, row)
+            jobs.append((core, scene.approach))
+            numbers.append((run, scene))
+        except Exception as error:
+            finished.append((run, _failed(error, metrics)))
+    fixed = any(scene.settings.time_step is not None for _, scene in numbers)
+    extremes = extremes_for(metrics, energy=fixed)
+    assert extremes is not None
+    # Those that were stopped are missing at the end.
+    for (run, scene), done in zip(numbers, _core.Runner().run(jobs, extremes, stop), strict=False):
+        try:
+            end = done.outcome()
+            if scene.settings.time_step is not None:
+                warn_if_open(scene, end.extremes.energy)
+            values = _values(metrics_of_outcome(scene, end, metrics), metrics)
+            outcome = Outcome(values, _END_REASONS[int(end.end_reason)], f"{end.state_hash:016x}")
+        except Exception as error:
+            outcome = _failed(error, metrics)
+        finished.append((run, outcome))
+    return finished
+
+
+def _start(
+    simulation: Simulation | None, names: tuple[str, ...], row: tuple[Any, ...]
+) -> tuple[_core.Simulation, Scene]:
+    """Return a simulation of the core that has all of a scene but its approach, and the scene."""
+    if simulation is not None and all(name in APPROACH for name in names):
+        numbers = {name: float(value) for name, value in zip(names, row, strict=True)}
+        return simulation._core, simulation.scene.approached(numbers)
+    made = _scene(simulation, names, row)
+    return made._core, made.scene
 
 
 def _scene(simulation: Simulation | None, names: tuple[str, ...], row: tuple[Any, ...]) -> Simulation:
     if simulation is not None:
         return varied(simulation, dict(zip(names, row, strict=True)))
     (given,) = row
-    return varied(given if isinstance(given, Simulation) else given(), {})
+    return given if isinstance(given, Simulation) else given()
 
 
-def _outcome(
-    simulation: Simulation | None, names: tuple[str, ...], row: tuple[Any, ...], metrics: tuple[str, ...]
-) -> Outcome:
-    """Run one scene; whatever goes wrong is its reason."""
-    try:
-        result = _scene(simulation, names, row).run()
-        found = compute_metrics(result, metrics)
-        for name in metrics:
-            if math.isnan(found.get(name, 0.0)):
-                raise ArithmeticError(f"{name} is not a number")
-    except Exception as error:
-        reason = f"{type(error).__name__}: {error}"
-        return Outcome((math.nan,) * len(metrics), error=reason)
-    values = tuple(found.get(name, math.nan) for name in metrics)
-    return Outcome(values, result.end_reason, f"{result.state_hash:016x}")
+def _values(found: dict[str, float], metrics: tuple[str, ...]) -> tuple[float, ...]:
+    for name in metrics:
+        if math.isnan(found.get(name, 0.0)):
+            raise ArithmeticError(f"{name} is not a number")
+    return tuple(found.get(name, math.nan) for name in metrics)
+
+
+def _failed(error: Exception, metrics: tuple[str, ...]) -> Outcome:
+    """Whatever goes wrong with a run is its reason."""
+    return Outcome((math.nan,) * len(metrics), error=f"{type(error).__name__}: {error}")

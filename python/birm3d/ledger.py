@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from .metrics import energy_residual
 
 if TYPE_CHECKING:
-    from .result import Result
+    from . import _core
+    from .simulation import Scene
 
 __all__ = ["ENERGY_LIMIT", "LedgerWarning", "warn_if_open"]
 
@@ -20,11 +21,11 @@ class LedgerWarning(UserWarning):
     """The energy ledger of a run does not close: its steps are stable and too long for its answer."""
 
 
-def warn_if_open(result: Result) -> None:
+def warn_if_open(scene: Scene, energy: _core.ExtremeEnergy) -> None:
     """Warn with :class:`LedgerWarning` if the energy residual is beyond :data:`ENERGY_LIMIT`."""
-    residual = energy_residual(result)
+    residual = energy_residual(scene, energy)
     if residual > ENERGY_LIMIT:
-        step = result.scene.settings.time_step
+        step = scene.settings.time_step
         warnings.warn(
             f"energy_residual must be at most {ENERGY_LIMIT:g}, got {residual:.2g}: time_step = {step:g} s "
             f"is stable and too long for an answer to rely on; time_step=None chooses steps by the tolerance",

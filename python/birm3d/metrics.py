@@ -1,5 +1,8 @@
 """Scalars of a run.
 
+Each is made in one place, of what is at hand: the end of the run, the extremes that the core finds, and where
+it needs them the histories. So a run of which no histories are kept has the same scalars, bit for bit.
+
 Forces and accelerations are taken from the interval means of the result. Filtered values use the channel
 frequency class in their name (SAE J211-1). A scalar that a scene does not have (a crush without a barrier, an
 exit angle of a vehicle that stands) is absent, never NaN.
@@ -9,21 +12,33 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from . import _core
 from .element_loads import ElementLoad, touched_elements
 from .filters import cfc, moving_average
 from .free_standing import lateral_movement
 
 if TYPE_CHECKING:
+    from .barrier import Barrier
     from .result import Result
+    from .result_file import Stored
+    from .simulation import Scene
 
-__all__ = ["JOINT_METRICS", "METRIC_UNITS", "SEGMENT_METRICS", "compute_metrics", "energy_residual"]
+__all__ = [
+    "JOINT_METRICS",
+    "METRIC_UNITS",
+    "SEGMENT_METRICS",
+    "compute_metrics",
+    "energy_residual",
+    "extremes_for",
+    "metrics_of_outcome",
+]
 
 METRIC_UNITS: Mapping[str, str] = MappingProxyType(
     {
@@ -72,7 +87,8 @@ SEGMENT_METRICS = ("barrier_deflection", "residual_barrier_deflection", "max_ove
 """Those that only a free-standing barrier has."""
 
 Floats = npt.NDArray[np.float64]
-_Metric = Callable[["_Run"], float | None]  # None: the run does not have it
+_Vector = tuple[float, float, float]
+_Function = Callable[["_Run"], float | None]  # None: the run does not have it
 
 # Below this speed a direction of travel means nothing, m/s.
 _SLOWEST = 1e-3
@@ -122,31 +138,126 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
 
     At sampling rates that allow it: ``peak_deceleration_cfc60``, ``peak_normal_force_cfc60``.
 
+    A result that was read from a file has the scalars that it was saved with.
+
     Raises
     ------
     ValueError
         If the run is shorter than the output interval.
     """
-    interval = result.scene.settings.output_interval
-    if len(result.time) < 2:
+    history = result._history
+    _require_rows(result.scene, len(result.time))
+    if not isinstance(history, _core.History):
+        saved = result.metrics
+        return {name: saved[name] for name in saved if names is None or name in names}
+    groups = {_METRICS[name].needs for name in (_METRICS if names is None else names)}
+    extremes = history.extremes(_groups(groups))
+    return _found(_Run(result.scene, _ResultOutcome(result, extremes), result), names)
+
+
+def metrics_of_outcome(scene: Scene, outcome: _core.Outcome, names: Collection[str]) -> dict[str, float]:
+    """Return what :func:`compute_metrics` would, of a run without histories with :func:`extremes_for`."""
+    _require_rows(scene, outcome.extremes.rows)
+    return _found(_Run(scene, outcome), names)
+
+
+def extremes_for(names: Collection[str], *, energy: bool = False) -> _core.ExtremeGroups | None:
+    """Return the extremes that metrics are made of; ``None`` if there is one that needs histories."""
+    needs = {_METRICS[name].needs for name in names}
+    return None if "histories" in needs else _groups(needs | {"energy"} if energy else needs)
+
+
+def _groups(needs: Collection[str]) -> _core.ExtremeGroups:
+    return _core.ExtremeGroups(
+        normal_force="normal_force" in needs,
+        motion="motion" in needs,
+        attitude="attitude" in needs,
+        energy="energy" in needs,
+    )
+
+
+def _require_rows(scene: Scene, rows: int) -> None:
+    if rows < 2:
+        interval = scene.settings.output_interval
         raise ValueError(f"output_interval must be shorter than the run for metrics, got {interval} s")
-    run = _Run(result)
-    found = {name: metric(run) for name, metric in _METRICS.items() if names is None or name in names}
+
+
+def _found(run: _Run, names: Collection[str] | None) -> dict[str, float]:
+    found = {name: _METRICS[name].of(run) for name in (_METRICS if names is None else names)}
     return {name: value for name, value in found.items() if value is not None}
 
 
-class _Run:
-    """What several metrics of a result share, each computed when it is first asked for."""
+class _ResultOutcome:
+    """What a result has in common with the outcome of a run without histories."""
 
-    def __init__(self, result: Result) -> None:
-        self.result = result
-        self.scene = result.scene
-        self.interval = result.scene.settings.output_interval
-        self.barrier = result.scene.barrier
-        self.joined = result.scene.vehicle.joint is not None
-        self.segments = self.barrier is not None and bool(self.barrier.core.segments)
-        self.filtered = self.interval * 60.0 <= 0.1
-        self.along = abs(math.sin(math.radians(self.scene.impact_angle))) < _ALONG
+    def __init__(self, result: Result, extremes: _core.Extremes) -> None:
+        self.extremes = extremes
+        x, y, z = result.final_velocity.tolist()
+        self.final_velocity: _Vector = (x, y, z)
+        self.statistics: _core.StepStatistics | Stored = result.statistics
+        self.run_time = result.run_time
+        self._result = result
+
+    @cached_property
+    def deflection(self) -> float:
+        return _greatest(self._result, "deflection")
+
+    @cached_property
+    def peak_deflection(self) -> float:
+        return _greatest(self._result, "peak_deflection")
+
+
+class _Run:
+    """What several metrics of a run share, each computed when it is first asked for."""
+
+    def __init__(
+        self, scene: Scene, outcome: _core.Outcome | _ResultOutcome, result: Result | None = None
+    ) -> None:
+        self.scene = scene
+        self.outcome = outcome
+        self.extremes = outcome.extremes
+        self._result = result
+
+    @property
+    def result(self) -> Result:
+        assert self._result is not None  # else a metric does not say what it needs
+        return self._result
+
+    @cached_property
+    def normal_force(self) -> _core.ExtremeNormalForce:
+        return self.extremes.normal_force
+
+    @cached_property
+    def motion(self) -> _core.ExtremeMotion:
+        return self.extremes.motion
+
+    @cached_property
+    def attitude(self) -> _core.ExtremeAttitude:
+        return self.extremes.attitude
+
+    @cached_property
+    def energy(self) -> _core.ExtremeEnergy:
+        return self.extremes.energy
+
+    @property
+    def interval(self) -> float:
+        return self.scene.settings.output_interval
+
+    @property
+    def barrier(self) -> Barrier | None:
+        return self.scene.barrier
+
+    @property
+    def joined(self) -> bool:
+        return self.scene.vehicle.joint is not None
+
+    @cached_property
+    def segments(self) -> bool:
+        return self.barrier is not None and bool(self.barrier.core.segments)
+
+    @property
+    def along(self) -> bool:
+        return abs(math.sin(math.radians(self.scene.impact_angle))) < _ALONG
 
     @property
     def deceleration(self) -> Floats:
@@ -159,31 +270,19 @@ class _Run:
         assert self.barrier is not None
         return -np.asarray(self.barrier.core.normal)
 
-    @property
-    def inward(self) -> Floats:
-        """The direction towards the barrier; of a path along its line that of the path."""
-        if not self.along:
-            return self.past
-        start = self.result.velocity[0]
-        return np.asarray(start / max(float(np.linalg.norm(start)), _SLOWEST))
-
     @cached_property
     def loads(self) -> list[ElementLoad]:
         return list(touched_elements(self.result))
 
-    @cached_property
+    @property
     def dynamic_crush(self) -> float:
-        return _greatest(self.result, "peak_deflection")
+        return self.outcome.peak_deflection
 
-    @cached_property
-    def turn(self) -> tuple[int, float, float] | None:
-        """Where the motion towards the barrier ends: row before, share of the interval, speed of approach."""
-        approach = self.result.velocity @ self.inward
-        turned = np.flatnonzero(approach <= 0.0)
-        if not self.dynamic_crush > 0.0 or not len(turned) or turned[0] == 0:
-            return None
-        i = int(turned[0])
-        return i - 1, float(approach[i - 1] / (approach[i - 1] - approach[i])), float(approach[0])
+    @property
+    def turn_time(self) -> float | None:
+        """When the motion towards the barrier ends [s], if it began and anything was crushed."""
+        began = self.dynamic_crush > 0.0 and self.motion.approach_speed > 0.0
+        return self.motion.turn_time if began else None
 
     @cached_property
     def movement(self) -> Floats:
@@ -195,37 +294,30 @@ class _Run:
         return max((getattr(load, name) for load in self.loads), default=0.0)
 
 
-def energy_residual(result: Result) -> float:
+def energy_residual(scene: Scene, energy: _core.ExtremeEnergy) -> float:
     """Greatest residual of the energy ledger, relative to the initial kinetic energy."""
-    energy = result.energy
-    scale = max(float(energy["kinetic"][0]), 0.5 * result.scene.vehicle.mass * _STANDSTILL**2)
-    return float(np.abs(energy["residual"]).max() / scale)
+    return energy.residual / max(energy.start, 0.5 * scene.vehicle.mass * _STANDSTILL**2)
 
 
 def _cfc60(run: _Run, values: Floats) -> float | None:
-    return float(cfc(values, 60, run.interval).max()) if run.filtered else None
+    return float(cfc(values, 60, run.interval).max()) if run.interval * 60.0 <= 0.1 else None
 
 
-def _of_force(metric: Callable[[_Run, Floats], float | None]) -> _Metric:
+def _of_force(metric: Callable[[_Run, Floats], float | None]) -> _Function:
     """Of the history of the normal force."""
     return lambda run: None if run.barrier is None else metric(run, run.result.barrier_normal_force)
 
 
-def _of_barrier(metric: _Metric) -> _Metric:
+def _of_barrier(metric: _Function) -> _Function:
     return lambda run: None if run.barrier is None else metric(run)
 
 
-def _of_segments(metric: _Metric) -> _Metric:
+def _of_segments(metric: _Function) -> _Function:
     return lambda run: metric(run) if run.segments else None
 
 
-def _of_joint(metric: _Metric) -> _Metric:
+def _of_joint(metric: _Function) -> _Function:
     return lambda run: metric(run) if run.joined else None
-
-
-def _max_displacement(run: _Run) -> float:
-    position = run.result.position
-    return float(((position - position[0]) @ run.inward - run.scene.standoff).max())
 
 
 def _impact_severity(run: _Run) -> float:
@@ -233,31 +325,29 @@ def _impact_severity(run: _Run) -> float:
     return 0.5 * run.scene.vehicle.mass * (run.scene.impact_speed * math.sin(angle)) ** 2
 
 
-def _delta_v(run: _Run) -> float:
-    return float(np.linalg.norm(run.result.velocity - run.result.velocity[0], axis=1).max())
+def _dot(a: _Vector, b: _Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def _time_of_zero_velocity(run: _Run) -> float | None:
-    if run.turn is None:
+    if run.turn_time is None:
         return None
-    row, share, approach = run.turn
-    time = run.result.time
-    return float(time[row] + share * (time[row + 1] - time[row]) - run.scene.standoff / approach)
+    return run.turn_time - run.scene.standoff / run.motion.approach_speed
 
 
 def _restitution(run: _Run) -> float | None:
-    if run.turn is None:
+    if run.turn_time is None:
         return None
-    return max(0.0, -float(run.result.final_velocity @ run.inward)) / run.turn[2]
+    return max(0.0, -_dot(run.outcome.final_velocity, run.motion.towards)) / run.motion.approach_speed
 
 
 def _exit_angle(run: _Run) -> float | None:
-    velocity, past = run.result.final_velocity, run.past
-    speed, away = float(np.hypot(*velocity[:2])), float(-(velocity @ past))
-    left = speed > _SLOWEST and away > 0.0 and run.result.barrier_normal_force[-1] == 0.0
+    velocity, past = run.outcome.final_velocity, run.past.tolist()
+    speed, away = math.hypot(*velocity[:2]), -_dot(velocity, past)
+    left = speed > _SLOWEST and away > 0.0 and run.normal_force.last == 0.0
     if not left or not run.dynamic_crush > 0.0:
         return None
-    along = float(np.hypot(*(velocity[:2] + away * past[:2])))
+    along = math.hypot(velocity[0] + away * past[0], velocity[1] + away * past[1])
     return math.degrees(math.atan2(away, along))
 
 
@@ -317,46 +407,59 @@ def _greatest(result: Result, name: str) -> float:
     return max(float(getattr(result.unit(u), name).max()) for u in units)
 
 
+class _Metric(NamedTuple):
+    needs: Literal["end", "normal_force", "motion", "attitude", "energy", "histories"]
+    of: _Function
+
+
 def _all_metrics() -> dict[str, _Metric]:
+    end, normal_force, motion, attitude, energy, histories = (
+        partial(_Metric, needs)
+        for needs in ("end", "normal_force", "motion", "attitude", "energy", "histories")
+    )
     return {
-        "peak_deceleration": lambda run: float(run.deceleration.max()),
-        "peak_deceleration_cfc60": lambda run: _cfc60(run, run.deceleration),
-        "peak_normal_force": _of_force(lambda run, force: float(force.max())),
-        "peak_normal_force_cfc60": _of_force(_cfc60),
-        "peak_force_50ms": _of_force(
-            lambda run, force: float(moving_average(force, 0.05, run.interval).max())
+        "peak_deceleration": motion(lambda run: run.motion.deceleration),
+        "peak_deceleration_cfc60": histories(lambda run: _cfc60(run, run.deceleration)),
+        "peak_normal_force": normal_force(_of_barrier(lambda run: run.normal_force.peak)),
+        "peak_normal_force_cfc60": histories(_of_force(_cfc60)),
+        "peak_force_50ms": histories(
+            _of_force(lambda run, force: float(moving_average(force, 0.05, run.interval).max()))
         ),
-        "peak_element_force": lambda run: run.greatest_load("peak_force"),
-        "peak_element_force_50ms": lambda run: run.greatest_load("peak_force_50ms"),
-        "peak_overturning_moment": lambda run: run.greatest_load("peak_overturning_moment"),
-        "peak_overturning_moment_50ms": lambda run: run.greatest_load("peak_overturning_moment_50ms"),
-        "dynamic_crush": _of_barrier(lambda run: run.dynamic_crush),
-        "residual_crush": _of_barrier(lambda run: max(0.0, _greatest(run.result, "deflection"))),
-        "max_displacement": _of_barrier(_max_displacement),
-        "vehicle_penetration": _vehicle_penetration,
-        "contact_overlap": _of_barrier(lambda run: run.result.statistics.deepest_point),
-        "barrier_deflection": _of_segments(lambda run: float(run.movement.max())),
-        "residual_barrier_deflection": _of_segments(lambda run: float(run.movement[-1])),
-        "max_overturning_ratio": _of_segments(_max_overturning_ratio),
-        "time_of_zero_velocity": _of_barrier(_time_of_zero_velocity),
-        "restitution": _of_barrier(_restitution),
-        "delta_v": _of_barrier(_delta_v),
-        "impact_severity": _of_barrier(_impact_severity),
-        "exit_speed": lambda run: float(np.hypot(*run.result.final_velocity[:2])),
-        "exit_angle": _of_barrier(_exit_angle),
-        "max_roll": lambda run: float(np.abs(run.result.roll).max()),
-        "max_pitch": lambda run: float(np.abs(run.result.pitch).max()),
-        "max_yaw": lambda run: float(np.abs(run.result.yaw).max()),
-        "wheel_climb": _wheel_climb,
-        "max_articulation_angle": _of_joint(lambda run: float(np.abs(run.result.articulation_angle).max())),
-        "peak_joint_force": _of_joint(
-            lambda run: float(np.linalg.norm(run.result.joint_force, axis=1).max())
+        "peak_element_force": histories(lambda run: run.greatest_load("peak_force")),
+        "peak_element_force_50ms": histories(lambda run: run.greatest_load("peak_force_50ms")),
+        "peak_overturning_moment": histories(lambda run: run.greatest_load("peak_overturning_moment")),
+        "peak_overturning_moment_50ms": histories(
+            lambda run: run.greatest_load("peak_overturning_moment_50ms")
         ),
-        "energy_residual": lambda run: energy_residual(run.result),
-        "momentum_residual": lambda run: run.result.momentum_residual,
-        "steps": lambda run: float(run.result.statistics.steps),
-        "run_time": lambda run: run.result.run_time,
-        "end_time": lambda run: float(run.result.time[-1]),
+        "dynamic_crush": end(_of_barrier(lambda run: run.dynamic_crush)),
+        "residual_crush": end(_of_barrier(lambda run: max(0.0, run.outcome.deflection))),
+        "max_displacement": motion(_of_barrier(lambda run: run.motion.way - run.scene.standoff)),
+        "vehicle_penetration": histories(_vehicle_penetration),
+        "contact_overlap": end(_of_barrier(lambda run: run.outcome.statistics.deepest_point)),
+        "barrier_deflection": histories(_of_segments(lambda run: float(run.movement.max()))),
+        "residual_barrier_deflection": histories(_of_segments(lambda run: float(run.movement[-1]))),
+        "max_overturning_ratio": histories(_of_segments(_max_overturning_ratio)),
+        "time_of_zero_velocity": motion(_of_barrier(_time_of_zero_velocity)),
+        "restitution": motion(_of_barrier(_restitution)),
+        "delta_v": motion(_of_barrier(lambda run: run.motion.velocity_change)),
+        "impact_severity": end(_of_barrier(_impact_severity)),
+        "exit_speed": end(lambda run: math.hypot(*run.outcome.final_velocity[:2])),
+        "exit_angle": normal_force(_of_barrier(_exit_angle)),
+        "max_roll": attitude(lambda run: math.degrees(run.attitude.roll)),
+        "max_pitch": attitude(lambda run: math.degrees(run.attitude.pitch)),
+        "max_yaw": attitude(lambda run: math.degrees(run.attitude.yaw)),
+        "wheel_climb": histories(_wheel_climb),
+        "max_articulation_angle": histories(
+            _of_joint(lambda run: float(np.abs(run.result.articulation_angle).max()))
+        ),
+        "peak_joint_force": histories(
+            _of_joint(lambda run: float(np.linalg.norm(run.result.joint_force, axis=1).max()))
+        ),
+        "energy_residual": energy(lambda run: energy_residual(run.scene, run.energy)),
+        "momentum_residual": histories(lambda run: run.result.momentum_residual),
+        "steps": end(lambda run: float(run.outcome.statistics.steps)),
+        "run_time": end(lambda run: run.outcome.run_time),
+        "end_time": end(lambda run: run.extremes.end_time),
     }
 
 

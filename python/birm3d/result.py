@@ -339,6 +339,12 @@ class Result:
         """Scalars in SI, angles in degrees; see :mod:`birm3d.metrics`. Only those that the scene has."""
         return MappingProxyType(compute_metrics(self))
 
+    @property
+    def _energy_extremes(self) -> _core.ExtremeEnergy:
+        """Extremes of the energy ledger, of a result that was not read from a file [J]."""
+        assert isinstance(self._history, _core.History)
+        return self._history.extremes(_core.ExtremeGroups(energy=True)).energy
+
     def report(self) -> str:
         """Return what was computed, what was left out, and how the ledgers close, as text."""
         return self._report

@@ -128,7 +128,7 @@ def run_study(
                 advance(len(new))
 
             todo = [(run, row) for run, row in enumerate(table) if run not in outcomes]
-            run_all(simulation, names, wanted, todo, executor, finish)
+            run_all(simulation, names, wanted, todo, len(todo), executor, finish)
     except KeyboardInterrupt:
         message = f"stopped: {len(outcomes)} of {len(table)} runs are finished and {where}"
         raise StudyInterrupted(message, study(outcomes)) from None

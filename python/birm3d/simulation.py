@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from . import _core
@@ -14,7 +14,10 @@ from .result import Result
 from .settings import MU_TIRE_BARRIER, Settings
 from .vehicle import Vehicle
 
-__all__ = ["Scene", "Simulation"]
+__all__ = ["APPROACH", "Scene", "Simulation"]
+
+APPROACH = ("impact_speed", "impact_angle", "impact_offset", "standoff", "impact_yaw", "impact_roll")
+"""Numbers of a scene that say how the vehicle comes; nothing has to be made anew for others."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +42,25 @@ class Scene:
         if asked is not None:
             return asked
         return 0.0 if self.barrier is not None and self.barrier.friction == 0.0 else MU_TIRE_BARRIER
+
+    def approached(self, numbers: Mapping[str, float]) -> Scene:
+        """Return the same scene with other numbers of ``APPROACH``; not checked."""
+        scene = object.__new__(Scene)  # dataclasses.replace() takes longer than a metric
+        scene.__dict__.update(self.__dict__)
+        scene.__dict__.update(numbers)
+        return scene
+
+    @property
+    def approach(self) -> _core.Approach:
+        """How the vehicle comes, for the core."""
+        return _core.Approach(
+            speed=self.impact_speed,
+            angle=math.radians(self.impact_angle),
+            offset=self.impact_offset,
+            standoff=self.standoff,
+            yaw=math.radians(self.impact_yaw),
+            roll=math.radians(self.impact_roll),
+        )
 
 
 class Simulation:
@@ -112,12 +134,7 @@ class Simulation:
         self._core = _core.Simulation(
             vehicle=vehicle.core,
             barriers=[] if barrier is None else [barrier.core],
-            speed=self._scene.impact_speed,
-            angle=math.radians(self._scene.impact_angle),
-            offset=self._scene.impact_offset,
-            standoff=self._scene.standoff,
-            yaw=math.radians(self._scene.impact_yaw),
-            roll=math.radians(self._scene.impact_roll),
+            approach=self._scene.approach,
             settings=replace(self._scene.settings, mu_tire_barrier=self._scene.mu_tire_barrier).core,
             duration=duration,
         )
@@ -174,7 +191,7 @@ class Simulation:
         self._run_time += time.perf_counter() - start
         result = self.result()
         if self._scene.settings.time_step is not None:
-            warn_if_open(result)
+            warn_if_open(result.scene, result._energy_extremes)
         return result if frames is None else result.with_frames(frames)
 
     def step(self) -> bool:

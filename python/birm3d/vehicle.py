@@ -513,7 +513,9 @@ class Vehicle:
     def _core_unit(self, offset: Floats) -> _core.Unit:
         """Return the rigid body for the core; offset of its mass centre along the ground (3,) [m]."""
         if self._truss_laws is not None:
-            laws, which = np.unique(self._truss_laws, axis=0, return_inverse=True)
+            laws, which = self._truss_laws[:1], np.zeros(self.n_nodes, int)
+            if not (self._truss_laws == laws).all():  # sorting them takes longer than a short run
+                laws, which = np.unique(self._truss_laws, axis=0, return_inverse=True)
             curves = [
                 _core.knee_curve(k_initial=a, knee=d, k_hardening=b, f_max=f, k_unloading=u)
                 for a, d, b, f, u in laws.tolist()

@@ -98,3 +98,16 @@ def test_quick_robustness(program: str) -> None:
     )
     assert done.returncode == 0, done.stdout + done.stderr
     assert " 0 with a fault" in done.stdout
+
+
+def test_quick_batch() -> None:
+    """The program compares bits of every way to run a batch; it would end with an error if any differed."""
+    done = subprocess.run(
+        [sys.executable, "-W", "error", PROGRAM.parent / "bench_batch.py", "--quick"],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "same bits: 600 runs" in done.stdout
+    assert "error" in done.stdout.splitlines()[1]

@@ -3,16 +3,36 @@
 from __future__ import annotations
 
 import gc
+import signal
+import subprocess
+import sys
+import threading
+import time
 import tracemalloc
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
-from birm3d import Barrier, Simulation, Vehicle, ensemble, scenes
+from birm3d import (
+    Barrier,
+    LedgerWarning,
+    Settings,
+    Simulation,
+    StudyInterrupted,
+    Vehicle,
+    ensemble,
+    scenes,
+    sweep,
+)
 from birm3d.laboratory import elastic_block
+from birm3d.metrics import METRIC_UNITS, extremes_for
 
 METRICS = ["dynamic_crush", "exit_speed"]
+WEIGHTLESS = Settings(gravity=0.0, ground=False)
+# All that are made without histories; run_time is never the same.
+QUICK = tuple(name for name in METRIC_UNITS if extremes_for([name]) is not None and name != "run_time")
 
 
 def few_scenes() -> list[Simulation]:
@@ -41,6 +61,86 @@ def test_same_bits_on_any_executor_and_in_any_order() -> None:
     assert list(backwards.state_hash) == expected[::-1]
 
 
+def of_all_kinds() -> list[Simulation]:
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    loose = Barrier.jersey(length=18.0, segments=6, free_standing=True)
+    return [
+        *few_scenes(),
+        Simulation(car, Barrier.rigid_wall(width=10.0), 12.0, 0.0, impact_yaw=90.0),
+        Simulation(car, Barrier.rigid_wall(), 12.0, 40.0, standoff=1.0),
+        Simulation(car, loose, 20.0, 25.0, duration=0.2),
+        Simulation(Vehicle.preset("pickup", mesh_density=0.1), None, 15.0, impact_roll=170.0, duration=1.0),
+        Simulation(
+            Vehicle.preset("semi_truck", mesh_density=0.1), Barrier.rigid_wall(), 15.0, 15.0, duration=0.3
+        ),
+        scenes.w2(100, Settings(gravity=0.0, ground=False, time_step=1e-3)),
+    ]
+
+
+def test_metrics_without_histories_are_those_of_the_result() -> None:
+    assert len(QUICK) > 15
+    study = ensemble(of_all_kinds(), metrics=QUICK)
+    assert not study.failed
+    for i, simulation in enumerate(of_all_kinds()):
+        result = simulation.run()
+        assert study.state_hash[i] == f"{result.state_hash:016x}"
+        assert study.end_reason[i] == result.end_reason
+        for name in QUICK:
+            found, expected = float(study[name][i]), result.metrics.get(name, np.nan)
+            assert found == expected or (np.isnan(found) and np.isnan(expected)), (i, name)
+
+
+def test_extremes_are_those_of_the_rows() -> None:
+    """What the core finds is what NumPy finds in the rows; sums of three products round in either order."""
+    for simulation in of_all_kinds():
+        result, scene = simulation.run(), simulation.scene
+        metrics, start = result.metrics, result.velocity[0]
+        change = np.linalg.norm(result.velocity - start, axis=1)
+        assert metrics["delta_v"] == pytest.approx(change.max(), rel=1e-14) if scene.barrier else True
+        assert metrics["peak_deceleration"] == -result.acceleration[:, 0].min()
+        for name in ("roll", "pitch", "yaw"):
+            greatest = np.abs(getattr(result, name)).max()
+            assert metrics[f"max_{name}"] == pytest.approx(greatest, rel=1e-14)
+        scale = max(float(result.energy["kinetic"][0]), 0.005 * scene.vehicle.mass)
+        residual = np.abs(result.energy["residual"]).max() / scale
+        assert metrics["energy_residual"] == pytest.approx(residual, rel=1e-14)
+        assert metrics["end_time"] == result.time[-1]
+        if scene.barrier is None:
+            continue
+        assert metrics["peak_normal_force"] == result.barrier_normal_force.max()
+        towards = -np.asarray(scene.barrier.core.normal)
+        if abs(np.sin(np.radians(scene.impact_angle))) < 1e-9:
+            towards = start / np.linalg.norm(start)
+        way = ((result.position - result.position[0]) @ towards).max() - scene.standoff
+        assert metrics["max_displacement"] == pytest.approx(way, abs=1e-13)
+        if "time_of_zero_velocity" in metrics:
+            begun = scene.standoff / (start @ towards)
+            speeds = np.interp(
+                metrics["time_of_zero_velocity"] + begun, result.time, result.velocity @ towards
+            )
+            assert speeds == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_sweep_of_approaches_is_an_ensemble_of_scenes() -> None:
+    base = Simulation(Vehicle.preset("passenger_car", mesh_density=0.1), Barrier.rigid_wall(), 10.0)
+    given = {"impact_speed": [8.0, 12.0, 16.0], "impact_angle": [90.0, 60.0, 30.0], "standoff": [0.0, 0.5, 0]}
+    swept = sweep(base, mode="list", metrics=QUICK, **given)
+    scene = base.scene
+    made = ensemble(
+        [
+            Simulation(scene.vehicle, scene.barrier, v, angle, standoff=standoff)
+            for v, angle, standoff in zip(*given.values(), strict=True)
+        ],
+        metrics=QUICK,
+    )
+    with_histories = sweep(base, mode="list", metrics=[*QUICK, "momentum_residual"], **given)
+    assert not swept.failed
+    for other in (made, with_histories):
+        assert other.state_hash == swept.state_hash
+        for name in QUICK:
+            assert np.array_equal(other[name], swept[name], equal_nan=True), name
+
+
 def test_a_bad_run_stops_no_other() -> None:
     good = scenes.w2(10)
 
@@ -52,6 +152,64 @@ def test_a_bad_run_stops_no_other() -> None:
     assert study.error[1].startswith("ValueError: impact_speed must be")
     assert np.isnan(study["dynamic_crush"]).tolist() == [False, True, False]
     assert study.state_hash[0] == study.state_hash[2]
+
+
+def test_whatever_goes_wrong_is_told_as_the_run_alone_tells_it() -> None:
+    fixed = Settings(gravity=0.0, ground=False, time_step=0.2)
+    for bad in ({"impact_speed": -1.0}, {"impact_angle": 190.0}, {"standoff": -0.1}, {"settings": fixed}):
+        ((name, value),) = bad.items()
+        base = scenes.w2(10)
+        good = getattr(base.scene, name)
+        # With histories and without.
+        for metrics in (METRICS, [*METRICS, "momentum_residual"]):
+            study = sweep(base, parameters={name: [good, value, good]}, metrics=metrics)
+            assert [bool(error) for error in study.error] == [False, True, False]
+            scene = {"impact_speed": 22.352, "settings": WEIGHTLESS, **bad}
+            with pytest.raises(ValueError, match="must be") as alone:
+                Simulation(base.scene.vehicle, base.scene.barrier, **scene).run()
+            assert study.error[1] == f"{type(alone.value).__name__}: {alone.value}"
+            assert study.state_hash[0] == study.state_hash[2] != ""
+
+
+def test_a_fixed_step_that_is_too_long_is_warned_of() -> None:
+    coarse = scenes.w2(4, Settings(time_step=5e-3, gravity=0.0, ground=False))
+    with pytest.warns(LedgerWarning, match=r"energy_residual must be at most 0\.005"):
+        ensemble([coarse], metrics=METRICS)
+
+
+def interrupted(after: float, study_of: Simulation, speeds: list[float]) -> tuple[int, float]:
+    """Press Ctrl-C after a while; return how many runs are finished and how long the rest took [s]."""
+    pressed: list[float] = []
+
+    def press() -> None:
+        pressed.append(time.monotonic())
+        signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+
+    timer = threading.Timer(after, press)
+    timer.start()
+    with pytest.raises(StudyInterrupted) as stopped:
+        sweep(study_of, impact_speed=speeds, metrics=METRICS)
+    timer.join()
+    study = stopped.value.study
+    assert not study.failed
+    assert len(study.state_hash) == len(study)
+    return len(study), time.monotonic() - pressed[0]
+
+
+def test_ctrl_c_keeps_the_finished_runs() -> None:
+    speeds = np.linspace(18.0, 26.0, 200_000).tolist()
+    finished, took = interrupted(1.5, scenes.w2(10), speeds)
+    assert 0 < finished < len(speeds)
+    assert took < 5.0
+
+
+def test_ctrl_c_ends_a_run_that_takes_long() -> None:
+    endless = Settings(gravity=0.0, ground=False, time_step=1e-7)  # some minutes
+    vehicle, wall = elastic_block(1000), Barrier.rigid_wall()
+    slow = Simulation(vehicle, wall, 20.0, duration=10.0, settings=endless)
+    finished, took = interrupted(0.5, slow, [20.0, 21.0, 22.0])
+    assert finished == 0
+    assert took < 5.0
 
 
 def test_a_scene_is_run_from_its_start_and_not_changed() -> None:
@@ -82,6 +240,29 @@ def test_memory_does_not_grow_with_the_number_of_runs() -> None:
     peak(100)
     # Scenes under way, and for each run a row of one number and three texts: some 400 bytes.
     assert peak(6000) - peak(2000) < 4000 * 1000
+
+
+RESIDENT = """
+import re
+from pathlib import Path
+from birm3d import scenes, sweep
+
+def runs(count):
+    sweep(scenes.w2(200), impact_speed=[18.0 + 8.0 * i / count for i in range(count)], metrics=["exit_speed"])
+    return re.search(r"VmHWM:\\s+(\\d+) kB", Path("/proc/self/status").read_text())[1]
+
+runs(200)
+print(runs(1000), runs(5000))
+"""
+
+
+def test_the_core_keeps_nothing_of_a_run() -> None:
+    if not Path("/proc/self/status").exists():
+        pytest.skip("this system does not say how much memory a process had at most")
+    done = subprocess.run([sys.executable, "-c", RESIDENT], capture_output=True, text=True, check=True)
+    few, many = (int(text) * 1024 for text in done.stdout.split())
+    # A history of one run is 400 kB, its state 50 kB; a row of the study and what it is made of some kB.
+    assert many - few < 4000 * 2000
 
 
 def test_bad_input() -> None:

@@ -13,12 +13,6 @@ namespace {
 // Cosine above which the normals of two instants are one surface's.
 constexpr double sharp_turn = 0.5;
 
-// Held nodes move along n + m, m the normal of the instant before, so that a path is followed to second order
-// while the body turns.
-Vec3 holding_direction(const Vec3& n, const Vec3& m) {
-    return (n + m) / (1.0 + n.dot(m));
-}
-
 // Nodes whose truss ceased to push. One that follows a receding surface stops where its truss reaches zero
 // force; one that the truss pushes off the surface springs to that length at once, and what the truss had
 // stored is lost, which a dent keeps at its surface all the same. Few nodes a step do. Returns what the first kind
@@ -143,15 +137,22 @@ struct NodeShares {
     bool drawn(std::size_t i) const { return faces.per_force[i] > 0.0; }
 };
 
+// Returns how many nodes push.
 template <class Share>
-void finish(const TrussMesh& mesh, std::size_t b, double nodes, const TrussBlockState& before,
-            const Lanes& gap, const Share& share, TrussBlockState& now, CrushSums& sums) {
-    if (nodes >= left) sums.released_work += release(mesh.block[b], before, gap, share, now);
-    now.touching = std::fmod(nodes, left) > 0.0;
-    now.slack = greatest_slack(now.force, now.deflection, now.residual) > tolerance::touching_gap;
+double finish(const TrussMesh& mesh, std::size_t b, double nodes, const TrussBlockState& before,
+              const Lanes& gap, const Share& share, TrussBlockState& now, CrushSums& sums) {
+    double pushing = nodes;
+    if (nodes >= left) {
+        sums.released_work += release(mesh.block[b], before, gap, share, now);
+        pushing = std::fmod(nodes, left);
+    }
+    now.touching = pushing > 0.0;
+    now.slack = pushing < static_cast<double>(lanes) &&
+                greatest_slack(now.force, now.deflection, now.residual) > tolerance::touching_gap;
     now.box = now.touching
                   ? before.box  // the block is looked at in any case while it touches
                   : Box::around(lanes, [&now](std::size_t i) { return Vec3(now.x[i], now.y[i], now.z[i]); });
+    return pushing;
 }
 
 }  // namespace
@@ -162,17 +163,22 @@ InverseMass::InverseMass(const RigidBody& body, const Vec3& n) : constant(body.i
     form = cross.transpose() * body.inverse_inertia * cross;
 }
 
+FlatContact::FlatContact(const RigidBody& body, const HalfSpace& face_, const HalfSpace& face_before)
+    : face(face_),
+      holding((face.normal + face_before.normal) / (1.0 + face.normal.dot(face_before.normal))),
+      inverse_mass(body, face.normal) {}
+
 void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
            const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums) {
     alignas(64) Lanes gap;
     const Vec3& n = surface.face.normal;
-    const Vec3 h = holding_direction(n, surface.normal_before);
+    const Vec3& h = surface.holding;
     const double nodes = press_rows.flat(columns_of(mesh, b, factor),
                                          {n.x(), n.y(), n.z(), surface.face.offset, h.x(), h.y(), h.z()},
                                          columns_of<const double>(before), columns_of<double>(now),
                                          gap.data(), contact.pressure.data(), sums.nodes);
-    finish(mesh, b, nodes, before, gap, PlaneShare{n}, now, sums);
-    if (now.touching) sums.stiffness += contact_stiffness(surface, mesh, b, now, std::fmod(nodes, left));
+    const double pushing = finish(mesh, b, nodes, before, gap, PlaneShare{n}, now, sums);
+    if (now.touching) sums.stiffness += contact_stiffness(surface, mesh, b, now, pushing);
 }
 
 void crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh, std::size_t b,

@@ -163,26 +163,12 @@ void place(const Scene& scene, const Vec3& heading, State& state) {
 
 Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barrier> barrier_,
              const Approach& approach_, const Settings& settings_, std::optional<double> duration_)
-    : vehicle(std::move(vehicle_)),
-      barrier(std::move(barrier_)),
-      approach(approach_),
-      settings(settings_),
-      duration(duration_) {
+    : vehicle(std::move(vehicle_)), barrier(std::move(barrier_)), settings(settings_), duration(duration_) {
     require_valid(settings);
     if (!vehicle || vehicle->units.empty()) refuse("vehicle", "at least one unit", 0.0);
-    require_not_negative("impact_speed", approach.speed);
-    if (!(approach.angle >= 0.0 && approach.angle <= std::numbers::pi))
-        refuse("impact_angle", "within 0 and 180 deg", approach.angle * 180.0 / std::numbers::pi);
-    require_finite("impact_yaw", approach.yaw);
-    require_finite("impact_roll", approach.roll);
-    require_finite("impact_offset", approach.offset);
-    if (!(std::isfinite(approach.standoff) && approach.standoff >= 0.0))
-        refuse("standoff", "finite and >= 0 m, or the vehicle would start inside the barrier",
-               approach.standoff);
+    set_approach(approach_);
     if (duration) require_positive("duration", *duration);
     if (!duration && !barrier) refuse("duration", "given (s) where there is no barrier", "none");
-    if (!duration && !(approach.speed > 0.0))
-        refuse("duration", "given (s) where the vehicle stands still", "none");
     if (barrier)
         for (const Element& element : barrier->elements)
             obstacles.push_back({element.shape,
@@ -208,6 +194,19 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
         obstacles.push_back(
             {HalfSpace{Vec3::UnitZ(), 0.0}, Mat3::Identity(), Vec3::Zero(), settings.mu_body, ground});
     map = ObstacleMap(obstacles, free_segments());
+}
+
+void Scene::set_approach(const Approach& a) {
+    require_not_negative("impact_speed", a.speed);
+    if (!(a.angle >= 0.0 && a.angle <= std::numbers::pi))
+        refuse("impact_angle", "within 0 and 180 deg", a.angle * 180.0 / std::numbers::pi);
+    require_finite("impact_yaw", a.yaw);
+    require_finite("impact_roll", a.roll);
+    require_finite("impact_offset", a.offset);
+    if (!(std::isfinite(a.standoff) && a.standoff >= 0.0))
+        refuse("standoff", "finite and >= 0 m, or the vehicle would start inside the barrier", a.standoff);
+    if (!duration && !(a.speed > 0.0)) refuse("duration", "given (s) where the vehicle stands still", "none");
+    approach = a;
 }
 
 double Scene::reference_speed() const {
@@ -271,6 +270,12 @@ std::uint64_t Scene::fingerprint() const {
 
 State Scene::initial_state() const {
     State state(*vehicle);
+    start(state);
+    return state;
+}
+
+void Scene::start(State& state) const {
+    state.reset(*vehicle);
     for (std::size_t i = 0; i < free_segments(); ++i) {
         const Element& element = barrier->elements[i];
         BodyState segment;
@@ -309,7 +314,6 @@ State Scene::initial_state() const {
         if (nearest < -rounding) refuse("initial gap of the vehicle to the barrier", ">= 0 m", nearest);
     }
     state.next_step = tolerance::first_contact_step;
-    return state;
 }
 
 }  // namespace birm3d

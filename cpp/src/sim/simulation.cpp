@@ -207,8 +207,20 @@ Simulation::Simulation(Scene scene)
       trial_(*scene_.vehicle),
       recorder_(scene_, state_) {}
 
-void Simulation::reset() {
-    *this = Simulation(scene_);
+void Simulation::start(const Scene& scene) {
+    if (scene.vehicle != scene_.vehicle) {
+        *this = Simulation(scene);
+        return;
+    }
+    scene_ = scene;
+    start(Approach(scene_.approach));
+}
+
+void Simulation::start(const Approach& approach) {
+    scene_.set_approach(approach);
+    scene_.start(state_);
+    trial_.restart();
+    recorder_.restart(scene_, state_);
 }
 
 void Simulation::restore(const Snapshot& snapshot) {

@@ -65,6 +65,7 @@ class Skin {
         return b < mesh_.skin_blocks || near_[near].index != scene_.ground;
     }
     void find_seen(std::size_t b, const Box& box, double margin);
+    PlaneSums* plane_of(std::size_t near);
     PlaneSums& sums_of_plane(std::size_t near, const HalfSpace& plane);
     void press_plane(PlaneSums& plane, std::size_t b);
     void press_shapes(std::size_t b);
@@ -113,6 +114,7 @@ class Skin {
     Box box_;  // around the nodes of the block at hand
     NodeFaces faces_;
     BlockContact contact_;
+    std::optional<Vec3> plane_normal_;        // of all nodes in contact_, where they saw one plane
     std::array<std::size_t, lanes> nearest_;  // place in seen_ of each node's obstacle
 };
 

@@ -178,12 +178,8 @@ bool Skin::press(std::size_t b) {
     const bool drawn = find_dents_of_block(b);
     if (seen_.empty() && !sprung_back_) return false;
     trial_.state.statistics.node_evaluations += lanes;
-    std::optional<HalfSpace> plane;
-    if (seen_.size() == 1 && !drawn) {
-        const NearObstacle& only = near_[seen_[0]];
-        plane = flat_part(scene_.obstacles[only.index].shape, only.now, box_);
-    }
-    if (!plane && !seen_.empty()) {
+    PlaneSums* const plane = seen_.size() == 1 && !drawn ? plane_of(seen_[0]) : nullptr;
+    if (plane == nullptr && !seen_.empty()) {
         look(b);
         const bool clear = *std::min_element(faces_.gap.begin(), faces_.gap.end()) >= 0.0;
         if (clear && !from(b).touching && !from(b).slack && !sprung_back_) return false;
@@ -192,11 +188,20 @@ bool Skin::press(std::size_t b) {
     trial_.stale[u_].add(b);
     if (seen_.empty())
         now_.trusses.block[b] = sprung_;
-    else if (plane)
-        press_plane(sums_of_plane(seen_[0], *plane), b);
+    else if (plane != nullptr)
+        press_plane(*plane, b);
     else
         press_shapes(b);
     return true;
+}
+
+// The plane that is all that the block at hand can meet of an obstacle; null if it can meet more.
+Skin::PlaneSums* Skin::plane_of(std::size_t near) {
+    const Shape& shape = scene_.obstacles[near_[near].index].shape;
+    if (std::holds_alternative<HalfSpace>(shape) && !planes_.empty() && planes_.back().near == near)
+        return &planes_.back();  // the same plane to all blocks
+    const auto plane = flat_part(shape, near_[near].now, box_);
+    return plane ? &sums_of_plane(near, *plane) : nullptr;
 }
 
 void Skin::find_seen(std::size_t b, const Box& box, double margin) {
@@ -248,7 +253,8 @@ void Skin::find_rate_factor(std::size_t near, const TrussBlockState& next, const
 
 void Skin::press_plane(PlaneSums& plane, std::size_t b) {
     TrussBlockState& next = now_.trusses.block[b];
-    contact_.set_normal(plane.surface.face.normal);
+    if (!plane_normal_ || *plane_normal_ != plane.surface.face.normal)
+        contact_.set_normal(plane_normal_.emplace(plane.surface.face.normal));
     const Places places{next.x, next.y, next.z};
     crush_with_rate(plane.near, next, places, plane.sums, [&](const Lanes* factor, CrushSums& sums) {
         crush(plane.surface, mesh_, b, factor, from(b), next, contact_, sums);

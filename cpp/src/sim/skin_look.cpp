@@ -24,6 +24,7 @@ void Skin::look(std::size_t b) {
     faces_.gap.fill(infinity);
     faces_.per_force.fill(0.0);
     contact_.set_normal(Vec3::UnitX());
+    plane_normal_.reset();
     nearest_.fill(0);
     look_at(b, block);
     const bool changed = find_entered_faces(block);

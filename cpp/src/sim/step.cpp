@@ -253,12 +253,17 @@ Trial::Trial(const Vehicle& vehicle) : state(vehicle) {
         impulses.emplace_back(unit.wheels.size());
         active.emplace_back(unit.trusses.blocks);
         stale.emplace_back(unit.trusses.blocks);
-        for (std::size_t block = 0; block < unit.trusses.blocks; ++block)
-            stale.back().add(block);
     }
+    restart();
     at_start.impulses = at_end.impulses = impulses;
     joint_impulses.resize(vehicle.joints.size());
     at_start.joint_impulses = at_end.joint_impulses = joint_impulses;
+}
+
+void Trial::restart() {
+    for (std::size_t u = 0; u < stale.size(); ++u)
+        for (std::size_t block = 0; block < state.units[u].trusses.block.size(); ++block)
+            stale[u].add(block);
 }
 
 bool Trial::body_held() const {

@@ -1,4 +1,4 @@
-// FNV-1a over the bytes of a state: equal hashes mean equal bits.
+// A hash of the numbers of a state: equal hashes mean equal bits.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,12 @@ class Hash {
     void add(double value) {
         std::uint64_t bits;
         std::memcpy(&bits, &value, sizeof bits);
-        for (int shift = 0; shift < 64; shift += 8) {
-            value_ ^= (bits >> shift) & 0xffU;
-            value_ *= 0x100000001b3ULL;
-        }
+        add(bits);
+    }
+    // Each number goes in by a one-to-one map of the value: the product carries its bits up, the shift brings them down.
+    void add(std::uint64_t bits) {
+        value_ = (value_ ^ bits) * 0x9e3779b97f4a7c15ULL;
+        value_ ^= value_ >> 32;
     }
     void add(std::span<const double> values) {
         for (const double value : values)

@@ -40,11 +40,12 @@ struct InverseMass {
 
 // A surface that presses a unit, now and at the instant before (body axes).
 struct FlatContact {
-    FlatContact(const RigidBody& body, const HalfSpace& face_, const HalfSpace& face_before)
-        : face(face_), normal_before(face_before.normal), inverse_mass(body, face_.normal) {}
+    FlatContact(const RigidBody& body, const HalfSpace& face_, const HalfSpace& face_before);
 
     HalfSpace face;
-    Vec3 normal_before;
+    // Held nodes move along it for each unit of gap: along n + m, m the normal of the instant before, so that a path is
+    // followed to second order while the body turns.
+    Vec3 holding;
     InverseMass inverse_mass;
 };
 

@@ -53,6 +53,8 @@ struct JointHistory {
 
 struct History {
     Column time;  // s
+    Vec3
+        towards;  // unit vector: towards the barrier, square to its line; of a path along the line that of the path
     std::vector<UnitHistory> units;
     std::vector<ObstacleHistory> obstacles;  // of the elements that were touched
     std::vector<JointHistory> joints;
@@ -63,15 +65,29 @@ struct History {
     double momentum_residual = 0.0;  // max |m a - sum of forces| / max |force|, over all units
 };
 
+// Which columns of a history are wanted.
+struct Channels {
+    bool energies = true;
+    bool normal_force = true;
+    bool motion = true;
+    bool forces = true;  // all other forces, and what elements, joints and segments do; only with the motion
+};
+
 class Recorder {
   public:
     Recorder(const Scene& scene, const State& start);
+
+    // Another record of the same vehicle, in the same memory.
+    void restart(const Scene& scene, const State& start);
 
     // A step that was accepted. A rigid impact at one of its ends is a row, and a step without length, of its own.
     void add(const Scene& scene, const Trial& accepted);
 
     std::size_t rows() const { return values_.size() / width_; }
     History resample(const Scene& scene) const;
+
+    // The same in the memory of another history; columns that are not wanted have no rows.
+    void resample(const Scene& scene, const Channels& wanted, History& history) const;
 
   private:
     struct Loads {
@@ -89,6 +105,14 @@ class Recorder {
     void add_row(const Scene& scene, double time, const Energies& energies,
                  const std::vector<BodyState>& bodies, const Loads& loads);
     ObstacleRow& obstacle_row(std::size_t row, std::size_t obstacle);
+    // `step_of`: row at which the step begins that holds each output instant.
+    void resample_energies(const std::vector<std::size_t>& step_of, History& history) const;
+    void resample_normal_force(const std::vector<std::size_t>& step_of, std::size_t offset,
+                               const Column& time, UnitHistory& unit) const;
+    void resample_motion(const std::vector<std::size_t>& step_of, std::size_t offset, const Column& time,
+                         const Unit& model, double gravity, UnitHistory& unit) const;
+    double resample_forces(const std::vector<std::size_t>& step_of, std::size_t offset, const Column& time,
+                           const Unit& model, double gravity, UnitHistory& unit, double& worst) const;
     void resample_obstacles(const std::vector<std::size_t>& step_of, History& history) const;
     void resample_segments(const Scene& scene, const std::vector<std::size_t>& step_of,
                            History& history) const;

@@ -23,6 +23,8 @@ struct Approach {
     double standoff = 0.0;  // m between the nearest node and the barrier, >= 0
     double yaw = 0.0;       // rad by which the nose points to the left of the path
     double roll = 0.0;      // rad
+
+    bool operator==(const Approach&) const = default;
 };
 
 // What the vehicle can touch: an element of the barrier, or the ground.
@@ -57,6 +59,10 @@ struct Scene {
     std::size_t free_segments() const { return barrier ? barrier->segments.size() : 0; }
 
     State initial_state() const;
+    void start(State& state) const;  // the same in the memory of a state of the vehicle
+
+    // Another start; refuses what the constructor refuses.
+    void set_approach(const Approach& approach);
 
     // Hash of the vehicle and the barrier: equal for equal scenes, wherever they were made.
     std::uint64_t fingerprint() const;

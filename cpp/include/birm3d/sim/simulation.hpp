@@ -29,7 +29,12 @@ class Simulation {
     // From the present state to the end. `poll` is called now and then; what it throws ends the run.
     void run(const std::function<void()>& poll);
 
-    void reset();
+    void reset() { start(Approach(scene_.approach)); }
+
+    // To the start of another scene, or of this one with another approach. Memory is used again, where the vehicle is
+    // the same one. Refuses what Scene refuses; then a start that is not refused comes next.
+    void start(const Scene& scene);
+    void start(const Approach& approach);
 
     const Scene& scene() const { return scene_; }
     const State& state() const { return state_; }

@@ -65,6 +65,9 @@ class BlockSet {
 struct Trial {
     explicit Trial(const Vehicle& vehicle);
 
+    // Beside another state of the same vehicle, in the same memory.
+    void restart();
+
     double dt = 0.0;
     State state;                            // at t + dt; trusses only where active
     std::vector<BlockSet> active;           // (units) blocks near the barrier

@@ -23,15 +23,29 @@ struct UnitMotion {
 };
 
 struct UnitState : UnitMotion {
-    explicit UnitState(const Unit& unit) : trusses(unit.trusses) {
+    explicit UnitState(const Unit& unit) : trusses(unit.trusses) { group(); }
+
+    // Back to how it was made, in the same memory.
+    void reset(const Unit& unit) {
+        body = {};
+        skin = {};
+        touches.clear();
+        dented.clear();
+        trusses.reset(unit.trusses);
+        group();
+    }
+
+    TrussState trusses;
+
+  private:
+    void group() {
+        groups.clear();
         for (std::size_t b = 0; b < trusses.block.size(); ++b) {
             const bool first = b % BlockGroup::size == 0;
             if (first) groups.emplace_back();
             groups.back().add(trusses.block[b], first);
         }
     }
-
-    TrussState trusses;
 };
 
 // Energies in J; all but `kinetic` and `potential` grow from zero.
@@ -81,6 +95,14 @@ struct State : Progress {
     explicit State(const Vehicle& vehicle) {
         for (const Unit& unit : vehicle.units)
             units.emplace_back(unit);
+    }
+
+    // Back to how it was made, in the same memory; of the same vehicle.
+    void reset(const Vehicle& vehicle) {
+        static_cast<Progress&>(*this) = {};
+        for (std::size_t u = 0; u < units.size(); ++u)
+            units[u].reset(vehicle.units[u]);
+        segments.clear();
     }
 
     std::vector<UnitState> units;

@@ -1,6 +1,7 @@
 // What a crash changes in a unit's skin: blocks parallel to TrussMesh's.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "birm3d/base/hash.hpp"
@@ -24,7 +25,10 @@ inline bool is_slack(const TrussBlockState& block, std::size_t i) {
 }
 
 struct TrussState {
-    explicit TrussState(const TrussMesh& mesh) : block(mesh.blocks) {
+    explicit TrussState(const TrussMesh& mesh) : block(mesh.blocks) { reset(mesh); }
+
+    // Back to the uncrushed skin.
+    void reset(const TrussMesh& mesh) {
         for (std::size_t b = 0; b < mesh.blocks; ++b) {
             block[b] = {};
             block[b].x = mesh.block[b].node_x;
@@ -36,11 +40,19 @@ struct TrussState {
 
     std::vector<TrussBlockState> block;
 
+    // Eight hashes in turn: each number waits for the one before it in its own hash only.
     void add_to(Hash& hash) const {
+        constexpr std::size_t turns = 8;
+        static_assert(lanes % turns == 0);
+        std::array<Hash, turns> parts;
         for (const TrussBlockState& b : block)
             for (const Lanes* column :
                  {&b.x, &b.y, &b.z, &b.deflection, &b.force, &b.peak_deflection, &b.residual})
-                hash.add(*column);
+                for (std::size_t i = 0; i < lanes; i += turns)
+                    for (std::size_t turn = 0; turn < turns; ++turn)
+                        parts[turn].add((*column)[i + turn]);
+        for (const Hash& part : parts)
+            hash.add(part.value());
     }
 };
 

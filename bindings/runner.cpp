@@ -1,0 +1,101 @@
+#include "birm3d/ensemble/runner.hpp"
+
+#include <pybind11/stl.h>
+
+#include <atomic>
+#include <exception>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "register.hpp"
+
+namespace birm3d::bindings {
+
+namespace {
+
+// Ends runs from another thread.
+struct Stop {
+    std::atomic<bool> set = false;
+};
+struct Stopped {};
+
+// What a run came to, or what went wrong with it.
+struct Run {
+    Outcome outcome;
+    std::exception_ptr error;
+
+    const Outcome& checked() const {
+        if (error) std::rethrow_exception(error);
+        return outcome;
+    }
+};
+
+using Job = std::pair<const Simulation*, Approach>;
+
+// Those that were run before `stop`.
+std::vector<Run> run_all(Runner& runner, const std::vector<Job>& jobs, const ExtremeGroups& wanted,
+                         const Stop& stop) {
+    const auto poll = [&stop] {
+        if (stop.set) throw Stopped();
+    };
+    std::vector<Run> runs;
+    runs.reserve(jobs.size());
+    const Simulation* last = nullptr;
+    for (const auto& [simulation, approach] : jobs) {
+        Run run;
+        try {
+            poll();
+            if (simulation != std::exchange(last, nullptr)) runner.set_scene(simulation->scene());
+            last = simulation;
+            run.outcome = runner.run(approach, wanted, poll);
+        } catch (const Stopped&) {
+            break;
+        } catch (...) {
+            run.error = std::current_exception();
+        }
+        runs.push_back(std::move(run));
+    }
+    return runs;
+}
+
+}  // namespace
+
+void register_runner(py::module_& m) {
+    py::class_<Stop>(m, "Stop", "Ends runs from another thread.")
+        .def(py::init<>())
+        .def("set", [](Stop& stop) { stop.set = true; })
+        .def("is_set", [](const Stop& stop) { return stop.set.load(); });
+
+    py::class_<Outcome>(m, "Outcome", "What a run came to (SI).")
+        .def_readonly("end_reason", &Outcome::end_reason)
+        .def_readonly("state_hash", &Outcome::state_hash)
+        .def_readonly("statistics", &Outcome::statistics)
+        .def_readonly("run_time", &Outcome::run_time, "s, wall time of the stepping")
+        .def_property_readonly(
+            "final_velocity",
+            [](const Outcome& outcome) {
+                const Vec3& v = outcome.final_velocity;
+                return std::tuple(v.x(), v.y(), v.z());
+            },
+            "m/s, of unit 0, world")
+        .def_readonly("deflection", &Outcome::deflection, "m, greatest of all trusses, at the end")
+        .def_readonly("peak_deflection", &Outcome::peak_deflection, "m, and during the run")
+        .def_readonly("extremes", &Outcome::extremes);
+
+    py::class_<Run>(m, "Run", "A run that is over.")
+        .def("outcome", &Run::checked, py::return_value_policy::reference_internal,
+             "What it came to; raises what went wrong.");
+
+    py::class_<Runner>(m, "Runner",
+                       "Runs one after the other in the same memory, of which no histories are kept.")
+        .def(py::init<>())
+        .def("run", &run_all, py::arg("jobs"), py::arg("wanted"), py::arg("stop"),
+             py::call_guard<py::gil_scoped_release>(),
+             "Run scenes from their starts, each with an approach of its own; the simulations stay as they "
+             "are. "
+             "Returns those that\nwere run before `stop` was set.");
+}
+
+}  // namespace birm3d::bindings

@@ -1,0 +1,159 @@
+// Resampling of what joints, elements of the barrier and free-standing segments do.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "birm3d/base/rotation.hpp"
+#include "recorder_rows.hpp"
+
+namespace birm3d {
+
+void Recorder::resample_joints(const Scene& scene, const std::vector<std::size_t>& step_of,
+                               History& history) const {
+    const std::vector<Joint>& joints = scene.vehicle->joints;
+    const std::size_t first = width_ - segment_width * scene.free_segments() - joint_width * joints.size(),
+                      count = history.time.size();
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        JointHistory joint;
+        joint.force.assign(count, Vec3::Zero());
+        joint.moment.assign(count, Vec3::Zero());
+        const auto& leading = history.units[joints[j].leading].orientation;
+        const auto& trailing = history.units[joints[j].trailing].orientation;
+        for (std::size_t k = 0; k < count; ++k)
+            joint.angles.push_back(joint_angles(leading[k], trailing[k]));
+
+        const auto row_at = [&](std::size_t row) { return values_.data() + row * width_; };
+        const auto add = [&](std::size_t row, double share, Wrench& sum) {
+            const double* impulse = row_at(row + 1) + first + j * joint_width;
+            sum += {share * vec(impulse), share * vec(impulse + 3)};
+        };
+        Wrench before_step, previous;
+        std::size_t row = 0;
+        for (std::size_t k = 0; k < count && rows() > 1; ++k) {
+            for (; row < step_of[k]; ++row)
+                add(row, 1.0, before_step);
+            const double dt = row_at(row + 1)[at_time] - row_at(row)[at_time];
+            const double t = std::clamp(history.time[k] - row_at(row)[at_time], 0.0, dt);
+            Wrench now = before_step;
+            add(row, dt > 0.0 ? t / dt : 1.0, now);
+            if (k > 0) {
+                const double per = 1.0 / (history.time[k] - history.time[k - 1]);
+                joint.force[k] = per * (now.force - previous.force);
+                joint.moment[k] = per * (now.torque - previous.torque);
+            }
+            previous = now;
+        }
+        if (count > 1) joint.force[0] = joint.force[1], joint.moment[0] = joint.moment[1];
+        history.joints.push_back(std::move(joint));
+    }
+}
+
+// Forces and torques on the obstacles that were touched, as means over the output intervals.
+void Recorder::resample_obstacles(const std::vector<std::size_t>& step_of, History& history) const {
+    std::map<std::size_t, std::vector<const ObstacleRow*>>
+        touched;  // obstacle -> (rows), null where untouched
+    for (const ObstacleRow& row : obstacles_) {
+        auto& rows_of = touched[row.obstacle];
+        rows_of.resize(rows(), nullptr);
+        rows_of[row.row] = &row;
+    }
+    static constexpr std::array<double, obstacle_width> nothing{};
+    const auto time_at = [&](std::size_t row) { return values_[row * width_ + at_time]; };
+    for (const auto& [obstacle, rows_of] : touched) {
+        const auto view = [&](std::size_t r) {
+            const auto values = [&](std::size_t i) {
+                return rows_of[i] ? rows_of[i]->values.data() : nothing.data();
+            };
+            return StepView{values(r), values(r + 1), time_at(r + 1) - time_at(r)};
+        };
+        const auto within = [](const StepView& step, double t) {
+            std::array<double, 6> sum;
+            for (std::size_t i = 0; i < 6; ++i)
+                sum[i] = step.force_integral(at_load + i, at_load_bend + i, t) +
+                         step.impulse(at_load_impulse + i, t);
+            return sum;
+        };
+        ObstacleHistory of{obstacle, {}, {}};
+        const std::size_t count = history.time.size();
+        of.force.assign(count, Vec3::Zero());
+        of.moment.assign(count, Vec3::Zero());
+        std::array<double, 6> before_step{}, previous{};
+        std::size_t row = 0;
+        for (std::size_t k = 0; k < count && rows() > 1; ++k) {
+            for (; row < step_of[k]; ++row) {
+                const std::array<double, 6> whole = within(view(row), view(row).dt);
+                for (std::size_t i = 0; i < 6; ++i)
+                    before_step[i] += whole[i];
+            }
+            const StepView step = view(row);
+            std::array<double, 6> now =
+                within(step, std::clamp(history.time[k] - time_at(row), 0.0, step.dt));
+            std::array<double, 6> mean{};
+            for (std::size_t i = 0; i < 6; ++i) {
+                now[i] += before_step[i];
+                if (k > 0) mean[i] = (now[i] - previous[i]) / (history.time[k] - history.time[k - 1]);
+            }
+            of.force[k] = vec(mean.data());
+            of.moment[k] = vec(mean.data() + 3);
+            previous = now;
+        }
+        if (count > 1) of.force[0] = of.force[1], of.moment[0] = of.moment[1];
+        history.obstacles.push_back(std::move(of));
+    }
+}
+
+// Between rows a segment moves by what the vehicle does to it, as the record has it; what the ground and the pins do
+// within the step, the rest of its change of velocity, is spread evenly. So the momentum of all bodies adds up at every
+// instant.
+void Recorder::resample_segments(const Scene& scene, const std::vector<std::size_t>& step_of,
+                                 History& history) const {
+    const std::size_t segments = scene.free_segments(), count = history.time.size();
+    const std::size_t first = width_ - segment_width * segments;
+    static constexpr std::array<double, obstacle_width> nothing{};
+    for (std::size_t i = 0; i < segments; ++i) {
+        const RigidBody& body = scene.barrier->segments[i].body;
+        const double height = scene.barrier->segments[i].mass_center_height;
+        std::vector<const double*> loads(rows(), nothing.data());
+        for (const ObstacleRow& row : obstacles_)
+            if (row.obstacle == i) loads[row.row] = row.values.data();
+        const auto at = [&](std::size_t row) {
+            return values_.data() + row * width_ + first + i * segment_width;
+        };
+        const auto time_at = [&](std::size_t row) { return values_[row * width_ + at_time]; };
+
+        SegmentHistory segment;
+        double yaw = 0.0, last_angle = 0.0;
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t row = step_of[k], next = rows() > 1 ? row + 1 : row;
+            const double *a = at(row), *b = at(next), dt = time_at(next) - time_at(row);
+            const double t = std::clamp(history.time[k] - time_at(row), 0.0, dt), s = dt > 0.0 ? t / dt : 1.0;
+            const StepView load{loads[row], loads[next], dt};
+            const auto pushed = [&](double until) -> Vec3 {
+                const Vec3 impulse = load.force_integral3(at_load, at_load_bend, until) +
+                                     load.share(until) * vec(load.b + at_load_impulse);
+                return body.inverse_mass * Vec3(impulse.x(), impulse.y(), 0.0);
+            };
+            const Vec3 v0 = vec(a + at_segment_velocity), v1 = vec(b + at_segment_velocity);
+            const Vec3 p0 = vec(a + at_segment_position), p1 = vec(b + at_segment_position);
+            const bool held = v0.isZero(0.0) && v1.isZero(0.0);  // throughout the step
+            segment.velocity.push_back(held || s == 1.0 ? v1
+                                                        : Vec3(v0 + pushed(t) + s * (v1 - v0 - pushed(dt))));
+            segment.position.push_back(p0 + (p1 - p0) * (s * s * (3.0 - 2.0 * s)) +
+                                       dt * s * (1.0 - s) * ((1.0 - s) * v0 - s * v1) -
+                                       height * Vec3::UnitZ());
+            segment.yaw_rate.push_back((1.0 - s) * a[at_segment_spin] + s * b[at_segment_spin]);
+            const Eigen::Map<const Eigen::Vector4d> qa(a + at_segment_orientation),
+                qb(b + at_segment_orientation);
+            const Eigen::Vector4d q = (1.0 - s) * qa + s * (qa.dot(qb) < 0.0 ? -1.0 : 1.0) * qb;
+            const double angle = 2.0 * std::atan2(q[2], q[3]);
+            if (k > 0) yaw += std::remainder(angle - last_angle, 2.0 * std::numbers::pi);
+            last_angle = angle;
+            segment.yaw.push_back(yaw);
+        }
+        history.segments.push_back(std::move(segment));
+    }
+}
+
+}  // namespace birm3d
