@@ -180,8 +180,10 @@ bool Skin::press(std::size_t b) {
     if (seen_.empty() && !sprung_back_) return false;
     trial_.active[u_].add(b);
     trial_.stale[u_].add(b);
+    note_look(b);
     if (seen_.empty()) {
         now_.trusses.block[b] = sprung_;
+        now_.trusses.block[b].looked_at = true;
         return true;
     }
     if (seen_.size() == 1 && !drawn) {
@@ -193,6 +195,16 @@ bool Skin::press(std::size_t b) {
     }
     press_shapes(b);
     return true;
+}
+
+// For the statistics.
+void Skin::note_look(std::size_t b) {
+    now_.trusses.block[b].looked_at = true;
+    for (const std::size_t k : seen_)
+        obstacles_[k].seen = true;
+    if (before_.trusses.block[b].looked_at) return;
+    StepStatistics& statistics = trial_.state.statistics;
+    (b < mesh_.skin_blocks ? statistics.skin_nodes : statistics.tread_nodes) += mesh_.nodes_in(b);
 }
 
 void Skin::find_seen(std::size_t b, const Box& box, double margin) {

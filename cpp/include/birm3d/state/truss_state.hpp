@@ -15,7 +15,8 @@ struct alignas(64) TrussBlockState {
     Lanes peak_deflection, residual;  // greatest so far; where the unloading line meets zero force (m)
     Box box;                          // around the nodes where they were last let go, body axes
     bool touching;                    // does any node push on an obstacle?
-    bool slack;  // has an obstacle drawn any node out beyond the free length of its truss?
+    bool slack;      // has an obstacle drawn any node out beyond the free length of its truss?
+    bool looked_at;  // has any step? Statistics only
 };
 
 // Was the node drawn out beyond the free length of its truss? A truss does not pull.
