@@ -278,6 +278,10 @@ bool Trial::body_held() const {
     return any_sum(*this, [](const ContactImpulses& sum) { return sum.member_contacts > 0; });
 }
 
+bool Trial::body_held_by_barrier() const {
+    return any_sum(*this, [](const ContactImpulses& sum) { return sum.barrier_normal > 0.0; });
+}
+
 void try_step(const Scene& scene, const State& from, double dt, const StepOptions& options, Trial& trial) {
     State& now = trial.state;
     begin(from, dt, trial);
@@ -303,6 +307,8 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
 
     half_kick(scene, Stage::after_drift, options, trial);
     book_motion(scene, now);
+    // A post between nodes meets nothing but the rigid body.
+    if (trial.body_held_by_barrier()) now.touched = true;
 }
 
 namespace {

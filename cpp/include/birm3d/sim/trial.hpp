@@ -80,6 +80,7 @@ struct Trial {
     double impact_after;   // a rigid impact begins this long after t (s)
 
     bool body_held() const;  // did the rigid body meet the barrier or the ground?
+    bool body_held_by_barrier() const;
 };
 
 struct StepOptions {
