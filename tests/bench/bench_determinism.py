@@ -30,8 +30,17 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 RESULTS = Path(__file__).parent / "results/determinism"
+HEAD = ("build", "way", "scene", "hash")
 RESTORED = 20
 PORTABLE = "-O3"
+COMPILERS = ("gcc", "clang")
+# How it is built: in which tree, with what; those that share a tree build anew only what differs.
+BUILDS = {
+    PORTABLE: ("release", ["-DBIRM3D_FASTEST_PATH=avx512"]),
+    f"{PORTABLE}, up to avx2": ("release", ["-DBIRM3D_FASTEST_PATH=avx2"]),
+    f"{PORTABLE}, up to baseline": ("release", ["-DBIRM3D_FASTEST_PATH=baseline"]),
+    "-O0": ("debug", ["-DCMAKE_BUILD_TYPE=Debug"]),
+}
 
 # What is run with each build; a program of its own, as each has a module of its own.
 PROGRAM = """
@@ -95,13 +104,13 @@ print(json.dumps({name: min(case.run().run_time for _ in range(30)) for name, ca
 """
 
 
-def build(place: Path, compiler: Sequence[str], *options: str) -> Path:
-    """Build the module and return the folder to import the package from."""
-    tree, package = place / "build", place / "python"
-    place.mkdir(parents=True)
-    wrapper = place / "compiler"  # one word, whatever the command
-    wrapper.write_text(f'#!/bin/sh\nexec {shlex.join(compiler)} "$@"\n', encoding="utf-8")
-    wrapper.chmod(0o755)
+def build(tree: Path, package: Path, compiler: Sequence[str], *options: str) -> Path:
+    """Build the module in a tree, which may be of another build, and return the folder to import from."""
+    tree.mkdir(parents=True, exist_ok=True)
+    wrapper = tree / "compiler"  # one word, whatever the command
+    if not wrapper.exists():
+        wrapper.write_text(f'#!/bin/sh\nexec {shlex.join(compiler)} "$@"\n', encoding="utf-8")
+        wrapper.chmod(0o755)
     command = ["cmake", "-S", ROOT, "-B", tree, "-DBIRM3D_BUILD_PYTHON=ON", "-DBIRM3D_BUILD_TESTS=OFF"]
     command += ["-DBIRM3D_WARNINGS_AS_ERRORS=OFF", f"-DPython_EXECUTABLE={sys.executable}", *options]
     run(command, {"CXX": str(wrapper)})
@@ -109,7 +118,6 @@ def build(place: Path, compiler: Sequence[str], *options: str) -> Path:
     shutil.copytree(ROOT / "python", package, ignore=shutil.ignore_patterns("_core*.so", "__pycache__"))
     (module,) = tree.glob("bindings/_core*.so")
     shutil.copy(module, package / "birm3d")
-    shutil.rmtree(tree)
     return package
 
 
@@ -154,6 +162,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--gcc", metavar="COMMAND", default="g++", help="the first compiler")
     parser.add_argument("--clang", metavar="COMMAND", default="clang++", help="the second")
+    parser.add_argument("--only", nargs="+", choices=COMPILERS, help="not both (default: both)")
     parser.add_argument("--native", action="store_true", help="also time a build for this machine")
     parser.add_argument(
         "--quick", action="store_true", help="what is installed, three scenes, three instants"
@@ -166,22 +175,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.quick:
         rows = rows_of("installed", None, 3, 3)
     with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder)
-        for name in () if options.quick else ("gcc", "clang"):
+        for name in () if options.quick else options.only or COMPILERS:
             compiler = shlex.split(getattr(options, name))
             if shutil.which(compiler[0]) is None:
                 print(f"{compiler[0]} is not installed")
                 continue
-            builds = {PORTABLE: [], "-O0": ["-DCMAKE_BUILD_TYPE=Debug"]}
-            for path in ("avx2", "baseline"):
-                builds[f"{PORTABLE}, up to {path}"] = [f"-DBIRM3D_FASTEST_PATH={path}"]
-            for changes in builds:
-                print(f"{name} {changes} ...", flush=True)
-                package = build(place / f"{name}{len(rows)}", compiler, *builds[changes])
-                rows += rows_of(f"{name} {changes}", package, RESTORED, 99)
-                if options.native and (name, changes) == ("gcc", PORTABLE):
-                    native = build(place / "native", compiler, "-DCMAKE_CXX_FLAGS=-march=native")
-                    times = compare_times(package, native)
+            packages = {}
+            for way, (tree, changes) in BUILDS.items():
+                print(f"{name} {way} ...", flush=True)
+                place = Path(folder, f"{name}{len(rows)}")
+                packages[way] = build(Path(folder, name + tree), place, compiler, *changes)
+                rows += rows_of(f"{name} {way}", packages[way], RESTORED, 99)
+                if options.save:  # now, in case a later build fails
+                    write(RESULTS / "hashes.csv", HEAD, rows)
+            if options.native and not times:
+                print(f"{name} native ...", flush=True)
+                change = "-DCMAKE_CXX_FLAGS=-march=native"
+                native = build(Path(folder, "native"), Path(folder, "of_native"), compiler, change)
+                times = compare_times(packages[PORTABLE], native)
 
     different = 0
     for scene in dict.fromkeys(row[2] for row in rows):
@@ -192,7 +203,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         took = f"portable {1e3 * ours:.3f} ms, native {1e3 * theirs:.3f} ms"
         print(f"{case:16s} {took}: {ours / theirs:.2f}")
     if options.save:
-        write(RESULTS / "hashes.csv", ["build", "way", "scene", "hash"], rows)
+        write(RESULTS / "hashes.csv", HEAD, rows)
         if times:
             cells = [(case, f"{1e3 * a:.4g}", f"{1e3 * b:.4g}", f"{a / b:.2f}") for case, a, b in times]
             write(RESULTS / "native.csv", ["case", "portable_ms", "native_ms", "ratio"], cells)
