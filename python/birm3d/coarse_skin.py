@@ -76,17 +76,21 @@ def warn_if_coarse(scene: Scene) -> None:
     """Warn with :class:`CoarseSkinWarning` of the narrowest part of the barrier that can pass through."""
     if scene.barrier is None:
         return
-    parts = list(_parts(scene.barrier, math.radians(scene.impact_angle)))
-    for unit in scene.vehicle.units:
-        if unit.dent_reach > 0.0 and isinstance(scene.barrier, Pole | Bollards):
-            continue
-        level = unit.nodes[unit.wheel_of_node < 0, 2] + unit.mass_center_height
-        met = [part for part in parts if part.low <= level.max() and part.high >= level.min()]
+    units = scene.vehicle.units
+    if isinstance(scene.barrier, Pole | Bollards):
+        units = tuple(unit for unit in units if unit.dent_reach == 0.0)
+    parts = [
+        part for part in _parts(scene.barrier, math.radians(scene.impact_angle)) if part.width < math.inf
+    ]
+    for unit in units if parts else ():
+        low, high = unit.skin_bounds
+        bottom, top = low[2] + unit.mass_center_height, high[2] + unit.mass_center_height
+        met = [part for part in parts if part.low <= top and part.high >= bottom]
         if not met:
             continue
         narrowest = min(met, key=lambda part: part.width)
-        # No skin has nodes further apart than it is long: no spacing is asked for at walls.
-        if narrowest.width < np.ptp(unit.nodes, axis=0).max() and narrowest.width < unit.node_spacing:
+        # Nothing passes between nodes that is wider than all of the skin: no spacing is asked for at walls.
+        if narrowest.width < (high - low).max() and narrowest.width < unit.node_spacing:
             warnings.warn(_told(scene, unit, narrowest), CoarseSkinWarning, stacklevel=3)
             return
 

@@ -153,6 +153,23 @@ def test_what_the_skin_can_not_reach_is_no_matter() -> None:
     assert told(vehicle, None) == []
 
 
+def test_one_node_has_nothing_beside_it_and_one_column_has() -> None:
+    def column(count: int) -> Vehicle:
+        nodes = np.column_stack([np.full(count, 2.0), np.zeros(count), np.linspace(-0.5, 0.5, count)])
+        return Vehicle.from_arrays(
+            mass=1000.0,
+            inertia=np.diag([500.0, 1500.0, 1600.0]),
+            nodes=nodes,
+            anchors=nodes - [1.0, 0.0, 0.0],
+            k_initial=1e6,
+            k_unloading=1e7,
+        )
+
+    assert told(column(1), Barrier.pole(diameter=0.1)) == []
+    (message,) = told(column(5), Barrier.pole(diameter=0.1))
+    assert "(no neighbours beside them)" in message
+
+
 def test_any_unit_of_a_combination_counts() -> None:
     semi = car(0.2, "semi_truck")
     assert told(semi, Barrier.pole()) == []
