@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include "birm3d/base/tolerances.hpp"
 #include "register.hpp"
 
 namespace birm3d::bindings {
@@ -30,6 +31,8 @@ void register_settings(py::module_& m) {
              py::arg("gravity"), py::arg("ground"), py::arg("mu_tire"), py::arg("mu_body"),
              py::arg("mu_tire_barrier"), py::arg("braking"), py::arg("cornering_stiffness"),
              py::arg("restitution"), py::arg("contact_model"), py::arg("tire_model"));
+    // s: so long a run goes on once its outcome is known.
+    m.attr("tail_duration") = tolerance::tail_duration;
 }
 
 }  // namespace birm3d::bindings

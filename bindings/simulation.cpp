@@ -59,6 +59,18 @@ void register_simulation(py::module_& m) {
         .def_readonly("node_evaluations", &StepStatistics::node_evaluations)
         .def_readonly("shortest_step", &StepStatistics::shortest_step, "s")
         .def_readonly("longest_step", &StepStatistics::longest_step, "s")
+        .def_readonly("skin_nodes", &StepStatistics::skin_nodes,
+                      "nodes of the skin in blocks that anything came into in any step")
+        .def_readonly("tread_nodes", &StepStatistics::tread_nodes, "the same of tyres")
+        .def_readonly("near_elements", &StepStatistics::near_elements,
+                      "of the barrier, that any node was within reach of, or the rigid body met")
+        .def_readonly("free_steps", &StepStatistics::free_steps,
+                      "in which no node was within reach of anything")
+        .def_readonly("free_time", &StepStatistics::free_time, "s, of these steps")
+        .def_readonly("body_steps", &StepStatistics::body_steps,
+                      "in which the rigid body stood against the barrier or the ground")
+        .def_readonly("wheels_on_ground", &StepStatistics::wheels_on_ground,
+                      "wheels that carried load, summed over the steps")
         .def_readonly("deepest_point", &StepStatistics::deepest_point,
                       "m, of the rigid body inside a barrier")
         .def_readonly("least_critical_step", &StepStatistics::least_critical_step,

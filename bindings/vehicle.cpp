@@ -69,7 +69,18 @@ void register_vehicle(py::module_& m) {
         .def(py::init([](std::vector<Unit> units, std::vector<Joint> joints) {
                  return std::make_shared<Vehicle>(joined(std::move(units), std::move(joints)));
              }),
-             py::arg("units"), py::arg("joints"));
+             py::arg("units"), py::arg("joints"))
+        .def_property_readonly(
+            "stands_on_wheels",
+            [](const Vehicle& vehicle) {
+                std::vector<bool> result;
+                for (const Unit& unit : vehicle.units)
+                    result.push_back(stands_on_wheels(unit));
+                return result;
+            },
+            "Of each unit: has it wheels, with all of its skin above the ground at rest? Else its skin does "
+            "not "
+            "meet the ground.");
 }
 
 }  // namespace birm3d::bindings

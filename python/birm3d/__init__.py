@@ -14,6 +14,7 @@ from .barrier import Barrier
 from .calibration import calibrate
 from .channel import Channel
 from .channel_checks import check_channel
+from .coarse_skin import CoarseSkinWarning
 from .comparison import CurveComparison, compare_curves
 from .element_loads import ElementLoad
 from .ensemble import ensemble
@@ -37,6 +38,7 @@ __all__ = [
     "ArticulatedVehicle",
     "Barrier",
     "Channel",
+    "CoarseSkinWarning",
     "CurveComparison",
     "ElementLoad",
     "FreeStanding",

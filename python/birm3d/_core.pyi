@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Approach', 'Barrier', 'ContactModel', 'Element', 'EndReason', 'ExtremeAttitude', 'ExtremeEnergy', 'ExtremeGroups', 'ExtremeMotion', 'ExtremeNormalForce', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tumble']
+__all__: list[str] = ['Approach', 'Barrier', 'ContactModel', 'Element', 'EndReason', 'ExtremeAttitude', 'ExtremeEnergy', 'ExtremeGroups', 'ExtremeMotion', 'ExtremeNormalForce', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
 class Approach:
     """
     How the vehicle comes (SI, rad). Immutable.
@@ -665,9 +665,24 @@ class Snapshot:
         """
 class StepStatistics:
     @property
+    def body_steps(self) -> int:
+        """
+        in which the rigid body stood against the barrier or the ground
+        """
+    @property
     def deepest_point(self) -> float:
         """
         m, of the rigid body inside a barrier
+        """
+    @property
+    def free_steps(self) -> int:
+        """
+        in which no node was within reach of anything
+        """
+    @property
+    def free_time(self) -> float:
+        """
+        s, of these steps
         """
     @property
     def least_critical_step(self) -> float:
@@ -678,6 +693,11 @@ class StepStatistics:
     def longest_step(self) -> float:
         """
         s
+        """
+    @property
+    def near_elements(self) -> int:
+        """
+        of the barrier, that any node was within reach of, or the rigid body met
         """
     @property
     def node_evaluations(self) -> int:
@@ -691,8 +711,23 @@ class StepStatistics:
         s
         """
     @property
+    def skin_nodes(self) -> int:
+        """
+        nodes of the skin in blocks that anything came into in any step
+        """
+    @property
     def steps(self) -> int:
         ...
+    @property
+    def tread_nodes(self) -> int:
+        """
+        the same of tyres
+        """
+    @property
+    def wheels_on_ground(self) -> int:
+        """
+        wheels that carried load, summed over the steps
+        """
 class Stop:
     """
     Ends runs from another thread.
@@ -848,6 +883,11 @@ class Vehicle:
     """
     def __init__(self, units: collections.abc.Sequence[Unit], joints: collections.abc.Sequence[Joint]) -> None:
         ...
+    @property
+    def stands_on_wheels(self) -> list[bool]:
+        """
+        Of each unit: has it wheels, with all of its skin above the ground at rest? Else its skin does not meet the ground.
+        """
 def collide(mass_a: typing.SupportsFloat | typing.SupportsIndex, inertia_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_b: typing.SupportsFloat | typing.SupportsIndex, inertia_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arm_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arm_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], restitution: typing.SupportsFloat | typing.SupportsIndex) -> tuple[float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
     Eq. 1 for two free bodies: impulse and the velocities and spins afterwards; normal from b to a.
@@ -880,3 +920,4 @@ def tumble(inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], ang
     """
     Free motion from the identity orientation: energy (n,) J, angular momentum (n, 3), quaternion (n, 4) w x y z.
     """
+tail_duration: float = 0.02

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
 from typing import ClassVar
 
@@ -268,6 +269,31 @@ class MeshBarrier(Barrier):
             return 0.0
         a, b, c = (self.vertices[self.faces[:, i]] - self.vertices[0] for i in range(3))
         return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+
+    @cached_property
+    def parts(self) -> tuple[Floats, ...]:
+        """Vertices of each part that stands by itself, shape (k, 3) [m]; parts that touch are one.
+
+        Triangles belong together where they share a corner's place, and parts where the boxes around them
+        meet, seen from above.
+        """
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        places, which = np.unique(self.vertices, axis=0, return_inverse=True)
+        faces = which.reshape(-1)[self.faces]
+        ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]]).T
+        graph = coo_array((np.ones(ends.shape[1], bool), (ends[0], ends[1])), shape=(len(places),) * 2)
+        _, label = connected_components(graph, directed=False)
+        of_face = np.unique(label[faces[:, 0]])
+        parts = [places[label == k] for k in of_face]
+        low, high = (np.array([end(part[:, :2], axis=0) for part in parts]) for end in (np.min, np.max))
+        meet = ((low[:, None] <= high) & (low <= high[:, None])).all(axis=2)
+        _, group = connected_components(meet, directed=False)
+        joined: dict[int, list[Floats]] = {}
+        for part, k in zip(parts, group.tolist(), strict=True):
+            joined.setdefault(k, []).append(part)
+        return tuple(np.concatenate(those) for those in joined.values())
 
     def elements(self) -> list[_core.Element]:
         """Return the mesh."""

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from . import units
 from .element_loads import touched_elements
+from .left_out import left_out
 
 if TYPE_CHECKING:
     from .barrier import Barrier
@@ -69,7 +70,7 @@ def report(result: Result) -> str:
     lines += [
         "",
         "left out",
-        *(f"  {line}" for line in _left_out(result)),
+        *(f"  {line}" for line in left_out(result)),
     ]
     return "\n".join(lines)
 
@@ -81,48 +82,3 @@ def _barrier(barrier: Barrier) -> str:
     if segments:
         count += f", free-standing, {segments[0].mass:.0f} kg each"
     return f"to the line of a {type(barrier).__name__} ({count}), friction {barrier.friction:g}"
-
-
-def _left_out(result: Result) -> list[str]:
-    scene, settings, statistics = result.scene, result.scene.settings, result.statistics
-    vehicle, metrics = scene.vehicle, result.metrics
-    lines = []
-    if scene.barrier is None:
-        lines.append(f"barrier contact of all {vehicle.n_nodes} nodes: there is no barrier")
-    else:
-        share = 1.0 - statistics.node_evaluations / max(1, statistics.steps * vehicle.n_nodes)
-        lines.append(
-            f"{max(0.0, share):.1%} of the node tests: blocks of nodes that could not reach the barrier"
-        )
-        units = [result.unit(u) for u in range(len(vehicle.units))]
-        touched = sum(int((unit.peak_deflection > 0.0).sum()) for unit in units)
-        lines.append(f"the crush of {vehicle.n_nodes - touched} nodes that never touched the barrier")
-        if scene.barrier.core.segments:
-            over = metrics.get("max_overturning_ratio", 0.0)
-            lines.append(
-                "contact of the barrier's segments with each other but through pins, and their tipping: "
-                f"greatest overturning over restoring moment {over:.2f}"
-            )
-        if scene.barrier.friction == 0.0:
-            lines.append("barrier friction: its coefficient is 0")
-        if not (vehicle.wheel_of_node >= 0).any():
-            lines.append("tyres at the barrier: the vehicle has none that meet it")
-        elif scene.mu_tire_barrier == 0.0:
-            lines.append("tyre friction at the barrier: its coefficient is 0")
-    if not settings.ground:
-        lines.append("the ground: ground=False")
-    elif len(vehicle.wheels) == 0:
-        lines.append("the ground: the vehicle has no wheels, nothing holds it up against gravity")
-    else:
-        airborne = float((result.tire_reaction == 0.0).mean())
-        lines.append(f"tyre forces of wheels in the air: {airborne:.1%} of all wheel instants")
-        if settings.mu_tire == 0.0:
-            lines.append("tyre friction: mu_tire is 0")
-    if settings.gravity == 0.0:
-        lines.append("gravity: it is 0")
-    if result.end_reason == "separated":
-        lines.append("everything after the vehicle had left the barrier, but for a short tail")
-    if vehicle.joint is not None:
-        lines.append("contact of the two units with each other, but through their joint")
-    lines.append("suspension, occupants: not part of the model")
-    return lines

@@ -382,6 +382,8 @@ class Result:
         """
         other = copy.copy(self)
         other.frames = capture(self, frames)
+        if self.version == __version__:  # a report of another version stays as it was
+            other.__dict__.pop("_report", None)  # it says that there were no frames
         return other
 
     def save(self, path: str | Path) -> None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 from . import _core
 from .barrier import Barrier
+from .coarse_skin import warn_if_coarse
 from .ledger import warn_if_open
 from .result import Result
 from .settings import MU_TIRE_BARRIER, Settings
@@ -99,6 +100,8 @@ class Simulation:
     ------
     ValueError
         Naming the argument, its limit and the value received.
+    CoarseSkinWarning
+        As a warning, if the barrier is so narrow that it can pass between the nodes of the skin.
     """
 
     def __init__(
@@ -139,6 +142,7 @@ class Simulation:
             duration=duration,
         )
         self._run_time = 0.0
+        warn_if_coarse(self._scene)
 
     @staticmethod
     def from_scene(scene: Scene) -> Simulation:

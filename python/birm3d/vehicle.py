@@ -506,6 +506,19 @@ class Vehicle:
         return len(self.quads)
 
     @cached_property
+    def skin_bounds(self) -> tuple[Floats, Floats]:
+        """Lowest and highest coordinates of the skin's nodes, body axes, shape (3,) each [m]."""
+        skin = self.nodes[self.wheel_of_node < 0]
+        return skin.min(axis=0), skin.max(axis=0)
+
+    @cached_property
+    def node_spacing(self) -> float:
+        """Distance between neighbours of the skin [m], see :func:`birm3d.coarse_skin.node_spacing`."""
+        from .coarse_skin import node_spacing
+
+        return node_spacing(self.nodes[self.wheel_of_node < 0])
+
+    @cached_property
     def core(self) -> _core.Vehicle:
         """The same vehicle for the core."""
         return _core.Vehicle([self._core_unit(np.zeros(3))], [])

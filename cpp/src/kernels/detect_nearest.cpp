@@ -9,6 +9,16 @@ namespace birm3d {
 
 namespace {
 
+BIRM3D_LANE_LOOP void turn_block(const Turn& t, const Lanes& x, const Lanes& y, const Lanes& z,
+                                 OwnLanes& own) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        own.x[i] = t.xx * x[i] + t.xy * y[i] + t.xz * z[i] + t.x;
+        own.y[i] = t.yx * x[i] + t.yy * y[i] + t.yz * z[i] + t.y;
+        own.z[i] = t.zx * x[i] + t.zy * y[i] + t.zz * z[i] + t.z;
+    }
+}
+
 BIRM3D_LANE_LOOP void to_plane(double nx, double ny, double nz, double offset, const Lanes& x, const Lanes& y,
                                const Lanes& z, NearestLanes& out) {
     BIRM3D_INDEPENDENT
@@ -42,7 +52,7 @@ struct alignas(64) EdgeLanes {
 };
 
 BIRM3D_LANE_LOOP void begin_prism(EdgeLanes& best, Lanes& side) {
-    const NearestEdge nothing;
+    constexpr NearestEdge nothing{};
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
         best.square[i] = nothing.square;
@@ -164,13 +174,8 @@ struct Block {
 
 }  // namespace
 
-BIRM3D_LANE_LOOP void to_own(const Turn& t, const Lanes& x, const Lanes& y, const Lanes& z, OwnLanes& own) {
-    BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
-        own.x[i] = t.xx * x[i] + t.xy * y[i] + t.xz * z[i] + t.x;
-        own.y[i] = t.yx * x[i] + t.yy * y[i] + t.yz * z[i] + t.y;
-        own.z[i] = t.zx * x[i] + t.zy * y[i] + t.zz * z[i] + t.z;
-    }
+void to_own(const Turn& turn, const Lanes& x, const Lanes& y, const Lanes& z, OwnLanes& own) {
+    turn_block(turn, x, y, z, own);
 }
 
 void nearest_of(const Shape& shape, const Placement& now, const Placement& before, const Lanes& x,

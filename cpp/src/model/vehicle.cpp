@@ -55,6 +55,13 @@ Unit::Unit(const RigidBody& body_, const TrussInput& trusses_, std::vector<Wheel
     }
 }
 
+bool stands_on_wheels(const Unit& unit) {
+    if (unit.wheels.empty()) return false;
+    for (std::size_t i = 0; i < unit.trusses.skin; ++i)
+        if (unit.trusses.node(i).z() + unit.mass_center_height < 0.0) return false;
+    return true;
+}
+
 Vehicle joined(std::vector<Unit> units, std::vector<Joint> joints) {
     for (std::size_t i = 0; i < joints.size(); ++i) {
         Joint& joint = joints[i];

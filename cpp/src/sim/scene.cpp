@@ -62,13 +62,6 @@ double extent(const std::vector<Obstacle>& elements, const Vec3& direction) {
     return most;
 }
 
-// Does the skin of a unit as it stands in `state` lie above the ground?
-bool skin_above_ground(const Unit& unit) {
-    for (std::size_t i = 0; i < unit.trusses.skin; ++i)
-        if (unit.trusses.node(i).z() + unit.mass_center_height < 0.0) return false;
-    return true;
-}
-
 void move(State& state, const Vec3& way) {
     for (UnitState& unit : state.units)
         unit.body.position += way;
@@ -189,7 +182,7 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
         }
     ground = obstacles.size();
     for (const Unit& unit : vehicle->units)
-        skin_meets_ground.push_back(settings.ground && !unit.wheels.empty() && skin_above_ground(unit));
+        skin_meets_ground.push_back(settings.ground && stands_on_wheels(unit));
     if (std::any_of(skin_meets_ground.begin(), skin_meets_ground.end(), [](char meets) { return meets; }))
         obstacles.push_back(
             {HalfSpace{Vec3::UnitZ(), 0.0}, Mat3::Identity(), Vec3::Zero(), settings.mu_body, ground});
@@ -276,6 +269,7 @@ State Scene::initial_state() const {
 
 void Scene::start(State& state) const {
     state.reset(*vehicle);
+    if (barrier) state.was_near.assign(barrier->elements.size(), char{0});
     for (std::size_t i = 0; i < free_segments(); ++i) {
         const Element& element = barrier->elements[i];
         BodyState segment;

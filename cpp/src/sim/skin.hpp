@@ -37,11 +37,13 @@ class Skin {
         Wrench contact;     // of blocks that saw several obstacles
         double normal_force = 0.0;
         SkinForces friction;
+        bool seen = false;  // by any block
     };
 
     bool may_change(const BlockGroup& group) const;
     void press_group(std::size_t g);
     bool press(std::size_t b);
+    void note_met(std::size_t b);
     void look_about(std::size_t b);
     void spring_back(std::size_t b);
     const TrussBlockState& from(std::size_t b) const {

@@ -178,6 +178,8 @@ bool Skin::press(std::size_t b) {
     const bool drawn = find_dents_of_block(b);
     if (seen_.empty() && !sprung_back_) return false;
     trial_.state.statistics.node_evaluations += lanes;
+    for (const std::size_t k : seen_)
+        obstacles_[k].seen = true;
     PlaneSums* const plane = seen_.size() == 1 && !drawn ? plane_of(seen_[0]) : nullptr;
     if (plane == nullptr && !seen_.empty()) {
         look(b);
@@ -186,13 +188,24 @@ bool Skin::press(std::size_t b) {
     }
     trial_.active[u_].add(b);
     trial_.stale[u_].add(b);
-    if (seen_.empty())
+    note_met(b);
+    if (seen_.empty()) {
         now_.trusses.block[b] = sprung_;
-    else if (plane != nullptr)
+        now_.trusses.block[b].met = true;
+    } else if (plane != nullptr) {
         press_plane(*plane, b);
-    else
+    } else {
         press_shapes(b);
+    }
     return true;
+}
+
+// For the statistics.
+void Skin::note_met(std::size_t b) {
+    now_.trusses.block[b].met = true;
+    if (before_.trusses.block[b].met) return;
+    StepStatistics& statistics = trial_.state.statistics;
+    (b < mesh_.skin_blocks ? statistics.skin_nodes : statistics.tread_nodes) += mesh_.nodes_in(b);
 }
 
 // The plane that is all that the block at hand can meet of an obstacle; null if it can meet more.

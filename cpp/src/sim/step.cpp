@@ -159,7 +159,7 @@ double correct(const Scene& scene, std::size_t u, const UnitState& from, double 
     return error;
 }
 
-bool touches_barrier(const Scene& scene, const UnitState& unit) {
+bool skin_touches_barrier(const Scene& scene, const UnitState& unit) {
     return std::any_of(unit.touches.begin(), unit.touches.end(), [&](const Touch& touch) {
         return touch.obstacle != scene.ground && touch.normal_force > 0.0;
     });
@@ -218,6 +218,7 @@ void begin(const State& from, double dt, Trial& trial) {
     trial.error = 0.0;
     trial.critical_step = trial.impact_after = infinity;
     trial.at_start.happened = trial.at_end.happened = false;
+    trial.seen.clear();
     for (std::size_t u = 0; u < from.units.size(); ++u) {
         static_cast<UnitMotion&>(trial.state.units[u]) = from.units[u];
         trial.active[u].clear();
@@ -266,11 +267,24 @@ void Trial::restart() {
             stale[u].add(block);
 }
 
+namespace {
+
+// Of the sums over lasting contacts and impacts of any unit.
+template <class Is>
+bool any_sum(const Trial& trial, const Is& is) {
+    return std::any_of(trial.impulses.begin(), trial.impulses.end(), is) ||
+           std::any_of(trial.at_start.impulses.begin(), trial.at_start.impulses.end(), is) ||
+           std::any_of(trial.at_end.impulses.begin(), trial.at_end.impulses.end(), is);
+}
+
+}  // namespace
+
 bool Trial::body_held() const {
-    const auto held = [](const ContactImpulses& sum) { return sum.member_contacts > 0; };
-    return std::any_of(impulses.begin(), impulses.end(), held) ||
-           std::any_of(at_start.impulses.begin(), at_start.impulses.end(), held) ||
-           std::any_of(at_end.impulses.begin(), at_end.impulses.end(), held);
+    return any_sum(*this, [](const ContactImpulses& sum) { return sum.member_contacts > 0; });
+}
+
+bool Trial::body_held_by_barrier() const {
+    return any_sum(*this, [](const ContactImpulses& sum) { return sum.barrier_normal > 0.0; });
 }
 
 void try_step(const Scene& scene, const State& from, double dt, const StepOptions& options, Trial& trial) {
@@ -287,7 +301,7 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
         drift(unit.body, dt, moved.body);
 
         if (!scene.obstacles.empty()) skin_forces(scene, u, from, trial);
-        if (touches_barrier(scene, moved)) now.touched = true;
+        if (skin_touches_barrier(scene, moved)) now.touched = true;
 
         trial.error = std::max(trial.error, correct(scene, u, from.units[u], dt, now));
         trial.critical_step = std::min(trial.critical_step, critical_step(scene, unit.body, moved));
@@ -298,7 +312,46 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
 
     half_kick(scene, Stage::after_drift, options, trial);
     book_motion(scene, now);
+    // A post between nodes meets nothing but the rigid body.
+    if (trial.body_held_by_barrier()) now.touched = true;
 }
+
+namespace {
+
+// Of the barrier's elements, those that are near for the first time.
+void note_near(std::size_t obstacle, State& state) {
+    if (obstacle >= state.was_near.size() || state.was_near[obstacle] != 0) return;
+    state.was_near[obstacle] = 1;
+    ++state.statistics.near_elements;
+}
+
+void count(const Trial& trial, State& state) {
+    StepStatistics& statistics = state.statistics;
+    statistics.steps += 1;
+    statistics.shortest_step = std::min(statistics.shortest_step, trial.dt);
+    statistics.longest_step = std::max(statistics.longest_step, trial.dt);
+    statistics.least_critical_step = std::min(statistics.least_critical_step, trial.critical_step);
+    if (std::all_of(trial.active.begin(), trial.active.end(),
+                    [](const BlockSet& active) { return active.blocks().empty(); })) {
+        ++statistics.free_steps;
+        statistics.free_time += trial.dt;
+    }
+    for (const std::size_t obstacle : trial.seen)
+        note_near(obstacle, state);
+    for (std::size_t u = 0; u < trial.impulses.size(); ++u) {
+        const ContactImpulses* const sums[] = {&trial.impulses[u], &trial.at_start.impulses[u],
+                                               &trial.at_end.impulses[u]};
+        for (const ContactImpulses* sum : sums)
+            for (const ObstacleImpulse& on : sum->obstacles)
+                if (on.impulse != Vec3::Zero()) note_near(on.obstacle, state);
+        for (std::size_t w = 0; w < trial.impulses[u].tire.size(); ++w)
+            statistics.wheels_on_ground += std::any_of(std::begin(sums), std::end(sums),
+                                                       [w](const auto* sum) { return sum->tire[w] > 0.0; });
+    }
+    statistics.body_steps += trial.body_held();
+}
+
+}  // namespace
 
 void accept(Trial& trial, State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
@@ -313,11 +366,7 @@ void accept(Trial& trial, State& state) {
     }
     static_cast<Progress&>(state) = trial.state;
     state.segments = trial.state.segments;
-    StepStatistics& statistics = state.statistics;
-    statistics.steps += 1;
-    statistics.shortest_step = std::min(statistics.shortest_step, trial.dt);
-    statistics.longest_step = std::max(statistics.longest_step, trial.dt);
-    statistics.least_critical_step = std::min(statistics.least_critical_step, trial.critical_step);
+    count(trial, state);
 }
 
 }  // namespace birm3d

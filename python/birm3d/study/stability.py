@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..coarse_skin import CoarseSkinWarning
 from ..ledger import warn_if_open
 from ..progress import progress_bar
 from ..simulation import Simulation
@@ -42,8 +43,9 @@ def stability(
     A run **held** if the energy and momentum ledgers close, every number is finite, no node or rigid body
     ended a step inside the barrier, and it did what the scene makes it do: met a barrier in its way, stayed
     in front of a post at its middle, stayed at rest. It was **refused** if an error said why not, **warned**
-    of if the run of a fixed step tells that its energy ledger is open (:class:`birm3d.LedgerWarning`). All
-    else is a **FAULT**: an answer that its ledgers contradict.
+    of if the run of a fixed step tells that its energy ledger is open (:class:`birm3d.LedgerWarning`), or if
+    the vehicle missed what the scene told it could pass between nodes (:class:`birm3d.CoarseSkinWarning`).
+    All else is a **FAULT**: an answer that its ledgers contradict.
 
     Parameters
     ----------
@@ -87,7 +89,7 @@ def stability(
 def _judged(case: Case, limits: Limits) -> StabilityRow:
     blank = StabilityRow(case.axis, case.scene, case.value, REFUSED)
     try:
-        simulation = case.make()
+        simulation, coarse = _made(case)
     except _REFUSALS as refused:
         return replace(blank, reason=_told(refused))
     except Exception as failed:  # a study of faults ends with none of them
@@ -111,7 +113,10 @@ def _judged(case: Case, limits: Limits) -> StabilityRow:
     if error is not None:
         return replace(row, reason=_told(error))
     faults = [watched.fault] if watched.fault else []
-    faults += _missed(case, simulation, watched.touched)
+    missed = _missed(case, simulation, watched.touched)
+    if missed and not faults and coarse:
+        return replace(row, verdict=WARNED, reason=f"{'; '.join(missed)}: {coarse}")
+    faults += missed
     if faults == ["energy"] and simulation.scene.settings.time_step is not None:
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always")
@@ -120,6 +125,20 @@ def _judged(case: Case, limits: Limits) -> StabilityRow:
         if told:
             return replace(row, verdict=WARNED, reason=str(told[0].message))
     return replace(row, verdict=FAULT if faults else HELD, reason="; ".join(faults))
+
+
+def _made(case: Case) -> tuple[Simulation, str]:
+    """Return the scene of a case, and what was told if its barrier can pass between nodes."""
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", CoarseSkinWarning)
+        simulation = case.make()
+    coarse = ""
+    for one in told:
+        if issubclass(one.category, CoarseSkinWarning):
+            coarse = str(one.message)
+        else:
+            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
+    return simulation, coarse
 
 
 def _missed(case: Case, simulation: Simulation, touched: bool) -> list[str]:

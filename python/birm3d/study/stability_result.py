@@ -36,8 +36,8 @@ class StabilityRow:
         What is taken to which extreme in which scene.
     verdict
         ``"held"``: every ledger is within its limit; ``"refused"``: an error said why not; ``"warned"``: the
-        program gave an answer with a :class:`birm3d.LedgerWarning`; ``"FAULT"``: it gave one that its ledgers
-        contradict, or failed without a reason.
+        program gave an answer with a :class:`birm3d.LedgerWarning` or a :class:`birm3d.CoarseSkinWarning`;
+        ``"FAULT"``: it gave one that is wrong without a word, or failed without a reason.
     reason
         Of all but ``"held"``.
     steps, energy_residual, momentum_residual, node_depth, anchor_depth

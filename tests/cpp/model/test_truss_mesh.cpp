@@ -97,6 +97,7 @@ TEST("treads stand in blocks of their own behind the skin, which stays as it was
     const TrussMesh skin(input), mesh(with, {wheel});
     CHECK(mesh.count == 133 && mesh.skin == 130);
     CHECK(mesh.skin_blocks == 3 && mesh.blocks == 4 && mesh.tread.size() == 3);
+    CHECK(mesh.nodes_in(0) == lanes && mesh.nodes_in(2) == 130 - 2 * lanes && mesh.nodes_in(3) == 3);
     for (std::size_t b = 0; b < 3; ++b) {
         CHECK(mesh.block[b].node_y == skin.block[b].node_y && mesh.block[b].panel == skin.block[b].panel);
         CHECK(mesh.panels_of[b] == skin.panels_of[b]);

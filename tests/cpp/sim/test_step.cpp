@@ -23,6 +23,12 @@ TEST("a step that is tried and not accepted leaves no trace") {
     }
     CHECK(state.touched);
     CHECK(state.statistics.steps == 60);
+    CHECK(state.statistics.skin_nodes == 100);
+    CHECK(state.statistics.skin_nodes == untouched.statistics.skin_nodes);
+    CHECK(state.statistics.near_elements == 1);
+    CHECK(state.statistics.near_elements == untouched.statistics.near_elements);
+    CHECK(state.statistics.free_steps == untouched.statistics.free_steps);
+    CHECK(state.statistics.node_evaluations == untouched.statistics.node_evaluations);
 }
 
 TEST("the critical step is that of a mass on all unloading springs") {

@@ -15,13 +15,18 @@ using Lanes = std::array<double, lanes>;
 
 // On functions of plain loops only: inlined Eigen code would keep the baseline's packets, and its symbols
 // could clash between instruction sets.
+#if defined(__clang__)
+#define BIRM3D_CLONES(...) \
+    __attribute__((target_clones(__VA_ARGS__)))  // never inlined, and not to be told so
+#else
+#define BIRM3D_CLONES(...) __attribute__((noinline, target_clones(__VA_ARGS__)))
+#endif
 #if defined(BIRM3D_BASELINE)
 #define BIRM3D_LANE_LOOP __attribute__((noinline))
 #elif defined(__x86_64__) && defined(__gnu_linux__) && defined(__GLIBC__) && defined(BIRM3D_UP_TO_AVX2)
-#define BIRM3D_LANE_LOOP __attribute__((noinline, target_clones("arch=x86-64-v3", "default")))
+#define BIRM3D_LANE_LOOP BIRM3D_CLONES("arch=x86-64-v3", "default")
 #elif defined(__x86_64__) && defined(__gnu_linux__) && defined(__GLIBC__)
-#define BIRM3D_LANE_LOOP \
-    __attribute__((noinline, target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#define BIRM3D_LANE_LOOP BIRM3D_CLONES("arch=x86-64-v4", "arch=x86-64-v3", "default")
 #else
 #define BIRM3D_LANE_LOOP
 #endif

@@ -43,13 +43,9 @@ BIRM3D_IN_LANE_LOOP NearestEdge nearer_edge(const PrismEdge& edge, double x, dou
     const double exact = ahead * ahead + past * past;
     const double square = exact > least ? exact : 0.0;
     const bool nearer = square < best.square;
-    NearestEdge out;
-    out.square = nearer ? square : best.square;
-    out.ahead = nearer ? ahead : best.ahead;
-    out.past = nearer ? past : best.past;
-    out.tx = nearer ? edge.tx : best.tx;
-    out.tz = nearer ? edge.tz : best.tz;
-    return out;
+    // No constructor is called: lane loops may call nothing that is not inlined.
+    return {nearer ? square : best.square, nearer ? ahead : best.ahead, nearer ? past : best.past,
+            nearer ? edge.tx : best.tx, nearer ? edge.tz : best.tz};
 }
 
 // +1 outside, -1 inside, once all edges have been asked, beginning with +1.

@@ -10,6 +10,7 @@
 // (kernels/tires.hpp), not by these nodes, and posts do not dent them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -102,6 +103,11 @@ struct TrussMesh {
     // Place of a truss in the blocks: padding stands between skin and tyres.
     std::size_t slot(std::size_t truss) const {
         return truss < skin ? truss : skin_blocks * lanes + (truss - skin);
+    }
+    // Nodes in a block, without its padding.
+    std::size_t nodes_in(std::size_t b) const {
+        const std::size_t of = b < skin_blocks ? b : b - skin_blocks;
+        return std::min(lanes, (b < skin_blocks ? skin : count - skin) - of * lanes);
     }
     Vec3 node(std::size_t truss) const {
         const TrussBlock& b = block[slot(truss) / lanes];

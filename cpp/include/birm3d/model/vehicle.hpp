@@ -37,6 +37,9 @@ struct Unit {
     Vec3 place() const { return offset + mass_center_height * Vec3::UnitZ(); }
 };
 
+// Has it wheels to stand on, with all of its skin above the ground in the position of rest?
+bool stands_on_wheels(const Unit& unit);
+
 struct Vehicle {
     std::vector<Unit> units;
     std::vector<Joint> joints;

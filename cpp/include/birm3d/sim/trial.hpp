@@ -75,13 +75,15 @@ struct Trial {
     std::vector<ContactImpulses> impulses;  // (units) of lasting contacts, even over the step
     std::vector<Wrench> joint_impulses;     // (joints) the same, on the leading unit, about the joint
     Impact at_start, at_end;
+    std::vector<std::size_t> seen;   // obstacles that blocks of nodes had in reach, once for each unit
     std::vector<NearObstacle> near;  // for skin_forces: reused, so that a step allocates nothing
     std::vector<Touch> touches;
     double error = 0.0;    // estimated velocity error of this step (m/s)
     double critical_step;  // sqrt(3)/omega of the trusses in contact (s)
     double impact_after;   // a rigid impact begins this long after t (s)
 
-    bool body_held() const;  // did the rigid body meet the barrier?
+    bool body_held() const;  // did the rigid body meet the barrier or the ground?
+    bool body_held_by_barrier() const;
 };
 
 struct StepOptions {

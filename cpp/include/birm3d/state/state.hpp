@@ -77,6 +77,17 @@ struct StepStatistics {
     double least_critical_step =
         std::numeric_limits<double>::infinity();  // s, sqrt(3)/omega of the trusses in contact
     double deepest_point = 0.0;  // greatest depth of the rigid body inside a barrier at the end of a step (m)
+
+    // What was left out follows from what was computed, in accepted steps; near: within reach of a block of nodes, or met
+    // by the rigid body.
+    std::uint64_t skin_nodes =
+        0;  // nodes of the skin in blocks that anything has come into, each counted once
+    std::uint64_t tread_nodes = 0;    // the same of tyres
+    std::uint64_t near_elements = 0;  // of the barrier, that were near in any step
+    std::uint64_t free_steps = 0;     // steps in which no node was near anything
+    double free_time = 0.0;           // their sum (s)
+    std::uint64_t body_steps = 0;     // steps in which the rigid body stood against the barrier or the ground
+    std::uint64_t wheels_on_ground = 0;  // wheels that carried load, summed over the steps
 };
 
 // How far a run has come.
@@ -107,6 +118,7 @@ struct State : Progress {
 
     std::vector<UnitState> units;
     std::vector<BodyState> segments;  // of the barrier, where they are free-standing; else none
+    std::vector<char> was_near;       // (elements of the barrier) in any step? Statistics only
 
     std::uint64_t hash() const {
         Hash hash;

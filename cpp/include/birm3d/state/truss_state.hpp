@@ -17,6 +17,7 @@ struct alignas(64) TrussBlockState {
     Box box;                          // around the nodes where they were last let go, body axes
     bool touching;                    // does any node push on an obstacle?
     bool slack;  // has an obstacle drawn any node out beyond the free length of its truss?
+    bool met;    // has anything come into it, in any step? Statistics only
 };
 
 // Was the node drawn out beyond the free length of its truss? A truss does not pull.

@@ -1,0 +1,57 @@
+"""The program that compares bits: equal ones pass, a single other one is found."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+PROGRAM = Path(__file__).resolve().parents[1] / "bench/bench_determinism.py"
+
+
+@pytest.fixture
+def program(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    monkeypatch.syspath_prepend(str(PROGRAM.parent))
+    return importlib.import_module("bench_determinism")
+
+
+def test_quick_choice_has_the_same_bits() -> None:
+    """Alone, on one and two threads, backwards, and restored at three instants."""
+    done = subprocess.run(
+        [sys.executable, "-W", "error", PROGRAM, "--quick"],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    *scenes, verdict = done.stdout.splitlines()
+    assert verdict == "the same bits"
+    assert len(scenes) == 3
+    for line in scenes:
+        assert " 5 rows: " in line
+        int(line.split(": ")[1], 16)  # one hash
+
+
+@pytest.mark.parametrize("way", ["two threads", "restored"])
+def test_one_other_bit_is_found(
+    way: str, program: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    same = {"w2": "00", "car": "01"}
+    found = {name: dict(same) for name in ("alone", "two threads", "restored")}
+    monkeypatch.setattr(program, "run", lambda *_: json.dumps(found))
+    assert program.main(["--quick"]) == 0
+    found[way]["car"] = "11"
+    assert program.main(["--quick"]) == 1
+    text = capsys.readouterr().out
+    assert "3 rows: 01 11" in text
+    assert text.endswith("DIFFERENT in 1 scenes\n")
+
+
+def test_a_build_that_fails_ends_the_program_with_its_words(program: ModuleType) -> None:
+    with pytest.raises(SystemExit, match="no such file"):
+        program.run([sys.executable, "-c", "raise SystemExit('no such file')"])
