@@ -1,6 +1,7 @@
 """The C++ library as a C++ user meets it: build, test, install, and use from a separate project."""
 
 import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -96,3 +97,21 @@ def test_library_inside_another_project_brings_no_tests(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     configure(tmp_path, tmp_path / "build")
+
+
+def test_flags_for_one_machine_leave_every_instruction_set_its_name(tmp_path: Path) -> None:
+    """CXXFLAGS=-march=native adds instructions to all files; which of them a file is for, the build says."""
+    if platform.machine() not in ("x86_64", "AMD64"):
+        pytest.skip("there is one instruction set")
+    source, made = ROOT / "cpp/src/kernels/crush_rows.cpp", tmp_path / "rows.o"
+    compiler = [
+        tool("c++"),
+        "-std=c++20",
+        "-c",
+        "-mavx512f",
+        f"-I{ROOT / 'cpp/include'}",
+        f"-I{ROOT / 'cpp/src'}",
+    ]
+    for definition, name in (("-DOTHER", "baseline"), ("-DBIRM3D_INSTRUCTION_SET=avx2", "avx2")):
+        run(*compiler, definition, source, "-o", made)
+        assert f" T birm3d::{name}::press_flat(" in run(tool("nm"), "-C", made)

@@ -13,14 +13,16 @@
 #error "BIRM3D's kernels need the vector types of GCC or Clang"
 #endif
 
+// Told by the build, as flags for a whole build (-march=native) may add instructions to any of them.
+#if !defined(BIRM3D_INSTRUCTION_SET)
+#define BIRM3D_INSTRUCTION_SET baseline
+#endif
+
 #if defined(__AVX512F__)
-#define BIRM3D_INSTRUCTION_SET avx512
 #define BIRM3D_REGISTER_LENGTH 8
 #elif defined(__AVX2__)
-#define BIRM3D_INSTRUCTION_SET avx2
 #define BIRM3D_REGISTER_LENGTH 4
 #else
-#define BIRM3D_INSTRUCTION_SET baseline
 #define BIRM3D_REGISTER_LENGTH 2
 #endif
 

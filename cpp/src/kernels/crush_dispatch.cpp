@@ -14,7 +14,7 @@ BIRM3D_DECLARE(baseline)
 #if defined(BIRM3D_X86_PATHS)
 BIRM3D_DECLARE(avx2)
 #if !defined(BIRM3D_UP_TO_AVX2)
-BIRM3D_DECLARE(avx512)
+BIRM3D_DECLARE(avx512f)
 #endif
 #endif
 #undef BIRM3D_DECLARE
@@ -26,7 +26,7 @@ std::vector<PressFunctions> press_functions() {
     if (__builtin_cpu_supports("avx2")) can.push_back({"avx2", avx2::press_flat, avx2::press_curved});
 #if !defined(BIRM3D_UP_TO_AVX2)
     if (__builtin_cpu_supports("avx512f"))
-        can.push_back({"avx512f", avx512::press_flat, avx512::press_curved});
+        can.push_back({"avx512f", avx512f::press_flat, avx512f::press_curved});
 #endif
 #endif
     return can;
