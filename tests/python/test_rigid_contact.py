@@ -102,7 +102,7 @@ def test_restitution_of_the_rigid_body(restitution: float) -> None:
     [
         # The front is crushed to the rigid body: rows of anchors reach the post within half a millimetre.
         ("pickup", Barrier.bollards(), 90.0, 0.15, "max_pitch"),
-        # A wheel lands beside one that stands 0.002 mm in the ground after a long step; the next step is short.
+        # A wheel lands beside one that is 0.002 mm in the ground after a long step; the next step is short.
         ("minivan", Barrier.jersey(length=30.0), 25.0, 0.41, "max_roll"),
     ],
     ids=["rows of anchors", "wheels"],
