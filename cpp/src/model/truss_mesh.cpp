@@ -196,10 +196,11 @@ void TrussMesh::add_stiffness(const TrussBlock& trusses) {
 
 void TrussMesh::fill_lane(const TrussInput& input, std::size_t source, bool padding, std::size_t b,
                           std::size_t i) {
-    const Vec3& anchor = input.anchor[source];
-    // Padding stands inside by the anchor, where nothing meets it before the body.
+    // Padding stands by an anchor of the skin, where nothing meets it before the body.
+    const std::size_t place = padding ? input_index[skin - 1] : source;
     constexpr double beside = 1e-3;
-    const Vec3 node = padding ? Vec3(anchor + beside * (input.node[source] - anchor)) : input.node[source];
+    const Vec3& anchor = input.anchor[place];
+    const Vec3 node = padding ? Vec3(anchor + beside * (input.node[place] - anchor)) : input.node[source];
     const double scale = padding ? 0.0 : input.scale[source];
     const TrussCurve& curve = input.curve[input.curve_of[source]];
     const bool on_skin = b < skin_blocks;
