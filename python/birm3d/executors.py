@@ -109,10 +109,12 @@ def run_all(
                 finish(finished)
                 done_runs, seconds = done_runs + len(finished), seconds + spent
                 pending.discard(future)
-    except BaseException:
+    except BaseException as error:
         stop.set()
-        # dask logs an error for each future that is cancelled while it runs; its few chunks run out instead.
-        if isinstance(pool, (ThreadPoolExecutor, ProcessPoolExecutor)):
+        # dask logs an error for each future that is cancelled while it runs; its few chunks run out instead. A pool
+        # that died marks its futures itself, in a thread of its own that must not find them cancelled.
+        died = isinstance(error, ExecutorError)
+        if isinstance(pool, ThreadPoolExecutor) or (isinstance(pool, ProcessPoolExecutor) and not died):
             for future in pending:
                 future.cancel()
         if isinstance(pool, ThreadPoolExecutor):
