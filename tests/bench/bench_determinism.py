@@ -115,6 +115,10 @@ def build(tree: Path, package: Path, compiler: Sequence[str], *options: str) -> 
         wrapper.chmod(0o755)
     command = ["cmake", "-S", ROOT, "-B", tree, "-DBIRM3D_BUILD_PYTHON=ON", "-DBIRM3D_BUILD_TESTS=OFF"]
     command += ["-DBIRM3D_WARNINGS_AS_ERRORS=OFF", f"-DPython_EXECUTABLE={sys.executable}", *options]
+    if (
+        shutil.which("ninja") is not None
+    ):  # make would build all of a library anew where one file's flags change
+        command += ["-G", "Ninja"]
     run(command, {"CXX": str(wrapper)})
     run(["cmake", "--build", tree, "--parallel", str(os.cpu_count() or 1)])
     shutil.copytree(ROOT / "python", package, ignore=shutil.ignore_patterns("_core*.so", "__pycache__"))
