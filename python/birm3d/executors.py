@@ -111,8 +111,8 @@ def run_all(
                 pending.discard(future)
     except BaseException as error:
         stop.set()
-        # dask logs an error for each future that is cancelled while it runs; its few chunks run out instead. A pool
-        # that died marks its futures itself, in a thread of its own that must not find them cancelled.
+        # dask logs an error for each future that is cancelled while it runs; its few chunks run out instead.
+        # A pool that died marks its futures itself, in a thread of its own that must not find them cancelled.
         died = isinstance(error, ExecutorError)
         if isinstance(pool, ThreadPoolExecutor) or (isinstance(pool, ProcessPoolExecutor) and not died):
             for future in pending:
