@@ -23,7 +23,10 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
+from contextlib import ExitStack
 from functools import lru_cache, partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from . import _core
@@ -80,12 +83,13 @@ def run_all(
     stop = _core.Stop()
     own = ThreadPoolExecutor(os.cpu_count() or 1) if executor is None else None
     pool, workers = _pool(own or executor)
+    files = ExitStack()
     task: tuple[Any, ...]  # a function and its arguments before the chunk
     if isinstance(pool, ThreadPoolExecutor):
         task = (partial(_run_chunk, stop=stop), simulation, names, metrics)
     else:
         packed = pickle.dumps((simulation, names, metrics), pickle.HIGHEST_PROTOCOL)
-        task = (_run_packed, _shipped(executor, packed))
+        task = (_run_packed, _shipped(executor, packed, files))
     pending: set[Future[Timed]] = set()
     left = iter(todo)
     at, done_runs, seconds, more = 0, 0, 0.0, True
@@ -124,12 +128,22 @@ def run_all(
                 finish(future.result()[0])
         raise
     finally:
+        files.close()
         if own is not None:
             own.shutdown()
 
 
-def _shipped(executor: Any, packed: bytes) -> Any:
-    """Return the base scene as an argument of tasks: a client of dask has it sent to each worker once."""
+def _shipped(executor: Any, packed: bytes, files: ExitStack) -> Any:
+    """Return the base scene as an argument of tasks.
+
+    A client of dask has it sent to each worker once. Processes of this machine read it from a file: more than
+    a pipe holds, and Python before 3.11.5 waits for ever to hand it to a worker that died.
+    """
+    if isinstance(executor, ProcessPoolExecutor):
+        folder = files.enter_context(TemporaryDirectory(prefix="birm3d-", ignore_cleanup_errors=True))
+        path = Path(folder) / "scene.pickle"
+        path.write_bytes(packed)
+        return path
     if not hasattr(executor, "scatter"):
         return packed
     try:
@@ -165,12 +179,16 @@ def _pool(executor: Any) -> tuple[Executor, int]:
     return executor, getattr(executor, "_max_workers", None) or os.cpu_count() or 1
 
 
-def _run_packed(packed: bytes, chunk: Chunk) -> Timed:
+def _run_packed(packed: bytes | Path, chunk: Chunk) -> Timed:
     simulation, names, metrics = _unpacked(packed)
     return _run_chunk(simulation, names, metrics, chunk)
 
 
-_unpacked = lru_cache(maxsize=2)(pickle.loads)
+@lru_cache(maxsize=2)
+def _unpacked(packed: bytes | Path) -> tuple[Simulation | None, tuple[str, ...], tuple[str, ...]]:
+    scene: tuple[Simulation | None, tuple[str, ...], tuple[str, ...]]
+    scene = pickle.loads(packed.read_bytes() if isinstance(packed, Path) else packed)
+    return scene
 
 
 def _run_chunk(
