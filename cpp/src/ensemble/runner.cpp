@@ -15,10 +15,7 @@ void find_greatest_deflections(const Simulation& simulation, Outcome& outcome) {
         const TrussMesh& mesh = simulation.scene().vehicle->units[u].trusses;
         for (std::size_t b = 0; b < mesh.blocks; ++b) {
             const TrussBlockState& block = state.units[u].trusses.block[b];
-            const std::size_t left = b < mesh.skin_blocks
-                                         ? mesh.skin - b * lanes
-                                         : mesh.count - mesh.skin - (b - mesh.skin_blocks) * lanes;
-            for (std::size_t i = 0; i < std::min(lanes, left); ++i) {
+            for (std::size_t i = 0; i < mesh.nodes_in(b); ++i) {
                 outcome.deflection = std::max(outcome.deflection, block.deflection[i]);
                 outcome.peak_deflection = std::max(outcome.peak_deflection, block.peak_deflection[i]);
             }

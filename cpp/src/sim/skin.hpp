@@ -57,6 +57,7 @@ class Skin {
     };
     void find_dents();
     Dented dents_of(std::size_t near);
+    double way_within_step(const Dent& dent, std::size_t panel) const;
     bool was_before(std::size_t near, std::size_t panel);
     bool find_dents_of_block(std::size_t b);
     bool is_left_to_dents(std::size_t b, std::size_t near) const;

@@ -37,7 +37,7 @@ Dented Skin::dents_of(std::size_t k) {
         const Dent dent(post, near_[k].now, panel, mesh_.dent_reach);
         if (!dents && !dent.overlaps(panel)) continue;
         // How far in a post can have come within the step; of one that was in before, does it touch?
-        const double deepest = dents || passed ? 0.0 : 2.0 * margin_ * dent.fastest_growth(panel);
+        const double deepest = dents || passed ? 0.0 : way_within_step(dent, p);
         const double gap = dents && pushes ? 0.0 : gap_of_panel(dent, p, mesh_, before_, 0.0, -deepest);
         if (gap > 0.0) continue;
         if (dents || (!passed && (gap > -deepest || was_before(k, p)))) {
@@ -48,6 +48,11 @@ Dented Skin::dents_of(std::size_t k) {
         }
     }
     return now;
+}
+
+// How far the post can have come into the panel within the step, and nodes off its dent (m).
+double Skin::way_within_step(const Dent& dent, std::size_t panel) const {
+    return 2.0 * margin_ * dent.fastest_growth(mesh_.panel[panel]);
 }
 
 // Did the post stand in front of the panel an instant before?
@@ -63,8 +68,7 @@ bool Skin::was_before(std::size_t k, std::size_t p) {
 bool Skin::find_dents_of_block(std::size_t b) {
     block_dents_.clear();
     const auto can_reach = [&](const DentedPanel& dented) {
-        const double off =
-            from(b).touching ? 2.0 * margin_ * dented.dent.fastest_growth(mesh_.panel[dented.panel]) : 0.0;
+        const double off = from(b).touching ? way_within_step(dented.dent, dented.panel) : 0.0;
         return most_inside(dented.dent, box_) >= -off;
     };
     for (std::size_t d = 0; d < dents_.size(); ++d) {
