@@ -33,23 +33,23 @@ inline constexpr std::size_t parts = row_length / BIRM3D_REGISTER_LENGTH;
 
 struct Row {
     using Register = double __attribute__((vector_size(8 * BIRM3D_REGISTER_LENGTH)));
+    using InMemory __attribute__((aligned(8), may_alias)) = Register;
     Register part[parts];
 
-    BIRM3D_IN_LANE_LOOP static Row of(double value) {
-        Row row;
+    Row() = default;
+    BIRM3D_IN_LANE_LOOP Row(double value) {
         for (std::size_t p = 0; p < parts; ++p)
-            row.part[p] = Register{} + value;
-        return row;
+            part[p] = Register{} + value;
     }
     BIRM3D_IN_LANE_LOOP static Row load(const double* from) {
         Row row;
         for (std::size_t p = 0; p < parts; ++p)
-            row.part[p] = *reinterpret_cast<const Register*>(from + p * BIRM3D_REGISTER_LENGTH);
+            row.part[p] = *reinterpret_cast<const InMemory*>(from + p * BIRM3D_REGISTER_LENGTH);
         return row;
     }
     BIRM3D_IN_LANE_LOOP void store(double* to) const {
         for (std::size_t p = 0; p < parts; ++p)
-            *reinterpret_cast<Register*>(to + p * BIRM3D_REGISTER_LENGTH) = part[p];
+            *reinterpret_cast<InMemory*>(to + p * BIRM3D_REGISTER_LENGTH) = part[p];
     }
 };
 
@@ -66,7 +66,7 @@ BIRM3D_ROW_OPERATOR(*)
 BIRM3D_ROW_OPERATOR(/)
 #undef BIRM3D_ROW_OPERATOR
 
-// a > b ? yes : no
+// As in base/select.hpp.
 BIRM3D_IN_LANE_LOOP Row where_above(const Row& a, const Row& b, const Row& yes, const Row& no) {
     Row row;
     for (std::size_t p = 0; p < parts; ++p)
@@ -84,6 +84,20 @@ BIRM3D_IN_LANE_LOOP Row square_root(const Row& a) {
         for (std::size_t k = 0; k < BIRM3D_REGISTER_LENGTH; ++k)
             row.part[p][k] = __builtin_sqrt(a.part[p][k]);
     return row;
+}
+
+BIRM3D_IN_LANE_LOOP Row lesser(const Row& a, const Row& b) {
+    return where_above(a, b, b, a);
+}
+
+BIRM3D_IN_LANE_LOOP bool any_above(const Row& a, const Row& b) {
+    long long any = 0;
+    for (std::size_t p = 0; p < parts; ++p) {
+        const auto above = a.part[p] > b.part[p];
+        for (std::size_t k = 0; k < BIRM3D_REGISTER_LENGTH; ++k)
+            any |= above[k];
+    }
+    return any != 0;
 }
 
 BIRM3D_IN_LANE_LOOP double sum_of(const Row& row) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "birm3d/base/error.hpp"
+#include "birm3d/geometry/prism_range.hpp"
 
 namespace birm3d {
 
@@ -36,7 +37,7 @@ Point point_on(const PrismEdge& e, double u) {
 }
 
 double distance(const PrismEdge& e, const Point& p) {
-    return std::sqrt(nearer_edge(e, p.x(), p.y(), {}).square);
+    return std::sqrt(nearer_edge(e, p.x(), p.y(), NearestEdge<double>{}).square);
 }
 
 // Of two edges that do not cross.
@@ -47,7 +48,8 @@ double distance(const PrismEdge& a, const PrismEdge& b) {
 
 // Does the middle of `b` lie behind the line of `a`?
 bool behind(const PrismEdge& a, const PrismEdge& b) {
-    return nearer_edge(a, point_on(b, 0.5 * b.high).x(), point_on(b, 0.5 * b.high).y(), {}).ahead < 0.0;
+    return nearer_edge(a, point_on(b, 0.5 * b.high).x(), point_on(b, 0.5 * b.high).y(), NearestEdge<double>{})
+               .ahead < 0.0;
 }
 
 bool cross_or_touch(const Point& a, const Point& b, const Point& c, const Point& d) {
@@ -97,7 +99,7 @@ double least_thickness(const std::vector<PrismEdge>& all, const std::vector<bool
         ++count;
         double depth = 0.0;
         for (std::size_t k = 0; k < n; ++k) {
-            depth = std::max(depth, -nearer_edge(all[i], all[k].x, all[k].z, {}).ahead);
+            depth = std::max(depth, -nearer_edge(all[i], all[k].x, all[k].z, NearestEdge<double>{}).ahead);
             const bool neighbours = k == i || (k + 1) % n == i || (i + 1) % n == k;
             const bool away = all[i].tx * all[k].tx + all[i].tz * all[k].tz < 0.0;
             if (!neighbours && !covered[k] && away && behind(all[i], all[k]) && behind(all[k], all[i]))
@@ -202,23 +204,24 @@ Prism Prism::with_covered_ends(bool low_end, bool high_end) const {
 }
 
 Nearest Prism::nearest(const Vec3& p) const {
-    NearestEdge face;
+    NearestEdge<double> face;
     double side = 1.0;
     for (const PrismEdge& edge : outline_->edges) {
         face = nearer_edge(edge, p.x(), p.z(), face);
         side = side_after_edge(edge, p.x(), p.z(), side);
     }
-    NearestEdge outline = face;
+    NearestEdge<double> outline = face;
     for (const PrismEdge& edge : outline_->covered_edges) {
         outline = nearer_edge(edge, p.x(), p.z(), outline);
         side = side_after_edge(edge, p.x(), p.z(), side);
     }
-    const double past_end = p.y() - std::clamp(p.y(), y_low_, y_high_);
-    FromSurface v = from_edge(face, past_end);
+    const double past_end = past_ends(p.y(), y_low_, y_high_);
+    FromSurface<double> v = from_edge(face, past_end);
     if (low_end_) v = nearer_end(outline, side, p.y() - y_low_, -1.0, v);
     if (high_end_) v = nearer_end(outline, side, p.y() - y_high_, 1.0, v);
     Nearest out;
-    signed_distance(v, past_end == 0.0 ? side : 1.0, out.gap, out.normal.x(), out.normal.y(), out.normal.z());
+    signed_distance(v, side_with_ends(side, past_end), out.gap, out.normal.x(), out.normal.y(),
+                    out.normal.z());
     return out;
 }
 

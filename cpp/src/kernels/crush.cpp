@@ -168,7 +168,7 @@ FlatContact::FlatContact(const RigidBody& body, const HalfSpace& face_, const Ha
       holding((face.normal + face_before.normal) / (1.0 + face.normal.dot(face_before.normal))),
       inverse_mass(body, face.normal) {}
 
-void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
+bool crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
            const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums) {
     alignas(64) Lanes gap;
     const Vec3& n = surface.face.normal;
@@ -179,9 +179,10 @@ void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, con
                                          gap.data(), contact.pressure.data(), sums.nodes);
     const double pushing = finish(mesh, b, nodes, before, gap, PlaneShare{n}, now, sums);
     if (now.touching) sums.stiffness += contact_stiffness(surface, mesh, b, now, pushing);
+    return nodes >= left;
 }
 
-void crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh, std::size_t b,
+bool crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh, std::size_t b,
            const Lanes* factor, const TrussBlockState& before, TrussBlockState& now, BlockContact& contact,
            CrushSums& sums) {
     alignas(64) Ways ways;
@@ -197,6 +198,7 @@ void crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh,
                           contact.pressure.data(), sums.nodes);
     finish(mesh, b, nodes, before, gap, NodeShares{ways, faces}, now, sums);
     if (now.touching) sums.stiffness += contact_stiffness(body, mesh.block[b], now, contact);
+    return nodes >= left;
 }
 
 Wrench total_wrench(const FlatContact& surface, const CrushSums& sums) {

@@ -29,9 +29,7 @@ struct Place {
 // Both give the places of the eight nodes from i on. A flat surface takes arriving nodes along n.
 struct Flat {
     BIRM3D_IN_LANE_LOOP explicit Flat(const FlatPress& s)
-        : n{Row::of(s.nx), Row::of(s.ny), Row::of(s.nz)},
-          h{Row::of(s.hx), Row::of(s.hy), Row::of(s.hz)},
-          offset(Row::of(s.offset)) {}
+        : n{s.nx, s.ny, s.nz}, h{s.hx, s.hy, s.hz}, offset(s.offset) {}
     BIRM3D_IN_LANE_LOOP Place at(std::size_t, const Vector& node) const {
         return {dot(n, node) - offset, n, n, h, n};
     }
@@ -51,7 +49,7 @@ struct Curved {
     }
     // Of a unit of normal force; keeps it, and the place, for later.
     BIRM3D_IN_LANE_LOOP Vector torque(std::size_t i, const Vector& node, const Vector& n) const {
-        const Row drawn = Row::load(s.drawn + i), zero = Row::of(0.0);
+        const Row drawn = Row::load(s.drawn + i), zero = 0.0;
         const auto keep = [&](double* column, const Row& found) {
             const Row kept = where_above(drawn, zero, Row::load(column + i), found);
             kept.store(column + i);
@@ -70,8 +68,8 @@ template <bool flat, class Surface>
 BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surface,
                                  const PressState<const double>& before, const PressState<double>& now,
                                  double* gaps, double* pressures, NodeSums& sums) {
-    const Row zero = Row::of(0.0), one = Row::of(1.0), least = Row::of(tolerance::truss_length);
-    const Row node_left = Row::of(left);
+    const Row zero = 0.0, one = 1.0, least = tolerance::truss_length;
+    const Row node_left = left;
     Row force = zero, work = zero, stored = zero, nodes = zero;
     Vector moment{zero, zero, zero}, push{zero, zero, zero};
     for (std::size_t i = 0; i < lanes; i += row_length) {

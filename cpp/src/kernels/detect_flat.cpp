@@ -69,7 +69,8 @@ bool behind(const PrismEdge& edge, const PrismEdge& face) {
 // The distance from an edge is a convex function, so its tangent plane in the middle of the box lies below it.
 bool farther(const PlacedBox& box, const PrismEdge& edge, const PrismEdge& face, double ahead,
              double factor) {
-    const FromSurface v = from_edge(nearer_edge(edge, box.center.x(), box.center.z(), {}), 0.0);
+    const FromSurface<double> v =
+        from_edge(nearer_edge(edge, box.center.x(), box.center.z(), NearestEdge<double>{}), 0.0);
     const double distance = std::sqrt(v.square);
     if (!(distance > 0.0)) return false;
     const Flat n = normal(face);
@@ -135,9 +136,9 @@ std::optional<HalfSpace> flat_part(const Shape& shape, const Placement& now, con
     const PlacedBox placed{now.rotation, box.half, now.to_own(box.center)};
     // What is nearest everywhere is nearest to the middle.
     const PrismEdge* face = nullptr;
-    NearestEdge nearest;
+    NearestEdge<double> nearest;
     for (const PrismEdge& edge : prism->edges()) {
-        const NearestEdge n = nearer_edge(edge, placed.center.x(), placed.center.z(), nearest);
+        const NearestEdge<double> n = nearer_edge(edge, placed.center.x(), placed.center.z(), nearest);
         if (n.square < nearest.square) face = &edge;
         nearest = n;
     }

@@ -2,14 +2,9 @@
 #pragma once
 
 #include "birm3d/kernels/detect.hpp"
+#include "kernels/detect_rows.hpp"
 
 namespace birm3d {
-
-// A placement in plain numbers, and its way back for directions.
-struct Turn {
-    double xx, xy, xz, yx, yy, yz, zx, zy, zz;
-    double x, y, z;
-};
 
 inline Turn turn_of(const Placement& p) {
     const Mat3& R = p.rotation;
@@ -22,12 +17,12 @@ struct alignas(64) OwnLanes {
     Lanes x, y, z;
 };
 
-void to_own(const Turn& turn, const Lanes& x, const Lanes& y, const Lanes& z, OwnLanes& own);
+// Returns their extent.
+Extent to_own(const Turn& turn, const Lanes& x, const Lanes& y, const Lanes& z, OwnLanes& own);
 
-// Of some values.
-void extent(const Lanes& values, double& low, double& high);
-
-// nearest_of, for a mesh.
+// nearest_of, for a prism and for a mesh.
+void nearest_of_prism(const Prism& prism, const Placement& now, const Lanes& x, const Lanes& y,
+                      const Lanes& z, const Lanes* force, NearestLanes& out);
 void nearest_of_mesh(const TriangleMesh& mesh, const Placement& now, const Placement& before, const Lanes& x,
                      const Lanes& y, const Lanes& z, NearestLanes& out);
 

@@ -63,17 +63,18 @@ void nearest_of_mesh(const TriangleMesh& mesh, const Placement& now, const Place
                      const Lanes& y, const Lanes& z, NearestLanes& out) {
     const TriangleMeshData& data = mesh.data();
     OwnLanes own;
-    to_own(turn_of(now), x, y, z, own);
-    const Box box = Box::around(lanes, [&](std::size_t i) { return Vec3(own.x[i], own.y[i], own.z[i]); });
+    const Extent extent = to_own(turn_of(now), x, y, z, own);
+    const Eigen::Map<const Vec3> low(extent.low), high(extent.high);
+    const Vec3 middle = 0.5 * (low + high);
 
     // The triangle nearest to the middle of the block is near all of it.
     std::size_t hint = 0;
-    mesh.nearest(box.center, hint);
+    mesh.nearest(middle, hint);
     TriangleLanes best;
     begin(std::numeric_limits<double>::infinity(), best);
     double most = ask_triangle(data.triangles[hint].plain, static_cast<double>(hint), own, best);
     std::size_t asked = 1;
-    data.tree.near(box.center - box.half, box.center + box.half, most, [&](std::size_t i) {
+    data.tree.near(low, high, most, [&](std::size_t i) {
         if (i == hint || asked > most_triangles) return;
         most = ask_triangle(data.triangles[i].plain, static_cast<double>(i), own, best);
         if (++asked > most_triangles) most = 0.0;  // ends the walk

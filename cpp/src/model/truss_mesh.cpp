@@ -121,34 +121,38 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
     rate_sensitivity = input.rate_sensitivity;
     dent_reach = input.dent_reach;
     count = input.node.size();
-    std::vector<std::size_t> of_skin, of_tires;
-    for (std::size_t i = 0; i < count; ++i)
-        (input.wheel_of.empty() || input.wheel_of[i] < 0 ? of_skin : of_tires).push_back(i);
-    skin = of_skin.size();
-    if (skin == 0) refuse("nodes of the skin", "at least 1", 0.0);
-    skin_blocks = (skin + lanes - 1) / lanes;
-    blocks = skin_blocks + (of_tires.size() + lanes - 1) / lanes;
     for (const TrussCurve& curve : input.curve)
         hinges = std::max(hinges, curve.slope.size());
 
-    input_index = spatial_order(input, of_skin);
-    const std::vector<std::size_t> treads = spatial_order(input, of_tires);
-    input_index.insert(input_index.end(), treads.begin(), treads.end());
+    const auto of = [&](int wheel) {
+        std::vector<std::size_t> chosen;
+        for (std::size_t i = 0; i < count; ++i)
+            if ((input.wheel_of.empty() ? -1 : input.wheel_of[i]) == wheel) chosen.push_back(i);
+        return chosen;
+    };
+    add_blocks(input, of(-1));
+    skin = input_index.size();
+    skin_blocks = first.size();
+    if (skin == 0) refuse("nodes of the skin", "at least 1", 0.0);
+    for (std::size_t wheel = 0; wheel < wheels.size(); ++wheel)
+        add_blocks(input, of(static_cast<int>(wheel)));
+    blocks = first.size();
+    first.push_back(count);
+
     anchors = Box::around(skin, [&](std::size_t i) { return input.anchor[input_index[i]]; });
     block.resize(blocks);
     hinge.resize(blocks * hinges);
-    for (std::size_t b = 0; b < blocks; ++b) {
-        const bool on_skin = b < skin_blocks;
-        const std::size_t first = on_skin ? b * lanes : skin + (b - skin_blocks) * lanes;
-        const std::size_t end = on_skin ? skin : count;
-        for (std::size_t i = 0; i < lanes; ++i)
-            fill_lane(input, input_index[std::min(first + i, end - 1)], first + i >= end, b, i);
-        add_stiffness(block[b]);
-        node_box.push_back(box_around(block[b].node_x, block[b].node_y, block[b].node_z));
-        anchor_box.push_back(box_around(block[b].anchor_x, block[b].anchor_y, block[b].anchor_z));
-    }
+    for (std::size_t b = 0; b < blocks; ++b)
+        fill_block(input, b);
     find_panels();
     find_tread(input, wheels);
+}
+
+void TrussMesh::add_blocks(const TrussInput& input, const std::vector<std::size_t>& chosen) {
+    for (std::size_t i = 0; i < chosen.size(); i += lanes)
+        first.push_back(input_index.size() + i);
+    const std::vector<std::size_t> ordered = spatial_order(input, chosen);
+    input_index.insert(input_index.end(), ordered.begin(), ordered.end());
 }
 
 void TrussMesh::find_tread(const TrussInput& input, const std::vector<Wheel>& wheels) {
@@ -194,22 +198,43 @@ void TrussMesh::add_stiffness(const TrussBlock& trusses) {
     moments.push_back(sum);
 }
 
-void TrussMesh::fill_lane(const TrussInput& input, std::size_t source, bool padding, std::size_t b,
-                          std::size_t i) {
-    // Padding stands by an anchor of the skin, where nothing meets it before the body.
-    const std::size_t place = padding ? input_index[skin - 1] : source;
+void TrussMesh::fill_block(const TrussInput& input, std::size_t b) {
+    const std::size_t nodes = nodes_in(b);
+    for (std::size_t i = 0; i < nodes; ++i)
+        fill_lane(input, input_index[first[b] + i], b, i);
+    if (nodes < lanes) pad(input, b);
+    add_stiffness(block[b]);
+    node_box.push_back(box_around(block[b].node_x, block[b].node_y, block[b].node_z));
+    anchor_box.push_back(box_around(block[b].anchor_x, block[b].anchor_y, block[b].anchor_z));
+}
+
+// Padding stands by an anchor of the skin, where nothing meets it before the body: the one next to the block.
+void TrussMesh::pad(const TrussInput& input, std::size_t b) {
+    const Vec3 next_to = input.node[input_index[first[b]]];
+    const auto by_way = [&](std::size_t i, std::size_t j) {
+        return (input.anchor[i] - next_to).squaredNorm() < (input.anchor[j] - next_to).squaredNorm();
+    };
+    const auto begin = input_index.begin(), end = begin + static_cast<std::ptrdiff_t>(skin);
+    const std::size_t place = *std::min_element(begin, end, by_way);
     constexpr double beside = 1e-3;
     const Vec3& anchor = input.anchor[place];
-    const Vec3 node = padding ? Vec3(anchor + beside * (input.node[place] - anchor)) : input.node[source];
-    const double scale = padding ? 0.0 : input.scale[source];
-    const TrussCurve& curve = input.curve[input.curve_of[source]];
-    const bool on_skin = b < skin_blocks;
-    reach = std::max({reach, node.norm(), on_skin ? anchor.norm() : 0.0});
+    for (std::size_t i = nodes_in(b); i < lanes; ++i)
+        place_lane(Vec3(anchor + beside * (input.node[place] - anchor)), anchor, b, i);
+}
 
+void TrussMesh::place_lane(const Vec3& node, const Vec3& anchor, std::size_t b, std::size_t i) {
+    reach = std::max({reach, node.norm(), b < skin_blocks ? anchor.norm() : 0.0});
     TrussBlock& to = block[b];
     to.node_x[i] = node.x(), to.node_y[i] = node.y(), to.node_z[i] = node.z();
     to.anchor_x[i] = anchor.x(), to.anchor_y[i] = anchor.y(), to.anchor_z[i] = anchor.z();
     to.length[i] = (node - anchor).norm();
+}
+
+void TrussMesh::fill_lane(const TrussInput& input, std::size_t source, std::size_t b, std::size_t i) {
+    place_lane(input.node[source], input.anchor[source], b, i);
+    const double scale = input.scale[source];
+    const TrussCurve& curve = input.curve[input.curve_of[source]];
+    TrussBlock& to = block[b];
     to.k_unloading[i] = scale * curve.k_unloading;
     to.compliance[i] = to.k_unloading[i] > 0.0 ? 1.0 / to.k_unloading[i] : 0.0;
     double slope = 0.0;

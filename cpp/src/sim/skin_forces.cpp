@@ -158,11 +158,11 @@ void Skin::spring_back(std::size_t b) {
 void Skin::look_about(std::size_t b) {
     spring_back(b);
     const TrussBlockState& block = from(b);
-    // Where a flat surface is all there is, pushing nodes need no box.
-    const bool flat_only = near_.size() == 1 && meets(b, 0) &&
-                           std::holds_alternative<HalfSpace>(scene_.obstacles[near_[0].index].shape);
-    box_ = block.touching && !flat_only ? box_around(block.x, block.y, block.z) : block.box;
-    if (block.touching && flat_only)
+    // Where there is one obstacle, nodes that push do so on it; at a flat one they need no box.
+    const bool only_one = block.touching && near_.size() == 1 && meets(b, 0);
+    const bool flat = only_one && std::holds_alternative<HalfSpace>(scene_.obstacles[near_[0].index].shape);
+    box_ = block.touching && !flat ? box_around(block.x, block.y, block.z) : block.box;
+    if (only_one)
         seen_.assign(1, 0);
     else
         find_seen(b, box_, block.touching ? margin_ : 0.0);
@@ -280,14 +280,16 @@ void Skin::press_shapes(std::size_t b) {
     const bool alone = seen_.size() == 1;
     CrushSums& to = alone ? obstacles_[seen_[0]].sums : shared_;
     const CrushSums before = to;
+    bool ceased = false;
     const auto crush_block = [&] {
         crush_with_rate(alone ? seen_[0] : several, next, contact_.places(), to,
                         [&](const Lanes* factor, CrushSums& sums) {
-                            crush(faces_, unit_.body, mesh_, b, factor, from(b), next, contact_, sums);
+                            ceased =
+                                crush(faces_, unit_.body, mesh_, b, factor, from(b), next, contact_, sums);
                         });
     };
     crush_block();
-    if (const auto work = let_go_into_another(b)) {
+    if (const auto work = ceased ? let_go_into_another(b) : std::nullopt) {
         to = before;
         to.released_work += *work;
         look(b);

@@ -16,6 +16,46 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Cosine above which the normals of two instants are of the same face.
 constexpr double same_face = 0.9;
 
+// Nodes to which this obstacle, the k-th, is nearer than those before.
+BIRM3D_LANE_LOOP void take_nearer(const NearestLanes& found, std::size_t k, NodeFaces& faces,
+                                  BlockContact& contact, std::array<std::size_t, lanes>& nearest) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const bool nearer = found.gap[i] < faces.gap[i];
+        nearest[i] = nearer ? k : nearest[i];
+        faces.gap[i] = nearer ? found.gap[i] : faces.gap[i];
+        contact.nx[i] = nearer ? found.nx[i] : contact.nx[i];
+        contact.ny[i] = nearer ? found.ny[i] : contact.ny[i];
+        contact.nz[i] = nearer ? found.nz[i] : contact.nz[i];
+    }
+}
+
+// The same of the instant before.
+BIRM3D_LANE_LOOP void take_nearer_before(const NearestLanes& found, Lanes& gap, NodeFaces& faces) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const bool nearer = found.gap[i] < gap[i];
+        gap[i] = nearer ? found.gap[i] : gap[i];
+        faces.bx[i] = nearer ? found.nx[i] : faces.bx[i];
+        faces.by[i] = nearer ? found.ny[i] : faces.by[i];
+        faces.bz[i] = nearer ? found.nz[i] : faces.bz[i];
+    }
+}
+
+// Nodes inside that arrive, or seem to have changed over to another face (1, else 0). Returns how many.
+BIRM3D_LANE_LOOP double find_doubtful(const NodeFaces& faces, const BlockContact& contact, const Lanes& force,
+                                      Lanes& doubtful) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const double turn =
+            contact.nx[i] * faces.bx[i] + contact.ny[i] * faces.by[i] + contact.nz[i] * faces.bz[i];
+        const bool same = force[i] > 0.0 && turn > same_face;
+        doubtful[i] = faces.gap[i] < 0.0 && !same ? 1.0 : 0.0;
+    }
+    alignas(64) Lanes sum = doubtful;
+    return lane_sum(sum);
+}
+
 }  // namespace
 
 // What each node of a block sees: the nearest of the surfaces in its reach.
@@ -40,14 +80,9 @@ void Skin::look_at(std::size_t b, const TrussBlockState& block) {
         if (is_left_to_dents(b, seen_[k])) continue;
         const NearObstacle& obstacle = near_[seen_[k]];
         const Shape& shape = scene_.obstacles[obstacle.index].shape;
-        nearest_of(shape, obstacle.now, obstacle.before, block.x, block.y, block.z, found);
+        nearest_of(shape, obstacle.now, obstacle.before, block.x, block.y, block.z, found, &block.force);
         leave_to_dents(b, seen_[k], found);
-        for (std::size_t i = 0; i < lanes; ++i) {
-            if (!(found.gap[i] < faces_.gap[i])) continue;
-            nearest_[i] = k;
-            faces_.gap[i] = found.gap[i];
-            contact_.nx[i] = found.nx[i], contact_.ny[i] = found.ny[i], contact_.nz[i] = found.nz[i];
-        }
+        take_nearer(found, k, faces_, contact_, nearest_);
     }
     faces_.bx = contact_.nx, faces_.by = contact_.ny, faces_.bz = contact_.nz;
     // What pushes on no more than dents had their direction then, too.
@@ -62,15 +97,9 @@ void Skin::look_at(std::size_t b, const TrussBlockState& block) {
         if (is_left_to_dents(b, k)) continue;
         const NearObstacle& obstacle = near_[k];
         nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.before, obstacle.before, block.x, block.y,
-                   block.z, found);
+                   block.z, found, &block.force);
         leave_to_dents(b, k, found);
-        for (std::size_t i = 0; i < lanes; ++i) {
-            if (!(found.gap[i] < gap_before[i])) continue;
-            gap_before[i] = found.gap[i];
-            faces_.bx[i] = found.nx[i];
-            faces_.by[i] = found.ny[i];
-            faces_.bz[i] = found.nz[i];
-        }
+        take_nearer_before(found, gap_before, faces_);
     }
 }
 
@@ -148,13 +177,12 @@ void Skin::turn_flat_faces() {
 // over to another face. Meshes do the like with all that come in. Was it the wrong one to any?
 bool Skin::find_entered_faces(const TrussBlockState& block) {
     bool changed = false;
+    alignas(64) Lanes doubtful;
+    if (find_doubtful(faces_, contact_, block.force, doubtful) == 0.0) return false;
     for (std::size_t i = 0; i < lanes; ++i) {
-        if (!(faces_.gap[i] < 0.0)) continue;
+        if (!(doubtful[i] > 0.0)) continue;
         const Shape& shape = scene_.obstacles[near_[seen_[nearest_[i]]].index].shape;
         if (std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<TriangleMesh>(shape)) continue;
-        const double turn =
-            contact_.nx[i] * faces_.bx[i] + contact_.ny[i] * faces_.by[i] + contact_.nz[i] * faces_.bz[i];
-        if (block.force[i] > 0.0 && turn > same_face) continue;
         const auto entered = entered_face(scene_, near_, seen_, {block.x[i], block.y[i], block.z[i]},
                                           nearest_[i], contact_.normal(i));
         if (!entered) continue;

@@ -8,7 +8,7 @@ namespace birm3d {
 
 // A wheel turns as all its nodes together will have it: their friction waits until they are all known.
 void Skin::note_treads(std::size_t near, std::size_t b, const Places& places, const BlockContact& contact) {
-    const std::size_t first = (b - mesh_.skin_blocks) * lanes;
+    const std::size_t first = mesh_.first[b] - mesh_.skin;
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!(contact.pressure[i] > 0.0)) continue;
         treads_.push_back(tread_contact(mesh_.tread[first + i], near, away_[near],
@@ -19,8 +19,7 @@ void Skin::note_treads(std::size_t near, std::size_t b, const Places& places, co
 
 void Skin::rub_treads() {
     const double mu = scene_.settings.mu_tire_barrier;
-    std::stable_sort(treads_.begin(), treads_.end(),
-                     [](const TreadContact& a, const TreadContact& b) { return a.wheel < b.wheel; });
+    // They come wheel by wheel, as their blocks do.
     for (auto first = treads_.begin(); first != treads_.end();) {
         const auto end = std::find_if(first, treads_.end(),
                                       [&](const TreadContact& node) { return node.wheel != first->wheel; });

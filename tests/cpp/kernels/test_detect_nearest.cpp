@@ -13,6 +13,16 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 const Prism::Profile jersey_half = {{0.3048, 0.0}, {0.3048, 0.0762}, {0.127, 0.3302}, {0.0762, 0.8128}};
 const Prism::Profile notched = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.5, 0.4}, {0.0, 1.0}};
 
+// A wave with more edges than are looked through.
+Prism::Profile wave() {
+    Prism::Profile profile;
+    for (int i = 0; i <= 20; ++i)
+        profile.emplace_back(0.1 * i - 1.0, 0.3 + 0.1 * std::sin(1.3 * i));
+    profile.emplace_back(1.0, -0.5);
+    profile.emplace_back(-1.0, -0.5);
+    return profile;
+}
+
 std::vector<Shape> shapes() {
     return {HalfSpace{Vec3(0.6, 0.0, 0.8), 0.3},
             Post(0.2, 0.9),
@@ -25,6 +35,7 @@ std::vector<Shape> shapes() {
             Prism::symmetric(jersey_half, infinity, 0.5),
             Prism(notched, -0.8, 1.1, {.edges = {0, 3}, .low_end = true}),
             Prism(notched, -0.8, infinity, {}),
+            Prism(wave(), -0.9, 1.0, {.edges = {21, 22}}),
             laboratory::extruded({{0.0, 0.0}, {0.4, 0.0}, {0.4, 0.8}, {0.0, 0.8}}, {0.2, 0.4}, -0.5, 0.7, 3)
                 .mesh(),
             laboratory::post(0.3, -1.0, 0.9, 12).mesh()};
@@ -68,6 +79,32 @@ TEST("a block of nodes sees what single points see, from anywhere") {
                 CHECK(turn < 1e-12 || turn < 1e-12 / std::abs(exact.gap) || foot < 1e-13);
             }
         }
+}
+
+TEST("nodes inside and those with a force are seen as if all were asked for; the others are outside") {
+    laboratory::Random random(32);
+    std::size_t left_out = 0, inside = 0;
+    for (const Shape& shape : shapes())
+        for (int k = 0; k < 50; ++k) {
+            const Placement now = random.placement(3.0);
+            const Block block(random, now, random.within(0.05, 0.5));
+            Lanes force{};
+            force[static_cast<std::size_t>(k)] = 1e-30;
+            NearestLanes all, some;
+            nearest_of(shape, now, now, block.x, block.y, block.z, all);
+            nearest_of(shape, now, now, block.x, block.y, block.z, some, &force);
+            for (std::size_t i = 0; i < lanes; ++i) {
+                left_out += some.gap[i] == infinity;
+                inside += all.gap[i] < 0.0;
+                if (some.gap[i] == infinity) {
+                    CHECK(all.gap[i] >= 0.0 && force[i] == 0.0);
+                    continue;
+                }
+                CHECK(some.gap[i] == all.gap[i]);
+                CHECK(some.nx[i] == all.nx[i] && some.ny[i] == all.ny[i] && some.nz[i] == all.nz[i]);
+            }
+        }
+    CHECK(left_out > 1000 && inside > 1000);
 }
 
 TEST("the nodes at rest, those that moved: a mesh asks where they came from") {

@@ -120,6 +120,40 @@ TEST("treads stand in blocks of their own behind the skin, which stays as it was
         CHECK(mesh.block[3].k_unloading[i] == 0.0);
 }
 
+TEST("each wheel's tread has blocks of its own, padded by the skin's anchor next to it") {
+    TrussInput with = laboratory::front_face(laboratory::w2_curve(), 2, 2);
+    const std::vector<Wheel> wheels{{Vec3(1.5, 0.8, -0.6), 0.4}, {Vec3(-1.5, 0.8, -0.6), 0.4}};
+    with.wheel_of.assign(with.node.size(), -1);
+    for (int i = 0; i < 70; ++i) {  // of the first wheel five, in between
+        const std::size_t w = i % 14 == 0 ? 0 : 1;
+        with.node.push_back(wheels[w].center + Vec3(0.005 * i, 0.1, -0.2));
+        with.anchor.push_back(wheels[w].center);
+        with.curve_of.push_back(0);
+        with.scale.push_back(1.0);
+        with.wheel_of.push_back(static_cast<int>(w));
+    }
+    const TrussMesh mesh(with, wheels);
+    CHECK(mesh.skin_blocks == 1 && mesh.blocks == 4);
+    CHECK(mesh.nodes_in(1) == 5 && mesh.nodes_in(2) == lanes && mesh.nodes_in(3) == 1);
+    for (std::size_t truss = 0; truss < mesh.count; ++truss) {
+        const std::size_t source = mesh.input_index[truss];
+        CHECK(mesh.node(truss) == with.node[source]);
+        if (truss >= mesh.skin)
+            CHECK(static_cast<int>(mesh.tread[truss - mesh.skin].wheel) == with.wheel_of[source]);
+    }
+    for (std::size_t b = 1; b < 4; ++b) {
+        double nearest = 1e9;
+        for (std::size_t truss = 0; truss < mesh.skin; ++truss)
+            nearest = std::min(nearest, (mesh.anchor(truss) - mesh.node(mesh.first[b])).norm());
+        for (std::size_t i = mesh.nodes_in(b); i < lanes; ++i) {
+            const Vec3 anchor(mesh.block[b].anchor_x[i], mesh.block[b].anchor_y[i],
+                              mesh.block[b].anchor_z[i]);
+            CHECK((anchor - mesh.node(mesh.first[b])).norm() == nearest);
+            CHECK(mesh.block[b].k_unloading[i] == 0.0 && mesh.block[b].length[i] > 0.0);
+        }
+    }
+}
+
 TEST("treads of wheels that are not there are refused") {
     TrussInput wrong = laboratory::front_face(laboratory::w2_curve(), 2, 2);
     wrong.wheel_of = {-1, -1, 1, -1};

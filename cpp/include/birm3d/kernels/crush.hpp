@@ -66,10 +66,10 @@ struct CrushSums {
 };
 
 // Takes block `b` from `before` to `now`, fills in the pressures of `contact` and adds to the sums; the normals of
-// `contact` are the caller's to set. `factor`: on the loading envelopes, may be null.
-void crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
+// `contact` are the caller's to set. `factor`: on the loading envelopes, may be null. Did any node cease to push?
+bool crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
            const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums);
-void crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh, std::size_t b,
+bool crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh, std::size_t b,
            const Lanes* factor, const TrussBlockState& before, TrussBlockState& now, BlockContact& contact,
            CrushSums& sums);
 

@@ -18,9 +18,10 @@ struct alignas(64) NearestLanes {
 };
 
 // Of the nodes x, y, z (body axes, m) of a body that stands at `now`. `before`: where it stood an instant
-// earlier; only meshes ask, for the way on which each node has come.
+// earlier; only meshes ask, for the way on which each node has come. `force`, unless null: of nodes that are outside and
+// have no force the gap may be infinite, and then there is no normal.
 void nearest_of(const Shape& shape, const Placement& now, const Placement& before, const Lanes& x,
-                const Lanes& y, const Lanes& z, NearestLanes& out);
+                const Lanes& y, const Lanes& z, NearestLanes& out, const Lanes* force = nullptr);
 
 // Can any point of a box in body axes be nearer to the surface than `margin` (m), or inside? Cheap, and never
 // no where it is yes; it may be yes where it is no.

@@ -5,9 +5,9 @@
 // a barrier together stand together, a block that can not touch anything is left out by one test, and
 // kernels run over whole blocks without gathers. The last block is padded with trusses of no stiffness.
 //
-// Tyres that meet a barrier are nodes too, on the tread's outer edge, in blocks of their own after those of the skin.
-// They are no part of the rigid body: their anchors meet nothing. The ground is met by the wheels themselves
-// (kernels/tires.hpp), not by these nodes, and posts do not dent them.
+// Tyres that meet a barrier are nodes too, on the tread's outer edge, each wheel's in blocks of its own after those of the
+// skin, padded too. They are no part of the rigid body: their anchors meet nothing. The ground is met by the wheels
+// themselves (kernels/tires.hpp), not by these nodes, and posts do not dent them.
 #pragma once
 
 #include <algorithm>
@@ -87,8 +87,9 @@ struct TrussMesh {
     std::size_t skin_blocks = 0;  // the first of them
     std::size_t hinges = 0;       // slope changes of the longest envelope
 
-    std::vector<TrussBlock> block;  // (blocks)
-    std::vector<Hinge> hinge;       // (blocks * hinges), a block's hinges together
+    std::vector<std::size_t> first;  // (blocks + 1) truss of each block, and the end
+    std::vector<TrussBlock> block;   // (blocks)
+    std::vector<Hinge> hinge;        // (blocks * hinges), a block's hinges together
 
     std::vector<double> pushable;           // (blocks) trusses that have a stiffness
     std::vector<StiffnessMoments> moments;  // (blocks) of all of them
@@ -100,15 +101,14 @@ struct TrussMesh {
     std::vector<std::uint8_t> panels_of;   // (blocks) bit by bit: which panels have nodes there?
     std::vector<std::size_t> input_index;  // (count) the caller's number of each truss
 
-    // Place of a truss in the blocks: padding stands between skin and tyres.
+    // Place of a truss in the blocks: padding stands between some.
     std::size_t slot(std::size_t truss) const {
-        return truss < skin ? truss : skin_blocks * lanes + (truss - skin);
+        const auto after = std::upper_bound(first.begin(), first.end(), truss);
+        const auto b = static_cast<std::size_t>(after - first.begin()) - 1;
+        return b * lanes + (truss - first[b]);
     }
     // Nodes in a block, without its padding.
-    std::size_t nodes_in(std::size_t b) const {
-        const std::size_t of = b < skin_blocks ? b : b - skin_blocks;
-        return std::min(lanes, (b < skin_blocks ? skin : count - skin) - of * lanes);
-    }
+    std::size_t nodes_in(std::size_t b) const { return first[b + 1] - first[b]; }
     Vec3 node(std::size_t truss) const {
         const TrussBlock& b = block[slot(truss) / lanes];
         const std::size_t i = slot(truss) % lanes;
@@ -126,10 +126,14 @@ struct TrussMesh {
     double reach = 0.0;  // greatest distance of a node, or an anchor of the skin, from the mass centre (m)
 
   private:
+    void add_blocks(const TrussInput& input, const std::vector<std::size_t>& chosen);
+    void fill_block(const TrussInput& input, std::size_t b);
     void add_stiffness(const TrussBlock& trusses);
     void find_panels();
     void find_tread(const TrussInput& input, const std::vector<Wheel>& wheels);
-    void fill_lane(const TrussInput& input, std::size_t source, bool padding, std::size_t b, std::size_t i);
+    void pad(const TrussInput& input, std::size_t b);
+    void fill_lane(const TrussInput& input, std::size_t source, std::size_t b, std::size_t i);
+    void place_lane(const Vec3& node, const Vec3& anchor, std::size_t b, std::size_t i);
 };
 
 }  // namespace birm3d

@@ -1,0 +1,18 @@
+// Selections by which arithmetic is written that single numbers and rows of eight (src/base/row.hpp) share. Plain, like
+// node_sums.hpp.
+#pragma once
+
+#include "birm3d/base/lane_count.hpp"
+
+namespace birm3d {
+
+// a > b ? yes : no
+BIRM3D_IN_LANE_LOOP double where_above(double a, double b, double yes, double no) {
+    return a > b ? yes : no;
+}
+
+BIRM3D_IN_LANE_LOOP double square_root(double a) {
+    return __builtin_sqrt(a);
+}
+
+}  // namespace birm3d

@@ -1,0 +1,105 @@
+// Prisms: of the edges of the profile those are left out that can be nearest to no node of the block.
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "birm3d/geometry/prism_range.hpp"
+#include "kernels/detect_dispatch.hpp"
+#include "kernels/detect_lanes.hpp"
+
+namespace birm3d {
+
+namespace {
+
+// Some edges, copied together in their order.
+class SomeEdges {
+  public:
+    static constexpr std::size_t most = 16;
+
+    SomeEdges() = default;
+    SomeEdges(const SomeEdges&) = delete;
+    SomeEdges& operator=(const SomeEdges&) = delete;
+    void add(const PrismEdge& edge) { near_[list_.count++] = edge; }
+    void take_all(const std::vector<PrismEdge>& edges) { list_ = {edges.data(), edges.size()}; }
+    EdgeList list() const { return list_; }
+
+  private:
+    std::array<PrismEdge, most> near_;
+    EdgeList list_{near_.data(), 0};
+};
+
+class EdgesInView {
+  public:
+    // Edges that are more than can be looked through are all taken.
+    EdgesInView(const std::vector<PrismEdge>& edges, const Rectangle& block)
+        : edges_(edges), all_(edges.size() > SomeEdges::most) {
+        if (all_) return;
+        for (std::size_t e = 0; e < edges.size(); ++e) {
+            const SquareRange range = distances(edges[e], block);
+            least_[e] = range.least;
+            most_ = std::min(most_, range.most);
+        }
+    }
+
+    // Square of a distance that no node is further from some edge (m^2).
+    double most() const {
+        constexpr double rounding = 1.0 + 1e-9;
+        return rounding * most_;
+    }
+
+    // Those that are no further than this from some node.
+    EdgeList within(double most) {
+        if (all_) near_.take_all(edges_);
+        for (std::size_t e = 0; e < edges_.size() && !all_; ++e)
+            if (least_[e] <= most) near_.add(edges_[e]);
+        return near_.list();
+    }
+
+    // Those that lines from the nodes along +x may cross or not; turns `side` at those that all of them cross.
+    EdgeList splitting(const Rectangle& block, double& side) {
+        if (all_) splitting_.take_all(edges_);
+        for (std::size_t e = 0; e < edges_.size() && !all_; ++e) {
+            const Crossing crossing = crossing_of(edges_[e], block);
+            if (crossing == Crossing::some) splitting_.add(edges_[e]);
+            if (crossing == Crossing::all) side = -side;
+        }
+        return splitting_.list();
+    }
+
+  private:
+    const std::vector<PrismEdge>& edges_;
+    bool all_;
+    double most_ = std::numeric_limits<double>::infinity();
+    std::array<double, SomeEdges::most> least_;
+    SomeEdges near_, splitting_;
+};
+
+}  // namespace
+
+void nearest_of_prism(const Prism& prism, const Placement& now, const Lanes& x, const Lanes& y,
+                      const Lanes& z, const Lanes* force, NearestLanes& out) {
+    const Turn turn = turn_of(now);
+    OwnLanes own;
+    const auto [low, high] = to_own(turn, x, y, z, own);
+    const Rectangle block{low[0], high[0], low[2], high[2]};
+    EdgesInView faces(prism.edges(), block), covered(prism.covered_edges(), block);
+    // An end that is further away than a face is nearest to no node.
+    const double most = faces.most();
+    const auto is_near = [most](double distance) { return distance <= 0.0 || distance * distance <= most; };
+
+    PrismView view;
+    view.y_low = prism.y_low();
+    view.y_high = prism.y_high();
+    view.low_end = prism.low_end_is_surface() && is_near(low[1] - prism.y_low());
+    view.high_end = prism.high_end_is_surface() && is_near(prism.y_high() - high[1]);
+    view.faces = faces.within(most);
+    if (view.low_end || view.high_end) view.covered = covered.within(most);
+    view.splitting = faces.splitting(block, view.side);
+    view.covered_splitting = covered.splitting(block, view.side);
+    view.force = force ? force->data() : nullptr;
+    detect_rows.ask_prism(view, turn, {own.x.data(), own.y.data(), own.z.data()}, out.gap.data(),
+                          {out.nx.data(), out.ny.data(), out.nz.data()});
+}
+
+}  // namespace birm3d

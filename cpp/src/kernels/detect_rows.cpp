@@ -1,0 +1,129 @@
+// Compiled once for each instruction set; see base/row.hpp for what that forbids.
+#include "kernels/detect_rows.hpp"
+
+#include "base/row.hpp"
+
+namespace birm3d::BIRM3D_INSTRUCTION_SET {
+
+namespace {
+
+struct Spread {
+    Row low = infinitely_far, high = -infinitely_far;
+    BIRM3D_IN_LANE_LOOP void add(const Row& row) { low = lesser(row, low), high = greater(row, high); }
+    BIRM3D_IN_LANE_LOOP void finish(double& least, double& most) const {
+        alignas(64) double a[row_length], b[row_length];
+        low.store(a);
+        high.store(b);
+        for (std::size_t half = row_length / 2; half > 0; half /= 2)
+            for (std::size_t i = 0; i < half; ++i) {
+                a[i] = a[half + i] < a[i] ? a[half + i] : a[i];
+                b[i] = b[half + i] > b[i] ? b[half + i] : b[i];
+            }
+        least = a[0];
+        most = b[0];
+    }
+};
+
+struct Spreads {
+    Spread x, y, z;
+    BIRM3D_IN_LANE_LOOP void finish(Extent& extent) const {
+        x.finish(extent.low[0], extent.high[0]);
+        y.finish(extent.low[1], extent.high[1]);
+        z.finish(extent.low[2], extent.high[2]);
+    }
+};
+
+BIRM3D_IN_LANE_LOOP Row cross(const EdgeList& edges, const Row& x, const Row& z, Row side) {
+    for (std::size_t e = 0; e < edges.count; ++e)
+        side = side_after_edge(edges.edge[e], x, z, side);
+    return side;
+}
+
+BIRM3D_IN_LANE_LOOP NearestEdge<Row> nearest_edge(const EdgeList& edges, const Row& x, const Row& z,
+                                                  NearestEdge<Row> best) {
+    for (std::size_t e = 0; e < edges.count; ++e)
+        best = nearer_edge(edges.edge[e], x, z, best);
+    return best;
+}
+
+// `count`: of faces, where it is known: then all that is known of them stays in registers.
+template <std::size_t count>
+BIRM3D_IN_LANE_LOOP void ask(const PrismView& prism, const Turn& t, const Points& own, double* gap,
+                             const Columns& normals) {
+    EdgeList faces = prism.faces;
+    if constexpr (count > 0) faces.count = count;
+    const Row zero = 0.0, one = 1.0;
+    for (std::size_t i = 0; i < lanes; i += row_length) {
+        const Row x = Row::load(own.x + i), y = Row::load(own.y + i), z = Row::load(own.z + i);
+        const Row side = cross(prism.covered_splitting, x, z, cross(prism.splitting, x, z, prism.side));
+        const Row past_end = past_ends(y, prism.y_low, prism.y_high), sign = side_with_ends(side, past_end);
+        if (prism.force != nullptr &&
+            !any_above(where_above(Row::load(prism.force + i), zero, one, -1.0 * sign), zero)) {
+            Row(infinitely_far).store(gap + i);
+            continue;
+        }
+        const NearestEdge<Row> face = nearest_edge(faces, x, z, {});
+        FromSurface<Row> v = from_edge(face, past_end);
+        if (prism.low_end || prism.high_end) {
+            const NearestEdge<Row> outline = nearest_edge(prism.covered, x, z, face);
+            if (prism.low_end) v = nearer_end<Row>(outline, side, y - prism.y_low, -1.0, v);
+            if (prism.high_end) v = nearer_end<Row>(outline, side, y - prism.y_high, 1.0, v);
+        }
+        Row distance, nx, ny, nz;
+        signed_distance(v, sign, distance, nx, ny, nz);
+        distance.store(gap + i);
+        (t.xx * nx + t.yx * ny + t.zx * nz).store(normals.x + i);
+        (t.xy * nx + t.yy * ny + t.zy * nz).store(normals.y + i);
+        (t.xz * nx + t.yz * ny + t.zz * nz).store(normals.z + i);
+    }
+}
+
+}  // namespace
+
+void place_nodes(const Turn& turn, const Points& nodes, const Columns& own, Extent& extent);
+void find_extent(const Points& nodes, Extent& extent);
+void ask_prism(const PrismView& prism, const Turn& turn, const Points& own, double* gap,
+               const Columns& normals);
+
+void place_nodes(const Turn& t, const Points& nodes, const Columns& own, Extent& extent) {
+    Spreads spreads;
+    for (std::size_t i = 0; i < lanes; i += row_length) {
+        const Row x = Row::load(nodes.x + i), y = Row::load(nodes.y + i), z = Row::load(nodes.z + i);
+        const Row own_x = t.xx * x + t.xy * y + t.xz * z + t.x;
+        const Row own_y = t.yx * x + t.yy * y + t.yz * z + t.y;
+        const Row own_z = t.zx * x + t.zy * y + t.zz * z + t.z;
+        own_x.store(own.x + i);
+        own_y.store(own.y + i);
+        own_z.store(own.z + i);
+        spreads.x.add(own_x);
+        spreads.y.add(own_y);
+        spreads.z.add(own_z);
+    }
+    spreads.finish(extent);
+}
+
+void find_extent(const Points& nodes, Extent& extent) {
+    Spreads spreads;
+    for (std::size_t i = 0; i < lanes; i += row_length) {
+        spreads.x.add(Row::load(nodes.x + i));
+        spreads.y.add(Row::load(nodes.y + i));
+        spreads.z.add(Row::load(nodes.z + i));
+    }
+    spreads.finish(extent);
+}
+
+void ask_prism(const PrismView& prism, const Turn& turn, const Points& own, double* gap,
+               const Columns& normals) {
+    switch (prism.faces.count) {
+        case 1:
+            return ask<1>(prism, turn, own, gap, normals);
+        case 2:
+            return ask<2>(prism, turn, own, gap, normals);
+        case 3:
+            return ask<3>(prism, turn, own, gap, normals);
+        default:
+            return ask<0>(prism, turn, own, gap, normals);
+    }
+}
+
+}  // namespace birm3d::BIRM3D_INSTRUCTION_SET

@@ -1,0 +1,52 @@
+// The arithmetic of kernels/detect on one block, compiled once for each instruction set (see base/row.hpp): columns as
+// plain pointers, `lanes` numbers each.
+#pragma once
+
+#include <cstddef>
+
+#include "birm3d/geometry/prism_nearest.hpp"
+
+namespace birm3d {
+
+// A placement in plain numbers, and its way back for directions.
+struct Turn {
+    double xx, xy, xz, yx, yy, yz, zx, zy, zz;
+    double x, y, z;
+};
+
+struct Points {
+    const double *x, *y, *z;
+};
+
+struct Columns {
+    double *x, *y, *z;
+};
+
+// Least and greatest coordinates of some points.
+struct Extent {
+    double low[3], high[3];
+};
+
+struct EdgeList {
+    const PrismEdge* edge = nullptr;
+    std::size_t count = 0;
+};
+
+// What of a prism the nodes of a block can see.
+struct PrismView {
+    EdgeList faces, covered;                // of those that can be the nearest
+    EdgeList splitting, covered_splitting;  // of those that a line from a node along +x may cross or not
+    double side = 1.0;                      // of the nodes, once the line has crossed all others; +1 outside
+    double y_low, y_high;                   // m
+    bool low_end, high_end;                 // are they surfaces, and near?
+    const double* force;                    // see nearest_of; null: all nodes are asked for
+};
+
+// Nodes in the axes of a shape, and their extent.
+using PlaceNodes = void (*)(const Turn& turn, const Points& nodes, const Columns& own, Extent& extent);
+using FindExtent = void (*)(const Points& nodes, Extent& extent);
+// Gaps of nodes in the prism's axes, and their normals in the axes that `turn` comes from.
+using AskPrism = void (*)(const PrismView& prism, const Turn& turn, const Points& own, double* gap,
+                          const Columns& normals);
+
+}  // namespace birm3d
