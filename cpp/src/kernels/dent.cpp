@@ -184,9 +184,9 @@ Dent::Dent(const Post& post, const Placement& stands, const Panel& panel, double
     top_rate = radius * leaning / rim - post.height * tilt;
 }
 
-bool Dent::overlaps(const Panel& panel, double by) const {
-    return low - by < radius && high + by > -radius &&
-           top + by > (panel.box.center - foot).dot(along) - panel.box.half.dot(along.cwiseAbs());
+double Dent::beside(const Panel& panel) const {
+    const double bottom = (panel.box.center - foot).dot(along) - panel.box.half.dot(along.cwiseAbs());
+    return std::max({low - radius, -radius - high, bottom - top});
 }
 
 // By the post's own way, across its flanks, and by the growth of the slope.

@@ -72,12 +72,12 @@ Placement placement(const Pose& obstacle, const BodyState& seen_from) {
             to_own * (seen_from.position - obstacle.position)};
 }
 
-void find_near(const Scene& scene, std::size_t u, const State& before, const State& now, double margin,
-               std::vector<NearObstacle>& near) {
+void find_near(const Scene& scene, std::size_t u, const State& before, const State& now, bool clear,
+               double margin, std::vector<NearObstacle>& near) {
     near.clear();
     const Box box = everything(scene.vehicle->units[u].trusses, before.units[u]);
-    std::vector<std::size_t> about;
-    scene.map.find(now.units[u].body.position, box.radius() + margin, about);
+    std::vector<std::size_t> about{scene.ground};
+    if (!clear) scene.map.find(now.units[u].body.position, box.radius() + margin, about);
     for (const std::size_t i : about) {
         if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
         const Placement seen = placement(pose_of(scene, i, now), now.units[u].body);

@@ -68,7 +68,7 @@ double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, 
 namespace {
 
 // Calls `use` with each dent that a post makes or would make, and its panel's number. `about`: of the obstacles. `way`: by
-// which posts beside, before or below a panel count too, as if it had no ends (m).
+// which posts beside, before or below a panel count too, as if it had no ends (m); how far it is beside goes with it.
 template <class Use>
 void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& mesh,
                    const std::vector<std::size_t>& about, double way, const Use& use) {
@@ -82,12 +82,13 @@ void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& m
             const Panel& panel = mesh.panel[p];
             if (!panel.any || !stands_across(seen, panel, false)) continue;
             Dent dent(*post, seen, panel, mesh.dent_reach);
-            if (!dent.overlaps(panel, way)) continue;
+            const double beside = dent.beside(panel);
+            if (!(beside < way)) continue;
             if (way > 0.0) {
                 dent.low = -infinity;
                 dent.high = infinity;
             }
-            use(dent, p);
+            use(dent, p, beside);
         }
     }
 }
@@ -101,7 +102,7 @@ double overlap_of_dents(const Scene& scene, const State& state, double deepest) 
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         if (mesh.dent_reach == 0.0) continue;
         scene.map.find(state.units[u].body.position, everything(mesh, state.units[u]).radius(), about);
-        for_each_dent(scene, state.units[u], mesh, about, 0.0, [&](const Dent& dent, std::size_t panel) {
+        for_each_dent(scene, state.units[u], mesh, about, 0.0, [&](const Dent& dent, std::size_t panel, double) {
             const double gap = gap_of_panel(dent, panel, mesh, state.units[u], 0.0, -infinity);
             if (-gap < deepest) most = std::max(most, -gap);
         });
@@ -109,21 +110,30 @@ double overlap_of_dents(const Scene& scene, const State& state, double deepest) 
     return most;
 }
 
-double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
-                     double longest) {
+namespace {
+
+// Nodes that a dent has just let go lie on it but for rounding: at this gap it has come already (m).
+constexpr double come = tolerance::touching_gap;
+
+}  // namespace
+
+FreeStep undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
+                       FreeStep step) {
     std::vector<std::size_t> about;
-    // A post dents what it comes into.
-    const double way = longest * fastest;
+    const double way = tolerance::clear_margin * step.step * fastest;
     scene.map.find(unit.body.position, everything(mesh, unit).radius() + way, about);
-    for_each_dent(scene, unit, mesh, about, way, [&](const Dent& dent, std::size_t panel) {
-        const double grows = dent.fastest_growth(mesh.panel[panel]) * fastest;
-        const double far = grows * longest - tolerance::untouched_way;
-        // Nodes that a dent has just let go lie on it but for rounding: it has come already.
-        constexpr double come = tolerance::touching_gap;
-        const double gap = far > 0.0 ? gap_of_panel(dent, panel, mesh, unit, far, come) : infinity;
-        if (gap > come) longest = std::min(longest, (gap + tolerance::untouched_way) / grows);
+    for_each_dent(scene, unit, mesh, about, way, [&](const Dent& dent, std::size_t panel, double beside) {
+        // A post dents what it comes into.
+        const double grows = dent.fastest_growth(mesh.panel[panel]);
+        const double gap = gap_of_panel(dent, panel, mesh, unit, grows * way, come);
+        if (gap > come) {
+            step.step = std::min(step.step, (gap + tolerance::untouched_way) / (grows * fastest));
+            step.clear_way = std::min(step.clear_way, gap / grows);
+        } else if (beside > 0.0) {
+            step.clear_way = std::min(step.clear_way, beside);
+        }
     });
-    return longest;
+    return step;
 }
 
 }  // namespace birm3d

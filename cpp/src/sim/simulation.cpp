@@ -305,6 +305,8 @@ void Simulation::refuse_step(double dt, double critical) const {
 void Simulation::adaptive_step() {
     const double allowed =
         tolerance::step_error_per_tolerance * scene_.settings.tolerance * scene_.reference_speed();
+    // An impact is located once nothing is further inside by it than what counts as touching.
+    const double located = tolerance::touching_gap / scene_.reference_speed();
     double dt =
         passing_step(scene_, state_, std::min({state_.next_step, tolerance::longest_step, remaining()}));
     dt = std::min(dt, time_to_stop(scene_, state_));
@@ -323,7 +325,7 @@ void Simulation::adaptive_step() {
         double shorter = wanted < dt ? on_ladder(wanted) : infinity;
         const Turn turn = find_turn(scene_, state_, trial_);
         if (turn.error > allowed) shorter = std::min(shorter, dt * std::clamp(turn.share, 0.1, 0.9));
-        if (trial_.impact_after < dt)
+        if (trial_.impact_after < dt - located)
             shorter = std::min(shorter, std::max(trial_.impact_after, 2.0 * tolerance::shortest_step));
         if (dt > tolerance::release_resolution && touches(state_) && !touches(trial_.state))
             shorter = std::min(shorter, std::max(0.5 * dt, tolerance::release_resolution));
@@ -338,9 +340,12 @@ void Simulation::adaptive_step() {
     const double growth = 0.9 * std::pow(allowed / std::max(trial_.error, 1e-300), 1.0 / 6.0);
     double next = on_ladder(
         std::min(dt * std::min(4.0, growth), 0.9 * tolerance::stable_fraction * trial_.critical_step));
+    next = std::min(next, tolerance::longest_step);
     if (scene_.barrier && !touches(state_)) {
         // Free flight: up to the first instant at which a node can be at the barrier.
-        next = std::max(tolerance::first_contact_step, untouched_step(scene_, state_, next));
+        const FreeStep untouched = untouched_step(scene_, state_, next);
+        next = std::max(tolerance::first_contact_step, untouched.step);
+        state_.clear_way = untouched.clear_way;
     }
     state_.next_step = next;
 }

@@ -35,7 +35,7 @@ Dented Skin::dents_of(std::size_t k) {
         const bool dents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
         if (!panel.any || !stands_across(near_[k].now, panel, dents)) continue;
         const Dent dent(post, near_[k].now, panel, mesh_.dent_reach);
-        if (!dents && !dent.overlaps(panel)) continue;
+        if (!dents && !(dent.beside(panel) < 0.0)) continue;
         // How far in a post can have come within the step; of one that was in before, does it touch?
         const double deepest = dents || passed ? 0.0 : way_within_step(dent, p);
         const double gap = dents && pushes ? 0.0 : gap_of_panel(dent, p, mesh_, before_, 0.0, -deepest);
@@ -60,7 +60,7 @@ bool Skin::was_before(std::size_t k, std::size_t p) {
     const Post& post = std::get<Post>(scene_.obstacles[near_[k].index].shape);
     const Panel& panel = mesh_.panel[p];
     const Dent then(post, near_[k].before, panel, mesh_.dent_reach);
-    return then.overlaps(panel) && gap_of_panel(then, p, mesh_, before_, 0.0, 0.0) > 0.0;
+    return then.beside(panel) < 0.0 && gap_of_panel(then, p, mesh_, before_, 0.0, 0.0) > 0.0;
 }
 
 // Which dents can reach the block? Their posts are among what it sees, then. What pushes stays at its dent until it is

@@ -75,7 +75,7 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
                           std::max(fastest_segment(scene, from), fastest_segment(scene, trial.state))) +
               tolerance::touching_gap),
       near_(trial.near) {
-    find_near(scene, u, from, trial.state, before_.touches.empty() ? 0.0 : margin_, near_);
+    find_near(scene, u, from, trial.state, trial.clear, before_.touches.empty() ? 0.0 : margin_, near_);
     add_touched(scene, u, from, trial.state, near_);
     const bool rubs = std::any_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
         return scene.obstacles[obstacle.index].friction > 0.0;

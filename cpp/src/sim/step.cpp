@@ -10,6 +10,7 @@
 #include "birm3d/sim/bodies.hpp"
 #include "birm3d/sim/half_kick.hpp"
 #include "birm3d/sim/skin_forces.hpp"
+#include "birm3d/sim/step_limits.hpp"
 #include "birm3d/sim/structure_course.hpp"
 
 namespace birm3d {
@@ -165,6 +166,11 @@ bool skin_touches_barrier(const Scene& scene, const UnitState& unit) {
     });
 }
 
+bool nothing_touched(const State& state) {
+    return std::all_of(state.units.begin(), state.units.end(),
+                       [](const UnitState& unit) { return unit.touches.empty(); });
+}
+
 // By how much a segment that gives way adds to the inverse effective mass of a contact, at the most: it is pushed at its
 // end.
 double share_of_segments(const Scene& scene, const RigidBody& body, const std::vector<Touch>& touches) {
@@ -292,6 +298,9 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
     begin(from, dt, trial);
     half_kick(scene, Stage::before_drift, options, trial);
 
+    const double way = dt * std::max(fastest_node(scene, from), fastest_node(scene, now));
+    now.clear_way = std::max(0.0, from.clear_way - way);
+    trial.clear = way < from.clear_way && nothing_touched(from);
     for (std::size_t i = 0; i < now.segments.size(); ++i)
         drift(scene.barrier->segments[i].body, dt, now.segments[i]);
     for (std::size_t u = 0; u < now.units.size(); ++u) {
@@ -300,7 +309,8 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
         now.energies.potential += dt * unit.body.mass * scene.settings.gravity * moved.body.velocity.z();
         drift(unit.body, dt, moved.body);
 
-        if (!scene.obstacles.empty()) skin_forces(scene, u, from, trial);
+        if (!scene.obstacles.empty() && (!trial.clear || scene.skin_meets_ground[u]))
+            skin_forces(scene, u, from, trial);
         if (skin_touches_barrier(scene, moved)) now.touched = true;
 
         trial.error = std::max(trial.error, correct(scene, u, from.units[u], dt, now));

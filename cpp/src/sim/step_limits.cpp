@@ -27,7 +27,15 @@ bool is_left_behind(const HalfSpace& plane, const Twist& motion, const Box& box)
 
 }  // namespace
 
-double untouched_step(const Scene& scene, const State& state, double longest) {
+double fastest_node(const Scene& scene, const State& state) {
+    double fastest = 0.0;
+    for (std::size_t u = 0; u < state.units.size(); ++u)
+        fastest = std::max(fastest, fastest_point(scene.vehicle->units[u], state.units[u].body));
+    return fastest + fastest_segment(scene, state);
+}
+
+FreeStep untouched_step(const Scene& scene, const State& state, double longest) {
+    double clear_way = infinity;
     struct Seen {
         const Shape* shape;
         Placement placement;
@@ -48,10 +56,10 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
         const Vec3 w = R.transpose() * angular_velocity(model.body, unit.body);
         const Box all = everything(model.trusses, unit);
         near.clear();
-        scene.map.find(unit.body.position, all.radius() + longest * fastest, about);
+        scene.map.find(unit.body.position, all.radius() + tolerance::clear_margin * longest * fastest, about);
         for (const std::size_t i : about) {
             const Placement seen = placement(pose_of(scene, i, state), unit.body);
-            if (i != scene.ground && within_reach(scene.obstacles[i].shape, seen, all, longest * fastest))
+            if (i != scene.ground && within_reach(scene.obstacles[i].shape, seen, all, tolerance::clear_margin * longest * fastest))
                 near.push_back(
                     {&scene.obstacles[i].shape, seen, obstacle_motion(scene, i, state, unit.body)});
         }
@@ -59,7 +67,7 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
             const BlockGroup& group = unit.groups[b / BlockGroup::size];
             if (b % BlockGroup::size == 0 && !group.touching &&
                 std::none_of(near.begin(), near.end(), [&](const Seen& seen) {
-                    return within_reach(*seen.shape, seen.placement, group.box, longest * fastest);
+                    return within_reach(*seen.shape, seen.placement, group.box, tolerance::clear_margin * longest * fastest);
                 })) {
                 b += BlockGroup::size - 1;
                 continue;
@@ -73,6 +81,7 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
                     nearest_of(*near[0].shape, near[0].placement, near[0].placement, block.x, block.y,
                                block.z, found);
                     const double gap = std::max(*std::min_element(found.gap.begin(), found.gap.end()), 0.0);
+                    clear_way = std::min(clear_way, gap);
                     longest = std::min(longest, (gap + tolerance::untouched_way) / fastest);
                     continue;
                 }
@@ -81,7 +90,7 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
             of.fill(0);
             for (std::size_t j = 0; j < near.size(); ++j) {
                 const Placement& seen = near[j].placement;
-                if (!within_reach(*near[j].shape, seen, box, longest * fastest)) continue;
+                if (!within_reach(*near[j].shape, seen, box, tolerance::clear_margin * longest * fastest)) continue;
                 nearest_of(*near[j].shape, seen, seen, block.x, block.y, block.z, found);
                 for (std::size_t k = 0; k < lanes; ++k) {
                     if (!(found.gap[k] < nearest.gap[k])) continue;
@@ -92,6 +101,7 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
             }
             for (std::size_t k = 0; k < lanes; ++k) {
                 const double gap = std::max(nearest.gap[k], 0.0);
+                clear_way = std::min(clear_way, gap);
                 if (!(gap < longest * fastest) || is_slack(block, k)) continue;
                 const Vec3 node(block.x[k], block.y[k], block.z[k]);
                 const Twist& other = near[of[k]].motion;
@@ -102,10 +112,13 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
                 longest = std::min({longest, straight, (gap + tolerance::untouched_way) / fastest});
             }
         }
-        if (model.trusses.dent_reach > 0.0)
-            longest = undented_step(scene, unit, model.trusses, fastest, longest);
+        clear_way = std::min(clear_way, tolerance::clear_margin * longest * fastest);  // of what was left out
+        if (model.trusses.dent_reach > 0.0) {
+            const FreeStep step = undented_step(scene, unit, model.trusses, fastest, {longest, clear_way});
+            longest = step.step, clear_way = step.clear_way;
+        }
     }
-    return longest;
+    return {longest, clear_way};
 }
 
 namespace {

@@ -41,8 +41,8 @@ struct Dent {
     double surface;            // into, of the outermost node of the panel
     double reach;
 
-    // Does any of the post stand before, in or behind the panel, or of one that reaches further `by` so much (m)?
-    bool overlaps(const Panel& panel, double by = 0.0) const;
+    // How far the post stands beside the panel, or ends below it (m); negative: some of it stands before, in or behind it.
+    double beside(const Panel& panel) const;
 
     // How fast it can grow at any node while the post comes with 1 m/s.
     double fastest_growth(const Panel& panel) const;

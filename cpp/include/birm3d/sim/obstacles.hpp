@@ -30,9 +30,10 @@ Placement placement(const Pose& obstacle, const BodyState& seen_from);
 Twist obstacle_motion(const Scene& scene, std::size_t obstacle, const State& state,
                       const BodyState& seen_from);
 
-// Those that any node or anchor of the unit can be nearer to than `margin`, in their order.
-void find_near(const Scene& scene, std::size_t unit, const State& before, const State& now, double margin,
-               std::vector<NearObstacle>& near);
+// Those that any node or anchor of the unit can be nearer to than `margin`, in their order; where the barrier is `clear`
+// no more than the ground.
+void find_near(const Scene& scene, std::size_t unit, const State& before, const State& now, bool clear,
+               double margin, std::vector<NearObstacle>& near);
 
 // Around the nodes of a block; that of its state is kept up only while nothing touches.
 Box box_of(const TrussBlockState& block);
