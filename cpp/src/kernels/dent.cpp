@@ -4,19 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "kernels/dent_dispatch.hpp"
+
 namespace birm3d {
 
 namespace {
-
-// Slope of a post's flank where a panel ends on it: beyond it small motions would make great forces.
-constexpr double steepest = 5.0;
-
-// Slope of a dent that is no more than a touch. Less steep, a post beside a bowed front would draw in its middle.
-constexpr double least_slope = 0.25;
-
-// Where a panel ends, the way in which its nodes hang on a post that stands beside it changes over within this (m): the
-// outermost stand on the edge itself, and rounding would choose.
-constexpr double edge_width = 1e-3;
 
 // A rim's highest place, sine * radius above the middle of the top, is rounded off below this sine: at a corner there the
 // torque would jump.
@@ -25,14 +17,7 @@ constexpr double rounded = 0.05;
 // Sine of the angle between a post's axis and a panel beyond which it does not begin to dent it, or ceases to.
 constexpr double most_tilted = 0.5, overturned = 0.95;
 
-// A dent for the lane loop: plain numbers, and the flank from where it is steepest.
-struct Numbers {
-    double ex, ey, ez, wx, wy, wz, lx, ly, lz, ox, oy, oz;
-    double low, high, low_at, high_at, top, top_rate, tilt, radius, stretch, surface, per_reach;
-    double steep_arc, rise_there;
-};
-
-Numbers numbers_of(const Dent& d) {
+DentNumbers numbers_of(const Dent& d) {
     const double share = steepest / d.stretch, sine = share / std::sqrt(1.0 + share * share);
     const Vec3 &e = d.into, &w = d.across, &l = d.along, &o = d.foot;
     return {e.x(),
@@ -60,103 +45,6 @@ Numbers numbers_of(const Dent& d) {
             1.0 / d.reach,
             sine * d.radius,
             d.stretch * d.radius * std::sqrt(1.0 - sine * sine)};
-}
-
-// Of the post that has come `depth` in; `grows`: for each unit of it.
-struct Slope {
-    double slope, grows;
-};
-BIRM3D_IN_LANE_LOOP Slope slope_at(double depth, double per_reach) {
-    const double by_depth = depth > 0.0 ? depth * per_reach : 0.0;
-    const double slope = std::sqrt(least_slope * least_slope + by_depth * by_depth);
-    const bool steep = slope > steepest;
-    return {steep ? steepest : slope, steep ? 0.0 : by_depth * per_reach / slope};
-}
-
-// Depth of the post's surface over that of its axis, at `a` across: itself, and for each unit across and of stretch.
-struct Rise {
-    double rise, across, stretch;
-};
-BIRM3D_IN_LANE_LOOP Rise rise_at(const Numbers& d, double a) {
-    const double far = a < 0.0 ? -a : a;
-    const bool round = far <= d.steep_arc;
-    const double on = round ? far : d.steep_arc;
-    const double root = std::sqrt(d.radius * d.radius - on * on);
-    return {round ? d.stretch * root : d.rise_there - steepest * (far - d.steep_arc),
-            round ? -d.stretch * a / root : (a < 0.0 ? steepest : -steepest), root};
-}
-
-// `gap_only`: `all` is not used.
-template <bool gap_only>
-BIRM3D_IN_LANE_LOOP void dent_in_loop(const Numbers& d, const Lanes& x, const Lanes& y, const Lanes& z,
-                                      Lanes& gap, [[maybe_unused]] DentLanes* all) {
-    const double ex = d.ex, ey = d.ey, ez = d.ez, wx = d.wx, wy = d.wy, wz = d.wz, lx = d.lx, ly = d.ly,
-                 lz = d.lz, ox = d.ox, oy = d.oy, oz = d.oz;
-    BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
-        const double rx = x[i] - ox, ry = y[i] - oy, rz = z[i] - oz;
-        const double e = ex * rx + ey * ry + ez * rz;
-        const double w = wx * rx + wy * ry + wz * rz;
-        const double l = lx * rx + ly * ry + lz * rz;
-        const bool above = l > d.top;
-        const double up = above ? d.top : l;
-        const Slope slope = slope_at(d.tilt * up + d.stretch * d.radius - d.surface, d.per_reach);
-        const double s = slope.slope;
-        // The nearest place of the post that falls off no more steeply than the dent, within the panel.
-        const double share = s / d.stretch, arc = d.radius * share / std::sqrt(1.0 + share * share);
-        const double on_arc = w > arc ? arc : (w < -arc ? -arc : w);
-        const double highest = w > d.high ? w : d.high, lowest = w < d.low ? w : d.low;
-        const double a = on_arc > highest ? highest : (on_arc < lowest ? lowest : on_arc);
-        const Rise rise = rise_at(d, a);
-        const double at = d.tilt * up + rise.rise;
-        const double beside = w > a ? w - a : a - w;
-        gap[i] = e - (at - s * (beside + (l - up)));
-        if constexpr (gap_only) continue;
-
-        DentLanes& out = *all;
-        // As the post goes deeper, the slope grows.
-        const double less = slope.grows * (beside + (l - up));
-        const double rises = above ? -s : d.tilt, leans = above ? 0.0 : d.tilt;
-        const double fe = 1.0 - less, fw = rise.across, fl = rises - less * leans;
-        const double nx = fe * ex - fw * wx - fl * lx, ny = fe * ey - fw * wy - fl * ly,
-                     nz = fe * ez - fw * wz - fl * lz;
-        const double size = std::sqrt(nx * nx + ny * ny + nz * nz), per = 1.0 / size;
-        out.nx[i] = nx * per;
-        out.ny[i] = ny * per;
-        out.nz[i] = nz * per;
-        out.per_force[i] = size;
-        out.px[i] = ox + (at * ex + a * wx + up * lx);
-        out.py[i] = oy + (at * ey + a * wy + up * ly);
-        out.pz[i] = oz + (at * ez + a * wz + up * lz);
-
-        // How the depth changes as the post turns about e, with the dent, and as its axis leans along e.
-        const bool by_high = on_arc > highest, by_low = on_arc < lowest;
-        const double within = by_high ? d.high - w : (by_low ? w - d.low : 0.0);
-        const double part = 0.5 + 0.5 * within / edge_width;
-        const double at_edge = by_high || by_low ? (part < 0.0 ? 0.0 : (part > 1.0 ? 1.0 : part)) : 0.0;
-        const double edge = by_high ? d.high_at : d.low_at, side = by_high ? -s : s;
-        const double about =
-            at_edge * (side * (l - edge) - rise.across * edge) - (1.0 - at_edge) * rise.across * l + fl * w;
-        const double leaning = d.stretch * d.stretch * fe * up +
-                               d.stretch * d.tilt * (rise.stretch - less * d.radius) +
-                               (above ? (fe * d.tilt + s) * d.top_rate / d.stretch : 0.0);
-        const double qx = about * (d.tilt * lx - ex) + leaning * wx,
-                     qy = about * (d.tilt * ly - ey) + leaning * wy,
-                     qz = about * (d.tilt * lz - ez) + leaning * wz;
-        out.tx[i] = per * (oy * nz - oz * ny + qx);
-        out.ty[i] = per * (oz * nx - ox * nz + qy);
-        out.tz[i] = per * (ox * ny - oy * nx + qz);
-    }
-}
-
-BIRM3D_LANE_LOOP void dent_of_block(const Numbers& d, const Lanes& x, const Lanes& y, const Lanes& z,
-                                    DentLanes& out) {
-    dent_in_loop<false>(d, x, y, z, out.gap, &out);
-}
-
-BIRM3D_LANE_LOOP void gap_of_block(const Numbers& d, const Lanes& x, const Lanes& y, const Lanes& z,
-                                   Lanes& gap) {
-    dent_in_loop<true>(d, x, y, z, gap, nullptr);
 }
 
 }  // namespace
@@ -195,7 +83,7 @@ double Dent::fastest_growth(const Panel& panel) const {
     const double at = middle.dot(along), half = panel.box.half.dot(along.cwiseAbs());
     const double deepest =
         stretch * radius + std::max(tilt * std::min(at - half, top), tilt * std::min(at + half, top));
-    return 2.0 + slope_at(deepest - surface, 1.0 / reach).slope;
+    return 2.0 + slope_at<double>(deepest - surface, 1.0 / reach).slope;
 }
 
 bool stands_across(const Placement& post, const Panel& panel, bool dents) {
@@ -208,7 +96,7 @@ namespace {
 // Of a skin `beside` a post that is at most this deep: greatest of p - slope(p) beside over depths p. Within reach the
 // deepest post draws it in most; beyond, one of some depth, or one so deep that the slope grows no more.
 double most_drawn_in(double deepest, double beside, double reach) {
-    const double by_deepest = deepest - slope_at(deepest, 1.0 / reach).slope * beside;
+    const double by_deepest = deepest - slope_at<double>(deepest, 1.0 / reach).slope * beside;
     if (beside <= reach) return by_deepest;
     const double further = std::sqrt(beside * beside - reach * reach);
     return deepest * further < reach * reach * least_slope ? by_deepest
@@ -233,11 +121,17 @@ double most_inside(const Dent& d, const Box& box) {
 }
 
 void gap_of(const Dent& dent, const TrussBlockState& nodes, Lanes& gap) {
-    gap_of_block(numbers_of(dent), nodes.x, nodes.y, nodes.z, gap);
+    dent_rows.find_dent_gap(numbers_of(dent), nodes.x.data(), nodes.y.data(), nodes.z.data(), gap.data());
 }
 
-void dent_of(const Dent& dent, const TrussBlockState& nodes, DentLanes& out) {
-    dent_of_block(numbers_of(dent), nodes.x, nodes.y, nodes.z, out);
+void dent_of(const Dent& dent, const TrussBlockState& nodes, DentLanes& out, const Lanes* panel_of,
+             std::size_t panel) {
+    DentedNodes of;
+    if (panel_of) of = {panel_of->data(), static_cast<double>(panel), nodes.force.data()};
+    dent_rows.find_dent(
+        numbers_of(dent), nodes.x.data(), nodes.y.data(), nodes.z.data(), of,
+        {out.gap.data(), out.nx.data(), out.ny.data(), out.nz.data(), out.per_force.data(), out.px.data(),
+         out.py.data(), out.pz.data(), out.tx.data(), out.ty.data(), out.tz.data()});
 }
 
 }  // namespace birm3d

@@ -102,10 +102,11 @@ double overlap_of_dents(const Scene& scene, const State& state, double deepest) 
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         if (mesh.dent_reach == 0.0) continue;
         scene.map.find(state.units[u].body.position, everything(mesh, state.units[u]).radius(), about);
-        for_each_dent(scene, state.units[u], mesh, about, 0.0, [&](const Dent& dent, std::size_t panel, double) {
-            const double gap = gap_of_panel(dent, panel, mesh, state.units[u], 0.0, -infinity);
-            if (-gap < deepest) most = std::max(most, -gap);
-        });
+        for_each_dent(scene, state.units[u], mesh, about, 0.0,
+                      [&](const Dent& dent, std::size_t panel, double) {
+                          const double gap = gap_of_panel(dent, panel, mesh, state.units[u], 0.0, -infinity);
+                          if (-gap < deepest) most = std::max(most, -gap);
+                      });
     }
     return most;
 }

@@ -305,8 +305,6 @@ void Simulation::refuse_step(double dt, double critical) const {
 void Simulation::adaptive_step() {
     const double allowed =
         tolerance::step_error_per_tolerance * scene_.settings.tolerance * scene_.reference_speed();
-    // An impact is located once nothing is further inside by it than what counts as touching.
-    const double located = tolerance::touching_gap / scene_.reference_speed();
     double dt =
         passing_step(scene_, state_, std::min({state_.next_step, tolerance::longest_step, remaining()}));
     dt = std::min(dt, time_to_stop(scene_, state_));
@@ -317,6 +315,11 @@ void Simulation::adaptive_step() {
             throw UnstableError(dt, tolerance::shortest_step, state_.time,
                                 "the scene is too stiff for any step worth taking");
         try_step(scene_, state_, dt, {.locate_impacts = true}, trial_);
+        if (trial_.impact_within()) {
+            dt = std::max(trial_.impact_after, 2.0 * tolerance::shortest_step);
+            ++state_.statistics.rejected;
+            continue;
+        }
         const double stable = tolerance::stable_fraction * trial_.critical_step;
         double wanted = dt;
         if (dt > stable) wanted = 0.9 * stable;
@@ -325,8 +328,6 @@ void Simulation::adaptive_step() {
         double shorter = wanted < dt ? on_ladder(wanted) : infinity;
         const Turn turn = find_turn(scene_, state_, trial_);
         if (turn.error > allowed) shorter = std::min(shorter, dt * std::clamp(turn.share, 0.1, 0.9));
-        if (trial_.impact_after < dt - located)
-            shorter = std::min(shorter, std::max(trial_.impact_after, 2.0 * tolerance::shortest_step));
         if (dt > tolerance::release_resolution && touches(state_) && !touches(trial_.state))
             shorter = std::min(shorter, std::max(0.5 * dt, tolerance::release_resolution));
         if (!(shorter < dt)) break;

@@ -132,7 +132,7 @@ void Skin::draw_in(std::size_t b, const TrussBlockState& block) {
     for (const std::size_t d : block_dents_) {
         const DentedPanel& dented = dents_[d];
         const Vec3& into = dented.dent.into;
-        dent_of(dented.dent, block, found);
+        dent_of(dented.dent, block, found, &mesh_.block[b].panel, dented.panel);
         const auto seen = std::find(seen_.begin(), seen_.end(), dented.near) - seen_.begin();
         take_nearer(found, mesh_.block[b].panel, static_cast<double>(dented.panel), into.x(), into.y(),
                     into.z(), static_cast<std::size_t>(seen), faces_, contact_, nearest_);

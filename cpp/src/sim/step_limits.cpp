@@ -59,7 +59,8 @@ FreeStep untouched_step(const Scene& scene, const State& state, double longest) 
         scene.map.find(unit.body.position, all.radius() + tolerance::clear_margin * longest * fastest, about);
         for (const std::size_t i : about) {
             const Placement seen = placement(pose_of(scene, i, state), unit.body);
-            if (i != scene.ground && within_reach(scene.obstacles[i].shape, seen, all, tolerance::clear_margin * longest * fastest))
+            if (i != scene.ground && within_reach(scene.obstacles[i].shape, seen, all,
+                                                  tolerance::clear_margin * longest * fastest))
                 near.push_back(
                     {&scene.obstacles[i].shape, seen, obstacle_motion(scene, i, state, unit.body)});
         }
@@ -67,7 +68,8 @@ FreeStep untouched_step(const Scene& scene, const State& state, double longest) 
             const BlockGroup& group = unit.groups[b / BlockGroup::size];
             if (b % BlockGroup::size == 0 && !group.touching &&
                 std::none_of(near.begin(), near.end(), [&](const Seen& seen) {
-                    return within_reach(*seen.shape, seen.placement, group.box, tolerance::clear_margin * longest * fastest);
+                    return within_reach(*seen.shape, seen.placement, group.box,
+                                        tolerance::clear_margin * longest * fastest);
                 })) {
                 b += BlockGroup::size - 1;
                 continue;
@@ -90,7 +92,8 @@ FreeStep untouched_step(const Scene& scene, const State& state, double longest) 
             of.fill(0);
             for (std::size_t j = 0; j < near.size(); ++j) {
                 const Placement& seen = near[j].placement;
-                if (!within_reach(*near[j].shape, seen, box, tolerance::clear_margin * longest * fastest)) continue;
+                if (!within_reach(*near[j].shape, seen, box, tolerance::clear_margin * longest * fastest))
+                    continue;
                 nearest_of(*near[j].shape, seen, seen, block.x, block.y, block.z, found);
                 for (std::size_t k = 0; k < lanes; ++k) {
                     if (!(found.gap[k] < nearest.gap[k])) continue;

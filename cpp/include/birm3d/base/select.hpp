@@ -2,9 +2,13 @@
 // node_sums.hpp.
 #pragma once
 
+#include <limits>
+
 #include "birm3d/base/lane_count.hpp"
 
 namespace birm3d {
+
+inline constexpr double infinitely_far = std::numeric_limits<double>::infinity();  // m, m^2
 
 // a > b ? yes : no
 BIRM3D_IN_LANE_LOOP double where_above(double a, double b, double yes, double no) {

@@ -6,8 +6,6 @@
 // are not covered; the number of edges that a line from the point along +x crosses gives the sign.
 #pragma once
 
-#include <limits>
-
 #include "birm3d/base/select.hpp"
 #include "birm3d/base/tolerances.hpp"
 
@@ -22,8 +20,6 @@ struct PrismEdge {
     double z_low, z_high;  // a line along x crosses the edge where z_low <= z < z_high
     double slope;          // dx/dz
 };
-
-inline constexpr double infinitely_far = std::numeric_limits<double>::infinity();
 
 // The nearest of some edges.
 template <class Number>

@@ -62,8 +62,10 @@ struct alignas(64) DentLanes {
     Lanes tx, ty, tz;  // torque on the body for each unit of normal force, about its mass centre (m)
 };
 
-// For a block of nodes; the same gaps.
+// For a block of nodes; the same gaps. `panel_of`, unless null: nodes that are of another panel, or outside and without
+// force, may have an infinite gap, and then nothing else is said of them.
 void gap_of(const Dent& dent, const TrussBlockState& nodes, Lanes& gap);
-void dent_of(const Dent& dent, const TrussBlockState& nodes, DentLanes& out);
+void dent_of(const Dent& dent, const TrussBlockState& nodes, DentLanes& out, const Lanes* panel_of = nullptr,
+             std::size_t panel = 0);
 
 }  // namespace birm3d
