@@ -43,8 +43,22 @@ DentNumbers numbers_of(const Dent& d) {
             d.stretch,
             d.surface,
             1.0 / d.reach,
+            1.0 / d.stretch,
             sine * d.radius,
             d.stretch * d.radius * std::sqrt(1.0 - sine * sine)};
+}
+
+BIRM3D_LANE_LOOP double furthest(const Lanes& panel_of, double panel, const Lanes& force, const Lanes& gap) {
+    alignas(64) Lanes most;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i)
+        most[i] = panel_of[i] == panel && force[i] > 0.0 && gap[i] > 0.0 ? gap[i] : 0.0;
+    for (std::size_t half = lanes / 2; half > 0; half /= 2) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < half; ++i)
+            most[i] = most[half + i] > most[i] ? most[half + i] : most[i];
+    }
+    return most[0];
 }
 
 }  // namespace
@@ -124,14 +138,28 @@ void gap_of(const Dent& dent, const TrussBlockState& nodes, Lanes& gap) {
     dent_rows.find_dent_gap(numbers_of(dent), nodes.x.data(), nodes.y.data(), nodes.z.data(), gap.data());
 }
 
-void dent_of(const Dent& dent, const TrussBlockState& nodes, DentLanes& out, const Lanes* panel_of,
-             std::size_t panel) {
-    DentedNodes of;
-    if (panel_of) of = {panel_of->data(), static_cast<double>(panel), nodes.force.data()};
+namespace {
+
+void find_dent(const Dent& dent, const TrussBlockState& nodes, const DentedNodes& which, DentLanes& out) {
     dent_rows.find_dent(
-        numbers_of(dent), nodes.x.data(), nodes.y.data(), nodes.z.data(), of,
+        numbers_of(dent), nodes.x.data(), nodes.y.data(), nodes.z.data(), which,
         {out.gap.data(), out.nx.data(), out.ny.data(), out.nz.data(), out.per_force.data(), out.px.data(),
          out.py.data(), out.pz.data(), out.tx.data(), out.ty.data(), out.tz.data()});
+}
+
+}  // namespace
+
+void dent_of(const Dent& dent, const TrussBlockState& nodes, DentLanes& out) {
+    find_dent(dent, nodes, {}, out);
+}
+
+void dent_of(const Dent& dent, const TrussBlockState& nodes, const OfPanel& of, DentLanes& out) {
+    find_dent(dent, nodes,
+              {of.panel_of.data(), static_cast<double>(of.panel), nodes.force.data(), of.gap.data()}, out);
+}
+
+double furthest_off(const TrussBlockState& nodes, const OfPanel& of) {
+    return furthest(of.panel_of, static_cast<double>(of.panel), nodes.force, of.gap);
 }
 
 }  // namespace birm3d

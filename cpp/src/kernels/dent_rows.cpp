@@ -42,7 +42,7 @@ BIRM3D_IN_LANE_LOOP Hanging hang(const DentNumbers& d, const double* x, const do
     h.up = lesser(h.l, top);
     h.slope = slope_at<Row>(d.tilt * h.up + d.stretch * d.radius - d.surface, d.per_reach);
     // The nearest place of the post that falls off no more steeply than the dent, within the panel.
-    const Row share = h.slope.slope / d.stretch;
+    const Row share = h.slope.slope * d.per_stretch;
     const Row arc = d.radius * share / square_root(1.0 + share * share);
     h.arc = lesser(greater(h.w, -1.0 * arc), arc);
     h.highest = greater(h.w, high);
@@ -56,11 +56,11 @@ BIRM3D_IN_LANE_LOOP Hanging hang(const DentNumbers& d, const double* x, const do
 }
 
 BIRM3D_IN_LANE_LOOP bool any_matters(const DentedNodes& nodes, const Row& gap, std::size_t i) {
-    const Row zero = 0.0, one = 1.0;
-    const Row of = Row::load(nodes.panel + i) - nodes.of;
-    const Row other = of * of;  // zero on the panel
-    return any_above(where_above(Row::load(nodes.force + i), zero, one, where_above(zero, gap, one, zero)),
-                     where_above(other, zero, one, zero));
+    const Row zero = 0.0;
+    const Row off = Row::load(nodes.panel + i) - nodes.of;  // zero on the panel
+    const Row below = where_above(Row::load(nodes.force + i), zero, infinitely_far, zero);
+    const Row so_far = Row::load(nodes.gap + i);
+    return any_above(where_above(off * off, zero, -infinitely_far, lesser(below, so_far)), gap);
 }
 
 }  // namespace

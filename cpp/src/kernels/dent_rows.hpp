@@ -9,7 +9,7 @@ namespace birm3d {
 // A dent in plain numbers (see Dent), and the flank from where it is steepest.
 struct DentNumbers {
     double ex, ey, ez, wx, wy, wz, lx, ly, lz, ox, oy, oz;
-    double low, high, low_at, high_at, top, top_rate, tilt, radius, stretch, surface, per_reach;
+    double low, high, low_at, high_at, top, top_rate, tilt, radius, stretch, surface, per_reach, per_stretch;
     double steep_arc, rise_there;
 };
 
@@ -33,11 +33,13 @@ BIRM3D_IN_LANE_LOOP Slope<Number> slope_at(const Number& depth, double per_reach
             where_above(slope, limit, zero, by_depth * per_reach / slope)};
 }
 
-// Which of the nodes matter: those of one panel that are inside or have a force; all where `panel` is null.
+// Which of the nodes matter: those of one panel that are inside or have a force, and have seen nothing nearer; all where
+// `panel` is null.
 struct DentedNodes {
     const double* panel = nullptr;
     double of = 0.0;
     const double* force = nullptr;
+    const double* gap = nullptr;  // of what they have seen so far
 };
 
 struct DentColumns {

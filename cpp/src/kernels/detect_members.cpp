@@ -56,10 +56,11 @@ void find_closed_members(const TrussMesh& mesh, std::size_t body, const BodyStat
                 nearest.nx[i] = found.nx[i], nearest.ny[i] = found.ny[i], nearest.nz[i] = found.nz[i];
             }
         }
-        for (std::size_t i = 0; i < lanes && b * lanes + i < mesh.skin; ++i) {
+        for (std::size_t i = 0; i < mesh.nodes_in(b); ++i) {
             if (at[i] == nullptr) continue;
-            const std::size_t truss = b * lanes + i;
-            const Vec3 anchor = mesh.anchor(truss), normal(nearest.nx[i], nearest.ny[i], nearest.nz[i]);
+            const std::size_t truss = mesh.first[b] + i;
+            const Vec3 anchor(block.anchor_x[i], block.anchor_y[i], block.anchor_z[i]),
+                normal(nearest.nx[i], nearest.ny[i], nearest.nz[i]);
             const double gap = nearest.gap[i];
             const Twist there = relative(*at[i]);
             const double approach = -normal.dot(there.velocity + there.angular_velocity.cross(anchor));

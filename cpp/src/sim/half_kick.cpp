@@ -222,6 +222,7 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     const std::vector<ContactBody> bodies = contact_bodies(scene, state);
     if (stage == Stage::before_drift && options.locate_impacts)
         trial.impact_after = time_to_impact(bodies, contacts);
+    if (trial.impact_within()) return;
     set_lasting_targets(stage, trial.dt, trial.impulses, bodies, lasting);
     const ContactKick kicked =
         stage == Stage::before_drift

@@ -310,12 +310,14 @@ void Simulation::adaptive_step() {
     dt = std::min(dt, time_to_stop(scene_, state_));
     if (touches(state_))
         dt = std::min(dt, std::max(time_to_release(scene_, state_), tolerance::release_resolution));
+    double cut = 0.0;  // what an impact has cut short: the next step is no shorter for it (s)
     for (;;) {
         if (dt < tolerance::shortest_step)
             throw UnstableError(dt, tolerance::shortest_step, state_.time,
                                 "the scene is too stiff for any step worth taking");
         try_step(scene_, state_, dt, {.locate_impacts = true}, trial_);
         if (trial_.impact_within()) {
+            cut = std::max(cut, dt);
             dt = std::max(trial_.impact_after, 2.0 * tolerance::shortest_step);
             ++state_.statistics.rejected;
             continue;
@@ -339,8 +341,8 @@ void Simulation::adaptive_step() {
     // The sixth root rather than the fourth, by which a smooth load's error grows: gentle changes of the step
     // keep the estimates, which compare three steps, quiet.
     const double growth = 0.9 * std::pow(allowed / std::max(trial_.error, 1e-300), 1.0 / 6.0);
-    double next = on_ladder(
-        std::min(dt * std::min(4.0, growth), 0.9 * tolerance::stable_fraction * trial_.critical_step));
+    const double longer = growth > 1.0 ? std::max(dt * std::min(4.0, growth), cut) : dt * growth;
+    double next = on_ladder(std::min(longer, 0.9 * tolerance::stable_fraction * trial_.critical_step));
     next = std::min(next, tolerance::longest_step);
     if (scene_.barrier && !touches(state_)) {
         // Free flight: up to the first instant at which a node can be at the barrier.

@@ -110,9 +110,14 @@ class Skin {
     std::vector<ObstacleSums> obstacles_;  // parallel to near_
     CrushSums shared_;                     // of blocks that saw several obstacles
     std::vector<DentedPanel> dents_;
-    std::vector<std::size_t> block_dents_;  // by the block at hand, places in dents_
-    std::vector<TreadContact> treads_;      // that push
-    TrussBlockState sprung_;                // the block at hand, if some of its nodes have sprung back
+    // One of dents_ that the block at hand may reach; no node is nearer to it than this (m).
+    struct BlockDent {
+        std::size_t dent;
+        double gap;
+    };
+    std::vector<BlockDent> block_dents_;  // the nearest first
+    std::vector<TreadContact> treads_;    // that push
+    TrussBlockState sprung_;              // the block at hand, if some of its nodes have sprung back
     bool sprung_back_ = false;
     Box box_;  // around the nodes of the block at hand
     NodeFaces faces_;

@@ -67,17 +67,19 @@ bool Skin::was_before(std::size_t k, std::size_t p) {
 // released: of a block that touches, a dent counts that its nodes can have come off within the step.
 bool Skin::find_dents_of_block(std::size_t b) {
     block_dents_.clear();
-    const auto can_reach = [&](const DentedPanel& dented) {
-        const double off = from(b).touching ? way_within_step(dented.dent, dented.panel) : 0.0;
-        return most_inside(dented.dent, box_) >= -off;
-    };
     for (std::size_t d = 0; d < dents_.size(); ++d) {
         const DentedPanel& dented = dents_[d];
-        if ((mesh_.panels_of[b] >> dented.panel & 1U) == 0 || !can_reach(dented)) continue;
-        block_dents_.push_back(d);
+        if ((mesh_.panels_of[b] >> dented.panel & 1U) == 0) continue;
+        const double off = from(b).touching ? way_within_step(dented.dent, dented.panel) : 0.0;
+        const double gap = -most_inside(dented.dent, box_);
+        if (gap > off) continue;
+        block_dents_.push_back({d, gap});
         if (std::find(seen_.begin(), seen_.end(), dented.near) == seen_.end())
             seen_.insert(std::lower_bound(seen_.begin(), seen_.end(), dented.near), dented.near);
     }
+    std::sort(block_dents_.begin(), block_dents_.end(), [](const BlockDent& x, const BlockDent& y) {
+        return x.gap != y.gap ? x.gap < y.gap : x.dent < y.dent;
+    });
     return !block_dents_.empty();
 }
 
@@ -129,10 +131,12 @@ BIRM3D_LANE_LOOP void take_nearer(const DentLanes& dent, const Lanes& panel_of, 
 
 void Skin::draw_in(std::size_t b, const TrussBlockState& block) {
     alignas(64) DentLanes found;
-    for (const std::size_t d : block_dents_) {
-        const DentedPanel& dented = dents_[d];
+    for (const BlockDent& reached : block_dents_) {
+        const DentedPanel& dented = dents_[reached.dent];
+        const OfPanel of{mesh_.block[b].panel, dented.panel, faces_.gap};
+        if (reached.gap > furthest_off(block, of)) continue;
         const Vec3& into = dented.dent.into;
-        dent_of(dented.dent, block, found, &mesh_.block[b].panel, dented.panel);
+        dent_of(dented.dent, block, of, found);
         const auto seen = std::find(seen_.begin(), seen_.end(), dented.near) - seen_.begin();
         take_nearer(found, mesh_.block[b].panel, static_cast<double>(dented.panel), into.x(), into.y(),
                     into.z(), static_cast<std::size_t>(seen), faces_, contact_, nearest_);

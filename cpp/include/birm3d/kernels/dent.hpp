@@ -62,10 +62,22 @@ struct alignas(64) DentLanes {
     Lanes tx, ty, tz;  // torque on the body for each unit of normal force, about its mass centre (m)
 };
 
-// For a block of nodes; the same gaps. `panel_of`, unless null: nodes that are of another panel, or outside and without
-// force, may have an infinite gap, and then nothing else is said of them.
+// For a block of nodes; the same gaps.
 void gap_of(const Dent& dent, const TrussBlockState& nodes, Lanes& gap);
-void dent_of(const Dent& dent, const TrussBlockState& nodes, DentLanes& out, const Lanes* panel_of = nullptr,
-             std::size_t panel = 0);
+void dent_of(const Dent& dent, const TrussBlockState& nodes, DentLanes& out);
+
+// Nodes of one panel, and gaps of what they have seen so far.
+struct OfPanel {
+    const Lanes& panel_of;  // of each node
+    std::size_t panel;
+    const Lanes& gap;  // m
+};
+
+// The same for those that the dent may hold: of nodes of another panel, of those that are outside and without force, and of
+// those that have seen something nearer the gap may be infinite, and then nothing else is said.
+void dent_of(const Dent& dent, const TrussBlockState& nodes, const OfPanel& of, DentLanes& out);
+
+// No dent that is further from all nodes than this holds any of them (m).
+double furthest_off(const TrussBlockState& nodes, const OfPanel& of);
 
 }  // namespace birm3d
