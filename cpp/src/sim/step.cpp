@@ -57,8 +57,9 @@ double share_that_pushes(const Load& correction, const LoadCourse& before, const
 
 // The course after a step of dt to `load`.
 LoadCourse course_to(const Load& load, const LoadCourse& before, double dt) {
-    LoadCourse now;
+    LoadCourse now = before;
     now.now = load;
+    if (dt < tolerance::telling_step * before.step) return now;
     now.step = dt;
     now.step_before = before.step;
     now.rate = scaled(difference(load, before.now), 1.0 / dt);
@@ -105,7 +106,8 @@ double load_and_correct(const Unit& unit, const BodyState& body, const Segment* 
     LoadCourse now = course_to(total, before, dt);
     const double by_departure = error_of(unit, body, segment, departure(before, now), dt);
     const double by_change = error_of(unit, body, segment, change(before, now), dt);
-    now.bend_lasts = before.step > 0.0 && by_change < tolerance::lasting_bend * by_departure;
+    if (now.step == dt)
+        now.bend_lasts = before.step > 0.0 && by_change < tolerance::lasting_bend * by_departure;
     const double pushing = share_that_pushes(correction(before, now), before, now, dt);
     for (std::size_t i = 0; i < touches.size(); ++i) {
         touches[i].course = course_to(loads[i], befores[i], dt);

@@ -57,6 +57,10 @@ inline constexpr double clear_margin = 1.1;
 // Settings::tolerance. Larger: the asked and the achieved error of the metrics part.
 inline constexpr double step_error_per_tolerance = 0.01;
 
+// A step shorter than this share of the one before, as up to an impact, tells nothing of how the load goes on: its change is
+// that of single nodes.
+inline constexpr double telling_step = 0.05;
+
 // A bend of the load lasts through a step if it changes by less than this share of itself; then the scheme
 // follows it. Zero: third order throughout. Large: corners of the load are extrapolated.
 inline constexpr double lasting_bend = 0.6;
