@@ -96,7 +96,8 @@ struct Progress {
     Energies energies;
     double truss_work = 0.0;  // all work done on trusses: stored + crushed (J)
     double next_step = 0.0;   // s, proposed by the step control
-    double clear_way = 0.0;   // m, that any point can go before a node may be at the barrier; 0 where it is not known
+    double clear_way =
+        0.0;  // m, that any point can go before a node may be at the barrier; 0 where it is not known
     bool touched = false;     // has the barrier been touched at all?
     bool decided = false;     // is the outcome of the run known?
     double decided_at = 0.0;  // s
