@@ -20,32 +20,19 @@ constexpr double most_tilted = 0.5, overturned = 0.95;
 DentNumbers numbers_of(const Dent& d) {
     const double share = steepest / d.stretch, sine = share / std::sqrt(1.0 + share * share);
     const Vec3 &e = d.into, &w = d.across, &l = d.along, &o = d.foot;
-    return {e.x(),
-            e.y(),
-            e.z(),
-            w.x(),
-            w.y(),
-            w.z(),
-            l.x(),
-            l.y(),
-            l.z(),
-            o.x(),
-            o.y(),
-            o.z(),
-            d.low,
-            d.high,
-            d.low_at,
-            d.high_at,
-            d.top,
-            d.top_rate,
-            d.tilt,
-            d.radius,
-            d.stretch,
-            d.surface,
-            1.0 / d.reach,
-            1.0 / d.stretch,
-            sine * d.radius,
-            d.stretch * d.radius * std::sqrt(1.0 - sine * sine)};
+    return {e.x(),           e.y(),
+            e.z(),           w.x(),
+            w.y(),           w.z(),
+            l.x(),           l.y(),
+            l.z(),           o.x(),
+            o.y(),           o.z(),
+            d.low,           d.high,
+            d.low_at,        d.high_at,
+            d.top,           d.top_rate,
+            d.tilt,          d.radius,
+            d.stretch,       d.surface,
+            1.0 / d.reach,   1.0 / d.stretch,
+            sine * d.radius, d.stretch * d.radius * std::sqrt(1.0 - sine * sine)};
 }
 
 BIRM3D_LANE_LOOP double furthest(const Lanes& panel_of, double panel, const Lanes& force, const Lanes& gap) {
