@@ -12,23 +12,16 @@ namespace birm3d {
 
 namespace {
 
-// Linear and angular momentum (N s, N m s).
-Wrench momentum(const RigidBody& body, const BodyState& state) {
-    return {body.mass * state.velocity, state.angular_momentum};
-}
-
-// Motion at the end of the step, body axes: what the drift has made of it, and what will be added in the second half: by
-// the loads so far, and by all else, gravity, the ground and joints, as much as in the first half. `from`: before that,
-// and after any impact. `touches`: of the step that is tried, with the loads it began with.
-Twist predicted_motion(const Unit& unit, const BodyState& from, const std::vector<Touch>& touches, double dt,
+// Motion at the end of the step, body axes: what the drift has made of it, and what the loads so far will add
+// in the second half of the step.
+Twist predicted_motion(const Unit& unit, const std::vector<Touch>& touches, double dt,
                        const BodyState& drifted, const Mat3& R) {
-    Wrench coming = difference(momentum(unit.body, drifted), momentum(unit.body, from));
-    for (const Touch& touch : touches) {
-        coming += scaled(touch.extra.lead.wrench, -1.0);
-        coming += scaled(touch.course.rate.wrench, dt * dt / 3.0);
-    }
     BodyState body = drifted;
-    kick(unit.body, coming, body);
+    for (const Touch& touch : touches) {
+        Load coming = scaled(touch.course.now, 0.5 * dt);
+        coming += scaled(touch.course.rate, dt * dt / 3.0);
+        kick(unit.body, coming.wrench, body);
+    }
     return {R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
 }
 
@@ -82,8 +75,7 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
     });
     const bool treads_rub = !mesh_.tread.empty() && scene.settings.mu_tire_barrier > 0.0 && !near_.empty();
     if (rubs || treads_rub || mesh_.rate_sensitivity > 0.0)
-        motion_ = predicted_motion(unit_, trial.at_start.happened ? trial.at_start.bodies[u] : before_.body,
-                                   now_.touches, trial.dt, now_.body, R_);
+        motion_ = predicted_motion(unit_, before_.touches, trial.dt, now_.body, R_);
     away_.assign(near_.size(), motion_);
     if (!trial.state.segments.empty() && (rubs || treads_rub || mesh_.rate_sensitivity > 0.0)) {
         const std::vector<BodyState> drifted = trial.state.segments;

@@ -218,16 +218,13 @@ void clear(ContactImpulses& impulses) {
     impulses.joints = Vec3::Zero();
 }
 
-void begin(const Scene& scene, const State& from, double dt, Trial& trial) {
+void begin(const State& from, double dt, Trial& trial) {
     static_cast<Progress&>(trial.state) = from;
     trial.state.segments = from.segments;
     trial.state.time += dt;
     trial.dt = dt;
     trial.error = 0.0;
     trial.critical_step = trial.impact_after = infinity;
-    // Nothing is further inside by then than what counts as touching.
-    trial.impact_early =
-        std::max(tolerance::touching_gap / scene.reference_speed(), 2.0 * tolerance::shortest_step);
     trial.at_start.happened = trial.at_end.happened = false;
     trial.seen.clear();
     for (std::size_t u = 0; u < from.units.size(); ++u) {
@@ -300,7 +297,7 @@ bool Trial::body_held_by_barrier() const {
 
 void try_step(const Scene& scene, const State& from, double dt, const StepOptions& options, Trial& trial) {
     State& now = trial.state;
-    begin(scene, from, dt, trial);
+    begin(from, dt, trial);
     half_kick(scene, Stage::before_drift, options, trial);
     if (trial.impact_within()) return;
 

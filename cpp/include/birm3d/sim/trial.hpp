@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "birm3d/base/tolerances.hpp"
 #include "birm3d/sim/obstacles.hpp"
 #include "birm3d/state/state.hpp"
 
@@ -82,10 +83,9 @@ struct Trial {
     double error = 0.0;    // estimated velocity error of this step (m/s)
     double critical_step;  // sqrt(3)/omega of the trusses in contact (s)
     double impact_after;   // a rigid impact begins this long after t (s)
-    double impact_early;   // by which it may do so before the end of the step (s): it is then located there
 
     // Does it begin within the step? Then the step went no further than to see this.
-    bool impact_within() const { return impact_after < dt - impact_early; }
+    bool impact_within() const { return impact_after < dt && dt > 2.0 * tolerance::shortest_step; }
 
     bool body_held() const;  // did the rigid body meet the barrier or the ground?
     bool body_held_by_barrier() const;
