@@ -116,12 +116,7 @@ BIRM3D_LANE_LOOP double greatest_slack(const Lanes& force, const Lanes& deflecti
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i)
         slack[i] = force[i] > 0.0 ? 0.0 : residual[i] - deflection[i];
-    for (std::size_t half = lanes / 2; half > 0; half /= 2) {
-        BIRM3D_INDEPENDENT
-        for (std::size_t i = 0; i < half; ++i)
-            slack[i] = slack[half + i] > slack[i] ? slack[half + i] : slack[i];
-    }
-    return slack[0];
+    return lane_max(slack);
 }
 
 // The direction along which each truss must point to push (CurvedPress), at a plane and at shapes.

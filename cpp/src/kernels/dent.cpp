@@ -40,12 +40,7 @@ BIRM3D_LANE_LOOP double furthest(const Lanes& panel_of, double panel, const Lane
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i)
         most[i] = panel_of[i] == panel && force[i] > 0.0 && gap[i] > 0.0 ? gap[i] : 0.0;
-    for (std::size_t half = lanes / 2; half > 0; half /= 2) {
-        BIRM3D_INDEPENDENT
-        for (std::size_t i = 0; i < half; ++i)
-            most[i] = most[half + i] > most[i] ? most[half + i] : most[i];
-    }
-    return most[0];
+    return lane_max(most);
 }
 
 }  // namespace
@@ -125,24 +120,12 @@ void gap_of(const Dent& dent, const TrussBlockState& nodes, Lanes& gap) {
     dent_rows.find_dent_gap(numbers_of(dent), nodes.x.data(), nodes.y.data(), nodes.z.data(), gap.data());
 }
 
-namespace {
-
-void find_dent(const Dent& dent, const TrussBlockState& nodes, const DentedNodes& which, DentLanes& out) {
+void dent_of(const Dent& dent, const TrussBlockState& nodes, const OfPanel& of, DentLanes& out) {
     dent_rows.find_dent(
-        numbers_of(dent), nodes.x.data(), nodes.y.data(), nodes.z.data(), which,
+        numbers_of(dent), nodes.x.data(), nodes.y.data(), nodes.z.data(),
+        {of.panel_of.data(), static_cast<double>(of.panel), nodes.force.data(), of.gap.data()},
         {out.gap.data(), out.nx.data(), out.ny.data(), out.nz.data(), out.per_force.data(), out.px.data(),
          out.py.data(), out.pz.data(), out.tx.data(), out.ty.data(), out.tz.data()});
-}
-
-}  // namespace
-
-void dent_of(const Dent& dent, const TrussBlockState& nodes, DentLanes& out) {
-    find_dent(dent, nodes, {}, out);
-}
-
-void dent_of(const Dent& dent, const TrussBlockState& nodes, const OfPanel& of, DentLanes& out) {
-    find_dent(dent, nodes,
-              {of.panel_of.data(), static_cast<double>(of.panel), nodes.force.data(), of.gap.data()}, out);
 }
 
 double furthest_off(const TrussBlockState& nodes, const OfPanel& of) {

@@ -74,7 +74,7 @@ void find_dent(const DentNumbers& d, const double* x, const double* y, const dou
     const Row zero = 0.0, one = 1.0, top = d.top;
     for (std::size_t i = 0; i < lanes; i += row_length) {
         const Hanging h = hang(d, x, y, z, i);
-        if (nodes.panel != nullptr && !any_matters(nodes, h.gap, i)) {
+        if (!any_matters(nodes, h.gap, i)) {
             Row(infinitely_far).store(out.gap + i);
             continue;
         }

@@ -33,13 +33,11 @@ BIRM3D_IN_LANE_LOOP Slope<Number> slope_at(const Number& depth, double per_reach
             where_above(slope, limit, zero, by_depth * per_reach / slope)};
 }
 
-// Which of the nodes matter: those of one panel that are inside or have a force, and have seen nothing nearer; all where
-// `panel` is null.
+// Which of the nodes matter: those of one panel that are inside or have a force, and have seen nothing nearer.
 struct DentedNodes {
-    const double* panel = nullptr;
-    double of = 0.0;
-    const double* force = nullptr;
-    const double* gap = nullptr;  // of what they have seen so far
+    const double* panel;
+    double of;
+    const double *force, *gap;  // gap: of what they have seen so far
 };
 
 struct DentColumns {

@@ -26,19 +26,6 @@ BIRM3D_LANE_LOOP void begin(double square, TriangleLanes& best) {
     }
 }
 
-// Largest number of a block, by halves.
-BIRM3D_IN_LANE_LOOP double most_of(const Lanes& values) {
-    alignas(64) Lanes v;
-    for (std::size_t i = 0; i < lanes / 2; ++i)
-        v[i] = values[i] > values[lanes / 2 + i] ? values[i] : values[lanes / 2 + i];
-    for (std::size_t half = lanes / 4; half >= 1; half /= 2) {
-        BIRM3D_INDEPENDENT
-        for (std::size_t i = 0; i < half; ++i)
-            v[i] = v[i] > v[half + i] ? v[i] : v[half + i];
-    }
-    return v[0];
-}
-
 // Returns the largest square of a distance that is left.
 BIRM3D_LANE_LOOP double ask_triangle(const PlainTriangle& triangle, double index, const OwnLanes& own,
                                      TriangleLanes& best) {
@@ -54,7 +41,8 @@ BIRM3D_LANE_LOOP double ask_triangle(const PlainTriangle& triangle, double index
         best.part[i] = nearer ? on.part : best.part[i];
         best.index[i] = nearer ? index : best.index[i];
     }
-    return most_of(best.square);
+    alignas(64) Lanes squares = best.square;
+    return lane_max(squares);
 }
 
 }  // namespace

@@ -18,10 +18,6 @@ struct Reach {
     double margin;
 
     bool too_far(double least_distance) const { return least_distance > 0.0 && least_distance >= margin; }
-    // `gap`: of the middle from the solid; no point of the box is nearer by more than the way to a corner.
-    bool within(const Box& bounds, const auto& gap) const {
-        return !too_far(distance(bounds, box)) && !too_far(gap() - radius);
-    }
 
     bool operator()(const HalfSpace& plane) const { return plane.within_reach(box, margin); }
     bool operator()(const Post& post) const {
@@ -37,7 +33,8 @@ struct Reach {
     }
     bool operator()(const TriangleMesh& mesh) const {
         // Behind an open mesh a point is inside wherever its nearest point is not on the rim: no bounds.
-        return !mesh.closed() || within(mesh.bounds(), [&] { return mesh.nearest(box.center).gap; });
+        return !mesh.closed() ||
+               (!too_far(distance(mesh.bounds(), box)) && !too_far(mesh.nearest(box.center).gap - radius));
     }
 };
 

@@ -94,13 +94,19 @@ void cut_into_blocks(const std::vector<Site>& site, Places some) {
     cut_into_blocks(site, some.subspan(first));
 }
 
-// The chosen trusses, neighbours together.
-std::vector<std::size_t> spatial_order(const TrussInput& input, std::vector<std::size_t> chosen) {
+std::vector<Site> sites_of(const TrussInput& input) {
     std::vector<Site> site;
     for (std::size_t i = 0; i < input.node.size(); ++i)
         site.push_back(site_of(input.node[i], input.anchor[i]));
-    cut_into_blocks(site, chosen);
-    return chosen;
+    return site;
+}
+
+// The skin's trusses, then each wheel's.
+std::vector<std::vector<std::size_t>> parts_of(const TrussInput& input, std::size_t wheels) {
+    std::vector<std::vector<std::size_t>> part(1 + wheels);
+    for (std::size_t i = 0; i < input.node.size(); ++i)
+        part[static_cast<std::size_t>(1 + (input.wheel_of.empty() ? -1 : input.wheel_of[i]))].push_back(i);
+    return part;
 }
 
 // Of a truss that points `inward`: 2 for each axis, the positive way first.
@@ -124,18 +130,17 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
     for (const TrussCurve& curve : input.curve)
         hinges = std::max(hinges, curve.slope.size());
 
-    const auto of = [&](int wheel) {
-        std::vector<std::size_t> chosen;
-        for (std::size_t i = 0; i < count; ++i)
-            if ((input.wheel_of.empty() ? -1 : input.wheel_of[i]) == wheel) chosen.push_back(i);
-        return chosen;
-    };
-    add_blocks(input, of(-1));
-    skin = input_index.size();
-    skin_blocks = first.size();
-    if (skin == 0) refuse("nodes of the skin", "at least 1", 0.0);
-    for (std::size_t wheel = 0; wheel < wheels.size(); ++wheel)
-        add_blocks(input, of(static_cast<int>(wheel)));
+    const std::vector<Site> site = sites_of(input);
+    for (std::vector<std::size_t>& part : parts_of(input, wheels.size())) {
+        for (std::size_t i = 0; i < part.size(); i += lanes)
+            first.push_back(input_index.size() + i);
+        cut_into_blocks(site, part);  // neighbours together
+        input_index.insert(input_index.end(), part.begin(), part.end());
+        if (skin > 0) continue;
+        skin = input_index.size();
+        skin_blocks = first.size();
+        if (skin == 0) refuse("nodes of the skin", "at least 1", 0.0);
+    }
     blocks = first.size();
     first.push_back(count);
 
@@ -146,13 +151,6 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
         fill_block(input, b);
     find_panels();
     find_tread(input, wheels);
-}
-
-void TrussMesh::add_blocks(const TrussInput& input, const std::vector<std::size_t>& chosen) {
-    for (std::size_t i = 0; i < chosen.size(); i += lanes)
-        first.push_back(input_index.size() + i);
-    const std::vector<std::size_t> ordered = spatial_order(input, chosen);
-    input_index.insert(input_index.end(), ordered.begin(), ordered.end());
 }
 
 void TrussMesh::find_tread(const TrussInput& input, const std::vector<Wheel>& wheels) {

@@ -93,9 +93,7 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
 void Skin::press_blocks() {
     trial_.active[u_].clear();
     now_.dented.clear();
-    const bool slack = std::any_of(before_.groups.begin(), before_.groups.end(),
-                                   [](const BlockGroup& group) { return group.slack; });
-    if (near_.empty() && before_.touches.empty() && !slack) return;
+    if (near_.empty() && before_.touches.empty() && !before_.hangs_slack()) return;
     find_dents();
     for (std::size_t g = 0; g < before_.groups.size(); ++g)
         if (may_change(before_.groups[g])) press_group(g);

@@ -55,11 +55,15 @@ double share_that_pushes(const Load& correction, const LoadCourse& before, const
     return bend > root * root ? root * root / bend : 1.0;
 }
 
+bool is_telling(double dt, const LoadCourse& before) {
+    return !(dt < tolerance::telling_step * before.step);
+}
+
 // The course after a step of dt to `load`.
 LoadCourse course_to(const Load& load, const LoadCourse& before, double dt) {
     LoadCourse now = before;
     now.now = load;
-    if (dt < tolerance::telling_step * before.step) return now;
+    if (!is_telling(dt, before)) return now;
     now.step = dt;
     now.step_before = before.step;
     now.rate = scaled(difference(load, before.now), 1.0 / dt);
@@ -106,7 +110,7 @@ double load_and_correct(const Unit& unit, const BodyState& body, const Segment* 
     LoadCourse now = course_to(total, before, dt);
     const double by_departure = error_of(unit, body, segment, departure(before, now), dt);
     const double by_change = error_of(unit, body, segment, change(before, now), dt);
-    if (now.step == dt)
+    if (is_telling(dt, before))
         now.bend_lasts = before.step > 0.0 && by_change < tolerance::lasting_bend * by_departure;
     const double pushing = share_that_pushes(correction(before, now), before, now, dt);
     for (std::size_t i = 0; i < touches.size(); ++i) {
@@ -168,9 +172,10 @@ bool skin_touches_barrier(const Scene& scene, const UnitState& unit) {
     });
 }
 
-bool nothing_touched(const State& state) {
+// Do nodes move with their units alone? What pushes stays at the barrier, and what hangs slack springs back.
+bool skins_rest(const State& state) {
     return std::all_of(state.units.begin(), state.units.end(),
-                       [](const UnitState& unit) { return unit.touches.empty(); });
+                       [](const UnitState& unit) { return unit.touches.empty() && !unit.hangs_slack(); });
 }
 
 // By how much a segment that gives way adds to the inverse effective mass of a contact, at the most: it is pushed at its
@@ -303,7 +308,7 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
 
     const double way = dt * std::max(fastest_node(scene, from), fastest_node(scene, now));
     now.clear_way = std::max(0.0, from.clear_way - way);
-    trial.clear = way < from.clear_way && nothing_touched(from);
+    trial.clear = way < from.clear_way && skins_rest(from);
     for (std::size_t i = 0; i < now.segments.size(); ++i)
         drift(scene.barrier->segments[i].body, dt, now.segments[i]);
     for (std::size_t u = 0; u < now.units.size(); ++u) {

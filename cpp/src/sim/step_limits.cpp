@@ -51,16 +51,16 @@ FreeStep untouched_step(const Scene& scene, const State& state, double longest) 
         const Unit& model = scene.vehicle->units[u];
         const double fastest = fastest_point(model, unit.body) + segments;
         if (!(fastest > 0.0)) continue;
+        const auto reach = [&] { return tolerance::clear_margin * longest * fastest; };
         const Mat3 R = unit.body.orientation.toRotationMatrix();
         const Vec3 v = R.transpose() * unit.body.velocity;
         const Vec3 w = R.transpose() * angular_velocity(model.body, unit.body);
         const Box all = everything(model.trusses, unit);
         near.clear();
-        scene.map.find(unit.body.position, all.radius() + tolerance::clear_margin * longest * fastest, about);
+        scene.map.find(unit.body.position, all.radius() + reach(), about);
         for (const std::size_t i : about) {
             const Placement seen = placement(pose_of(scene, i, state), unit.body);
-            if (i != scene.ground && within_reach(scene.obstacles[i].shape, seen, all,
-                                                  tolerance::clear_margin * longest * fastest))
+            if (i != scene.ground && within_reach(scene.obstacles[i].shape, seen, all, reach()))
                 near.push_back(
                     {&scene.obstacles[i].shape, seen, obstacle_motion(scene, i, state, unit.body)});
         }
@@ -68,8 +68,7 @@ FreeStep untouched_step(const Scene& scene, const State& state, double longest) 
             const BlockGroup& group = unit.groups[b / BlockGroup::size];
             if (b % BlockGroup::size == 0 && !group.touching &&
                 std::none_of(near.begin(), near.end(), [&](const Seen& seen) {
-                    return within_reach(*seen.shape, seen.placement, group.box,
-                                        tolerance::clear_margin * longest * fastest);
+                    return within_reach(*seen.shape, seen.placement, group.box, reach());
                 })) {
                 b += BlockGroup::size - 1;
                 continue;
@@ -92,8 +91,7 @@ FreeStep untouched_step(const Scene& scene, const State& state, double longest) 
             of.fill(0);
             for (std::size_t j = 0; j < near.size(); ++j) {
                 const Placement& seen = near[j].placement;
-                if (!within_reach(*near[j].shape, seen, box, tolerance::clear_margin * longest * fastest))
-                    continue;
+                if (!within_reach(*near[j].shape, seen, box, reach())) continue;
                 nearest_of(*near[j].shape, seen, seen, block.x, block.y, block.z, found);
                 for (std::size_t k = 0; k < lanes; ++k) {
                     if (!(found.gap[k] < nearest.gap[k])) continue;
@@ -115,7 +113,7 @@ FreeStep untouched_step(const Scene& scene, const State& state, double longest) 
                 longest = std::min({longest, straight, (gap + tolerance::untouched_way) / fastest});
             }
         }
-        clear_way = std::min(clear_way, tolerance::clear_margin * longest * fastest);  // of what was left out
+        clear_way = std::min(clear_way, reach());  // of what was left out
         if (model.trusses.dent_reach > 0.0) {
             const FreeStep step = undented_step(scene, unit, model.trusses, fastest, {longest, clear_way});
             longest = step.step, clear_way = step.clear_way;

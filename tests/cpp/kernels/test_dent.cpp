@@ -22,8 +22,12 @@ Placement standing(const Vec3& foot, double lean = 0.0, double sway = 0.0) {
 }
 
 DentLanes dent_by(const Post& post, const Placement& stands, double reach) {
+    TrussBlockState nodes = uncrushed.block[0];
+    nodes.force.fill(1.0);  // of nodes with a force all is said
+    Lanes nothing_seen;
+    nothing_seen.fill(std::numeric_limits<double>::infinity());
     DentLanes found;
-    dent_of(Dent(post, stands, front, reach), uncrushed.block[0], found);
+    dent_of(Dent(post, stands, front, reach), nodes, {mesh.block[0].panel, 1, nothing_seen}, found);
     return found;
 }
 

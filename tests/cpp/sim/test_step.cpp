@@ -64,3 +64,20 @@ TEST("the error estimate of a smooth force is of third order, and zero in free f
     try_step(flight, state, 0.1, {.locate_impacts = true}, trial);
     CHECK_CLOSE(trial.error, 0.0, 0.0, "exact");
 }
+
+TEST("where the way is clear the barrier is left alone, but not while a node hangs slack") {
+    const Scene scene = laboratory::scene(laboratory::block(laboratory::w2_curve()), laboratory::wall(0.2),
+                                          laboratory::weightless(), 1.0);
+    State state = scene.initial_state();
+    Trial trial(*scene.vehicle);
+    const auto is_clear = [&](double way) {
+        state.clear_way = way;
+        try_step(scene, state, 1e-3, {}, trial);
+        return trial.clear;
+    };
+    const double speed = state.units[0].body.velocity.norm();
+    CHECK(is_clear(1.001e-3 * speed));
+    CHECK(!is_clear(0.999e-3 * speed));
+    state.units[0].groups[0].slack = true;
+    CHECK(!is_clear(1.0));
+}

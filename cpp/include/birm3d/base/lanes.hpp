@@ -50,4 +50,14 @@ BIRM3D_IN_LANE_LOOP double lane_sum(Lanes& values) {
     return row_sum(values.data());
 }
 
+// The greatest, in place.
+BIRM3D_IN_LANE_LOOP double lane_max(Lanes& values) {
+    for (std::size_t half = lanes / 2; half > 0; half /= 2) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < half; ++i)
+            values[i] = values[half + i] > values[i] ? values[half + i] : values[i];
+    }
+    return values[0];
+}
+
 }  // namespace birm3d

@@ -62,9 +62,8 @@ struct alignas(64) DentLanes {
     Lanes tx, ty, tz;  // torque on the body for each unit of normal force, about its mass centre (m)
 };
 
-// For a block of nodes; the same gaps.
+// For a block of nodes.
 void gap_of(const Dent& dent, const TrussBlockState& nodes, Lanes& gap);
-void dent_of(const Dent& dent, const TrussBlockState& nodes, DentLanes& out);
 
 // Nodes of one panel, and gaps of what they have seen so far.
 struct OfPanel {
@@ -73,8 +72,8 @@ struct OfPanel {
     const Lanes& gap;  // m
 };
 
-// The same for those that the dent may hold: of nodes of another panel, of those that are outside and without force, and of
-// those that have seen something nearer the gap may be infinite, and then nothing else is said.
+// Also how they hang on it, of those that the dent may hold: of nodes of another panel, of those that are outside and
+// without force, and of those that have seen something nearer the gap may be infinite, and then nothing else is said.
 void dent_of(const Dent& dent, const TrussBlockState& nodes, const OfPanel& of, DentLanes& out);
 
 // No dent that is further from all nodes than this holds any of them (m).

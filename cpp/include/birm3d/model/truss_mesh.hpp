@@ -126,7 +126,6 @@ struct TrussMesh {
     double reach = 0.0;  // greatest distance of a node, or an anchor of the skin, from the mass centre (m)
 
   private:
-    void add_blocks(const TrussInput& input, const std::vector<std::size_t>& chosen);
     void fill_block(const TrussInput& input, std::size_t b);
     void add_stiffness(const TrussBlock& trusses);
     void find_panels();

@@ -1,6 +1,7 @@
 // Everything that changes during a run. A copy of it is a checkpoint: nothing is hidden elsewhere.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -36,6 +37,11 @@ struct UnitState : UnitMotion {
     }
 
     TrussState trusses;
+
+    // Has an obstacle drawn any node out beyond the free length of its truss? Such a node may return by itself.
+    bool hangs_slack() const {
+        return std::any_of(groups.begin(), groups.end(), [](const BlockGroup& of) { return of.slack; });
+    }
 
   private:
     void group() {
