@@ -139,8 +139,9 @@ def test_barrier_force_stands_on_its_normal(scene_result: Result) -> None:
     ):  # normals differ from node to node: what is left is a bound
         bound = math.hypot(1.0, greatest_friction(r)) * r.barrier_normal_force
         largest = r.barrier_normal_force.max()
-        # Rows within a step follow parabolas, the force's components and the normal force each its own.
-        assert (np.linalg.norm(r.barrier_force, axis=1) <= bound + 1e-7 * largest).all()
+        # Rows within a step follow parabolas, the force's components and the normal force each its own; they
+        # part where the last nodes let go. Measured: 2e-7, a newton of five meganewtons.
+        assert (np.linalg.norm(r.barrier_force, axis=1) <= bound + 1e-6 * largest).all()
         return
     along = r.barrier_force @ np.array(r.scene.barrier.core.normal)
     largest = r.barrier_normal_force.max()

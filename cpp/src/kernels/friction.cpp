@@ -1,24 +1,36 @@
 #include "birm3d/kernels/friction.hpp"
 
+#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+
+#include "birm3d/base/tolerances.hpp"
 
 namespace birm3d {
 
 namespace {
 
-// Plain numbers for the loop: mu, the speed of full friction, twist, inverse mass and inertia.
+// Plain numbers for the loop: mu, the speed of full friction, twist.
 struct Sliding {
     double mu, full_speed;
     double vx, vy, vz, wx, wy, wz;
-    double inverse_mass, Wxx, Wyy, Wzz, Wxy, Wxz, Wyz;
 };
 
-struct Sum {
-    double fx, fy, fz, tx, ty, tz, rate;
+struct Force {
+    double fx, fy, fz, tx, ty, tz;
 };
 
-BIRM3D_LANE_LOOP Sum friction_of_block(const Sliding& s, const Places& at, const BlockContact& contact) {
-    alignas(64) Lanes fx, fy, fz, tx, ty, tz, rate;
+// Sums of q P, q [r] P and -q [r] P [r], P = 1 - n n^T.
+struct Resistance {
+    double xx, xy, xz, yy, yz, zz;
+    double rxx, rxy, rxz, ryx, ryy, ryz, rzx, rzy, rzz;
+    double rrxx, rrxy, rrxz, rryy, rryz, rrzz;
+};
+
+// Also q, the force for each unit of sliding velocity, of nodes that slide slowly.
+BIRM3D_LANE_LOOP Force friction_of_block(const Sliding& s, const Places& at, const BlockContact& contact,
+                                         Lanes& q) {
+    alignas(64) Lanes fx, fy, fz, tx, ty, tz;
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
         const double x = at.x[i], y = at.y[i], z = at.z[i];
@@ -29,40 +41,101 @@ BIRM3D_LANE_LOOP Sum friction_of_block(const Sliding& s, const Places& at, const
         const double un = ux * nx + uy * ny + uz * nz;
         const double sx = ux - un * nx, sy = uy - un * ny, sz = uz - un * nz;
         const double speed = std::sqrt(sx * sx + sy * sy + sz * sz);
-        const double per_speed = 1.0 / (speed > s.full_speed ? speed : s.full_speed);
-        const double limit = s.mu * contact.pressure[i];
-        const double px = -sx * per_speed, py = -sy * per_speed, pz = -sz * per_speed;
-        fx[i] = limit * px;
-        fy[i] = limit * py;
-        fz[i] = limit * pz;
-        // c = r x direction; torque = limit * c.
-        const double cx = y * pz - z * py, cy = z * px - x * pz, cz = x * py - y * px;
-        tx[i] = limit * cx;
-        ty[i] = limit * cy;
-        tz[i] = limit * cz;
-        // Inverse effective mass along the sliding direction (Eq. 1's denominator).
-        const double turning =
-            cx * (s.Wxx * cx + s.Wxy * cy + s.Wxz * cz) + cy * (s.Wyy * cy + s.Wyz * cz) + s.Wzz * cz * cz;
-        rate[i] = limit * (s.inverse_mass + turning);
+        const double per_speed = s.mu * contact.pressure[i] / (speed > s.full_speed ? speed : s.full_speed);
+        q[i] = speed < tolerance::fast_sliding * s.full_speed ? per_speed : 0.0;
+        fx[i] = -per_speed * sx;
+        fy[i] = -per_speed * sy;
+        fz[i] = -per_speed * sz;
+        tx[i] = y * fz[i] - z * fy[i];
+        ty[i] = z * fx[i] - x * fz[i];
+        tz[i] = x * fy[i] - y * fx[i];
     }
-    return {lane_sum(fx), lane_sum(fy), lane_sum(fz),  lane_sum(tx),
-            lane_sum(ty), lane_sum(tz), lane_sum(rate)};
+    return {lane_sum(fx), lane_sum(fy), lane_sum(fz), lane_sum(tx), lane_sum(ty), lane_sum(tz)};
+}
+
+BIRM3D_LANE_LOOP Resistance resistance_of_block(const Lanes& of, const Places& at,
+                                                const BlockContact& contact) {
+    alignas(64) Lanes xx, xy, xz, yy, yz, zz, rxx, rxy, rxz, ryx, ryy, ryz, rzx, rzy, rzz;
+    alignas(64) Lanes rrxx, rrxy, rrxz, rryy, rryz, rrzz;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const double q = of[i], x = at.x[i], y = at.y[i], z = at.z[i];
+        const double nx = contact.nx[i], ny = contact.ny[i], nz = contact.nz[i];
+        const double qx = q * nx, qy = q * ny, qz = q * nz;
+        xx[i] = q - qx * nx;
+        yy[i] = q - qy * ny;
+        zz[i] = q - qz * nz;
+        xy[i] = -qx * ny;
+        xz[i] = -qx * nz;
+        yz[i] = -qy * nz;
+        rxx[i] = y * xz[i] - z * xy[i];
+        rxy[i] = y * yz[i] - z * yy[i];
+        rxz[i] = y * zz[i] - z * yz[i];
+        ryx[i] = z * xx[i] - x * xz[i];
+        ryy[i] = z * xy[i] - x * yz[i];
+        ryz[i] = z * xz[i] - x * zz[i];
+        rzx[i] = x * xy[i] - y * xx[i];
+        rzy[i] = x * yy[i] - y * xy[i];
+        rzz[i] = x * yz[i] - y * xz[i];
+        rrxx[i] = y * rxz[i] - z * rxy[i];
+        rrxy[i] = y * ryz[i] - z * ryy[i];
+        rrxz[i] = y * rzz[i] - z * rzy[i];
+        rryy[i] = z * ryx[i] - x * ryz[i];
+        rryz[i] = z * rzx[i] - x * rzz[i];
+        rrzz[i] = x * rzy[i] - y * rzx[i];
+    }
+    return {lane_sum(xx),   lane_sum(xy),   lane_sum(xz),  lane_sum(yy),   lane_sum(yz),   lane_sum(zz),
+            lane_sum(rxx),  lane_sum(rxy),  lane_sum(rxz), lane_sum(ryx),  lane_sum(ryy),  lane_sum(ryz),
+            lane_sum(rzx),  lane_sum(rzy),  lane_sum(rzz), lane_sum(rrxx), lane_sum(rrxy), lane_sum(rrxz),
+            lane_sum(rryy), lane_sum(rryz), lane_sum(rrzz)};
+}
+
+Mat3 crossing(const Vec3& a) {
+    Mat3 cross;
+    cross << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
+    return cross;
+}
+
+Vec6 column(const Twist& twist) {
+    Vec6 both;
+    both << twist.velocity, twist.angular_velocity;
+    return both;
 }
 
 }  // namespace
 
-void add_friction(const RigidBody& body, double mu, double full_speed, const Twist& motion,
-                  const Places& places, const BlockContact& contact, SkinForces& forces) {
+void add_friction(double mu, double full_speed, const Twist& motion, const Places& places,
+                  const BlockContact& contact, Rubbing& rubbing) {
     const Vec3& v = motion.velocity;
     const Vec3& w = motion.angular_velocity;
-    const Mat3& W = body.inverse_inertia;
-    const Sliding sliding{
-        mu,           full_speed,        v.x(),   v.y(),   v.z(),   w.x(),         w.y(),
-        w.z(),        body.inverse_mass, W(0, 0), W(1, 1), W(2, 2), 2.0 * W(0, 1), 2.0 * W(0, 2),
-        2.0 * W(1, 2)};
-    const Sum sum = friction_of_block(sliding, places, contact);
-    forces.friction += {Vec3(sum.fx, sum.fy, sum.fz), Vec3(sum.tx, sum.ty, sum.tz)};
-    forces.friction_rate += sum.rate;
+    alignas(64) Lanes slow;
+    const Force by =
+        friction_of_block({mu, full_speed, v.x(), v.y(), v.z(), w.x(), w.y(), w.z()}, places, contact, slow);
+    rubbing.friction += {Vec3(by.fx, by.fy, by.fz), Vec3(by.tx, by.ty, by.tz)};
+    if (std::none_of(slow.begin(), slow.end(), [](double q) { return q > 0.0; })) return;
+    const Resistance of = resistance_of_block(slow, places, contact);
+    Mat6 resistance;
+    resistance << of.xx, of.xy, of.xz, of.rxx, of.ryx, of.rzx,  //
+        of.xy, of.yy, of.yz, of.rxy, of.ryy, of.rzy,            //
+        of.xz, of.yz, of.zz, of.rxz, of.ryz, of.rzz,            //
+        of.rxx, of.rxy, of.rxz, of.rrxx, of.rrxy, of.rrxz,      //
+        of.ryx, of.ryy, of.ryz, of.rrxy, of.rryy, of.rryz,      //
+        of.rzx, of.rzy, of.rzz, of.rrxz, of.rryz, of.rrzz;
+    rubbing.resistance += resistance;
+}
+
+Mat6 resistance(double q, const Vec3& r, const Vec3& normal) {
+    const Mat3 cross = crossing(r), along = q * (Mat3::Identity() - normal * normal.transpose());
+    Mat6 of;
+    of << along, -along * cross, cross * along, -cross * along * cross;
+    return of;
+}
+
+Twist settled(const Twist& motion, const Twist& before, const Mat6& resistance, double dt,
+              const Mat6& inertia) {
+    const Mat6 half = 0.5 * dt * resistance;
+    const Vec6 loss = (inertia + half).ldlt().solve(half * (column(motion) - column(before)));
+    return {motion.velocity - loss.head<3>(), motion.angular_velocity - loss.tail<3>()};
 }
 
 }  // namespace birm3d

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "birm3d/base/tolerances.hpp"
+
 namespace birm3d {
 
 namespace {
@@ -27,7 +29,7 @@ TreadContact tread_contact(const TreadNode& node, std::size_t near, const Twist&
                            const Vec3& normal, double pressure) {
     const Vec3 u = motion.velocity + motion.angular_velocity.cross(arm);
     const Vec3 t(node.turn_r, 0.0, node.turn_t);
-    return {node.wheel, near, arm, along_surface(u, normal), along_surface(t, normal), pressure};
+    return {node.wheel, near, arm, along_surface(u, normal), along_surface(t, normal), normal, pressure};
 }
 
 double free_turning(double full_speed, std::span<const TreadContact> wheel) {
@@ -71,14 +73,14 @@ double free_turning(double full_speed, std::span<const TreadContact> wheel) {
     return 0.5 * (low + high);
 }
 
-void add_tread_friction(const RigidBody& body, double mu, double full_speed, double turning,
-                        const TreadContact& node, SkinForces& forces) {
-    const Vec3 direction = -share_of_full(node, turning, full_speed);
-    const Vec3 c = node.arm.cross(direction);
-    const double limit = mu * node.pressure;
-    forces.friction += {limit * direction, limit * c};
-    // Inverse effective mass along the sliding direction (Eq. 1's denominator).
-    forces.friction_rate += limit * (body.inverse_mass + c.dot(body.inverse_inertia * c));
+void add_tread_friction(double mu, double full_speed, double turning, const TreadContact& node,
+                        Rubbing& rubbing) {
+    const Vec3 u = node.sliding + turning * node.turning;
+    const double speed = u.norm(), q = mu * node.pressure / std::max(speed, full_speed);
+    const Vec3 force = -q * u;
+    rubbing.friction += {force, node.arm.cross(force)};
+    if (speed < tolerance::fast_sliding * full_speed)
+        rubbing.resistance += resistance(q, node.arm, node.normal);
 }
 
 }  // namespace birm3d

@@ -36,7 +36,7 @@ class Skin {
         Wrench by_trusses;  // of the paper's rule, in the stead of the projected force
         Wrench contact;     // of blocks that saw several obstacles
         double normal_force = 0.0;
-        SkinForces friction;
+        Rubbing rubbing;
         bool seen = false;  // by any block
     };
 
@@ -99,7 +99,7 @@ class Skin {
     const std::size_t u_;
     const Mat3 R_;
     const bool along_;
-    double full_speed_;
+    const double full_speed_;  // see kernels/friction.hpp (m/s)
     double margin_;            // how far a held node can have come off its surface within the step (m)
     Twist motion_;             // body axes; only friction and the rate of deflection ask for it
     std::vector<Twist> away_;  // parallel to near_: the same, from an obstacle that moves too

@@ -3,39 +3,14 @@
 #include <algorithm>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/kernels/integrate.hpp"
 #include "birm3d/sim/bodies.hpp"
 #include "birm3d/sim/obstacles.hpp"
+#include "sim/predict.hpp"
 #include "sim/skin.hpp"
 
 namespace birm3d {
 
 namespace {
-
-// Motion at the end of the step, body axes: what the drift has made of it, and what the loads so far will add
-// in the second half of the step.
-Twist predicted_motion(const Unit& unit, const std::vector<Touch>& touches, double dt,
-                       const BodyState& drifted, const Mat3& R) {
-    BodyState body = drifted;
-    for (const Touch& touch : touches) {
-        Load coming = scaled(touch.course.now, 0.5 * dt);
-        coming += scaled(touch.course.rate, dt * dt / 3.0);
-        kick(unit.body, coming.wrench, body);
-    }
-    return {R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
-}
-
-// The same of the segments of the barrier, in `now`.
-void predict_segments(const Scene& scene, const State& before, double dt, State& now) {
-    for (const UnitState& unit : before.units)
-        for (const Touch& touch : unit.touches) {
-            const int body = body_of_obstacle(scene, touch.obstacle);
-            if (body < 0) continue;
-            Load coming = scaled(touch.course.now, 0.5 * dt);
-            coming += scaled(touch.course.rate, dt * dt / 3.0);
-            kick_body(scene, static_cast<std::size_t>(body), reaction_of(coming), now);
-        }
-}
 
 // Obstacles that were touched an instant before are near, whatever the step has made of it.
 void add_touched(const Scene& scene, std::size_t u, const State& before, const State& now,
@@ -62,8 +37,7 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
       u_(u),
       R_(now_.body.orientation.toRotationMatrix()),
       along_(scene.settings.contact_model == ContactModel::along_truss),
-      full_speed_(std::max(tolerance::full_friction_speed * scene.reference_speed(),
-                           trial.dt * before_.skin.friction_rate)),
+      full_speed_(tolerance::full_friction_speed * scene.reference_speed()),
       margin_(trial.dt * (std::max(fastest_point(unit_, before_.body), fastest_point(unit_, now_.body)) +
                           std::max(fastest_segment(scene, from), fastest_segment(scene, trial.state))) +
               tolerance::touching_gap),
@@ -74,8 +48,7 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
         return scene.obstacles[obstacle.index].friction > 0.0;
     });
     const bool treads_rub = !mesh_.tread.empty() && scene.settings.mu_tire_barrier > 0.0 && !near_.empty();
-    if (rubs || treads_rub || mesh_.rate_sensitivity > 0.0)
-        motion_ = predicted_motion(unit_, before_.touches, trial.dt, now_.body, R_);
+    if (rubs || treads_rub || mesh_.rate_sensitivity > 0.0) motion_ = predicted_motion(scene, u, from, trial);
     away_.assign(near_.size(), motion_);
     if (!trial.state.segments.empty() && (rubs || treads_rub || mesh_.rate_sensitivity > 0.0)) {
         const std::vector<BodyState> drifted = trial.state.segments;

@@ -13,6 +13,14 @@ Wrench turned(const Wrench& w, const Mat3& R) {
     return {R * w.force, R * w.torque};
 }
 
+Mat6 turned(const Mat6& of, const Mat3& R) {
+    Mat6 turned;
+    for (const int i : {0, 3})
+        for (const int j : {0, 3})
+            turned.block<3, 3>(i, j) = R * of.block<3, 3>(i, j) * R.transpose();
+    return turned;
+}
+
 }  // namespace
 
 // Nodes of one block that push on several obstacles: to each its own.
@@ -42,12 +50,13 @@ void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, con
         return;
     }
     const double mu = scene_.obstacles[near_[near].index].friction;
-    if (mu > 0.0) add_friction(unit_.body, mu, full_speed_, away_[near], places, contact, sums.friction);
+    if (mu > 0.0) add_friction(mu, full_speed_, away_[near], places, contact, sums.rubbing);
 }
 
 void Skin::hand_over() {
     SkinForces& skin = now_.skin;
     skin = {};
+    skin.rubbed = {R_ * motion_.velocity, R_ * motion_.angular_velocity};
     std::vector<Touch>& touches = trial_.touches;
     touches.clear();
     const auto add = [&skin](const CrushSums& sums) {
@@ -73,8 +82,8 @@ void Skin::hand_over() {
         }
         if (along_) touch.contact = sums.by_trusses;
         touch.contact = turned(touch.contact, R_);
-        touch.friction = turned(sums.friction.friction, R_);
-        skin.friction_rate += sums.friction.friction_rate;
+        touch.friction = turned(sums.rubbing.friction, R_);
+        skin.resistance += turned(sums.rubbing.resistance, R_);
         skin.contact += touch.contact;
         skin.friction += touch.friction;
         skin.normal_force += touch.normal_force;

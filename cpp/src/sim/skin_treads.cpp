@@ -25,8 +25,7 @@ void Skin::rub_treads() {
                                       [&](const TreadContact& node) { return node.wheel != first->wheel; });
         const double turning = scene_.settings.braking < 1.0 ? free_turning(full_speed_, {first, end}) : 0.0;
         for (; first != end; ++first)
-            add_tread_friction(unit_.body, mu, full_speed_, turning, *first,
-                               obstacles_[first->near].friction);
+            add_tread_friction(mu, full_speed_, turning, *first, obstacles_[first->near].rubbing);
     }
 }
 

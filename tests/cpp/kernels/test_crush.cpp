@@ -15,13 +15,13 @@ namespace {
 const TrussCurve curve = knee_curve(1e6, 0.1, 2e6, laboratory::infinity, 10e6);
 
 SkinForces forces_of(const CrushSums& sums, const Wrench& wrench) {
-    return {wrench,
-            {},
-            row_sum(sums.nodes.force),
-            0.5 * row_sum(sums.nodes.twice_work) + sums.released_work,
-            0.5 * row_sum(sums.nodes.twice_stored),
-            sums.stiffness,
-            0.0};
+    SkinForces forces;
+    forces.contact = wrench;
+    forces.normal_force = row_sum(sums.nodes.force);
+    forces.work = 0.5 * row_sum(sums.nodes.twice_work) + sums.released_work;
+    forces.stored = 0.5 * row_sum(sums.nodes.twice_stored);
+    forces.stiffness = sums.stiffness;
+    return forces;
 }
 
 // The forces of a mesh of one block by a pole, upright at (x, y).

@@ -21,10 +21,10 @@ TreadContact at(double angle, const Twist& motion, double force = 100.0,
 }
 
 Wrench friction(const std::vector<TreadContact>& wheel, double turning) {
-    SkinForces forces;
+    Rubbing rubbing;
     for (const TreadContact& node : wheel)
-        add_tread_friction(laboratory::body(), mu, full_speed, turning, node, forces);
-    return forces.friction;
+        add_tread_friction(mu, full_speed, turning, node, rubbing);
+    return rubbing.friction;
 }
 
 // About the wheel's axle.
@@ -109,12 +109,12 @@ TEST("a locked wheel slides with the body") {
     contact.pressure[0] = node.pressure;
     Lanes x{}, y{}, z{};
     x[0] = node.arm.x(), y[0] = node.arm.y(), z[0] = node.arm.z();
-    SkinForces skin, tread;
-    add_friction(laboratory::body(), mu, full_speed, motion, {x, y, z}, contact, skin);
-    add_tread_friction(laboratory::body(), mu, full_speed, 0.0, node, tread);
+    Rubbing skin, tread;
+    add_friction(mu, full_speed, motion, {x, y, z}, contact, skin);
+    add_tread_friction(mu, full_speed, 0.0, node, tread);
     CHECK_CLOSE((skin.friction.force - tread.friction.force).norm(), 0.0, 1e-12, "rounding");
     CHECK_CLOSE((skin.friction.torque - tread.friction.torque).norm(), 0.0, 1e-12, "rounding");
-    CHECK_CLOSE(skin.friction_rate, tread.friction_rate, 1e-12, "rounding");
+    CHECK_CLOSE((skin.resistance - tread.resistance).norm(), 0.0, 1e-12, "rounding");
 }
 
 TEST("nodes that nothing presses leave a wheel alone") {

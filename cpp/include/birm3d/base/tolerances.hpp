@@ -72,6 +72,14 @@ inline constexpr double slowest_reference_speed = 0.1;
 // becomes stiff and the steps short. Larger: what should stick creeps at up to this speed.
 inline constexpr double full_friction_speed = 0.01;
 
+// What slides faster than so many times the speed of full friction has a force that hardly changes with its motion within
+// a step.
+inline constexpr double fast_sliding = 10.0;
+
+// Where friction and motion are found from each other, the ground under a wheel that it carries is so many times as heavy
+// as the vehicle. Large: rounding; small: friction is taken to lift what it only presses down.
+inline constexpr double held_by_ground = 1e3;
+
 // Friction and normal impulses of rigid contacts are found in turns until these change by less than this share of their
 // sum. Large: which turn is the last hangs on rounding, and left and right do not mirror each other.
 inline constexpr double friction_settled = 1e-9;

@@ -1,9 +1,10 @@
-// Coulomb friction between the vehicle's nodes and a fixed barrier (paper 5.4): mu times the normal force,
-// against the sliding direction. Called only where mu > 0.
+// Coulomb friction between the vehicle's nodes and a barrier (paper 5.4): mu times the normal force, against the sliding
+// direction. Called only where mu > 0.
 //
-// Below `full_speed` the force falls in proportion to the sliding speed, so that it brings the sliding to
-// rest and never reverses it; the step sees to it that this speed is not below what the friction of all
-// nodes together would undo within one step.
+// Below `full_speed` the force falls in proportion to the sliding speed, so that it brings the sliding to rest and never
+// reverses it. What nearly sticks is stiff then: friction and motion at the end of a step are found from each other,
+// friction taken to go on from where it was as `resistance` says. Linear friction is so followed by the trapezoid rule,
+// which holds at any step.
 #pragma once
 
 #include "birm3d/model/vehicle.hpp"
@@ -11,8 +12,21 @@
 
 namespace birm3d {
 
-// `motion`: the vehicle's twist in body axes. Adds friction and its rate to `forces` (body axes).
-void add_friction(const RigidBody& body, double mu, double full_speed, const Twist& motion,
-                  const Places& places, const BlockContact& contact, SkinForces& forces);
+struct Rubbing {
+    Wrench friction;
+    Mat6 resistance = Mat6::Zero();  // friction of nodes that slide slowly is -resistance (v, w)
+};
+
+// `motion`: the vehicle's twist in body axes. Adds to `rubbing` (body axes).
+void add_friction(double mu, double full_speed, const Twist& motion, const Places& places,
+                  const BlockContact& contact, Rubbing& rubbing);
+
+// Of a node at r from the mass centre with a force of -q times its sliding velocity.
+Mat6 resistance(double q, const Vec3& r, const Vec3& normal);
+
+// The twist to which half a step of friction brings a body that would come to `motion` if friction stayed as it was at
+// the twist `before`: M (u - motion) = -dt/2 resistance (u - before). World axes, inertia too.
+Twist settled(const Twist& motion, const Twist& before, const Mat6& resistance, double dt,
+              const Mat6& inertia);
 
 }  // namespace birm3d

@@ -16,8 +16,7 @@
 
 #include <span>
 
-#include "birm3d/model/vehicle.hpp"
-#include "birm3d/state/contacts.hpp"
+#include "birm3d/kernels/friction.hpp"
 
 namespace birm3d {
 
@@ -28,6 +27,7 @@ struct TreadContact {
     Vec3 arm = Vec3::Zero();      // place about the mass centre (m)
     Vec3 sliding = Vec3::Zero();  // of the body there, along the surface (m/s)
     Vec3 turning = Vec3::Zero();  // t_i, along the surface
+    Vec3 normal = Vec3::UnitZ();  // of the barrier
     double pressure = 0.0;        // normal force (N)
 };
 
@@ -38,8 +38,8 @@ TreadContact tread_contact(const TreadNode& node, std::size_t near, const Twist&
 // q of a wheel that is free to turn (m/s), from all its nodes that push; 0 where none has any say.
 double free_turning(double full_speed, std::span<const TreadContact> wheel);
 
-// Adds a node's friction and its rate to `forces` (body axes); `turning`: q.
-void add_tread_friction(const RigidBody& body, double mu, double full_speed, double turning,
-                        const TreadContact& node, SkinForces& forces);
+// Adds a node's friction to `rubbing` (body axes); `turning`: q.
+void add_tread_friction(double mu, double full_speed, double turning, const TreadContact& node,
+                        Rubbing& rubbing);
 
 }  // namespace birm3d

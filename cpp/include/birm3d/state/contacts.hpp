@@ -34,13 +34,15 @@ struct alignas(64) BlockContact {
 
 // Sums over all that a unit's skin touches, world axes.
 struct SkinForces {
-    Wrench contact;              // on the vehicle, without friction (N, N m)
-    Wrench friction;             // N, N m
-    double normal_force = 0.0;   // sum over nodes of the force along each surface normal (N)
-    double work = 0.0;           // done on the trusses since the last instant, trapezoid rule (J)
-    double stored = 0.0;         // elastic energy that unloading would return (J), blocks seen only
-    double stiffness = 0.0;      // sum of k_unloading of pushing nodes times inverse effective mass (1/s^2)
-    double friction_rate = 0.0;  // sum of mu * pressure times inverse effective mass (m/s^2)
+    Wrench contact;             // on the vehicle, without friction (N, N m)
+    Wrench friction;            // N, N m
+    double normal_force = 0.0;  // sum over nodes of the force along each surface normal (N)
+    double work = 0.0;          // done on the trusses since the last instant, trapezoid rule (J)
+    double stored = 0.0;        // elastic energy that unloading would return (J), blocks seen only
+    double stiffness = 0.0;     // sum of k_unloading of pushing nodes times inverse effective mass (1/s^2)
+    // Of friction, to a change of the unit's motion from `rubbed` at which it was found (kernels/friction.hpp).
+    Mat6 resistance = Mat6::Zero();
+    Twist rubbed;
 };
 
 // What one obstacle and a unit's skin do to each other, world axes.
