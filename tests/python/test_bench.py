@@ -111,3 +111,24 @@ def test_quick_batch() -> None:
     assert done.returncode == 0, done.stdout + done.stderr
     assert "same bits: 600 runs" in done.stdout
     assert "error" in done.stdout.splitlines()[1]
+
+
+def test_a_dent_draws_no_node_into_a_post_that_came_past_its_edge() -> None:
+    """Seed 3576: nodes of the front that one post dents hopped through another that stands behind them."""
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-W",
+            "error",
+            PROGRAM.parent / "bench_random_impacts.py",
+            "--first",
+            "3576",
+            "--count",
+            "1",
+        ],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "1 impacts, 0 with a fault" in done.stdout

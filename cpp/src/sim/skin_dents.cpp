@@ -102,13 +102,16 @@ void Skin::leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) 
 
 namespace {
 
-// Nodes of the panel to which this dent is nearer than what they have seen so far hang on it.
+// Nodes of the panel to which this dent is nearer than what they have seen so far hang on it, unless it would draw them
+// into that: a post that came past the panel's edge stands behind them.
 BIRM3D_LANE_LOOP void take_nearer(const DentLanes& dent, const Lanes& panel_of, double panel, double into_x,
                                   double into_y, double into_z, std::size_t seen, NodeFaces& faces,
                                   BlockContact& contact, std::array<std::size_t, lanes>& nearest) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
-        const bool takes = panel_of[i] == panel && dent.gap[i] < faces.gap[i];
+        const double against = contact.nx[i] * into_x + contact.ny[i] * into_y + contact.nz[i] * into_z;
+        const bool barred = against < 0.0 && faces.gap[i] - against * dent.gap[i] < 0.0;
+        const bool takes = panel_of[i] == panel && dent.gap[i] < faces.gap[i] && !barred;
         nearest[i] = takes ? seen : nearest[i];
         faces.gap[i] = takes ? dent.gap[i] : faces.gap[i];
         faces.per_force[i] = takes ? dent.per_force[i] : faces.per_force[i];
