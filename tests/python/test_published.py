@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 
 import numpy as np
 import pytest
-from birm3d import Result, Settings, Vehicle, lateral_load, scenes, units
+from birm3d import Result, Settings, Simulation, Vehicle, lateral_load, scenes, units
 
 
 @pytest.mark.parametrize(("mph", "peak"), scenes.TABLE_2.items())
@@ -90,6 +91,15 @@ def test_metrics_are_within_a_percent_of_their_fine_step_answers(result_of: Call
         for name in set(fine) - NOT_PHYSICS
     }
     assert {name: error for name, error in errors.items() if error > 0.0} == {}
+
+
+def test_a_load_that_jumps_ends_no_run_however_strict_its_tolerance() -> None:
+    """At 94.1 ms the way in which a bollard pushes the truck changes at once, by 20 kN upwards."""
+    scene = dataclasses.replace(
+        scenes.truck_at_bollards().scene, settings=Settings(tolerance=1e-8), duration=0.1
+    )
+    statistics = Simulation.from_scene(scene).run().statistics
+    assert statistics.shortest_step >= 1e-9
 
 
 class TestObliqueCar:

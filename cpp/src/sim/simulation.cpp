@@ -325,8 +325,9 @@ void Simulation::adaptive_step() {
         const double stable = tolerance::stable_fraction * trial_.critical_step;
         double wanted = dt;
         if (dt > stable) wanted = 0.9 * stable;
-        if (trial_.error > allowed)
-            wanted = std::min(wanted, dt * std::max(0.2, 0.9 * std::sqrt(allowed / trial_.error)));
+        if (trial_.error > allowed && dt > tolerance::jump_resolution)
+            wanted = std::min(wanted, std::max(dt * std::max(0.2, 0.9 * std::sqrt(allowed / trial_.error)),
+                                               tolerance::jump_resolution));
         double shorter = wanted < dt ? on_ladder(wanted) : infinity;
         const Turn turn = find_turn(scene_, state_, trial_);
         if (turn.error > allowed) shorter = std::min(shorter, dt * std::clamp(turn.share, 0.1, 0.9));
@@ -341,7 +342,8 @@ void Simulation::adaptive_step() {
     // The sixth root rather than the fourth, by which a smooth load's error grows: gentle changes of the step
     // keep the estimates, which compare three steps, quiet.
     const double growth = 0.9 * std::pow(allowed / std::max(trial_.error, 1e-300), 1.0 / 6.0);
-    const double longer = growth > 1.0 ? std::max(dt * std::min(4.0, growth), cut) : dt * growth;
+    const double longer = growth > 1.0 ? std::max(dt * std::min(4.0, growth), cut)
+                                       : std::max(dt * growth, tolerance::jump_resolution);
     double next = on_ladder(std::min(longer, 0.9 * tolerance::stable_fraction * trial_.critical_step));
     next = std::min(next, tolerance::longest_step);
     if (scene_.barrier && !touches(state_)) {

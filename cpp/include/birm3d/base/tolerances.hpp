@@ -34,6 +34,10 @@ inline constexpr double advised_fraction = 0.25;
 inline constexpr double longest_step = 5e-3;
 inline constexpr double shortest_step = 1e-9;
 
+// The instant at which a load jumps is located within this (s): half of the jump over that time is missed, and the error
+// of a step across it falls no faster than the step.
+inline constexpr double jump_resolution = 1e-8;
+
 // The instant at which a vehicle leaves a barrier is located within this (s): the end of the run, and every
 // value taken there, hangs on it.
 inline constexpr double release_resolution = 2e-4;
