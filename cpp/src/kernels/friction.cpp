@@ -90,10 +90,58 @@ BIRM3D_LANE_LOOP Resistance resistance_of_block(const Lanes& of, const Places& a
             lane_sum(rryy), lane_sum(rryz), lane_sum(rrzz)};
 }
 
+// Sums of q, q r and q r r^T.
+struct Moments {
+    double q, x, y, z, xx, yy, zz, xy, xz, yz;
+};
+
+BIRM3D_LANE_LOOP Moments moments_of_block(const Lanes& q, const Places& at) {
+    alignas(64) Lanes sum, sx, sy, sz, xx, yy, zz, xy, xz, yz;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const double x = at.x[i], y = at.y[i], z = at.z[i];
+        sum[i] = q[i];
+        sx[i] = q[i] * x;
+        sy[i] = q[i] * y;
+        sz[i] = q[i] * z;
+        xx[i] = sx[i] * x;
+        yy[i] = sy[i] * y;
+        zz[i] = sz[i] * z;
+        xy[i] = sx[i] * y;
+        xz[i] = sx[i] * z;
+        yz[i] = sy[i] * z;
+    }
+    return {lane_sum(sum), lane_sum(sx), lane_sum(sy), lane_sum(sz), lane_sum(xx),
+            lane_sum(yy),  lane_sum(zz), lane_sum(xy), lane_sum(xz), lane_sum(yz)};
+}
+
 Mat3 crossing(const Vec3& a) {
     Mat3 cross;
     cross << 0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0;
     return cross;
+}
+
+Mat6 on_surface(const Lanes& slow, const Places& places, const BlockContact& contact) {
+    const Resistance of = resistance_of_block(slow, places, contact);
+    Mat6 resistance;
+    resistance << of.xx, of.xy, of.xz, of.rxx, of.ryx, of.rzx,  //
+        of.xy, of.yy, of.yz, of.rxy, of.ryy, of.rzy,            //
+        of.xz, of.yz, of.zz, of.rxz, of.ryz, of.rzz,            //
+        of.rxx, of.rxy, of.rxz, of.rrxx, of.rrxy, of.rrxz,      //
+        of.ryx, of.ryy, of.ryz, of.rrxy, of.rryy, of.rryz,      //
+        of.rzx, of.rzy, of.rzz, of.rrxz, of.rryz, of.rrzz;
+    return resistance;
+}
+
+// The same where all nodes have one normal: half the sums.
+Mat6 on_plane(const Lanes& slow, const Places& places, const Vec3& normal) {
+    const Moments of = moments_of_block(slow, places);
+    Mat3 rr;
+    rr << of.xx, of.xy, of.xz, of.xy, of.yy, of.yz, of.xz, of.yz, of.zz;
+    const Mat3 n = crossing(normal), along = -n * n, turned = crossing(Vec3(of.x, of.y, of.z)) * along;
+    Mat6 resistance;
+    resistance << of.q * along, turned.transpose(), turned, rr.trace() * Mat3::Identity() - rr + n * rr * n;
+    return resistance;
 }
 
 Vec6 column(const Twist& twist) {
@@ -105,7 +153,7 @@ Vec6 column(const Twist& twist) {
 }  // namespace
 
 void add_friction(double mu, double full_speed, const Twist& motion, const Places& places,
-                  const BlockContact& contact, Rubbing& rubbing) {
+                  const BlockContact& contact, const Vec3* common_normal, Rubbing& rubbing) {
     const Vec3& v = motion.velocity;
     const Vec3& w = motion.angular_velocity;
     alignas(64) Lanes slow;
@@ -113,15 +161,8 @@ void add_friction(double mu, double full_speed, const Twist& motion, const Place
         friction_of_block({mu, full_speed, v.x(), v.y(), v.z(), w.x(), w.y(), w.z()}, places, contact, slow);
     rubbing.friction += {Vec3(by.fx, by.fy, by.fz), Vec3(by.tx, by.ty, by.tz)};
     if (std::none_of(slow.begin(), slow.end(), [](double q) { return q > 0.0; })) return;
-    const Resistance of = resistance_of_block(slow, places, contact);
-    Mat6 resistance;
-    resistance << of.xx, of.xy, of.xz, of.rxx, of.ryx, of.rzx,  //
-        of.xy, of.yy, of.yz, of.rxy, of.ryy, of.rzy,            //
-        of.xz, of.yz, of.zz, of.rxz, of.ryz, of.rzz,            //
-        of.rxx, of.rxy, of.rxz, of.rrxx, of.rrxy, of.rrxz,      //
-        of.ryx, of.ryy, of.ryz, of.rrxy, of.rryy, of.rryz,      //
-        of.rzx, of.rzy, of.rzz, of.rrxz, of.rryz, of.rrzz;
-    rubbing.resistance += resistance;
+    rubbing.resistance +=
+        common_normal != nullptr ? on_plane(slow, places, *common_normal) : on_surface(slow, places, contact);
 }
 
 Mat6 resistance(double q, const Vec3& r, const Vec3& normal) {

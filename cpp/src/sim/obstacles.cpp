@@ -30,8 +30,7 @@ double nearest_in_blocks(const Shape& shape, const Placement& seen, std::size_t 
 }  // namespace
 
 Box box_of(const TrussBlockState& block) {
-    if (!block.touching) return block.box;
-    return Box::around(lanes, [&block](std::size_t i) { return Vec3(block.x[i], block.y[i], block.z[i]); });
+    return block.touching ? box_around(block.x, block.y, block.z) : block.box;
 }
 
 Box everything(const TrussMesh& mesh, const UnitState& unit) {

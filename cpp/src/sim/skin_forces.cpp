@@ -243,7 +243,7 @@ void Skin::press_plane(PlaneSums& plane, std::size_t b) {
     crush_with_rate(plane.near, next, places, plane.sums, [&](const Lanes* factor, CrushSums& sums) {
         crush(plane.surface, mesh_, b, factor, from(b), next, contact_, sums);
     });
-    if (next.touching) rub(plane.near, b, next, places, contact_);
+    if (next.touching) rub(plane.near, b, next, places, contact_, &*plane_normal_);
 }
 
 void Skin::press_shapes(std::size_t b) {
@@ -268,7 +268,7 @@ void Skin::press_shapes(std::size_t b) {
     }
     if (!next.touching) return;
     if (alone)
-        rub(seen_[0], b, next, contact_.places(), contact_);
+        rub(seen_[0], b, next, contact_.places(), contact_, nullptr);
     else
         share_out(b, next);
 }

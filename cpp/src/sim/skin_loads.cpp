@@ -37,12 +37,12 @@ void Skin::share_out(std::size_t b, const TrussBlockState& next) {
             force += part.pressure[i];
         }
         sums.normal_force += force;
-        if (force > 0.0) rub(seen_[k], b, next, contact_.places(), part);
+        if (force > 0.0) rub(seen_[k], b, next, contact_.places(), part, nullptr);
     }
 }
 
 void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, const Places& places,
-               const BlockContact& contact) {
+               const BlockContact& contact, const Vec3* common_normal) {
     ObstacleSums& sums = obstacles_[near];
     if (along_) sums.by_trusses += along_trusses(mesh_.block[b], next, contact);
     if (b >= mesh_.skin_blocks) {
@@ -50,7 +50,7 @@ void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, con
         return;
     }
     const double mu = scene_.obstacles[near_[near].index].friction;
-    if (mu > 0.0) add_friction(mu, full_speed_, away_[near], places, contact, sums.rubbing);
+    if (mu > 0.0) add_friction(mu, full_speed_, away_[near], places, contact, common_normal, sums.rubbing);
 }
 
 void Skin::hand_over() {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "birm3d/base/tolerances.hpp"
@@ -146,15 +147,16 @@ double passing_step(const Scene& scene, const State& state, double longest) {
         const double speed = fastest_point(unit, body) + segments;
         if (!(speed > 0.0)) continue;
         const double turning = speed - body.velocity.norm();
-        const Box all = everything(unit.trusses, state.units[u]);
-        scene.map.find(body.position, all.radius() + longest * speed, about);
+        std::optional<Box> all;  // many scenes have nothing that can be passed
+        scene.map.find(body.position, unit.trusses.reach + longest * speed, about);
         for (const std::size_t i : about) {
             const Obstacle& obstacle = scene.obstacles[i];
             const Pose pose = pose_of(scene, i, state);
             const double time = passing_time(obstacle.shape, pose, body.velocity, turning);
+            if (!(time < longest)) continue;
+            if (!all) all = everything(unit.trusses, state.units[u]);
             // Out of reach even after a step as long as this obstacle would allow.
-            if (time < longest && within_reach(obstacle.shape, placement(pose, body), all, time * speed))
-                longest = time;
+            if (within_reach(obstacle.shape, placement(pose, body), *all, time * speed)) longest = time;
         }
     }
     return longest;

@@ -14,10 +14,12 @@ struct Pressed {
         contact.set_normal(-Vec3::UnitX());
         contact.pressure.fill(pressure);
     }
-    Rubbing friction(double mu, double full_speed, const Twist& motion) const {
+    Rubbing friction(double mu, double full_speed, const Twist& motion, bool flat = true) const {
         Rubbing rubbing;
         const TrussBlockState& block = state.block[0];
-        add_friction(mu, full_speed, motion, {block.x, block.y, block.z}, contact, rubbing);
+        const Vec3 normal = -Vec3::UnitX();
+        add_friction(mu, full_speed, motion, {block.x, block.y, block.z}, contact, flat ? &normal : nullptr,
+                     rubbing);
         return rubbing;
     }
 
@@ -65,6 +67,8 @@ TEST("resistance times the motion is the friction of nodes that slide slowly, an
                            0.02 * Vec3(std::sin(5.0 * i), std::sin(7.0 * i), std::sin(11.0 * i))};
         for (const double full_speed : {0.2, 0.02}) {
             const Rubbing f = pressed.friction(0.4, full_speed, motion);
+            const Mat6 by_normals = pressed.friction(0.4, full_speed, motion, false).resistance;
+            CHECK_CLOSE((f.resistance - by_normals).norm(), 0.0, 1e-12 * by_normals.norm(), "rounding");
             Vec6 twist, wrench;
             twist << motion.velocity, motion.angular_velocity;
             wrench << f.friction.force, f.friction.torque;

@@ -110,7 +110,7 @@ TEST("a locked wheel slides with the body") {
     Lanes x{}, y{}, z{};
     x[0] = node.arm.x(), y[0] = node.arm.y(), z[0] = node.arm.z();
     Rubbing skin, tread;
-    add_friction(mu, full_speed, motion, {x, y, z}, contact, skin);
+    add_friction(mu, full_speed, motion, {x, y, z}, contact, nullptr, skin);
     add_tread_friction(mu, full_speed, 0.0, node, tread);
     CHECK_CLOSE((skin.friction.force - tread.friction.force).norm(), 0.0, 1e-12, "rounding");
     CHECK_CLOSE((skin.friction.torque - tread.friction.torque).norm(), 0.0, 1e-12, "rounding");

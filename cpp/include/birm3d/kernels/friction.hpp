@@ -17,9 +17,10 @@ struct Rubbing {
     Mat6 resistance = Mat6::Zero();  // friction of nodes that slide slowly is -resistance (v, w)
 };
 
-// `motion`: the vehicle's twist in body axes. Adds to `rubbing` (body axes).
+// `motion`: the vehicle's twist in body axes. `common_normal`: where all nodes have one, or null. Adds to `rubbing` (body
+// axes).
 void add_friction(double mu, double full_speed, const Twist& motion, const Places& places,
-                  const BlockContact& contact, Rubbing& rubbing);
+                  const BlockContact& contact, const Vec3* common_normal, Rubbing& rubbing);
 
 // Of a node at r from the mass centre with a force of -q times its sliding velocity.
 Mat6 resistance(double q, const Vec3& r, const Vec3& normal);
