@@ -87,48 +87,31 @@ def test_committed_results_are_small_and_name_no_place(path: Path) -> None:
     assert all(float(row["error"]) < 0.01 for row in rows)
 
 
-@pytest.mark.parametrize("program", ["bench_library.py", "bench_random_impacts.py"])
-def test_quick_robustness(program: str) -> None:
-    """No scene of the quick choice has a fault; the program would end with 1."""
+def output_of(program: str, *arguments: str) -> str:
     done = subprocess.run(
-        [sys.executable, "-W", "error", PROGRAM.parent / program, "--quick"],
+        [sys.executable, "-W", "error", PROGRAM.parent / program, *arguments],
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
     )
     assert done.returncode == 0, done.stdout + done.stderr
-    assert " 0 with a fault" in done.stdout
+    return done.stdout
+
+
+@pytest.mark.parametrize("program", ["bench_library.py", "bench_random_impacts.py"])
+def test_quick_robustness(program: str) -> None:
+    """No scene of the quick choice has a fault; the program would end with 1."""
+    assert " 0 with a fault" in output_of(program, "--quick")
 
 
 def test_quick_batch() -> None:
     """The program compares bits of every way to run a batch; it would end with an error if any differed."""
-    done = subprocess.run(
-        [sys.executable, "-W", "error", PROGRAM.parent / "bench_batch.py", "--quick"],
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "same bits: 600 runs" in done.stdout
-    assert "error" in done.stdout.splitlines()[1]
+    output = output_of("bench_batch.py", "--quick")
+    assert "same bits: 600 runs" in output
+    assert "error" in output.splitlines()[1]
 
 
 def test_a_dent_draws_no_node_into_a_post_that_came_past_its_edge() -> None:
     """Seed 3576: nodes of the front that one post dents hopped through another that stands behind them."""
-    done = subprocess.run(
-        [
-            sys.executable,
-            "-W",
-            "error",
-            PROGRAM.parent / "bench_random_impacts.py",
-            "--first",
-            "3576",
-            "--count",
-            "1",
-        ],
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "1 impacts, 0 with a fault" in done.stdout
+    output = output_of("bench_random_impacts.py", "--first", "3576", "--count", "1")
+    assert "1 impacts, 0 with a fault" in output

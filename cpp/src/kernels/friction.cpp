@@ -133,15 +133,19 @@ Mat6 on_surface(const Lanes& slow, const Places& places, const BlockContact& con
     return resistance;
 }
 
-// The same where all nodes have one normal: half the sums.
+// The same where all nodes have one normal, of sums of q, q r and q r r^T: half as many.
+Mat6 on_plane(double q, const Vec3& qr, const Mat3& qrr, const Vec3& normal) {
+    const Mat3 n = crossing(normal), along = -n * n, turned = crossing(qr) * along;
+    Mat6 resistance;
+    resistance << q * along, turned.transpose(), turned, qrr.trace() * Mat3::Identity() - qrr + n * qrr * n;
+    return resistance;
+}
+
 Mat6 on_plane(const Lanes& slow, const Places& places, const Vec3& normal) {
     const Moments of = moments_of_block(slow, places);
-    Mat3 rr;
-    rr << of.xx, of.xy, of.xz, of.xy, of.yy, of.yz, of.xz, of.yz, of.zz;
-    const Mat3 n = crossing(normal), along = -n * n, turned = crossing(Vec3(of.x, of.y, of.z)) * along;
-    Mat6 resistance;
-    resistance << of.q * along, turned.transpose(), turned, rr.trace() * Mat3::Identity() - rr + n * rr * n;
-    return resistance;
+    Mat3 qrr;
+    qrr << of.xx, of.xy, of.xz, of.xy, of.yy, of.yz, of.xz, of.yz, of.zz;
+    return on_plane(of.q, {of.x, of.y, of.z}, qrr, normal);
 }
 
 Vec6 column(const Twist& twist) {
@@ -166,10 +170,7 @@ void add_friction(double mu, double full_speed, const Twist& motion, const Place
 }
 
 Mat6 resistance(double q, const Vec3& r, const Vec3& normal) {
-    const Mat3 cross = crossing(r), along = q * (Mat3::Identity() - normal * normal.transpose());
-    Mat6 of;
-    of << along, -along * cross, cross * along, -cross * along * cross;
-    return of;
+    return on_plane(q, q * r, q * r * r.transpose(), normal);
 }
 
 Twist settled(const Twist& motion, const Twist& before, const Mat6& resistance, double dt,

@@ -174,8 +174,7 @@ void kick_by_contacts(const Scene& scene, const Column& pressed, std::vector<Con
             BodyState& body = state.units[u].body;
             const Wrench on_ground = tire_friction(unit, scene.settings, body, motion[u], tire[u]);
             on_members[u] =
-                member_friction(kicked.contacts, u, unit.body,
-                                tolerance::full_friction_speed * scene.reference_speed(), motion[u]);
+                member_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u]);
             kick(unit.body, difference(on_ground, kicked.on_ground[u]), body);
             kick(unit.body, difference(on_members[u], kicked.on_members[u]), body);
             kicked.on_ground[u] = on_ground;

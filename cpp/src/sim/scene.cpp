@@ -206,6 +206,10 @@ double Scene::reference_speed() const {
     return std::max(approach.speed, tolerance::slowest_reference_speed);
 }
 
+double Scene::full_friction_speed() const {
+    return tolerance::full_friction_speed * reference_speed();
+}
+
 std::uint64_t Scene::fingerprint() const {
     Hash hash;
     for (const Unit& unit : vehicle->units) {

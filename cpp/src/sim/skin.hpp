@@ -80,7 +80,7 @@ class Skin {
     bool find_entered_faces(const TrussBlockState& block);
     void share_out(std::size_t b, const TrussBlockState& next);
     void rub(std::size_t near, std::size_t b, const TrussBlockState& next, const Places& places,
-             const BlockContact& contact, const Vec3* common_normal);
+             const BlockContact& contact);
     void note_treads(std::size_t near, std::size_t b, const Places& places, const BlockContact& contact);
     void rub_treads();
     // `near`: place in near_ of the obstacle that the block sees, or `several`.

@@ -37,7 +37,7 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
       u_(u),
       R_(now_.body.orientation.toRotationMatrix()),
       along_(scene.settings.contact_model == ContactModel::along_truss),
-      full_speed_(tolerance::full_friction_speed * scene.reference_speed()),
+      full_speed_(scene.full_friction_speed()),
       margin_(trial.dt * (std::max(fastest_point(unit_, before_.body), fastest_point(unit_, now_.body)) +
                           std::max(fastest_segment(scene, from), fastest_segment(scene, trial.state))) +
               tolerance::touching_gap),
@@ -48,9 +48,10 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
         return scene.obstacles[obstacle.index].friction > 0.0;
     });
     const bool treads_rub = !mesh_.tread.empty() && scene.settings.mu_tire_barrier > 0.0 && !near_.empty();
-    if (rubs || treads_rub || mesh_.rate_sensitivity > 0.0) motion_ = predicted_motion(scene, u, from, trial);
+    const bool motion_matters = rubs || treads_rub || mesh_.rate_sensitivity > 0.0;
+    if (motion_matters) motion_ = predicted_motion(scene, u, from, trial);
     away_.assign(near_.size(), motion_);
-    if (!trial.state.segments.empty() && (rubs || treads_rub || mesh_.rate_sensitivity > 0.0)) {
+    if (motion_matters && !trial.state.segments.empty()) {
         const std::vector<BodyState> drifted = trial.state.segments;
         predict_segments(scene, from, trial.dt, trial.state);
         for (std::size_t k = 0; k < near_.size(); ++k) {
@@ -243,7 +244,7 @@ void Skin::press_plane(PlaneSums& plane, std::size_t b) {
     crush_with_rate(plane.near, next, places, plane.sums, [&](const Lanes* factor, CrushSums& sums) {
         crush(plane.surface, mesh_, b, factor, from(b), next, contact_, sums);
     });
-    if (next.touching) rub(plane.near, b, next, places, contact_, &*plane_normal_);
+    if (next.touching) rub(plane.near, b, next, places, contact_);
 }
 
 void Skin::press_shapes(std::size_t b) {
@@ -268,7 +269,7 @@ void Skin::press_shapes(std::size_t b) {
     }
     if (!next.touching) return;
     if (alone)
-        rub(seen_[0], b, next, contact_.places(), contact_, nullptr);
+        rub(seen_[0], b, next, contact_.places(), contact_);
     else
         share_out(b, next);
 }

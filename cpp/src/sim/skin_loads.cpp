@@ -37,12 +37,12 @@ void Skin::share_out(std::size_t b, const TrussBlockState& next) {
             force += part.pressure[i];
         }
         sums.normal_force += force;
-        if (force > 0.0) rub(seen_[k], b, next, contact_.places(), part, nullptr);
+        if (force > 0.0) rub(seen_[k], b, next, contact_.places(), part);
     }
 }
 
 void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, const Places& places,
-               const BlockContact& contact, const Vec3* common_normal) {
+               const BlockContact& contact) {
     ObstacleSums& sums = obstacles_[near];
     if (along_) sums.by_trusses += along_trusses(mesh_.block[b], next, contact);
     if (b >= mesh_.skin_blocks) {
@@ -50,7 +50,8 @@ void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, con
         return;
     }
     const double mu = scene_.obstacles[near_[near].index].friction;
-    if (mu > 0.0) add_friction(mu, full_speed_, away_[near], places, contact, common_normal, sums.rubbing);
+    const Vec3* const normal = plane_normal_ ? &*plane_normal_ : nullptr;
+    if (mu > 0.0) add_friction(mu, full_speed_, away_[near], places, contact, normal, sums.rubbing);
 }
 
 void Skin::hand_over() {
@@ -65,6 +66,7 @@ void Skin::hand_over() {
         skin.stiffness += sums.stiffness;
     };
     add(shared_);
+    Mat6 resistance = Mat6::Zero();
     for (std::size_t k = 0; k < near_.size(); ++k) {
         ObstacleSums& sums = obstacles_[k];
         if (sums.seen) trial_.seen.push_back(near_[k].index);
@@ -83,12 +85,13 @@ void Skin::hand_over() {
         if (along_) touch.contact = sums.by_trusses;
         touch.contact = turned(touch.contact, R_);
         touch.friction = turned(sums.rubbing.friction, R_);
-        skin.resistance += turned(sums.rubbing.resistance, R_);
+        resistance += sums.rubbing.resistance;
         skin.contact += touch.contact;
         skin.friction += touch.friction;
         skin.normal_force += touch.normal_force;
         if (touch.normal_force > 0.0) touches.push_back(touch);
     }
+    skin.resistance = turned(resistance, R_);
     // What was touched before and is not now ends its course: at once, or, as part of a structure that is, in the
     // steps by which the structure's course reaches back.
     for (const Touch& last : before_.touches) {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "birm3d/base/tolerances.hpp"
@@ -139,6 +138,10 @@ double passing_time(const Shape& shape, const Pose& pose, const Vec3& velocity, 
 }  // namespace
 
 double passing_step(const Scene& scene, const State& state, double longest) {
+    const bool any_can_be_passed =
+        std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
+                    [](const Obstacle& obstacle) { return thickness(obstacle.shape) < infinity; });
+    if (!any_can_be_passed) return longest;
     std::vector<std::size_t> about;
     const double segments = fastest_segment(scene, state);
     for (std::size_t u = 0; u < state.units.size(); ++u) {
@@ -147,16 +150,15 @@ double passing_step(const Scene& scene, const State& state, double longest) {
         const double speed = fastest_point(unit, body) + segments;
         if (!(speed > 0.0)) continue;
         const double turning = speed - body.velocity.norm();
-        std::optional<Box> all;  // many scenes have nothing that can be passed
-        scene.map.find(body.position, unit.trusses.reach + longest * speed, about);
+        const Box all = everything(unit.trusses, state.units[u]);
+        scene.map.find(body.position, all.radius() + longest * speed, about);
         for (const std::size_t i : about) {
             const Obstacle& obstacle = scene.obstacles[i];
             const Pose pose = pose_of(scene, i, state);
             const double time = passing_time(obstacle.shape, pose, body.velocity, turning);
-            if (!(time < longest)) continue;
-            if (!all) all = everything(unit.trusses, state.units[u]);
             // Out of reach even after a step as long as this obstacle would allow.
-            if (within_reach(obstacle.shape, placement(pose, body), *all, time * speed)) longest = time;
+            if (time < longest && within_reach(obstacle.shape, placement(pose, body), all, time * speed))
+                longest = time;
         }
     }
     return longest;

@@ -7,7 +7,6 @@
 // which holds at any step.
 #pragma once
 
-#include "birm3d/model/vehicle.hpp"
 #include "birm3d/state/contacts.hpp"
 
 namespace birm3d {

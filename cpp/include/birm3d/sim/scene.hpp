@@ -68,6 +68,9 @@ struct Scene {
 
     // Velocity against which errors are judged (m/s).
     double reference_speed() const;
+
+    // Sliding speed from which on friction is whole; see kernels/friction.hpp (m/s).
+    double full_friction_speed() const;
 };
 
 }  // namespace birm3d
