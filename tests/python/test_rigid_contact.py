@@ -125,3 +125,12 @@ def test_impacts_do_not_hang_on_the_step(
         for tolerance in (1e-3, 3e-4, 1e-4, 3e-5)
     ]
     assert max(angles) - min(angles) < 0.02
+
+
+def test_contacts_that_rounding_lets_join_and_leave_for_ever_are_let_be() -> None:
+    """A semi-truck's body stands at a wall with hundreds of anchors, of which three took turns."""
+    result = Simulation(
+        Vehicle.preset("semi_truck"), Barrier.rigid_wall(width=6.0, height=1.0), 40.0, 90.0
+    ).run()
+    assert result.metrics["energy_residual"] < 1e-3
+    assert result.metrics["momentum_residual"] < 1e-9

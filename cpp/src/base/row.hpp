@@ -100,6 +100,15 @@ BIRM3D_IN_LANE_LOOP bool any_above(const Row& a, const Row& b) {
     return any != 0;
 }
 
+BIRM3D_IN_LANE_LOOP double least_of(const Row& row) {
+    alignas(64) double v[row_length];
+    row.store(v);
+    for (std::size_t half = row_length / 2; half > 0; half /= 2)
+        for (std::size_t i = 0; i < half; ++i)
+            v[i] = v[half + i] < v[i] ? v[half + i] : v[i];
+    return v[0];
+}
+
 BIRM3D_IN_LANE_LOOP double sum_of(const Row& row) {
     alignas(64) double v[row_length];
     row.store(v);

@@ -74,17 +74,27 @@ double contact_stiffness(const FlatContact& surface, const TrussMesh& mesh, std:
                                 2.0 * q(0, 1), 2.0 * q(0, 2), 2.0 * q(1, 2));
 }
 
+BIRM3D_LANE_LOOP double stiffness_of_pushing(const TrussBlock& truss, const Lanes& force,
+                                             const BlockContact& contact, double constant, double xx,
+                                             double yy, double zz, double xy, double xz, double yz) {
+    alignas(64) Lanes sum;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const double x = contact.tx[i], y = contact.ty[i], z = contact.tz[i];
+        const double inverse_mass =
+            constant + (x * (xx * x + xy * y + xz * z) + y * (yy * y + yz * z) + zz * z * z);
+        const bool pushes = force[i] > 0.0;
+        const double share = contact.pressure[i] / (pushes ? force[i] : 1.0), square = share * share;
+        sum[i] = (pushes ? truss.k_unloading[i] : 0.0) * (square > 1.0 ? square : 1.0) * inverse_mass;
+    }
+    return lane_sum(sum);
+}
+
 double contact_stiffness(const RigidBody& body, const TrussBlock& truss, const TrussBlockState& now,
                          const BlockContact& contact) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < lanes; ++i) {
-        if (!(now.force[i] > 0.0)) continue;
-        const Vec3 c = contact.torque(i);
-        const double share = contact.pressure[i] / now.force[i];
-        sum += std::max(1.0, share * share) * truss.k_unloading[i] *
-               (body.inverse_mass + c.dot(body.inverse_inertia * c));
-    }
-    return sum;
+    const Mat3& q = body.inverse_inertia;
+    return stiffness_of_pushing(truss, now.force, contact, body.inverse_mass, q(0, 0), q(1, 1), q(2, 2),
+                                2.0 * q(0, 1), 2.0 * q(0, 2), 2.0 * q(1, 2));
 }
 
 // Ways and shares of CurvedPress. Where normals part sharply, at an edge, the one before says nothing of the path.

@@ -63,7 +63,7 @@ Dent::Dent(const Post& post, const Placement& stands, const Panel& panel, double
     surface = middle.dot(into) - panel.box.half.dot(into.cwiseAbs());
     tilt = leaning / upright;
     stretch = 1.0 / upright;
-    const double rim = std::hypot(leaning, rounded);
+    const double rim = std::sqrt(leaning * leaning + rounded * rounded);
     top = post.height * upright + radius * rim;
     top_rate = radius * leaning / rim - post.height * tilt;
 }
@@ -71,6 +71,14 @@ Dent::Dent(const Post& post, const Placement& stands, const Panel& panel, double
 double Dent::beside(const Panel& panel) const {
     const double bottom = (panel.box.center - foot).dot(along) - panel.box.half.dot(along.cwiseAbs());
     return std::max({low - radius, -radius - high, bottom - top});
+}
+
+bool Dent::is_beyond(const Panel& panel) const {
+    const Box& box = panel.anchors;
+    const Vec3 middle = box.center - foot;
+    const double at = middle.dot(along), half = box.half.dot(along.cwiseAbs());
+    const double nearest = std::min(tilt * std::min(at - half, top), tilt * std::min(at + half, top));
+    return middle.dot(into) + box.half.dot(into.cwiseAbs()) < nearest - stretch * radius;
 }
 
 // By the post's own way, across its flanks, and by the growth of the slope.
@@ -116,8 +124,9 @@ double most_inside(const Dent& d, const Box& box) {
     return d.surface + most_drawn_in(depth, beside, d.reach) - outermost;
 }
 
-void gap_of(const Dent& dent, const TrussBlockState& nodes, Lanes& gap) {
-    dent_rows.find_dent_gap(numbers_of(dent), nodes.x.data(), nodes.y.data(), nodes.z.data(), gap.data());
+double gap_of(const Dent& dent, const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel) {
+    return dent_rows.find_dent_gap(numbers_of(dent), nodes.x.data(), nodes.y.data(), nodes.z.data(),
+                                   panel_of.data(), static_cast<double>(panel));
 }
 
 void dent_of(const Dent& dent, const TrussBlockState& nodes, const OfPanel& of, DentLanes& out) {

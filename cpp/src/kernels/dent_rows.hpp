@@ -47,7 +47,8 @@ struct DentColumns {
 // What DentLanes says; the gap of a row of which no node matters is infinite, and nothing else is said of it.
 using FindDent = void (*)(const DentNumbers& dent, const double* x, const double* y, const double* z,
                           const DentedNodes& nodes, const DentColumns& out);
-using FindDentGap = void (*)(const DentNumbers& dent, const double* x, const double* y, const double* z,
-                             double* gap);
+// The least gap of those of the panel `of`; infinite if there are none.
+using FindDentGap = double (*)(const DentNumbers& dent, const double* x, const double* y, const double* z,
+                               const double* panel, double of);
 
 }  // namespace birm3d

@@ -44,8 +44,13 @@ bool within_reach(const Shape& shape, const Placement& now, const Box& box, doub
     // The turned box itself is narrower than the box around it.
     if (const auto* plane = std::get_if<HalfSpace>(&shape))
         return now.plane_from_own(*plane).within_reach(box, margin);
-    const Box own{now.to_own(box.center), now.rotation.cwiseAbs() * box.half};
-    return std::visit(Reach{own, box.half.norm(), margin}, shape);
+    const Vec3 center = now.to_own(box.center);
+    const double radius = box.half.norm();
+    if (const auto* post = std::get_if<Post>(&shape)) {  // most are out of reach of the ball around the box
+        const double far = post->radius + margin + radius;
+        if (center.head<2>().squaredNorm() > far * far) return false;
+    }
+    return std::visit(Reach{{center, now.rotation.cwiseAbs() * box.half}, radius, margin}, shape);
 }
 
 }  // namespace birm3d

@@ -11,16 +11,8 @@ struct Spread {
     Row low = infinitely_far, high = -infinitely_far;
     BIRM3D_IN_LANE_LOOP void add(const Row& row) { low = lesser(row, low), high = greater(row, high); }
     BIRM3D_IN_LANE_LOOP void finish(double& least, double& most) const {
-        alignas(64) double a[row_length], b[row_length];
-        low.store(a);
-        high.store(b);
-        for (std::size_t half = row_length / 2; half > 0; half /= 2)
-            for (std::size_t i = 0; i < half; ++i) {
-                a[i] = a[half + i] < a[i] ? a[half + i] : a[i];
-                b[i] = b[half + i] > b[i] ? b[half + i] : b[i];
-            }
-        least = a[0];
-        most = b[0];
+        least = least_of(low);
+        most = -least_of(-1.0 * high);
     }
 };
 

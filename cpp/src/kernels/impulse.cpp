@@ -144,15 +144,19 @@ void ImpulseSolver::activate(std::size_t row) {
 
 // From the impulses there are, which may be those of the last solution.
 void ImpulseSolver::find_impulses() {
-    for (Row& row : rows_)
+    for (Row& row : rows_) {
         row.settled = row.own == 0.0;  // nothing there can be moved
+        row.joined = 0;
+    }
     if (active_.empty())
         motion_.setZero();
     else
         settle_active();
 
-    // Joining together is fast but may go in circles, joining one by one may not.
+    // Joining together is fast but may go in circles, joining one by one may not, but for rounding: then some rows join
+    // and leave over and over.
     constexpr std::size_t first_alone = 1, last_together = 5;
+    constexpr int most_joins = 10;
     const std::size_t most_rounds = 1000 + rows_.size();
     for (std::size_t round = 0;; ++round) {
         const bool together = round >= first_alone && round <= last_together;
@@ -171,7 +175,9 @@ void ImpulseSolver::find_impulses() {
                                      std::to_string(most_rounds) + " rounds");
         if (!together) activate(worst);
         settle_active();
-        if (!together && !rows_[worst].active) rows_[worst].settled = true;
+        if (together) continue;
+        Row& row = rows_[worst];
+        row.settled = !row.active || ++row.joined == most_joins;
     }
 }
 

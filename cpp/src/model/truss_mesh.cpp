@@ -163,22 +163,28 @@ void TrussMesh::find_tread(const TrussInput& input, const std::vector<Wheel>& wh
 }
 
 void TrussMesh::find_panels() {
-    std::array<std::vector<Vec3>, panels> nodes;
+    std::array<std::vector<Vec3>, panels> nodes, anchors_of;
     panels_of.assign(blocks, 0);
     for (std::size_t truss = 0; truss < skin; ++truss) {
         const std::size_t p = panel_of(anchor(truss) - node(truss));
         block[truss / lanes].panel[truss % lanes] = static_cast<double>(p);
         panels_of[truss / lanes] |= static_cast<std::uint8_t>(1U << p);
         nodes[p].push_back(node(truss));
+        anchors_of[p].push_back(anchor(truss));
     }
     for (std::size_t padding = skin; padding < skin_blocks * lanes; ++padding)
         block[padding / lanes].panel[padding % lanes] = block[skin_blocks - 1].panel[(skin - 1) % lanes];
     for (std::size_t b = skin_blocks; b < blocks; ++b)
         block[b].panel.fill(static_cast<double>(panels));  // of none
+    panels_of_group.assign((blocks + group_size - 1) / group_size, 0);
+    for (std::size_t b = 0; b < blocks; ++b)
+        panels_of_group[b / group_size] |= panels_of[b];
     for (std::size_t p = 0; p < panels; ++p) {
         const double way = p % 2 == 0 ? 1.0 : -1.0;
-        panel[p] = {way * Vec3::Unit(static_cast<Eigen::Index>(p / 2)), {}, !nodes[p].empty()};
-        if (panel[p].any) panel[p].box = box_around(nodes[p]);
+        panel[p] = {way * Vec3::Unit(static_cast<Eigen::Index>(p / 2)), {}, {}, !nodes[p].empty()};
+        if (!panel[p].any) continue;
+        panel[p].box = box_around(nodes[p]);
+        panel[p].anchors = box_around(anchors_of[p]);
     }
 }
 

@@ -33,17 +33,16 @@ Box box_of(const TrussBlockState& block) {
     return block.touching ? box_around(block.x, block.y, block.z) : block.box;
 }
 
-Box everything(const TrussMesh& mesh, const UnitState& unit) {
+Box everything(const TrussMesh& mesh, const TrussState& trusses) {
     Box box = mesh.anchors;
-    for (std::size_t g = 0; g < unit.groups.size(); ++g) {
-        const BlockGroup& group = unit.groups[g];
+    for (std::size_t g = 0; g < trusses.groups.size(); ++g) {
+        const BlockGroup& group = trusses.groups[g];
         if (!group.touching) {
             box = box.with(group.box);
             continue;
         }
-        const std::size_t first = g * BlockGroup::size;
-        for (std::size_t b = first; b < std::min(first + BlockGroup::size, mesh.blocks); ++b)
-            box = box.with(box_of(unit.trusses.block[b]));
+        for (std::size_t b = g * TrussMesh::group_size; b < mesh.end_of_group(g); ++b)
+            box = box.with(box_of(trusses.block[b]));
     }
     return box;
 }
@@ -71,12 +70,12 @@ Placement placement(const Pose& obstacle, const BodyState& seen_from) {
             to_own * (seen_from.position - obstacle.position)};
 }
 
-void find_near(const Scene& scene, std::size_t u, const State& before, const State& now, bool clear,
-               double margin, std::vector<NearObstacle>& near) {
+void find_near(const Scene& scene, std::size_t u, const State& before, const State& now, double margin,
+               std::vector<NearObstacle>& near) {
     near.clear();
-    const Box box = everything(scene.vehicle->units[u].trusses, before.units[u]);
-    std::vector<std::size_t> about{scene.ground};
-    if (!clear) scene.map.find(now.units[u].body.position, box.radius() + margin, about);
+    const Box& box = before.units[u].trusses.around;
+    std::vector<std::size_t> about;
+    scene.map.find(now.units[u].body.position, box.radius() + margin, about);
     for (const std::size_t i : about) {
         if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
         const Placement seen = placement(pose_of(scene, i, now), now.units[u].body);
@@ -101,7 +100,7 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const UnitState& unit = state.units[u];
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
-        const Box all = everything(mesh, unit);
+        const Box& all = unit.trusses.around;
         for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
             if (i == scene.ground && !(what.ground && scene.skin_meets_ground[u])) continue;
             const Shape& shape = scene.obstacles[i].shape;

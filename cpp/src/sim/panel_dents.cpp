@@ -25,10 +25,12 @@ struct Bound {
 };
 
 // Of those groups that can come within `far`, the nearest first. The boxes of groups that touch are not kept up.
-std::vector<Bound> groups_by_gap(const Dent& dent, const UnitState& unit, double far) {
+std::vector<Bound> groups_by_gap(const Dent& dent, std::size_t panel, const TrussMesh& mesh,
+                                 const UnitState& unit, double far) {
     std::vector<Bound> bounds;
-    for (std::size_t g = 0; g < unit.groups.size(); ++g) {
-        const BlockGroup& group = unit.groups[g];
+    for (std::size_t g = 0; g < unit.trusses.groups.size(); ++g) {
+        if ((mesh.panels_of_group[g] >> panel & 1U) == 0) continue;
+        const BlockGroup& group = unit.trusses.groups[g];
         const double gap = group.touching ? -infinity : -most_inside(dent, group.box);
         if (gap <= far) bounds.push_back({gap, g});
     }
@@ -42,12 +44,10 @@ double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, 
                     double far, double enough) {
     double least = infinity;
     std::vector<Bound> blocks;
-    alignas(64) Lanes gap;
-    for (const Bound& group : groups_by_gap(dent, unit, far)) {
+    for (const Bound& group : groups_by_gap(dent, panel, mesh, unit, far)) {
         if (group.gap > least) break;
         blocks.clear();
-        const std::size_t first = group.of * BlockGroup::size;
-        for (std::size_t b = first; b < std::min(first + BlockGroup::size, mesh.blocks); ++b) {
+        for (std::size_t b = group.of * TrussMesh::group_size; b < mesh.end_of_group(group.of); ++b) {
             if ((mesh.panels_of[b] >> panel & 1U) == 0) continue;
             const double bound = -most_inside(dent, box_of(unit.trusses.block[b]));
             if (bound <= std::min(far, least)) blocks.push_back({bound, b});
@@ -55,10 +55,8 @@ double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, 
         std::sort(blocks.begin(), blocks.end());
         for (const Bound& block : blocks) {
             if (block.gap > least) break;
-            gap_of(dent, unit.trusses.block[block.of], gap);
-            for (std::size_t i = 0; i < lanes; ++i)
-                if (mesh.block[block.of].panel[i] == static_cast<double>(panel))
-                    least = std::min(least, gap[i]);
+            least = std::min(least,
+                             gap_of(dent, unit.trusses.block[block.of], mesh.block[block.of].panel, panel));
             if (least <= enough) return least;
         }
     }
@@ -68,7 +66,7 @@ double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, 
 namespace {
 
 // Calls `use` with each dent that a post makes or would make, and its panel's number. `about`: of the obstacles. `way`: by
-// which posts beside, before or below a panel count too, as if it had no ends (m); how far it is beside goes with it.
+// which posts beside, before or below a panel count too, as if it had no ends (m).
 template <class Use>
 void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& mesh,
                    const std::vector<std::size_t>& about, double way, const Use& use) {
@@ -82,13 +80,12 @@ void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& m
             const Panel& panel = mesh.panel[p];
             if (!panel.any || !stands_across(seen, panel, false)) continue;
             Dent dent(*post, seen, panel, mesh.dent_reach);
-            const double beside = dent.beside(panel);
-            if (!(beside < way)) continue;
+            if (!(dent.beside(panel) < way) || dent.is_beyond(panel)) continue;
             if (way > 0.0) {
                 dent.low = -infinity;
                 dent.high = infinity;
             }
-            use(dent, p, beside);
+            use(dent, p);
         }
     }
 }
@@ -101,12 +98,11 @@ double overlap_of_dents(const Scene& scene, const State& state, double deepest) 
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         if (mesh.dent_reach == 0.0) continue;
-        scene.map.find(state.units[u].body.position, everything(mesh, state.units[u]).radius(), about);
-        for_each_dent(scene, state.units[u], mesh, about, 0.0,
-                      [&](const Dent& dent, std::size_t panel, double) {
-                          const double gap = gap_of_panel(dent, panel, mesh, state.units[u], 0.0, -infinity);
-                          if (-gap < deepest) most = std::max(most, -gap);
-                      });
+        scene.map.find(state.units[u].body.position, state.units[u].trusses.around.radius(), about);
+        for_each_dent(scene, state.units[u], mesh, about, 0.0, [&](const Dent& dent, std::size_t panel) {
+            const double gap = gap_of_panel(dent, panel, mesh, state.units[u], 0.0, -infinity);
+            if (-gap < deepest) most = std::max(most, -gap);
+        });
     }
     return most;
 }
@@ -118,23 +114,18 @@ constexpr double come = tolerance::touching_gap;
 
 }  // namespace
 
-FreeStep undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
-                       FreeStep step) {
+double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
+                     double longest) {
     std::vector<std::size_t> about;
-    const double way = tolerance::clear_margin * step.step * fastest;
-    scene.map.find(unit.body.position, everything(mesh, unit).radius() + way, about);
-    for_each_dent(scene, unit, mesh, about, way, [&](const Dent& dent, std::size_t panel, double beside) {
+    const double way = longest * fastest;
+    scene.map.find(unit.body.position, unit.trusses.around.radius() + way, about);
+    for_each_dent(scene, unit, mesh, about, way, [&](const Dent& dent, std::size_t panel) {
         // A post dents what it comes into.
         const double grows = dent.fastest_growth(mesh.panel[panel]);
         const double gap = gap_of_panel(dent, panel, mesh, unit, grows * way, come);
-        if (gap > come) {
-            step.step = std::min(step.step, (gap + tolerance::untouched_way) / (grows * fastest));
-            step.clear_way = std::min(step.clear_way, gap / grows);
-        } else if (beside > 0.0) {
-            step.clear_way = std::min(step.clear_way, beside);
-        }
+        if (gap > come) longest = std::min(longest, (gap + tolerance::untouched_way) / (grows * fastest));
     });
-    return step;
+    return longest;
 }
 
 }  // namespace birm3d

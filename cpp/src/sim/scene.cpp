@@ -187,6 +187,10 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
         obstacles.push_back(
             {HalfSpace{Vec3::UnitZ(), 0.0}, Mat3::Identity(), Vec3::Zero(), settings.mu_body, ground});
     map = ObstacleMap(obstacles, free_segments());
+    thinnest = std::numeric_limits<double>::infinity();
+    for (const Obstacle& obstacle : obstacles)
+        thinnest =
+            std::min({thinnest, thickness(obstacle.shape), 2.0 * bounds(obstacle.shape).half.minCoeff()});
 }
 
 void Scene::set_approach(const Approach& a) {

@@ -257,7 +257,7 @@ double Simulation::remaining() const {
 }
 
 void Simulation::take(Trial& trial) {
-    accept(trial, state_);
+    accept(scene_, trial, state_);
     recorder_.add(scene_, trial);
     if (!std::isfinite(state_.energies.total()))
         throw std::runtime_error("the state is no longer finite at t = " + to_text(state_.time) +
@@ -310,6 +310,7 @@ void Simulation::adaptive_step() {
     dt = std::min(dt, time_to_stop(scene_, state_));
     if (touches(state_))
         dt = std::min(dt, std::max(time_to_release(scene_, state_), tolerance::release_resolution));
+    bool lands = false;
     double cut = 0.0;  // what an impact has cut short: the next step is no shorter for it (s)
     for (;;) {
         if (dt < tolerance::shortest_step)
@@ -321,6 +322,17 @@ void Simulation::adaptive_step() {
             dt = std::max(trial_.impact_after, 2.0 * tolerance::shortest_step);
             ++state_.statistics.rejected;
             continue;
+        }
+        if (!lands && !touches(state_) && touches(trial_.state)) {
+            // The end of free flight: no further than to the first instant at which a node can be at the barrier.
+            lands = true;
+            const double landing =
+                std::max(tolerance::first_contact_step, untouched_step(scene_, state_, dt));
+            if (landing < dt) {
+                dt = landing;
+                ++state_.statistics.rejected;
+                continue;
+            }
         }
         const double stable = tolerance::stable_fraction * trial_.critical_step;
         double wanted = dt;
@@ -344,15 +356,8 @@ void Simulation::adaptive_step() {
     const double growth = 0.9 * std::pow(allowed / std::max(trial_.error, 1e-300), 1.0 / 6.0);
     const double longer = growth > 1.0 ? std::max(dt * std::min(4.0, growth), cut)
                                        : std::max(dt * growth, tolerance::jump_resolution);
-    double next = on_ladder(std::min(longer, 0.9 * tolerance::stable_fraction * trial_.critical_step));
-    next = std::min(next, tolerance::longest_step);
-    if (scene_.barrier && !touches(state_)) {
-        // Free flight: up to the first instant at which a node can be at the barrier.
-        const FreeStep untouched = untouched_step(scene_, state_, next);
-        next = std::max(tolerance::first_contact_step, untouched.step);
-        state_.clear_way = untouched.clear_way;
-    }
-    state_.next_step = next;
+    const double next = on_ladder(std::min(longer, 0.9 * tolerance::stable_fraction * trial_.critical_step));
+    state_.next_step = std::min(next, tolerance::longest_step);
 }
 
 bool Simulation::step() {

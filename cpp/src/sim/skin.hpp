@@ -40,9 +40,8 @@ class Skin {
         bool seen = false;  // by any block
     };
 
-    bool may_change(const BlockGroup& group) const;
-    void press_group(std::size_t g);
-    bool press(std::size_t b);
+    bool may_change(std::size_t g) const;
+    void press(std::size_t b);
     void note_met(std::size_t b);
     void look_about(std::size_t b);
     void spring_back(std::size_t b);
@@ -54,26 +53,29 @@ class Skin {
         std::size_t near;
         std::size_t panel;
         Dent dent;
+        double way;  // how far it can have come in within the step, and nodes off it (m)
     };
     void find_dents();
     Dented dents_of(std::size_t near);
-    double way_within_step(const Dent& dent, std::size_t panel) const;
     bool was_before(std::size_t near, std::size_t panel);
     bool find_dents_of_block(std::size_t b);
-    bool is_left_to_dents(std::size_t b, std::size_t near) const;
+    bool is_left_to_dents(std::uint8_t of, std::size_t near) const;
     void leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) const;
     void draw_in(std::size_t b, const TrussBlockState& block);
     // Does the block meet what is near? Treads meet the barrier only: the wheels stand on the ground.
     bool meets(std::size_t b, std::size_t near) const {
         return b < mesh_.skin_blocks || near_[near].index != scene_.ground;
     }
-    void find_seen(std::size_t b, const Box& box, double margin);
+    void find_seen(std::size_t b, double margin);
+    bool sees(std::uint8_t of, std::size_t near, const Box& box, double margin) const;
     PlaneSums* plane_of(std::size_t near);
     PlaneSums& sums_of_plane(std::size_t near, const HalfSpace& plane);
     void press_plane(PlaneSums& plane, std::size_t b);
     void press_shapes(std::size_t b);
+    std::size_t where_met(const Lanes& force) const;
     std::optional<double> let_go_into_another(std::size_t b);
     void look(std::size_t b);
+    void look_at_surfaces(std::size_t b, const TrussBlockState& block);
     void look_at(std::size_t b, const TrussBlockState& block);
     void turn_flat_faces();
     void settle_in_corners(const TrussBlockState& block);

@@ -36,23 +36,24 @@ Dented Skin::dents_of(std::size_t k) {
         if (!panel.any || !stands_across(near_[k].now, panel, dents)) continue;
         const Dent dent(post, near_[k].now, panel, mesh_.dent_reach);
         if (!dents && !(dent.beside(panel) < 0.0)) continue;
-        // How far in a post can have come within the step; of one that was in before, does it touch?
-        const double deepest = dents || passed ? 0.0 : way_within_step(dent, p);
+        if (!dents && dent.is_beyond(panel)) {
+            now.passed |= bit;
+            continue;
+        }
+        // How far in a post can have come within the step, and nodes off its dent; of one that was in before, does it
+        // touch?
+        const double way = 2.0 * margin_ * dent.fastest_growth(panel);
+        const double deepest = dents || passed ? 0.0 : way;
         const double gap = dents && pushes ? 0.0 : gap_of_panel(dent, p, mesh_, before_, 0.0, -deepest);
         if (gap > 0.0) continue;
         if (dents || (!passed && (gap > -deepest || was_before(k, p)))) {
             now.panels |= bit;
-            dents_.push_back({k, p, dent});
+            dents_.push_back({k, p, dent, way});
         } else {
             now.passed |= bit;
         }
     }
     return now;
-}
-
-// How far the post can have come into the panel within the step, and nodes off its dent (m).
-double Skin::way_within_step(const Dent& dent, std::size_t panel) const {
-    return 2.0 * margin_ * dent.fastest_growth(mesh_.panel[panel]);
 }
 
 // Did the post stand in front of the panel an instant before?
@@ -70,7 +71,7 @@ bool Skin::find_dents_of_block(std::size_t b) {
     for (std::size_t d = 0; d < dents_.size(); ++d) {
         const DentedPanel& dented = dents_[d];
         if ((mesh_.panels_of[b] >> dented.panel & 1U) == 0) continue;
-        const double off = from(b).touching ? way_within_step(dented.dent, dented.panel) : 0.0;
+        const double off = from(b).touching ? dented.way : 0.0;
         const double gap = -most_inside(dented.dent, box_);
         if (gap > off) continue;
         block_dents_.push_back({d, gap});
@@ -83,21 +84,28 @@ bool Skin::find_dents_of_block(std::size_t b) {
     return !block_dents_.empty();
 }
 
-// Are all nodes of the block on a panel that this post dents?
-bool Skin::is_left_to_dents(std::size_t b, std::size_t near) const {
+// Are all nodes of some panels, bit by bit, on one that this post dents?
+bool Skin::is_left_to_dents(std::uint8_t of, std::size_t near) const {
     return std::any_of(dents_.begin(), dents_.end(), [&](const DentedPanel& dented) {
-        return dented.near == near && mesh_.panels_of[b] == 1U << dented.panel;
+        return dented.near == near && of == 1U << dented.panel;
     });
 }
 
+namespace {
+
+BIRM3D_LANE_LOOP void leave_out(const Lanes& panel_of, double panel, Lanes& gap) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i)
+        gap[i] = panel_of[i] == panel ? std::numeric_limits<double>::infinity() : gap[i];
+}
+
+}  // namespace
+
 // Nodes of a panel that a post dents do not see the post itself, near or far.
 void Skin::leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) const {
-    for (const DentedPanel& dented : dents_) {
-        if (dented.near != near || (mesh_.panels_of[b] >> dented.panel & 1U) == 0) continue;
-        const auto panel = static_cast<double>(dented.panel);
-        for (std::size_t i = 0; i < lanes; ++i)
-            if (mesh_.block[b].panel[i] == panel) found.gap[i] = std::numeric_limits<double>::infinity();
-    }
+    for (const DentedPanel& dented : dents_)
+        if (dented.near == near && (mesh_.panels_of[b] >> dented.panel & 1U) != 0)
+            leave_out(mesh_.block[b].panel, static_cast<double>(dented.panel), found.gap);
 }
 
 namespace {
@@ -137,7 +145,7 @@ void Skin::draw_in(std::size_t b, const TrussBlockState& block) {
     for (const BlockDent& reached : block_dents_) {
         const DentedPanel& dented = dents_[reached.dent];
         const OfPanel of{mesh_.block[b].panel, dented.panel, faces_.gap};
-        if (reached.gap > furthest_off(block, of)) continue;
+        if (reached.dent != block_dents_.front().dent && reached.gap > furthest_off(block, of)) continue;
         const Vec3& into = dented.dent.into;
         dent_of(dented.dent, block, of, found);
         const auto seen = std::find(seen_.begin(), seen_.end(), dented.near) - seen_.begin();

@@ -42,7 +42,7 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
                           std::max(fastest_segment(scene, from), fastest_segment(scene, trial.state))) +
               tolerance::touching_gap),
       near_(trial.near) {
-    find_near(scene, u, from, trial.state, trial.clear, before_.touches.empty() ? 0.0 : margin_, near_);
+    find_near(scene, u, from, trial.state, before_.touches.empty() ? 0.0 : margin_, near_);
     add_touched(scene, u, from, trial.state, near_);
     const bool rubs = std::any_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
         return scene.obstacles[obstacle.index].friction > 0.0;
@@ -67,35 +67,31 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
 void Skin::press_blocks() {
     trial_.active[u_].clear();
     now_.dented.clear();
-    if (near_.empty() && before_.touches.empty() && !before_.hangs_slack()) return;
+    if (near_.empty() && before_.touches.empty() && !before_.trusses.hangs_slack()) return;
     find_dents();
-    for (std::size_t g = 0; g < before_.groups.size(); ++g)
-        if (may_change(before_.groups[g])) press_group(g);
+    for (std::size_t g = 0; g < before_.trusses.groups.size(); ++g)
+        if (may_change(g))
+            for (std::size_t b = g * TrussMesh::group_size; b < mesh_.end_of_group(g); ++b)
+                press(b);
     if (!treads_.empty()) rub_treads();
 }
 
 // Does any of the blocks push, hang slack, or come within reach of an obstacle or of a dent?
-bool Skin::may_change(const BlockGroup& group) const {
-    return group.touching || group.slack ||
-           std::any_of(near_.begin(), near_.end(),
-                       [&](const NearObstacle& near) {
-                           return within_reach(scene_.obstacles[near.index].shape, near.now, group.box, 0.0);
-                       }) ||
-           std::any_of(dents_.begin(), dents_.end(),
-                       [&](const DentedPanel& dented) { return most_inside(dented.dent, group.box) >= 0.0; });
+bool Skin::may_change(std::size_t g) const {
+    const BlockGroup& group = before_.trusses.groups[g];
+    if (group.touching || group.slack) return true;
+    const std::uint8_t of = mesh_.panels_of_group[g];
+    for (std::size_t k = 0; k < near_.size(); ++k)
+        if (sees(of, k, group.box, 0.0)) return true;
+    return std::any_of(dents_.begin(), dents_.end(), [&](const DentedPanel& dented) {
+        return (of >> dented.panel & 1U) != 0 && most_inside(dented.dent, group.box) >= 0.0;
+    });
 }
 
-void Skin::press_group(std::size_t g) {
-    const std::size_t first = g * BlockGroup::size, last = std::min(first + BlockGroup::size, mesh_.blocks);
-    bool changed = false;
-    for (std::size_t b = first; b < last; ++b)
-        changed |= press(b);
-    if (!changed) return;
-    // Blocks that this step left as they were are up to date in the state before it.
-    BlockGroup& now = now_.groups[g];
-    now = {};
-    for (std::size_t b = first; b < last; ++b)
-        now.add(trial_.active[u_].contains(b) ? now_.trusses.block[b] : before_.trusses.block[b], b == first);
+// Can nodes of some panels, bit by bit, within a box meet the obstacle itself?
+bool Skin::sees(std::uint8_t of, std::size_t near, const Box& box, double margin) const {
+    return !is_left_to_dents(of, near) &&
+           within_reach(scene_.obstacles[near_[near].index].shape, near_[near].now, box, margin);
 }
 
 // Nodes that an obstacle has drawn out beyond the free length of their trusses return to it once their way is free.
@@ -137,26 +133,37 @@ void Skin::look_about(std::size_t b) {
     if (only_one)
         seen_.assign(1, 0);
     else
-        find_seen(b, box_, block.touching ? margin_ : 0.0);
-    // What pushes stays at what it pushes on until it is released, however far it was drawn off within the step.
-    if (block.touching && seen_.empty())
-        for (std::size_t k = 0; k < near_.size(); ++k)
-            if (meets(b, k)) seen_.push_back(k);
+        find_seen(b, block.touching ? margin_ : 0.0);
 }
 
-// Is there anything to do?
-bool Skin::press(std::size_t b) {
+namespace {
+
+BIRM3D_LANE_LOOP double lowest(const Lanes& values) {
+    alignas(64) Lanes turned;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i)
+        turned[i] = -values[i];
+    return -lane_max(turned);
+}
+
+}  // namespace
+
+void Skin::press(std::size_t b) {
     look_about(b);
     const bool drawn = find_dents_of_block(b);
-    if (seen_.empty() && !sprung_back_) return false;
+    // What pushes stays at what it pushes on until it is released, however far it was drawn off within the step.
+    if (from(b).touching && seen_.empty())
+        for (std::size_t k = 0; k < near_.size(); ++k)
+            if (meets(b, k)) seen_.push_back(k);
+    if (seen_.empty() && !sprung_back_) return;
     trial_.state.statistics.node_evaluations += lanes;
     for (const std::size_t k : seen_)
         obstacles_[k].seen = true;
     PlaneSums* const plane = seen_.size() == 1 && !drawn ? plane_of(seen_[0]) : nullptr;
     if (plane == nullptr && !seen_.empty()) {
         look(b);
-        const bool clear = *std::min_element(faces_.gap.begin(), faces_.gap.end()) >= 0.0;
-        if (clear && !from(b).touching && !from(b).slack && !sprung_back_) return false;
+        const bool idle = !from(b).touching && !from(b).slack && !sprung_back_;
+        if (idle && lowest(faces_.gap) >= 0.0) return;
     }
     trial_.active[u_].add(b);
     trial_.stale[u_].add(b);
@@ -169,7 +176,6 @@ bool Skin::press(std::size_t b) {
     } else {
         press_shapes(b);
     }
-    return true;
 }
 
 // For the statistics.
@@ -189,11 +195,10 @@ Skin::PlaneSums* Skin::plane_of(std::size_t near) {
     return plane ? &sums_of_plane(near, *plane) : nullptr;
 }
 
-void Skin::find_seen(std::size_t b, const Box& box, double margin) {
+void Skin::find_seen(std::size_t b, double margin) {
     seen_.clear();
     for (std::size_t k = 0; k < near_.size(); ++k)
-        if (meets(b, k) && within_reach(scene_.obstacles[near_[k].index].shape, near_[k].now, box, margin))
-            seen_.push_back(k);
+        if (meets(b, k) && sees(mesh_.panels_of[b], k, box_, margin)) seen_.push_back(k);
 }
 
 Skin::PlaneSums& Skin::sums_of_plane(std::size_t near, const HalfSpace& plane) {
@@ -247,18 +252,28 @@ void Skin::press_plane(PlaneSums& plane, std::size_t b) {
     if (next.touching) rub(plane.near, b, next, places, contact_);
 }
 
+// The one obstacle that all nodes of the block push on which push, or are inside of; or `several`.
+std::size_t Skin::where_met(const Lanes& force) const {
+    if (seen_.size() == 1) return seen_[0];
+    std::optional<std::size_t> only;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!(force[i] > 0.0 || faces_.gap[i] < 0.0)) continue;
+        if (only && *only != nearest_[i]) return several;
+        only = nearest_[i];
+    }
+    return seen_[only.value_or(0)];
+}
+
 void Skin::press_shapes(std::size_t b) {
     TrussBlockState& next = now_.trusses.block[b];
-    const bool alone = seen_.size() == 1;
-    CrushSums& to = alone ? obstacles_[seen_[0]].sums : shared_;
+    const std::size_t at = where_met(from(b).force);
+    CrushSums& to = at != several ? obstacles_[at].sums : shared_;
     const CrushSums before = to;
     bool ceased = false;
     const auto crush_block = [&] {
-        crush_with_rate(alone ? seen_[0] : several, next, contact_.places(), to,
-                        [&](const Lanes* factor, CrushSums& sums) {
-                            ceased =
-                                crush(faces_, unit_.body, mesh_, b, factor, from(b), next, contact_, sums);
-                        });
+        crush_with_rate(at, next, contact_.places(), to, [&](const Lanes* factor, CrushSums& sums) {
+            ceased = crush(faces_, unit_.body, mesh_, b, factor, from(b), next, contact_, sums);
+        });
     };
     crush_block();
     if (const auto work = ceased ? let_go_into_another(b) : std::nullopt) {
@@ -268,8 +283,8 @@ void Skin::press_shapes(std::size_t b) {
         crush_block();
     }
     if (!next.touching) return;
-    if (alone)
-        rub(seen_[0], b, next, contact_.places(), contact_);
+    if (at != several)
+        rub(at, b, next, contact_.places(), contact_);
     else
         share_out(b, next);
 }

@@ -21,23 +21,39 @@ Mat6 turned(const Mat6& of, const Mat3& R) {
     return turned;
 }
 
+// Keeps the pressure of nodes whose nearest is the k-th, and sums their loads.
+struct Part {
+    double force, x, y, z, tx, ty, tz;
+};
+BIRM3D_LANE_LOOP Part take_part(const std::array<std::size_t, lanes>& nearest, std::size_t k,
+                                const BlockContact& contact, Lanes& pressure) {
+    alignas(64) Lanes force, x, y, z, tx, ty, tz;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const double own = nearest[i] == k ? contact.pressure[i] : 0.0;
+        pressure[i] = force[i] = own;
+        x[i] = own * contact.nx[i];
+        y[i] = own * contact.ny[i];
+        z[i] = own * contact.nz[i];
+        tx[i] = own * contact.tx[i];
+        ty[i] = own * contact.ty[i];
+        tz[i] = own * contact.tz[i];
+    }
+    return {lane_sum(force), lane_sum(x), lane_sum(y), lane_sum(z), lane_sum(tx), lane_sum(ty), lane_sum(tz)};
+}
+
 }  // namespace
 
 // Nodes of one block that push on several obstacles: to each its own.
 void Skin::share_out(std::size_t b, const TrussBlockState& next) {
     BlockContact part = contact_;
     for (std::size_t k = 0; k < seen_.size(); ++k) {
+        const Part of = take_part(nearest_, k, contact_, part.pressure);
+        if (!(of.force > 0.0)) continue;
         ObstacleSums& sums = obstacles_[seen_[k]];
-        double force = 0.0;
-        for (std::size_t i = 0; i < lanes; ++i) {
-            part.pressure[i] = nearest_[i] == k ? contact_.pressure[i] : 0.0;
-            if (!(part.pressure[i] > 0.0)) continue;
-            const Vec3 push = part.pressure[i] * part.normal(i);
-            sums.contact += {push, part.pressure[i] * contact_.torque(i)};
-            force += part.pressure[i];
-        }
-        sums.normal_force += force;
-        if (force > 0.0) rub(seen_[k], b, next, contact_.places(), part);
+        sums.contact += {Vec3(of.x, of.y, of.z), Vec3(of.tx, of.ty, of.tz)};
+        sums.normal_force += of.force;
+        rub(seen_[k], b, next, contact_.places(), part);
     }
 }
 

@@ -1,4 +1,5 @@
 // What the nodes of a block see of the obstacles about them: gaps and normals now, and normals an instant before.
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -16,6 +17,18 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Cosine above which the normals of two instants are of the same face.
 constexpr double same_face = 0.9;
 
+BIRM3D_LANE_LOOP void see_nothing(NodeFaces& faces, BlockContact& contact,
+                                  std::array<std::size_t, lanes>& nearest) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        faces.gap[i] = infinity;
+        faces.per_force[i] = 0.0;
+        contact.nx[i] = faces.bx[i] = 1.0;
+        contact.ny[i] = contact.nz[i] = faces.by[i] = faces.bz[i] = 0.0;
+        nearest[i] = 0;
+    }
+}
+
 // Nodes to which this obstacle, the k-th, is nearer than those before.
 BIRM3D_LANE_LOOP void take_nearer(const NearestLanes& found, std::size_t k, NodeFaces& faces,
                                   BlockContact& contact, std::array<std::size_t, lanes>& nearest) {
@@ -28,6 +41,15 @@ BIRM3D_LANE_LOOP void take_nearer(const NearestLanes& found, std::size_t k, Node
         contact.ny[i] = nearer ? found.ny[i] : contact.ny[i];
         contact.nz[i] = nearer ? found.nz[i] : contact.nz[i];
     }
+}
+
+// Does any of the nodes push on what it sees, or is it inside?
+BIRM3D_LANE_LOOP bool any_meets(const Lanes& force, const Lanes& gap) {
+    alignas(64) Lanes meets;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i)
+        meets[i] = gap[i] < (force[i] > 0.0 ? infinity : 0.0) ? 1.0 : 0.0;
+    return lane_max(meets) > 0.0;
 }
 
 // The same of the instant before.
@@ -61,23 +83,26 @@ BIRM3D_LANE_LOOP double find_doubtful(const NodeFaces& faces, const BlockContact
 // What each node of a block sees: the nearest of the surfaces in its reach.
 void Skin::look(std::size_t b) {
     const TrussBlockState& block = from(b);
-    faces_.gap.fill(infinity);
-    faces_.per_force.fill(0.0);
-    contact_.set_normal(Vec3::UnitX());
+    see_nothing(faces_, contact_, nearest_);
     plane_normal_.reset();
-    nearest_.fill(0);
+    const bool only_dents = std::all_of(
+        seen_.begin(), seen_.end(), [&](std::size_t k) { return is_left_to_dents(mesh_.panels_of[b], k); });
+    if (!only_dents) look_at_surfaces(b, block);
+    draw_in(b, block);
+}
+
+void Skin::look_at_surfaces(std::size_t b, const TrussBlockState& block) {
     look_at(b, block);
     const bool changed = find_entered_faces(block);
     if (block.touching) turn_flat_faces();
     // Of one obstacle the nearest place lies in no corner.
     if (changed || seen_.size() > 1) settle_in_corners(block);
-    draw_in(b, block);
 }
 
 void Skin::look_at(std::size_t b, const TrussBlockState& block) {
     alignas(64) NearestLanes found;
     for (std::size_t k = 0; k < seen_.size(); ++k) {
-        if (is_left_to_dents(b, seen_[k])) continue;
+        if (is_left_to_dents(mesh_.panels_of[b], seen_[k])) continue;
         const NearObstacle& obstacle = near_[seen_[k]];
         const Shape& shape = scene_.obstacles[obstacle.index].shape;
         nearest_of(shape, obstacle.now, obstacle.before, block.x, block.y, block.z, found, &block.force);
@@ -86,15 +111,12 @@ void Skin::look_at(std::size_t b, const TrussBlockState& block) {
     }
     faces_.bx = contact_.nx, faces_.by = contact_.ny, faces_.bz = contact_.nz;
     // What pushes on no more than dents had their direction then, too.
-    bool pushes = false;
-    for (std::size_t i = 0; i < lanes; ++i)
-        pushes |= faces_.gap[i] < (block.force[i] > 0.0 ? infinity : 0.0);
-    if (!block.touching || !pushes) return;
+    if (!block.touching || !any_meets(block.force, faces_.gap)) return;
     // Of all surfaces at that instant: segments of a wall take over from each other.
     alignas(64) Lanes gap_before;
     gap_before.fill(infinity);
     for (const std::size_t k : seen_) {
-        if (is_left_to_dents(b, k)) continue;
+        if (is_left_to_dents(mesh_.panels_of[b], k)) continue;
         const NearObstacle& obstacle = near_[k];
         nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.before, obstacle.before, block.x, block.y,
                    block.z, found, &block.force);
@@ -106,10 +128,10 @@ void Skin::look_at(std::size_t b, const TrussBlockState& block) {
 // Where a node that leaves one surface would get into another, in the corner between a barrier and the ground or of two
 // slopes, it goes onto both: the corner pushes it straight there.
 void Skin::settle_in_corners(const TrussBlockState& block) {
-    const auto is_prism = [&](std::size_t k) {
-        return std::holds_alternative<Prism>(scene_.obstacles[near_[k].index].shape);
-    };
-    if (seen_.empty() || (seen_.size() == 1 && !is_prism(seen_[0]))) return;
+    const auto shape = [&](std::size_t k) -> const Shape& { return scene_.obstacles[near_[k].index].shape; };
+    if (seen_.size() == 1 && !std::holds_alternative<Prism>(shape(seen_[0]))) return;
+    const auto is_post = [&](std::size_t k) { return std::holds_alternative<Post>(shape(k)); };
+    if (std::all_of(seen_.begin(), seen_.end(), is_post)) return;  // they stand apart
     const auto inside = [&](std::size_t i) { return faces_.gap[i] < -tolerance::touching_gap; };
     alignas(64) Lanes x = block.x, y = block.y, z = block.z;
     bool any = false;
@@ -125,7 +147,7 @@ void Skin::settle_in_corners(const TrussBlockState& block) {
     alignas(64) NearestLanes found;
     for (const std::size_t k : seen_) {
         const NearObstacle& obstacle = near_[k];
-        nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.now, obstacle.now, x, y, z, found);
+        nearest_of(shape(k), obstacle.now, obstacle.now, x, y, z, found);
         for (std::size_t i = 0; i < lanes; ++i) {
             if (!inside(i) || !(found.gap[i] < -tolerance::touching_gap)) continue;
             const Vec3 first = contact_.normal(i), second(found.nx[i], found.ny[i], found.nz[i]);

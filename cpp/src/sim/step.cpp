@@ -172,12 +172,6 @@ bool skin_touches_barrier(const Scene& scene, const UnitState& unit) {
     });
 }
 
-// Do nodes move with their units alone? What pushes stays at the barrier, and what hangs slack springs back.
-bool skins_rest(const State& state) {
-    return std::all_of(state.units.begin(), state.units.end(),
-                       [](const UnitState& unit) { return unit.touches.empty() && !unit.hangs_slack(); });
-}
-
 // By how much a segment that gives way adds to the inverse effective mass of a contact, at the most: it is pushed at its
 // end.
 double share_of_segments(const Scene& scene, const RigidBody& body, const std::vector<Touch>& touches) {
@@ -306,9 +300,6 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
     half_kick(scene, Stage::before_drift, options, trial);
     if (trial.impact_within()) return;
 
-    const double way = dt * std::max(fastest_node(scene, from), fastest_node(scene, now));
-    now.clear_way = std::max(0.0, from.clear_way - way);
-    trial.clear = way < from.clear_way && skins_rest(from);
     for (std::size_t i = 0; i < now.segments.size(); ++i)
         drift(scene.barrier->segments[i].body, dt, now.segments[i]);
     for (std::size_t u = 0; u < now.units.size(); ++u) {
@@ -317,8 +308,7 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
         now.energies.potential += dt * unit.body.mass * scene.settings.gravity * moved.body.velocity.z();
         drift(unit.body, dt, moved.body);
 
-        if (!scene.obstacles.empty() && (!trial.clear || scene.skin_meets_ground[u]))
-            skin_forces(scene, u, from, trial);
+        if (!scene.obstacles.empty()) skin_forces(scene, u, from, trial);
         if (skin_touches_barrier(scene, moved)) now.touched = true;
 
         trial.error = std::max(trial.error, correct(scene, u, from.units[u], dt, now));
@@ -371,16 +361,20 @@ void count(const Trial& trial, State& state) {
 
 }  // namespace
 
-void accept(Trial& trial, State& state) {
+void accept(const Scene& scene, Trial& trial, State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         UnitState& to = state.units[u];
         UnitState& with = trial.state.units[u];
         static_cast<UnitMotion&>(to) = with;
-        // The trusses change places, once the blocks that this step did not make are brought up to date.
+        // Blocks change places, once those that this step did not make are brought up to date.
+        const std::vector<std::size_t>& active = trial.active[u].blocks();
         for (const std::size_t block : trial.stale[u].blocks())
             if (!trial.active[u].contains(block)) with.trusses.block[block] = to.trusses.block[block];
-        std::swap(to.trusses, with.trusses);
+        std::swap(to.trusses.block, with.trusses.block);
         trial.stale[u] = trial.active[u];
+        if (active.empty()) continue;
+        to.trusses.group(active);
+        to.trusses.around = everything(scene.vehicle->units[u].trusses, to.trusses);
     }
     static_cast<Progress&>(state) = trial.state;
     state.segments = trial.state.segments;

@@ -18,24 +18,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Does all of a box (body axes) move away from a plane? `motion` of the box against the plane.
-bool is_left_behind(const HalfSpace& plane, const Twist& motion, const Box& box) {
-    const Vec3& n = plane.normal;
-    const double leaving = n.dot(motion.velocity + motion.angular_velocity.cross(box.center));
-    return leaving >= n.cross(motion.angular_velocity).cwiseAbs().dot(box.half);
-}
-
 }  // namespace
 
-double fastest_node(const Scene& scene, const State& state) {
-    double fastest = 0.0;
-    for (std::size_t u = 0; u < state.units.size(); ++u)
-        fastest = std::max(fastest, fastest_point(scene.vehicle->units[u], state.units[u].body));
-    return fastest + fastest_segment(scene, state);
-}
-
-FreeStep untouched_step(const Scene& scene, const State& state, double longest) {
-    double clear_way = infinity;
+double untouched_step(const Scene& scene, const State& state, double longest) {
     struct Seen {
         const Shape* shape;
         Placement placement;
@@ -51,47 +36,25 @@ FreeStep untouched_step(const Scene& scene, const State& state, double longest) 
         const Unit& model = scene.vehicle->units[u];
         const double fastest = fastest_point(model, unit.body) + segments;
         if (!(fastest > 0.0)) continue;
-        const auto reach = [&] { return tolerance::clear_margin * longest * fastest; };
         const Mat3 R = unit.body.orientation.toRotationMatrix();
         const Vec3 v = R.transpose() * unit.body.velocity;
         const Vec3 w = R.transpose() * angular_velocity(model.body, unit.body);
-        const Box all = everything(model.trusses, unit);
+        const Box& all = unit.trusses.around;
         near.clear();
-        scene.map.find(unit.body.position, all.radius() + reach(), about);
+        scene.map.find(unit.body.position, all.radius() + longest * fastest, about);
         for (const std::size_t i : about) {
             const Placement seen = placement(pose_of(scene, i, state), unit.body);
-            if (i != scene.ground && within_reach(scene.obstacles[i].shape, seen, all, reach()))
+            if (i != scene.ground && within_reach(scene.obstacles[i].shape, seen, all, longest * fastest))
                 near.push_back(
                     {&scene.obstacles[i].shape, seen, obstacle_motion(scene, i, state, unit.body)});
         }
-        for (std::size_t b = 0; b < unit.trusses.block.size(); ++b) {
-            const BlockGroup& group = unit.groups[b / BlockGroup::size];
-            if (b % BlockGroup::size == 0 && !group.touching &&
-                std::none_of(near.begin(), near.end(), [&](const Seen& seen) {
-                    return within_reach(*seen.shape, seen.placement, group.box, reach());
-                })) {
-                b += BlockGroup::size - 1;
-                continue;
-            }
-            const TrussBlockState& block = unit.trusses.block[b];
+        for (const TrussBlockState& block : unit.trusses.block) {
             const Box box = box_of(block);
-            if (near.size() == 1 && !block.slack) {
-                const auto* plane = std::get_if<HalfSpace>(near[0].shape);
-                const Twist away{v - near[0].motion.velocity, w - near[0].motion.angular_velocity};
-                if (plane && is_left_behind(near[0].placement.plane_from_own(*plane), away, box)) {
-                    nearest_of(*near[0].shape, near[0].placement, near[0].placement, block.x, block.y,
-                               block.z, found);
-                    const double gap = std::max(*std::min_element(found.gap.begin(), found.gap.end()), 0.0);
-                    clear_way = std::min(clear_way, gap);
-                    longest = std::min(longest, (gap + tolerance::untouched_way) / fastest);
-                    continue;
-                }
-            }
             nearest.gap.fill(infinity);
             of.fill(0);
             for (std::size_t j = 0; j < near.size(); ++j) {
                 const Placement& seen = near[j].placement;
-                if (!within_reach(*near[j].shape, seen, box, reach())) continue;
+                if (!within_reach(*near[j].shape, seen, box, longest * fastest)) continue;
                 nearest_of(*near[j].shape, seen, seen, block.x, block.y, block.z, found);
                 for (std::size_t k = 0; k < lanes; ++k) {
                     if (!(found.gap[k] < nearest.gap[k])) continue;
@@ -102,7 +65,6 @@ FreeStep untouched_step(const Scene& scene, const State& state, double longest) 
             }
             for (std::size_t k = 0; k < lanes; ++k) {
                 const double gap = std::max(nearest.gap[k], 0.0);
-                clear_way = std::min(clear_way, gap);
                 if (!(gap < longest * fastest) || is_slack(block, k)) continue;
                 const Vec3 node(block.x[k], block.y[k], block.z[k]);
                 const Twist& other = near[of[k]].motion;
@@ -113,44 +75,40 @@ FreeStep untouched_step(const Scene& scene, const State& state, double longest) 
                 longest = std::min({longest, straight, (gap + tolerance::untouched_way) / fastest});
             }
         }
-        clear_way = std::min(clear_way, reach());  // of what was left out
-        if (model.trusses.dent_reach > 0.0) {
-            const FreeStep step = undented_step(scene, unit, model.trusses, fastest, {longest, clear_way});
-            longest = step.step, clear_way = step.clear_way;
-        }
+        if (model.trusses.dent_reach > 0.0)
+            longest = undented_step(scene, unit, model.trusses, fastest, longest);
     }
-    return {longest, clear_way};
+    return longest;
 }
 
 namespace {
 
-// Time in which no point of a body gets further than a quarter through the obstacle (s). Gliding along a wall is no
+// How far through an obstacle a point may get in one step, as a share of its thickness.
+constexpr double way_in = 0.25;
+
+// Time in which no point of a body gets further than that into the obstacle (s). Gliding along a wall is no
 // way through it; `turning`: speed that its turning, and the obstacle's motion, add anywhere (m/s).
 double passing_time(const Shape& shape, const Pose& pose, const Vec3& velocity, double turning) {
     const double width = thickness(shape);
     const auto* prism = std::get_if<Prism>(&shape);
-    if (prism == nullptr) return 0.25 * width / (velocity.norm() + turning);
+    if (prism == nullptr) return way_in * width / (velocity.norm() + turning);
     const Vec3 own = pose.rotation.transpose() * velocity;
-    const double along = 0.25 * (prism->y_high() - prism->y_low()) / (std::abs(own.y()) + turning);
-    return std::min(0.25 * width / (std::hypot(own.x(), own.z()) + turning), along);
+    const double along = way_in * (prism->y_high() - prism->y_low()) / (std::abs(own.y()) + turning);
+    return std::min(way_in * width / (std::hypot(own.x(), own.z()) + turning), along);
 }
 
 }  // namespace
 
 double passing_step(const Scene& scene, const State& state, double longest) {
-    const bool any_can_be_passed =
-        std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
-                    [](const Obstacle& obstacle) { return thickness(obstacle.shape) < infinity; });
-    if (!any_can_be_passed) return longest;
     std::vector<std::size_t> about;
     const double segments = fastest_segment(scene, state);
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const BodyState& body = state.units[u].body;
         const Unit& unit = scene.vehicle->units[u];
         const double speed = fastest_point(unit, body) + segments;
-        if (!(speed > 0.0)) continue;
+        if (!(longest * speed > way_in * scene.thinnest)) continue;
         const double turning = speed - body.velocity.norm();
-        const Box all = everything(unit.trusses, state.units[u]);
+        const Box& all = state.units[u].trusses.around;
         scene.map.find(body.position, all.radius() + longest * speed, about);
         for (const std::size_t i : about) {
             const Obstacle& obstacle = scene.obstacles[i];

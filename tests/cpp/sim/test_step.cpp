@@ -16,9 +16,9 @@ TEST("a step that is tried and not accepted leaves no trace") {
         try_step(scene, state, 3e-3, {}, trial);  // too long a step, thrown away
         CHECK(state.hash() == before);
         try_step(scene, state, 1e-3, {}, trial);
-        accept(trial, state);
+        accept(scene, trial, state);
         try_step(scene, untouched, 1e-3, {}, clean);
-        accept(clean, untouched);
+        accept(scene, clean, untouched);
         CHECK(state.hash() == untouched.hash());
     }
     CHECK(state.touched);
@@ -51,7 +51,7 @@ TEST("the error estimate of a smooth force is of third order, and zero in free f
         Trial trial(*scene.vehicle);
         for (double t = 0.0; t < 0.03; t += dt) {
             try_step(scene, state, dt, {}, trial);
-            accept(trial, state);
+            accept(scene, trial, state);
         }
         return trial.error;
     };
@@ -63,21 +63,4 @@ TEST("the error estimate of a smooth force is of third order, and zero in free f
     Trial trial(*flight.vehicle);
     try_step(flight, state, 0.1, {.locate_impacts = true}, trial);
     CHECK_CLOSE(trial.error, 0.0, 0.0, "exact");
-}
-
-TEST("where the way is clear the barrier is left alone, but not while a node hangs slack") {
-    const Scene scene = laboratory::scene(laboratory::block(laboratory::w2_curve()), laboratory::wall(0.2),
-                                          laboratory::weightless(), 1.0);
-    State state = scene.initial_state();
-    Trial trial(*scene.vehicle);
-    const auto is_clear = [&](double way) {
-        state.clear_way = way;
-        try_step(scene, state, 1e-3, {}, trial);
-        return trial.clear;
-    };
-    const double speed = state.units[0].body.velocity.norm();
-    CHECK(is_clear(1.001e-3 * speed));
-    CHECK(!is_clear(0.999e-3 * speed));
-    state.units[0].groups[0].slack = true;
-    CHECK(!is_clear(1.0));
 }

@@ -53,10 +53,6 @@ inline constexpr double first_contact_step = 2e-4;
 // surface may lie. Small: steps are short beside a wall. Large: steps that met something are done again.
 inline constexpr double untouched_way = 0.05;
 
-// What lies within so many times the way of a step is looked at, so that all else is out of its reach even if the unit
-// becomes a little faster.
-inline constexpr double clear_margin = 1.1;
-
 // Local velocity error allowed in one step, relative to the reference speed and per unit of
 // Settings::tolerance. Larger: the asked and the achieved error of the metrics part.
 inline constexpr double step_error_per_tolerance = 0.01;

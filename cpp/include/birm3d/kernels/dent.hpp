@@ -44,6 +44,9 @@ struct Dent {
     // How far the post stands beside the panel, or ends below it (m); negative: some of it stands before, in or behind it.
     double beside(const Panel& panel) const;
 
+    // Does the post stand wholly behind the panel, however crushed that is?
+    bool is_beyond(const Panel& panel) const;
+
     // How fast it can grow at any node while the post comes with 1 m/s.
     double fastest_growth(const Panel& panel) const;
 };
@@ -62,8 +65,8 @@ struct alignas(64) DentLanes {
     Lanes tx, ty, tz;  // torque on the body for each unit of normal force, about its mass centre (m)
 };
 
-// For a block of nodes.
-void gap_of(const Dent& dent, const TrussBlockState& nodes, Lanes& gap);
+// Least gap of those nodes of a block that are of the panel (m); infinite if there are none.
+double gap_of(const Dent& dent, const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel);
 
 // Nodes of one panel, and gaps of what they have seen so far.
 struct OfPanel {

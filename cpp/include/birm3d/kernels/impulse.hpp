@@ -68,7 +68,8 @@ class ImpulseSolver {
         double wanted = 0.0;  // the same with the give of the impulses before
         bool held = false;
         bool active = false;
-        bool settled = false;  // joined and left at once: at its target but for rounding
+        bool settled = false;  // joined and left at once, or over and over: at its target but for rounding
+        int joined = 0;        // how often, alone
         double impulse = 0.0;
         double before = 0.0;    // impulse whose give is in `wanted`
         double next = 0.0;      // what the active rows alone would take

@@ -1,9 +1,9 @@
 // The crushable skin of one rigid unit: massless shell nodes, each tied by one truss to an anchor on the
 // rigid body (paper 4.1). Constant, in the order the kernels walk it.
 //
-// Trusses are sorted along a space-filling curve and cut into blocks of `lanes`, so that nodes that touch
-// a barrier together stand together, a block that can not touch anything is left out by one test, and
-// kernels run over whole blocks without gathers. The last block is padded with trusses of no stiffness.
+// Trusses are cut into blocks of `lanes` neighbours, so that nodes that touch a barrier together stand together, a block
+// that can not touch anything is left out by one test, and kernels run over whole blocks without gathers. Blocks are left
+// out by the group too. The last block is padded with trusses of no stiffness.
 //
 // Tyres that meet a barrier are nodes too, on the tread's outer edge, each wheel's in blocks of its own after those of the
 // skin, padded too. They are no part of the rigid body: their anchors meet nothing. The ground is met by the wheels
@@ -51,6 +51,7 @@ struct StiffnessMoments {
 struct Panel {
     Vec3 inward;  // that axis
     Box box;      // around its uncrushed nodes
+    Box anchors;  // and where they are anchored
     bool any;     // has it any?
 };
 inline constexpr std::size_t panels = 6;
@@ -87,6 +88,9 @@ struct TrussMesh {
     std::size_t skin_blocks = 0;  // the first of them
     std::size_t hinges = 0;       // slope changes of the longest envelope
 
+    static constexpr std::size_t group_size = 8;  // blocks of a group, but for the last
+    std::size_t end_of_group(std::size_t g) const { return std::min((g + 1) * group_size, blocks); }
+
     std::vector<std::size_t> first;  // (blocks + 1) truss of each block, and the end
     std::vector<TrussBlock> block;   // (blocks)
     std::vector<Hinge> hinge;        // (blocks * hinges), a block's hinges together
@@ -98,8 +102,9 @@ struct TrussMesh {
     std::vector<TreadNode> tread;           // (count - skin)
     Box anchors;                            // around those of the skin
     std::array<Panel, panels> panel;
-    std::vector<std::uint8_t> panels_of;   // (blocks) bit by bit: which panels have nodes there?
-    std::vector<std::size_t> input_index;  // (count) the caller's number of each truss
+    std::vector<std::uint8_t> panels_of;        // (blocks) bit by bit: which panels have nodes there?
+    std::vector<std::uint8_t> panels_of_group;  // (groups) the same
+    std::vector<std::size_t> input_index;       // (count) the caller's number of each truss
 
     // Place of a truss in the blocks: padding stands between some.
     std::size_t slot(std::size_t truss) const {

@@ -30,16 +30,15 @@ Placement placement(const Pose& obstacle, const BodyState& seen_from);
 Twist obstacle_motion(const Scene& scene, std::size_t obstacle, const State& state,
                       const BodyState& seen_from);
 
-// Those that any node or anchor of the unit can be nearer to than `margin`, in their order; where the barrier is `clear`
-// no more than the ground.
-void find_near(const Scene& scene, std::size_t unit, const State& before, const State& now, bool clear,
-               double margin, std::vector<NearObstacle>& near);
+// Those that any node or anchor of the unit can be nearer to than `margin`, in their order.
+void find_near(const Scene& scene, std::size_t unit, const State& before, const State& now, double margin,
+               std::vector<NearObstacle>& near);
 
 // Around the nodes of a block; that of its state is kept up only while nothing touches.
 Box box_of(const TrussBlockState& block);
 
-// Around all nodes of a unit, however they were drawn out.
-Box everything(const TrussMesh& mesh, const UnitState& unit);
+// TrussState::around, anew.
+Box everything(const TrussMesh& mesh, const TrussState& trusses);
 
 // Fastest any point of the unit moves (m/s).
 double fastest_point(const Unit& unit, const BodyState& body);

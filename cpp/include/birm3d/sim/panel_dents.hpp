@@ -15,14 +15,9 @@ double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, 
 // `deepest` (m): such a post stands beside the panel.
 double overlap_of_dents(const Scene& scene, const State& state, double deepest);
 
-// A step in which nothing comes to the barrier (s), and a way that any point can go before anything does (m).
-struct FreeStep {
-    double step, clear_way;
-};
-
-// The same or less, so that no post comes to dent a panel. Those that stand beside it or within come from the side.
-// `fastest`: any point of the unit (m/s).
-FreeStep undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
-                       FreeStep step);
+// A step of at most `longest` in which no post comes to dent a panel (s). Those that stand beside it or within come from
+// the side. `fastest`: any point of the unit (m/s).
+double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
+                     double longest);
 
 }  // namespace birm3d

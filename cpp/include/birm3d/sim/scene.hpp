@@ -52,6 +52,7 @@ struct Scene {
     std::vector<Obstacle> obstacles;  // the barrier's elements in their order, then the ground
     std::size_t ground;               // place of the ground among them; beyond the last where there is none
     ObstacleMap map;                  // of the obstacles
+    double thinnest;                  // no obstacle is thinner, from any side (m)
     std::vector<char> skin_meets_ground;  // (units) those that stand on wheels, where there is ground
 
     // How many of the obstacles, from the first, are free-standing segments: all of the barrier's or none.

@@ -18,6 +18,6 @@ namespace birm3d {
 void try_step(const Scene& scene, const State& state, double dt, const StepOptions& options, Trial& trial);
 
 // Makes the trial the state; the trial is then only good for another try.
-void accept(Trial& trial, State& state);
+void accept(const Scene& scene, Trial& trial, State& state);
 
 }  // namespace birm3d

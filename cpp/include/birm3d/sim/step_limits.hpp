@@ -8,10 +8,7 @@ namespace birm3d {
 
 // A step of at most `longest` in which no node reaches an element of the barrier: straight on towards the surface that is
 // nearest to it now, and no further than another surface may lie.
-FreeStep untouched_step(const Scene& scene, const State& state, double longest);
-
-// How far any point of the vehicle gets in a step, at the most, as to its motion now, and those of segments (m/s).
-double fastest_node(const Scene& scene, const State& state);
+double untouched_step(const Scene& scene, const State& state, double longest);
 
 // A step of at most `longest` in which no point of a unit goes further than a quarter through the thinnest obstacle in its reach (s): in a
 // longer one it could come out on the other side.

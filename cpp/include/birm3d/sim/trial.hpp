@@ -79,7 +79,6 @@ struct Trial {
     std::vector<std::size_t> seen;   // obstacles that blocks of nodes had in reach, once for each unit
     std::vector<NearObstacle> near;  // for skin_forces: reused, so that a step allocates nothing
     std::vector<Touch> touches;
-    bool clear = false;    // no node can have come to the barrier
     double error = 0.0;    // estimated velocity error of this step (m/s)
     double critical_step;  // sqrt(3)/omega of the trusses in contact (s)
     double impact_after;   // a rigid impact begins this long after t (s)

@@ -1,7 +1,6 @@
 // Everything that changes during a run. A copy of it is a checkpoint: nothing is hidden elsewhere.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -17,14 +16,13 @@ namespace birm3d {
 // What a unit has besides its trusses: small, copied whole with every step that is tried.
 struct UnitMotion {
     BodyState body;
-    SkinForces skin;                 // at this instant
-    std::vector<Touch> touches;      // in the order of the obstacles
-    std::vector<Dented> dented;      // the same
-    std::vector<BlockGroup> groups;  // of the blocks of its trusses, in their order
+    SkinForces skin;             // at this instant
+    std::vector<Touch> touches;  // in the order of the obstacles
+    std::vector<Dented> dented;  // the same
 };
 
 struct UnitState : UnitMotion {
-    explicit UnitState(const Unit& unit) : trusses(unit.trusses) { group(); }
+    explicit UnitState(const Unit& unit) : trusses(unit.trusses) {}
 
     // Back to how it was made, in the same memory.
     void reset(const Unit& unit) {
@@ -33,25 +31,9 @@ struct UnitState : UnitMotion {
         touches.clear();
         dented.clear();
         trusses.reset(unit.trusses);
-        group();
     }
 
     TrussState trusses;
-
-    // Has an obstacle drawn any node out beyond the free length of its truss? Such a node may return by itself.
-    bool hangs_slack() const {
-        return std::any_of(groups.begin(), groups.end(), [](const BlockGroup& of) { return of.slack; });
-    }
-
-  private:
-    void group() {
-        groups.clear();
-        for (std::size_t b = 0; b < trusses.block.size(); ++b) {
-            const bool first = b % BlockGroup::size == 0;
-            if (first) groups.emplace_back();
-            groups.back().add(trusses.block[b], first);
-        }
-    }
 };
 
 // Energies in J; all but `kinetic` and `potential` grow from zero.
@@ -102,8 +84,6 @@ struct Progress {
     Energies energies;
     double truss_work = 0.0;  // all work done on trusses: stored + crushed (J)
     double next_step = 0.0;   // s, proposed by the step control
-    double clear_way =
-        0.0;  // m, that any point can go before a node may be at the barrier; 0 where it is not known
     bool touched = false;     // has the barrier been touched at all?
     bool decided = false;     // is the outcome of the run known?
     double decided_at = 0.0;  // s

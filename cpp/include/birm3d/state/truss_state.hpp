@@ -1,6 +1,7 @@
 // What a crash changes in a unit's skin: blocks parallel to TrussMesh's.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -25,6 +26,20 @@ inline bool is_slack(const TrussBlockState& block, std::size_t i) {
     return block.force[i] == 0.0 && block.residual[i] - block.deflection[i] > tolerance::touching_gap;
 }
 
+// A group of blocks (see TrussMesh).
+struct BlockGroup {
+    Box box;                // around the boxes of its blocks; kept up only while none of them touches
+    bool touching = false;  // any of them?
+    bool slack = false;     // the same
+
+    // `first`: of the group.
+    void add(const TrussBlockState& block, bool first) {
+        box = first ? block.box : box.with(block.box);
+        touching |= block.touching;
+        slack |= block.slack;
+    }
+};
+
 struct TrussState {
     explicit TrussState(const TrussMesh& mesh) : block(mesh.blocks) { reset(mesh); }
 
@@ -37,9 +52,37 @@ struct TrussState {
             block[b].z = mesh.block[b].node_z;
             block[b].box = mesh.node_box[b];
         }
+        groups.resize(mesh.panels_of_group.size());
+        around = mesh.anchors;
+        for (std::size_t g = 0; g < groups.size(); ++g) {
+            group(g);
+            around = around.with(groups[g].box);
+        }
+    }
+
+    // After some blocks, in their order, have changed.
+    void group(const std::vector<std::size_t>& changed) {
+        std::size_t last = groups.size();
+        for (const std::size_t b : changed)
+            if (b / TrussMesh::group_size != last) group(last = b / TrussMesh::group_size);
+    }
+
+    // Has an obstacle drawn any node out beyond the free length of its truss? Such a node may return by itself.
+    bool hangs_slack() const {
+        return std::any_of(groups.begin(), groups.end(), [](const BlockGroup& of) { return of.slack; });
     }
 
     std::vector<TrussBlockState> block;
+    std::vector<BlockGroup> groups;  // of these blocks, in their order
+    Box around;                      // all nodes, however they were drawn out, and the anchors; body axes
+
+    void group(std::size_t g) {
+        groups[g] = {};
+        const std::size_t first = g * TrussMesh::group_size,
+                          end = std::min(first + TrussMesh::group_size, block.size());
+        for (std::size_t b = first; b < end; ++b)
+            groups[g].add(block[b], b == first);
+    }
 
     // Eight hashes in turn: each number waits for the one before it in its own hash only.
     void add_to(Hash& hash) const {
@@ -54,22 +97,6 @@ struct TrussState {
                         parts[turn].add((*column)[i + turn]);
         for (const Hash& part : parts)
             hash.add(part.value());
-    }
-};
-
-// Neighbouring blocks, which are looked at together where nothing happens to any of them.
-struct BlockGroup {
-    static constexpr std::size_t size = 8;  // blocks of a group, but for the last
-
-    Box box;                // around the boxes of its blocks; kept up only while none of them touches
-    bool touching = false;  // any of them?
-    bool slack = false;     // the same
-
-    // `first`: of the group.
-    void add(const TrussBlockState& block, bool first) {
-        box = first ? block.box : box.with(block.box);
-        touching |= block.touching;
-        slack |= block.slack;
     }
 };
 
