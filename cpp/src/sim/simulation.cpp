@@ -219,7 +219,7 @@ void Simulation::start(const Scene& scene) {
 void Simulation::start(const Approach& approach) {
     scene_.set_approach(approach);
     scene_.start(state_);
-    trial_.restart();
+    trial_.restart(*scene_.vehicle, state_);
     recorder_.restart(scene_, state_);
 }
 
@@ -227,7 +227,7 @@ void Simulation::restore(const Snapshot& snapshot) {
     if (snapshot.scene != scene_.fingerprint())
         refuse("snapshot", "of a simulation of the same vehicle and barrier", "one of others");
     state_ = snapshot.state;
-    trial_ = Trial(*scene_.vehicle);
+    trial_.restart(*scene_.vehicle, state_);
     recorder_ = snapshot.recorder;
 }
 

@@ -262,16 +262,18 @@ Trial::Trial(const Vehicle& vehicle) : state(vehicle) {
         active.emplace_back(unit.trusses.blocks);
         stale.emplace_back(unit.trusses.blocks);
     }
-    restart();
     at_start.impulses = at_end.impulses = impulses;
     joint_impulses.resize(vehicle.joints.size());
     at_start.joint_impulses = at_end.joint_impulses = joint_impulses;
 }
 
-void Trial::restart() {
-    for (std::size_t u = 0; u < stale.size(); ++u)
-        for (std::size_t block = 0; block < state.units[u].trusses.block.size(); ++block)
+void Trial::restart(const Vehicle& vehicle, const State& beside) {
+    for (std::size_t u = 0; u < stale.size(); ++u) {
+        state.units[u].trusses.reset(vehicle.units[u].trusses);
+        stale[u].clear();
+        for (const std::size_t block : beside.units[u].trusses.met())
             stale[u].add(block);
+    }
 }
 
 namespace {

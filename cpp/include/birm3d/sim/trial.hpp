@@ -67,7 +67,7 @@ struct Trial {
     explicit Trial(const Vehicle& vehicle);
 
     // Beside another state of the same vehicle, in the same memory.
-    void restart();
+    void restart(const Vehicle& vehicle, const State& beside);
 
     double dt = 0.0;
     State state;                            // at t + dt; trusses only where active

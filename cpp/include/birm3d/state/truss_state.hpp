@@ -18,7 +18,7 @@ struct alignas(64) TrussBlockState {
     Box box;                          // around the nodes where they were last let go, body axes
     bool touching;                    // does any node push on an obstacle?
     bool slack;  // has an obstacle drawn any node out beyond the free length of its truss?
-    bool met;    // has anything come into it, in any step? Statistics only
+    bool met;    // has anything come into it, in any step?
 };
 
 // Was the node drawn out beyond the free length of its truss? A truss does not pull.
@@ -41,23 +41,29 @@ struct BlockGroup {
 };
 
 struct TrussState {
-    explicit TrussState(const TrussMesh& mesh) : block(mesh.blocks) { reset(mesh); }
+    explicit TrussState(const TrussMesh& mesh) : block(mesh.blocks), groups(mesh.panels_of_group.size()) {
+        for (std::size_t b = 0; b < block.size(); ++b)
+            uncrush(mesh, b);
+        for (std::size_t g = 0; g < groups.size(); ++g)
+            group(g);
+        put_around(mesh);
+    }
 
     // Back to the uncrushed skin.
     void reset(const TrussMesh& mesh) {
-        for (std::size_t b = 0; b < mesh.blocks; ++b) {
-            block[b] = {};
-            block[b].x = mesh.block[b].node_x;
-            block[b].y = mesh.block[b].node_y;
-            block[b].z = mesh.block[b].node_z;
-            block[b].box = mesh.node_box[b];
-        }
-        groups.resize(mesh.panels_of_group.size());
-        around = mesh.anchors;
-        for (std::size_t g = 0; g < groups.size(); ++g) {
-            group(g);
-            around = around.with(groups[g].box);
-        }
+        const std::vector<std::size_t> changed = met();
+        for (const std::size_t b : changed)
+            uncrush(mesh, b);
+        group(changed);
+        put_around(mesh);
+    }
+
+    // Into which blocks has anything come? All others are as they were made.
+    std::vector<std::size_t> met() const {
+        std::vector<std::size_t> blocks;
+        for (std::size_t b = 0; b < block.size(); ++b)
+            if (block[b].met) blocks.push_back(b);
+        return blocks;
     }
 
     // After some blocks, in their order, have changed.
@@ -76,14 +82,6 @@ struct TrussState {
     std::vector<BlockGroup> groups;  // of these blocks, in their order
     Box around;                      // all nodes, however they were drawn out, and the anchors; body axes
 
-    void group(std::size_t g) {
-        groups[g] = {};
-        const std::size_t first = g * TrussMesh::group_size,
-                          end = std::min(first + TrussMesh::group_size, block.size());
-        for (std::size_t b = first; b < end; ++b)
-            groups[g].add(block[b], b == first);
-    }
-
     // Eight hashes in turn: each number waits for the one before it in its own hash only.
     void add_to(Hash& hash) const {
         constexpr std::size_t turns = 8;
@@ -97,6 +95,28 @@ struct TrussState {
                         parts[turn].add((*column)[i + turn]);
         for (const Hash& part : parts)
             hash.add(part.value());
+    }
+
+  private:
+    void uncrush(const TrussMesh& mesh, std::size_t b) {
+        block[b] = {};
+        block[b].x = mesh.block[b].node_x;
+        block[b].y = mesh.block[b].node_y;
+        block[b].z = mesh.block[b].node_z;
+        block[b].box = mesh.node_box[b];
+    }
+    void group(std::size_t g) {
+        groups[g] = {};
+        const std::size_t first = g * TrussMesh::group_size,
+                          end = std::min(first + TrussMesh::group_size, block.size());
+        for (std::size_t b = first; b < end; ++b)
+            groups[g].add(block[b], b == first);
+    }
+    // While nothing touches.
+    void put_around(const TrussMesh& mesh) {
+        around = mesh.anchors;
+        for (const BlockGroup& of : groups)
+            around = around.with(of.box);
     }
 };
 
