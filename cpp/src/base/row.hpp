@@ -91,13 +91,14 @@ BIRM3D_IN_LANE_LOOP Row lesser(const Row& a, const Row& b) {
 }
 
 BIRM3D_IN_LANE_LOOP bool any_above(const Row& a, const Row& b) {
-    long long any = 0;
+    using Two = long long __attribute__((vector_size(16)));
+    Two any[row_length / 2];
     for (std::size_t p = 0; p < parts; ++p) {
         const auto above = a.part[p] > b.part[p];
-        for (std::size_t k = 0; k < BIRM3D_REGISTER_LENGTH; ++k)
-            any |= above[k];
+        __builtin_memcpy(any + p * (row_length / 2 / parts), &above, sizeof(above));
     }
-    return any != 0;
+    const Two both = (any[0] | any[1]) | (any[2] | any[3]);
+    return (both[0] | both[1]) != 0;
 }
 
 BIRM3D_IN_LANE_LOOP double least_of(const Row& row) {

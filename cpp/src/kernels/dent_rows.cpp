@@ -102,7 +102,6 @@ void find_dent(const DentNumbers& d, const double* x, const double* y, const dou
         const Standing n = stand(d, x, y, z, i);
         if (!any_matters(nodes, no_less_than(d, n), i)) continue;
         const Hanging h = hang(d, n);
-        if (!any_matters(nodes, h.gap, i)) continue;
         const Row s = n.slope.slope;
         // As the post goes deeper, the slope grows.
         const Row less = n.slope.grows * h.beyond;
