@@ -268,7 +268,11 @@ void Skin::press_shapes(std::size_t b) {
     TrussBlockState& next = now_.trusses.block[b];
     const std::size_t at = where_met(from(b).force);
     CrushSums& to = at != several ? obstacles_[at].sums : shared_;
-    const CrushSums before = to;
+    const bool may_go_into_another = std::any_of(seen_.begin(), seen_.end(), [&](std::size_t k) {
+        return std::holds_alternative<Prism>(scene_.obstacles[near_[k].index].shape);
+    });
+    std::optional<CrushSums> before;
+    if (may_go_into_another) before = to;
     bool ceased = false;
     const auto crush_block = [&] {
         crush_with_rate(at, next, contact_.places(), to, [&](const Lanes* factor, CrushSums& sums) {
@@ -276,8 +280,8 @@ void Skin::press_shapes(std::size_t b) {
         });
     };
     crush_block();
-    if (const auto work = ceased ? let_go_into_another(b) : std::nullopt) {
-        to = before;
+    if (const auto work = ceased && before ? let_go_into_another(b) : std::nullopt) {
+        to = *before;
         to.released_work += *work;
         look(b);
         crush_block();
