@@ -192,6 +192,12 @@ double on_ladder(double dt) {
     return std::ldexp(std::floor(part * 32.0) / 32.0, octave);
 }
 
+// The turning of a body in free flight and the course of tyre forces are followed to second order, which nothing
+// estimates: longest step at which they keep up with the tolerance (s).
+double longest_step(const Settings& settings) {
+    return tolerance::longest_step * std::sqrt(std::min(1.0, settings.tolerance / Settings{}.tolerance));
+}
+
 bool at_rest(const Scene& scene, const State& state) {
     double start = 0.0;
     for (const Unit& unit : scene.vehicle->units)
@@ -305,8 +311,8 @@ void Simulation::refuse_step(double dt, double critical) const {
 void Simulation::adaptive_step() {
     const double allowed =
         tolerance::step_error_per_tolerance * scene_.settings.tolerance * scene_.reference_speed();
-    double dt =
-        passing_step(scene_, state_, std::min({state_.next_step, tolerance::longest_step, remaining()}));
+    double dt = passing_step(scene_, state_,
+                             std::min({state_.next_step, longest_step(scene_.settings), remaining()}));
     dt = std::min(dt, time_to_stop(scene_, state_));
     if (touches(state_))
         dt = std::min(dt, std::max(time_to_release(scene_, state_), tolerance::release_resolution));
@@ -357,7 +363,7 @@ void Simulation::adaptive_step() {
     const double longer = growth > 1.0 ? std::max(dt * std::min(4.0, growth), cut)
                                        : std::max(dt * growth, tolerance::jump_resolution);
     const double next = on_ladder(std::min(longer, 0.9 * tolerance::stable_fraction * trial_.critical_step));
-    state_.next_step = std::min(next, tolerance::longest_step);
+    state_.next_step = std::min(next, longest_step(scene_.settings));
 }
 
 bool Simulation::step() {

@@ -29,7 +29,7 @@ inline constexpr double stable_fraction = 0.5;
 // unseen.
 inline constexpr double advised_fraction = 0.25;
 
-// Longest and shortest adaptive step (s). Longest: bounds how late a first touch is seen. Shortest:
+// Longest and shortest adaptive step (s). Longest: of the usual tolerance, see longest_step(). Shortest:
 // a scene that asks for less is refused rather than run for ever.
 inline constexpr double longest_step = 5e-3;
 inline constexpr double shortest_step = 1e-9;
