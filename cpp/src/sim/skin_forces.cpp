@@ -266,11 +266,13 @@ std::size_t Skin::where_met(const Lanes& force) const {
 
 void Skin::press_shapes(std::size_t b) {
     TrussBlockState& next = now_.trusses.block[b];
-    const std::size_t at = where_met(from(b).force);
-    CrushSums& to = at != several ? obstacles_[at].sums : shared_;
     const bool may_go_into_another = std::any_of(seen_.begin(), seen_.end(), [&](std::size_t k) {
         return std::holds_alternative<Prism>(scene_.obstacles[near_[k].index].shape);
     });
+    // A node that does may find itself at another obstacle, too.
+    const bool fixed = seen_.size() == 1 || !may_go_into_another;
+    const std::size_t at = fixed ? where_met(from(b).force) : several;
+    CrushSums& to = at != several ? obstacles_[at].sums : shared_;
     std::optional<CrushSums> before;
     if (may_go_into_another) before = to;
     bool ceased = false;
