@@ -9,6 +9,10 @@
 
 #include "birm3d/base/node_sums.hpp"
 
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#endif
+
 #if !defined(__GNUC__)
 #error "BIRM3D's kernels need the vector types of GCC or Clang"
 #endif
@@ -39,7 +43,7 @@ struct Row {
     Row() = default;
     BIRM3D_IN_LANE_LOOP Row(double value) {
         for (std::size_t p = 0; p < parts; ++p)
-            part[p] = Register{} + value;
+            part[p] = value - Register{};  // is value, where value + 0.0 need not be
     }
     BIRM3D_IN_LANE_LOOP static Row load(const double* from) {
         Row row;
@@ -91,6 +95,9 @@ BIRM3D_IN_LANE_LOOP Row lesser(const Row& a, const Row& b) {
 }
 
 BIRM3D_IN_LANE_LOOP bool any_above(const Row& a, const Row& b) {
+#if defined(__AVX512F__)
+    return _mm512_cmp_pd_mask(a.part[0], b.part[0], _CMP_GT_OQ) != 0;
+#else
     using Two = long long __attribute__((vector_size(16)));
     Two any[row_length / 2];
     for (std::size_t p = 0; p < parts; ++p) {
@@ -99,6 +106,7 @@ BIRM3D_IN_LANE_LOOP bool any_above(const Row& a, const Row& b) {
     }
     const Two both = (any[0] | any[1]) | (any[2] | any[3]);
     return (both[0] | both[1]) != 0;
+#endif
 }
 
 BIRM3D_IN_LANE_LOOP double least_of(const Row& row) {

@@ -10,9 +10,6 @@ namespace birm3d {
 
 namespace {
 
-// Cosine above which the normals of two instants are one surface's.
-constexpr double sharp_turn = 0.5;
-
 // Nodes whose truss ceased to push. One that follows a receding surface stops where its truss reaches zero
 // force; one that the truss pushes off the surface springs to that length at once, and what the truss had
 // stored is lost, which a dent keeps at its surface all the same. Few nodes a step do. Returns what the first kind
@@ -74,53 +71,6 @@ double contact_stiffness(const FlatContact& surface, const TrussMesh& mesh, std:
                                 2.0 * q(0, 1), 2.0 * q(0, 2), 2.0 * q(1, 2));
 }
 
-BIRM3D_LANE_LOOP double stiffness_of_pushing(const TrussBlock& truss, const Lanes& force,
-                                             const BlockContact& contact, double constant, double xx,
-                                             double yy, double zz, double xy, double xz, double yz) {
-    alignas(64) Lanes sum;
-    BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
-        const double x = contact.tx[i], y = contact.ty[i], z = contact.tz[i];
-        const double inverse_mass =
-            constant + (x * (xx * x + xy * y + xz * z) + y * (yy * y + yz * z) + zz * z * z);
-        const bool pushes = force[i] > 0.0;
-        const double share = contact.pressure[i] / (pushes ? force[i] : 1.0), square = share * share;
-        sum[i] = (pushes ? truss.k_unloading[i] : 0.0) * (square > 1.0 ? square : 1.0) * inverse_mass;
-    }
-    return lane_sum(sum);
-}
-
-double contact_stiffness(const RigidBody& body, const TrussBlock& truss, const TrussBlockState& now,
-                         const BlockContact& contact) {
-    const Mat3& q = body.inverse_inertia;
-    return stiffness_of_pushing(truss, now.force, contact, body.inverse_mass, q(0, 0), q(1, 1), q(2, 2),
-                                2.0 * q(0, 1), 2.0 * q(0, 2), 2.0 * q(1, 2));
-}
-
-// Ways and shares of CurvedPress. Where normals part sharply, at an edge, the one before says nothing of the path.
-struct alignas(64) Ways {
-    Lanes hx, hy, hz, sx, sy, sz;
-};
-
-BIRM3D_LANE_LOOP void find_ways(const NodeFaces& faces, const BlockContact& contact,
-                                const Lanes& force_before, Ways& ways) {
-    BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
-        const double nx = contact.nx[i], ny = contact.ny[i], nz = contact.nz[i];
-        const double bx = faces.bx[i], by = faces.by[i], bz = faces.bz[i];
-        const double cosine = nx * bx + ny * by + nz * bz;
-        const bool drawn = faces.per_force[i] > 0.0;
-        const bool follows = force_before[i] > 0.0 && cosine > sharp_turn;
-        const double mean = 1.0 / (follows ? 1.0 + cosine : 1.0);
-        ways.hx[i] = drawn ? bx : (follows ? nx + bx : nx) * mean;
-        ways.hy[i] = drawn ? by : (follows ? ny + by : ny) * mean;
-        ways.hz[i] = drawn ? bz : (follows ? nz + bz : nz) * mean;
-        ways.sx[i] = drawn ? bx * faces.per_force[i] : nx;
-        ways.sy[i] = drawn ? by * faces.per_force[i] : ny;
-        ways.sz[i] = drawn ? bz * faces.per_force[i] : nz;
-    }
-}
-
 BIRM3D_LANE_LOOP double greatest_slack(const Lanes& force, const Lanes& deflection, const Lanes& residual) {
     alignas(64) Lanes slack;
     BIRM3D_INDEPENDENT
@@ -136,9 +86,11 @@ struct PlaneShare {
     static bool drawn(std::size_t) { return false; }
 };
 struct NodeShares {
-    const Ways& ways;
     const NodeFaces& faces;
-    Vec3 direction(std::size_t i) const { return {ways.sx[i], ways.sy[i], ways.sz[i]}; }
+    const BlockContact& contact;
+    Vec3 direction(std::size_t i) const {
+        return drawn(i) ? Vec3(faces.bx[i], faces.by[i], faces.bz[i]) : contact.normal(i);
+    }
     bool drawn(std::size_t i) const { return faces.per_force[i] > 0.0; }
 };
 
@@ -154,9 +106,6 @@ double finish(const TrussMesh& mesh, std::size_t b, double nodes, const TrussBlo
     now.touching = pushing > 0.0;
     now.slack = pushing < static_cast<double>(lanes) &&
                 greatest_slack(now.force, now.deflection, now.residual) > tolerance::touching_gap;
-    now.box = now.touching
-                  ? before.box  // the block is looked at in any case while it touches
-                  : Box::around(lanes, [&now](std::size_t i) { return Vec3(now.x[i], now.y[i], now.z[i]); });
     return pushing;
 }
 
@@ -183,26 +132,26 @@ bool crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, con
                                          columns_of<const double>(before), columns_of<double>(now),
                                          gap.data(), contact.pressure.data(), sums.nodes);
     const double pushing = finish(mesh, b, nodes, before, gap, PlaneShare{n}, now, sums);
-    if (now.touching) sums.stiffness += contact_stiffness(surface, mesh, b, now, pushing);
+    if (now.touching) sums.flat_stiffness += contact_stiffness(surface, mesh, b, now, pushing);
     return nodes >= left;
 }
 
 bool crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh, std::size_t b,
            const Lanes* factor, const TrussBlockState& before, TrussBlockState& now, BlockContact& contact,
            CrushSums& sums) {
-    alignas(64) Ways ways;
-    find_ways(faces, contact, before.force, ways);
+    const Mat3& q = body.inverse_inertia;
     alignas(64) Lanes gap;
     const double nodes =
         press_rows.curved(columns_of(mesh, b, factor),
-                          {faces.gap.data(), contact.nx.data(), contact.ny.data(), contact.nz.data(),
-                           ways.hx.data(), ways.hy.data(), ways.hz.data(), ways.sx.data(), ways.sy.data(),
-                           ways.sz.data(), faces.per_force.data(), contact.px.data(), contact.py.data(),
-                           contact.pz.data(), contact.tx.data(), contact.ty.data(), contact.tz.data()},
+                          {faces.gap.data(),  contact.nx.data(), contact.ny.data(), contact.nz.data(),
+                           faces.bx.data(),   faces.by.data(),   faces.bz.data(),   faces.per_force.data(),
+                           contact.px.data(), contact.py.data(), contact.pz.data(), contact.tx.data(),
+                           contact.ty.data(), contact.tz.data(), body.inverse_mass, q(0, 0),
+                           q(1, 1),           q(2, 2),           2.0 * q(0, 1),     2.0 * q(0, 2),
+                           2.0 * q(1, 2)},
                           columns_of<const double>(before), columns_of<double>(now), gap.data(),
                           contact.pressure.data(), sums.nodes);
-    finish(mesh, b, nodes, before, gap, NodeShares{ways, faces}, now, sums);
-    if (now.touching) sums.stiffness += contact_stiffness(body, mesh.block[b], now, contact);
+    finish(mesh, b, nodes, before, gap, NodeShares{faces, contact}, now, sums);
     return nodes >= left;
 }
 

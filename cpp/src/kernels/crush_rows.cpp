@@ -20,18 +20,23 @@ BIRM3D_IN_LANE_LOOP Row dot(const Vector& a, const Vector& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// `arriving`, `held`: ways of a node for each unit of gap; `share`: see crush_rows.hpp.
+// Where a row of nodes finds the surface. `way` of a node there for each unit of gap, and the direction `share` by which
+// the truss force becomes a normal force (see crush.hpp).
 struct Place {
-    Row gap;
-    Vector n, arriving, held, share;
+    Vector n, way, share;
 };
 
 // Both give the places of the eight nodes from i on. A flat surface takes arriving nodes along n.
 struct Flat {
     BIRM3D_IN_LANE_LOOP explicit Flat(const FlatPress& s)
         : n{s.nx, s.ny, s.nz}, h{s.hx, s.hy, s.hz}, offset(s.offset) {}
-    BIRM3D_IN_LANE_LOOP Place at(std::size_t, const Vector& node) const {
-        return {dot(n, node) - offset, n, n, h, n};
+    BIRM3D_IN_LANE_LOOP Row gap(std::size_t, const Vector& node) const { return dot(n, node) - offset; }
+    BIRM3D_IN_LANE_LOOP Place at(std::size_t, const Row& F0) const {
+        const Row zero = 0.0;
+        return {n,
+                {where_above(F0, zero, h.x, n.x), where_above(F0, zero, h.y, n.y),
+                 where_above(F0, zero, h.z, n.z)},
+                n};
     }
     Vector n, h;
     Row offset;
@@ -39,17 +44,28 @@ struct Flat {
 
 struct Curved {
     BIRM3D_IN_LANE_LOOP explicit Curved(const CurvedPress& press) : s(press) {}
-    BIRM3D_IN_LANE_LOOP Place at(std::size_t i, const Vector&) const {
-        const Vector way{Row::load(s.hx + i), Row::load(s.hy + i), Row::load(s.hz + i)};
-        return {Row::load(s.gap + i),
-                {Row::load(s.nx + i), Row::load(s.ny + i), Row::load(s.nz + i)},
-                way,
-                way,
-                {Row::load(s.sx + i), Row::load(s.sy + i), Row::load(s.sz + i)}};
+    BIRM3D_IN_LANE_LOOP Row gap(std::size_t i, const Vector&) const { return Row::load(s.gap + i); }
+    // Where normals part sharply, at an edge, the one before says nothing of the path.
+    BIRM3D_IN_LANE_LOOP Place at(std::size_t i, const Row& F0) const {
+        const Row zero = 0.0, one = 1.0;
+        const Vector n{Row::load(s.nx + i), Row::load(s.ny + i), Row::load(s.nz + i)};
+        const Vector b{Row::load(s.bx + i), Row::load(s.by + i), Row::load(s.bz + i)};
+        const Row cosine = dot(n, b), per_force = Row::load(s.per_force + i);
+        const Row follows = where_above(F0, zero, where_above(cosine, sharp_turn, one, zero), zero);
+        const Row mean = 1.0 / (1.0 + follows * cosine);
+        const auto way = [&](const Row& own, const Row& before) {
+            return where_above(per_force, zero, before, (own + follows * before) * mean);
+        };
+        const auto share = [&](const Row& own, const Row& before) {
+            return where_above(per_force, zero, before * per_force, own);
+        };
+        return {n,
+                {way(n.x, b.x), way(n.y, b.y), way(n.z, b.z)},
+                {share(n.x, b.x), share(n.y, b.y), share(n.z, b.z)}};
     }
     // Of a unit of normal force; keeps it, and the place, for later.
     BIRM3D_IN_LANE_LOOP Vector torque(std::size_t i, const Vector& node, const Vector& n) const {
-        const Row drawn = Row::load(s.drawn + i), zero = 0.0;
+        const Row drawn = Row::load(s.per_force + i), zero = 0.0;
         const auto keep = [&](double* column, const Row& found) {
             const Row kept = where_above(drawn, zero, Row::load(column + i), found);
             kept.store(column + i);
@@ -61,8 +77,28 @@ struct Curved {
         return {keep(s.tx, node.y * n.z - node.z * n.y), keep(s.ty, node.z * n.x - node.x * n.z),
                 keep(s.tz, node.x * n.y - node.y * n.x)};
     }
-    const CurvedPress& s;
+    BIRM3D_IN_LANE_LOOP Row inverse_mass(const Vector& t) const {
+        return s.mass + (t.x * (s.xx * t.x + s.xy * t.y + s.xz * t.z) + t.y * (s.yy * t.y + s.yz * t.z) +
+                         s.zz * t.z * t.z);
+    }
+    BIRM3D_IN_LANE_LOOP void leave(std::size_t i) const {
+        double* const columns[] = {s.px, s.py, s.pz, s.tx, s.ty, s.tz};
+        for (double* column : columns)
+            Row(0.0).store(column + i);
+    }
+    const CurvedPress s;  // a copy, which no column can overlap
 };
+
+BIRM3D_IN_LANE_LOOP void copy(const PressState<const double>& before, const PressState<double>& now,
+                              std::size_t i) {
+    Row::load(before.x + i).store(now.x + i);
+    Row::load(before.y + i).store(now.y + i);
+    Row::load(before.z + i).store(now.z + i);
+    Row::load(before.deflection + i).store(now.deflection + i);
+    Row::load(before.force + i).store(now.force + i);
+    Row::load(before.peak_deflection + i).store(now.peak_deflection + i);
+    Row::load(before.residual + i).store(now.residual + i);
+}
 
 template <bool flat, class Surface>
 BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surface,
@@ -71,17 +107,25 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
     const Row zero = 0.0, one = 1.0, least = tolerance::truss_length;
     const Row node_left = left;
     Row force = zero, work = zero, stored = zero, nodes = zero;
+    Row stiffness = zero;
     Vector moment{zero, zero, zero}, push{zero, zero, zero};
     for (std::size_t i = 0; i < lanes; i += row_length) {
         const Vector from{Row::load(before.x + i), Row::load(before.y + i), Row::load(before.z + i)};
         const Row F0 = Row::load(before.force + i);
-        const Place place = surface.at(i, from);
+        const Row gap = surface.gap(i, from);
+        gap.store(gaps + i);
+        // Nodes that neither push nor are inside stay as they are.
+        if (!any_above(greater(F0, -1.0 * gap), zero)) {
+            copy(before, now, i);
+            zero.store(pressures + i);
+            if constexpr (!flat) surface.leave(i);
+            continue;
+        }
+        const Place place = surface.at(i, F0);
 
         // Nodes at the surface go onto it.
-        const Row way = where_above(zero, place.gap, place.gap, where_above(F0, zero, place.gap, zero));
-        const Vector node{from.x - way * where_above(F0, zero, place.held.x, place.arriving.x),
-                          from.y - way * where_above(F0, zero, place.held.y, place.arriving.y),
-                          from.z - way * where_above(F0, zero, place.held.z, place.arriving.z)};
+        const Row way = where_above(zero, gap, gap, where_above(F0, zero, gap, zero));
+        const Vector node{from.x - way * place.way.x, from.y - way * place.way.y, from.z - way * place.way.z};
 
         // From the node to its anchor. A closed truss has no direction of its own any more: it presses along n.
         const Vector b{Row::load(truss.anchor_x + i) - node.x, Row::load(truss.anchor_y + i) - node.y,
@@ -101,7 +145,7 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
         const Row line = greater(Row::load(truss.k_unloading + i) * (d - residual), zero);
         // A truss that would push its node off the surface does not push at all.
         const Row law = where_above(share, zero, where_above(line, envelope, envelope, line), zero);
-        const Row F = where_above(zero, place.gap, law, where_above(F0, zero, law, zero));
+        const Row F = where_above(zero, gap, law, where_above(F0, zero, law, zero));
         const Row pressure = F * share;
 
         node.x.store(now.x + i);
@@ -111,7 +155,6 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
         F.store(now.force + i);
         greater(d, Row::load(before.peak_deflection + i)).store(now.peak_deflection + i);
         where_above(line, envelope, d - envelope * compliance, residual).store(now.residual + i);
-        place.gap.store(gaps + i);
         pressure.store(pressures + i);
 
         force = force + pressure;
@@ -124,6 +167,8 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
             const Vector torque = surface.torque(i, node, place.n);
             moment = {moment.x + pressure * torque.x, moment.y + pressure * torque.y,
                       moment.z + pressure * torque.z};
+            const Row k = Row::load(truss.k_unloading + i) * greater(share * share, one);
+            stiffness = stiffness + where_above(F, zero, k * surface.inverse_mass(torque), zero);
         }
         work = work + (F0 + F) * (d - Row::load(before.deflection + i));
         stored = stored + F * F * compliance;
@@ -137,6 +182,7 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
         add_to(sums.push_x, push.x);
         add_to(sums.push_y, push.y);
         add_to(sums.push_z, push.z);
+        add_to(sums.stiffness, stiffness);
     }
     add_to(sums.twice_work, work);
     add_to(sums.twice_stored, stored);

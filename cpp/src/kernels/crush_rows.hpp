@@ -29,16 +29,22 @@ struct FlatPress {
     double hx, hy, hz;
 };
 
-// The same for surfaces of any shape, node by node: way h of a node at the surface for each unit of gap, and the
-// direction s by which the truss force becomes a normal force (see crush.hpp).
+// Cosine above which the normals of two instants are one surface's.
+inline constexpr double sharp_turn = 0.5;
+
+// The same for surfaces of any shape, node by node.
 struct CurvedPress {
     const double* gap;
-    const double *nx, *ny, *nz;
-    const double *hx, *hy, *hz;
-    const double *sx, *sy, *sz;
-    // Where friction acts and the torque of a unit of normal force: given where `drawn` is above zero, else found.
-    const double* drawn;
+    const double *nx, *ny, *nz;  // outward normal now, and of the same surface at the instant before
+    const double *bx, *by, *bz;
+    // Of nodes that a dent draws in, above zero: b is the way itself, and a truss force along it that much greater as a
+    // normal force.
+    const double* per_force;
+    // Where friction acts and the torque of a unit of normal force: given for nodes that a dent draws in, else found;
+    // zero in rows of which no node pushes or did.
     double *px, *py, *pz, *tx, *ty, *tz;
+    // Inverse effective mass of a node with torque t: mass + t . form t.
+    double mass, xx, yy, zz, xy, xz, yz;
 };
 
 // What a node whose truss ceased to push counts in the result of Press; one that pushes counts 1.

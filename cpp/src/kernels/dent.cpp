@@ -17,24 +17,6 @@ constexpr double rounded = 0.05;
 // Sine of the angle between a post's axis and a panel beyond which it does not begin to dent it, or ceases to.
 constexpr double most_tilted = 0.5, overturned = 0.95;
 
-DentNumbers numbers_of(const Dent& d) {
-    const double share = steepest / d.stretch, sine = share / std::sqrt(1.0 + share * share);
-    const Vec3 &e = d.into, &w = d.across, &l = d.along, &o = d.foot;
-    return {e.x(),           e.y(),
-            e.z(),           w.x(),
-            w.y(),           w.z(),
-            l.x(),           l.y(),
-            l.z(),           o.x(),
-            o.y(),           o.z(),
-            d.low,           d.high,
-            d.low_at,        d.high_at,
-            d.top,           d.top_rate,
-            d.tilt,          d.radius,
-            d.stretch,       d.surface,
-            1.0 / d.reach,   1.0 / d.stretch,
-            sine * d.radius, d.stretch * d.radius * std::sqrt(1.0 - sine * sine)};
-}
-
 BIRM3D_LANE_LOOP double furthest(const Lanes& panel_of, double panel, const Lanes& force, const Lanes& gap) {
     alignas(64) Lanes most;
     BIRM3D_INDEPENDENT
@@ -45,49 +27,58 @@ BIRM3D_LANE_LOOP double furthest(const Lanes& panel_of, double panel, const Lane
 
 }  // namespace
 
-Dent::Dent(const Post& post, const Placement& stands, const Panel& panel, double reach_)
-    : into(panel.inward), foot(stands.from_own(Vec3::Zero())), radius(post.radius), reach(reach_) {
+Dent::Dent(const Post& post, const Placement& stands, const Panel& panel, double reach_) : reach(reach_) {
+    const Vec3 &e = panel.inward, o = stands.from_own(Vec3::Zero());
     const Vec3 axis_up = stands.direction_from_own(Vec3::UnitZ());
-    const double leaning = axis_up.dot(into), upright = axis_up.cross(into).norm();
-    across = axis_up.cross(into) / upright;
-    along = (axis_up - leaning * into) / upright;
+    const double leaning = axis_up.dot(e), upright = axis_up.cross(e).norm();
+    stretch = 1.0 / upright;
+    const Vec3 w = stretch * axis_up.cross(e), l = stretch * (axis_up - leaning * e);
+    ex = e.x(), ey = e.y(), ez = e.z();
+    wx = w.x(), wy = w.y(), wz = w.z();
+    lx = l.x(), ly = l.y(), lz = l.z();
+    ox = o.x(), oy = o.y(), oz = o.z();
     // The middles of the edges at either side. Corners of the box would change places with every sway of the post.
     Eigen::Index side = 0;
-    across.cwiseAbs().maxCoeff(&side);
-    const Vec3 edge = std::copysign(panel.box.half[side], across[side]) * Vec3::Unit(side);
-    const Vec3 middle = panel.box.center - foot, least = middle - edge, most = middle + edge;
-    low = least.dot(across);
-    high = most.dot(across);
-    low_at = least.dot(along);
-    high_at = most.dot(along);
-    surface = middle.dot(into) - panel.box.half.dot(into.cwiseAbs());
-    tilt = leaning / upright;
-    stretch = 1.0 / upright;
+    w.cwiseAbs().maxCoeff(&side);
+    const Vec3 edge = std::copysign(panel.box.half[side], w[side]) * Vec3::Unit(side);
+    const Vec3 middle = panel.box.center - o, least = middle - edge, most = middle + edge;
+    low = least.dot(w);
+    high = most.dot(w);
+    low_at = least.dot(l);
+    high_at = most.dot(l);
+    surface = middle.dot(e) - panel.box.half.dot(e.cwiseAbs());
+    tilt = stretch * leaning;
+    radius = post.radius;
     const double rim = std::sqrt(leaning * leaning + rounded * rounded);
     top = post.height * upright + radius * rim;
     top_rate = radius * leaning / rim - post.height * tilt;
+    per_reach = 1.0 / reach;
+    per_stretch = upright;
+    const double share = steepest * upright, cosine = 1.0 / std::sqrt(1.0 + share * share);
+    steep_arc = share * cosine * radius;
+    rise_there = stretch * radius * cosine;
 }
 
 double Dent::beside(const Panel& panel) const {
-    const double bottom = (panel.box.center - foot).dot(along) - panel.box.half.dot(along.cwiseAbs());
+    const double bottom = (panel.box.center - foot()).dot(along()) - panel.box.half.dot(along().cwiseAbs());
     return std::max({low - radius, -radius - high, bottom - top});
 }
 
 bool Dent::is_beyond(const Panel& panel) const {
     const Box& box = panel.anchors;
-    const Vec3 middle = box.center - foot;
-    const double at = middle.dot(along), half = box.half.dot(along.cwiseAbs());
+    const Vec3 middle = box.center - foot();
+    const double at = middle.dot(along()), half = box.half.dot(along().cwiseAbs());
     const double nearest = std::min(tilt * std::min(at - half, top), tilt * std::min(at + half, top));
-    return middle.dot(into) + box.half.dot(into.cwiseAbs()) < nearest - stretch * radius;
+    return middle.dot(into()) + box.half.dot(into().cwiseAbs()) < nearest - stretch * radius;
 }
 
 // By the post's own way, across its flanks, and by the growth of the slope.
 double Dent::fastest_growth(const Panel& panel) const {
-    const Vec3 middle = panel.box.center - foot;
-    const double at = middle.dot(along), half = panel.box.half.dot(along.cwiseAbs());
+    const Vec3 middle = panel.box.center - foot();
+    const double at = middle.dot(along()), half = panel.box.half.dot(along().cwiseAbs());
     const double deepest =
         stretch * radius + std::max(tilt * std::min(at - half, top), tilt * std::min(at + half, top));
-    return 2.0 + slope_at<double>(deepest - surface, 1.0 / reach).slope;
+    return 2.0 + slope_at<double>(deepest - surface, per_reach).slope;
 }
 
 bool stands_across(const Placement& post, const Panel& panel, bool dents) {
@@ -111,12 +102,12 @@ double most_drawn_in(double deepest, double beside, double reach) {
 
 double most_inside(const Dent& d, const Box& box) {
     const auto range = [&](const Vec3& way) {
-        const double middle = (box.center - d.foot).dot(way), half = box.half.dot(way.cwiseAbs());
+        const double middle = (box.center - d.foot()).dot(way), half = box.half.dot(way.cwiseAbs());
         return std::pair(middle - half, middle + half);
     };
-    const double outermost = range(d.into).first;
-    const auto [w0, w1] = range(d.across);
-    const auto [l0, l1] = range(d.along);
+    const double outermost = range(d.into()).first;
+    const auto [w0, w1] = range(d.across());
+    const auto [l0, l1] = range(d.along());
     const double deepest =
         d.stretch * d.radius + std::max(d.tilt * std::min(l0, d.top), d.tilt * std::min(l1, d.top));
     const double beside = std::max({w0 - d.radius, -d.radius - w1, 0.0}) + std::max(l0 - d.top, 0.0);
@@ -125,20 +116,24 @@ double most_inside(const Dent& d, const Box& box) {
 }
 
 double gap_of(const Dent& dent, const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel) {
-    return dent_rows.find_dent_gap(numbers_of(dent), nodes.x.data(), nodes.y.data(), nodes.z.data(),
-                                   panel_of.data(), static_cast<double>(panel));
+    return dent_rows.find_dent_gap(dent, {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(),
+                                          panel_of.data(), static_cast<double>(panel)});
 }
 
-void dent_of(const Dent& dent, const TrussBlockState& nodes, const OfPanel& of, DentLanes& out) {
+void hang_on(const Dent& dent, const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel,
+             NodeFaces& faces, BlockContact& contact, Lanes& hangs) {
     dent_rows.find_dent(
-        numbers_of(dent), nodes.x.data(), nodes.y.data(), nodes.z.data(),
-        {of.panel_of.data(), static_cast<double>(of.panel), nodes.force.data(), of.gap.data()},
-        {out.gap.data(), out.nx.data(), out.ny.data(), out.nz.data(), out.per_force.data(), out.px.data(),
-         out.py.data(), out.pz.data(), out.tx.data(), out.ty.data(), out.tz.data()});
+        dent,
+        {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), panel_of.data(),
+         static_cast<double>(panel)},
+        {faces.gap.data(), faces.per_force.data(), faces.bx.data(), faces.by.data(), faces.bz.data(),
+         contact.nx.data(), contact.ny.data(), contact.nz.data(), contact.px.data(), contact.py.data(),
+         contact.pz.data(), contact.tx.data(), contact.ty.data(), contact.tz.data(), hangs.data()});
 }
 
-double furthest_off(const TrussBlockState& nodes, const OfPanel& of) {
-    return furthest(of.panel_of, static_cast<double>(of.panel), nodes.force, of.gap);
+double furthest_off(const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel,
+                    const Lanes& gap) {
+    return furthest(panel_of, static_cast<double>(panel), nodes.force, gap);
 }
 
 }  // namespace birm3d

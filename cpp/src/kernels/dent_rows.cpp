@@ -25,42 +25,44 @@ BIRM3D_IN_LANE_LOOP Rise rise_at(const DentNumbers& d, const Row& a) {
             root};
 }
 
-// Where a row of nodes stands, in the post's axes; the middle of the post and the slope beside it, as high as they are.
+// Where a row of nodes stands, in the post's axes; the middle of the post, as high as they are.
 struct Standing {
     Row e, w, l, up, deepest;
-    Slope<Row> slope;
 };
-BIRM3D_IN_LANE_LOOP Standing stand(const DentNumbers& d, const double* x, const double* y, const double* z,
-                                   std::size_t i) {
+BIRM3D_IN_LANE_LOOP Standing stand(const DentNumbers& d, const PanelNodes& nodes, std::size_t i) {
     Standing s;
-    const Row rx = Row::load(x + i) - d.ox, ry = Row::load(y + i) - d.oy, rz = Row::load(z + i) - d.oz;
+    const Row rx = Row::load(nodes.x + i) - d.ox, ry = Row::load(nodes.y + i) - d.oy,
+              rz = Row::load(nodes.z + i) - d.oz;
     const Row top = d.top;
     s.e = d.ex * rx + d.ey * ry + d.ez * rz;
     s.w = d.wx * rx + d.wy * ry + d.wz * rz;
     s.l = d.lx * rx + d.ly * ry + d.lz * rz;
     s.up = lesser(s.l, top);
     s.deepest = d.tilt * s.up + d.stretch * d.radius;
-    s.slope = slope_at<Row>(s.deepest - d.surface, d.per_reach);
     return s;
 }
 
-// No gap is less: as if the post were as deep all across as in its middle.
+// No gap is less: as if the post were as deep all across as in its middle, and the slope beside it no steeper than the
+// greater of what it is made of.
 BIRM3D_IN_LANE_LOOP Row no_less_than(const DentNumbers& d, const Standing& s) {
-    const Row zero = 0.0;
+    const Row zero = 0.0, by_depth = (s.deepest - d.surface) * d.per_reach;
+    const Row slope = lesser(greater(by_depth, least_slope), steepest);
     const Row beside = greater(where_above(s.w, zero, s.w, -1.0 * s.w) - d.radius, zero);
-    return s.e - (s.deepest - s.slope.slope * (beside + (s.l - s.up)));
+    return s.e - (s.deepest - slope * (beside + (s.l - s.up)));
 }
 
 // The place of the post that a row of nodes hangs on.
 struct Hanging {
+    Slope<Row> slope;  // of the skin beside the post
     Row arc, highest, lowest, a, at, beyond, gap;
     Rise rise;
 };
 BIRM3D_IN_LANE_LOOP Hanging hang(const DentNumbers& d, const Standing& s) {
     Hanging h;
+    h.slope = slope_at<Row>(s.deepest - d.surface, d.per_reach);
     const Row low = d.low, high = d.high;
     // The nearest place of the post that falls off no more steeply than the dent, within the panel.
-    const Row share = s.slope.slope * d.per_stretch;
+    const Row share = h.slope.slope * d.per_stretch;
     const Row arc = d.radius * share / square_root(1.0 + share * share);
     h.arc = lesser(greater(s.w, -1.0 * arc), arc);
     h.highest = greater(s.w, high);
@@ -69,56 +71,74 @@ BIRM3D_IN_LANE_LOOP Hanging hang(const DentNumbers& d, const Standing& s) {
     h.rise = rise_at(d, h.a);
     h.at = d.tilt * s.up + h.rise.rise;
     h.beyond = where_above(s.w, h.a, s.w - h.a, h.a - s.w) + (s.l - s.up);
-    h.gap = s.e - (h.at - s.slope.slope * h.beyond);
+    h.gap = s.e - (h.at - h.slope.slope * h.beyond);
     return h;
 }
 
 // `yes` for nodes of the panel, else `no`.
-BIRM3D_IN_LANE_LOOP Row where_on(const double* panel, double of, const Row& yes, const Row& no,
-                                 std::size_t i) {
-    const Row zero = 0.0, off = Row::load(panel + i) - of;
+BIRM3D_IN_LANE_LOOP Row where_on(const PanelNodes& nodes, const Row& yes, const Row& no, std::size_t i) {
+    const Row zero = 0.0, off = Row::load(nodes.panel + i) - nodes.of;
     return where_above(off * off, zero, no, yes);
 }
 
-BIRM3D_IN_LANE_LOOP bool any_matters(const DentedNodes& nodes, const Row& gap, std::size_t i) {
+// Does it matter to any node where the dent is, no gap being less than this?
+BIRM3D_IN_LANE_LOOP bool any_matters(const PanelNodes& nodes, const SeenColumns& seen, const Row& least,
+                                     std::size_t i) {
     const Row zero = 0.0;
     const Row below = where_above(Row::load(nodes.force + i), zero, infinitely_far, zero);
-    const Row so_far = Row::load(nodes.gap + i);
-    return any_above(where_on(nodes.panel, nodes.of, lesser(below, so_far), -infinitely_far, i), gap);
+    const Row so_far = Row::load(seen.gap + i);
+    return any_above(where_on(nodes, lesser(below, so_far), -infinitely_far, i), least);
+}
+
+// Which nodes hang on the dent (1, else 0)?
+BIRM3D_IN_LANE_LOOP Row find_hanging(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns& seen,
+                                     const Row& gap, std::size_t i) {
+    const Row zero = 0.0, one = 1.0, so_far = Row::load(seen.gap + i);
+    const Row against =
+        d.ex * Row::load(seen.nx + i) + d.ey * Row::load(seen.ny + i) + d.ez * Row::load(seen.nz + i);
+    const Row drawn_in = where_above(zero, so_far - against * gap, zero, one);
+    return where_on(nodes, where_above(so_far, gap, where_above(zero, against, drawn_in, one), zero), zero,
+                    i);
 }
 
 }  // namespace
 
-void find_dent(const DentNumbers& d, const double* x, const double* y, const double* z,
-               const DentedNodes& nodes, const DentColumns& out);
-double find_dent_gap(const DentNumbers& d, const double* x, const double* y, const double* z,
-                     const double* panel, double of);
+void find_dent(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns& seen);
+double find_dent_gap(const DentNumbers& d, const PanelNodes& nodes);
 
-void find_dent(const DentNumbers& d, const double* x, const double* y, const double* z,
-               const DentedNodes& nodes, const DentColumns& out) {
-    const Row zero = 0.0, one = 1.0, top = d.top;
+void find_dent(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns& seen) {
+    const Row zero = 0.0, one = 1.0, top = d.top, top_leans = d.top_rate * d.per_stretch;
     for (std::size_t i = 0; i < lanes; i += row_length) {
-        Row(infinitely_far).store(out.gap + i);
-        const Standing n = stand(d, x, y, z, i);
-        if (!any_matters(nodes, no_less_than(d, n), i)) continue;
+        zero.store(seen.hangs + i);
+        const Standing n = stand(d, nodes, i);
+        if (!any_matters(nodes, seen, no_less_than(d, n), i)) continue;
         const Hanging h = hang(d, n);
-        const Row s = n.slope.slope;
+        const Row hangs = find_hanging(d, nodes, seen, h.gap, i);
+        if (!any_above(hangs, zero)) continue;
+        hangs.store(seen.hangs + i);
+        const auto tell = [&](double* column, const Row& found) {
+            where_above(hangs, zero, found, Row::load(column + i)).store(column + i);
+        };
+        const Row s = h.slope.slope;
         // As the post goes deeper, the slope grows.
-        const Row less = n.slope.grows * h.beyond;
+        const Row less = h.slope.grows * h.beyond;
         const Row rises = where_above(n.l, top, -1.0 * s, d.tilt),
                   leans = where_above(n.l, top, zero, d.tilt);
         const Row fe = 1.0 - less, fw = h.rise.across, fl = rises - less * leans;
         const Row nx = fe * d.ex - fw * d.wx - fl * d.lx, ny = fe * d.ey - fw * d.wy - fl * d.ly,
                   nz = fe * d.ez - fw * d.wz - fl * d.lz;
-        const Row size = square_root(nx * nx + ny * ny + nz * nz), per = 1.0 / size;
-        h.gap.store(out.gap + i);
-        (nx * per).store(out.nx + i);
-        (ny * per).store(out.ny + i);
-        (nz * per).store(out.nz + i);
-        size.store(out.per_force + i);
-        (d.ox + (h.at * d.ex + h.a * d.wx + n.up * d.lx)).store(out.px + i);
-        (d.oy + (h.at * d.ey + h.a * d.wy + n.up * d.ly)).store(out.py + i);
-        (d.oz + (h.at * d.ez + h.a * d.wz + n.up * d.lz)).store(out.pz + i);
+        const Row size = square_root(fe * fe + fw * fw + fl * fl), per = 1.0 / size;
+        tell(seen.gap, h.gap);
+        tell(seen.bx, d.ex);
+        tell(seen.by, d.ey);
+        tell(seen.bz, d.ez);
+        tell(seen.nx, nx * per);
+        tell(seen.ny, ny * per);
+        tell(seen.nz, nz * per);
+        tell(seen.per_force, size);
+        tell(seen.px, d.ox + (h.at * d.ex + h.a * d.wx + n.up * d.lx));
+        tell(seen.py, d.oy + (h.at * d.ey + h.a * d.wy + n.up * d.ly));
+        tell(seen.pz, d.oz + (h.at * d.ez + h.a * d.wz + n.up * d.lz));
 
         // How the depth changes as the post turns about e, with the dent, and as its axis leans along e.
         const auto at_edge = [&](const Row& of_high, const Row& of_low, const Row& of_neither) {
@@ -132,21 +152,20 @@ void find_dent(const DentNumbers& d, const double* x, const double* y, const dou
                           (1.0 - share) * h.rise.across * n.l + fl * n.w;
         const Row leaning = d.stretch * d.stretch * fe * n.up +
                             d.stretch * d.tilt * (h.rise.stretch - less * d.radius) +
-                            where_above(n.l, top, (fe * d.tilt + s) * (d.top_rate / d.stretch), zero);
+                            where_above(n.l, top, (fe * d.tilt + s) * top_leans, zero);
         const Row qx = about * (d.tilt * d.lx - d.ex) + leaning * d.wx,
                   qy = about * (d.tilt * d.ly - d.ey) + leaning * d.wy,
                   qz = about * (d.tilt * d.lz - d.ez) + leaning * d.wz;
-        (per * (d.oy * nz - d.oz * ny + qx)).store(out.tx + i);
-        (per * (d.oz * nx - d.ox * nz + qy)).store(out.ty + i);
-        (per * (d.ox * ny - d.oy * nx + qz)).store(out.tz + i);
+        tell(seen.tx, per * (d.oy * nz - d.oz * ny + qx));
+        tell(seen.ty, per * (d.oz * nx - d.ox * nz + qy));
+        tell(seen.tz, per * (d.ox * ny - d.oy * nx + qz));
     }
 }
 
-double find_dent_gap(const DentNumbers& d, const double* x, const double* y, const double* z,
-                     const double* panel, double of) {
+double find_dent_gap(const DentNumbers& d, const PanelNodes& nodes) {
     Row least = infinitely_far;
     for (std::size_t i = 0; i < lanes; i += row_length)
-        least = lesser(least, where_on(panel, of, hang(d, stand(d, x, y, z, i)).gap, infinitely_far, i));
+        least = lesser(least, where_on(nodes, hang(d, stand(d, nodes, i)).gap, infinitely_far, i));
     return least_of(least);
 }
 

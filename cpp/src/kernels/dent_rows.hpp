@@ -3,15 +3,9 @@
 #pragma once
 
 #include "birm3d/base/select.hpp"
+#include "birm3d/geometry/dent_numbers.hpp"
 
 namespace birm3d {
-
-// A dent in plain numbers (see Dent), and the flank from where it is steepest.
-struct DentNumbers {
-    double ex, ey, ez, wx, wy, wz, lx, ly, lz, ox, oy, oz;
-    double low, high, low_at, high_at, top, top_rate, tilt, radius, stretch, surface, per_reach, per_stretch;
-    double steep_arc, rise_there;
-};
 
 // Slope of a post's flank where a panel ends on it: beyond it small motions would make great forces.
 inline constexpr double steepest = 5.0;
@@ -33,22 +27,20 @@ BIRM3D_IN_LANE_LOOP Slope<Number> slope_at(const Number& depth, double per_reach
             where_above(slope, limit, zero, by_depth * per_reach / slope)};
 }
 
-// Which of the nodes matter: those of one panel that are inside or have a force, and have seen nothing nearer.
-struct DentedNodes {
-    const double* panel;
+// Of a block, those of one panel.
+struct PanelNodes {
+    const double *x, *y, *z, *force, *panel;
     double of;
-    const double *force, *gap;  // gap: of what they have seen so far
 };
 
-struct DentColumns {
-    double *gap, *nx, *ny, *nz, *per_force, *px, *py, *pz, *tx, *ty, *tz;
+// What they have seen so far (NodeFaces, BlockContact); `hangs`: on this dent (1, else 0).
+struct SeenColumns {
+    double *gap, *per_force, *bx, *by, *bz, *nx, *ny, *nz, *px, *py, *pz, *tx, *ty, *tz, *hangs;
 };
 
-// What DentLanes says; the gap of a row of which no node matters is infinite, and nothing else is said of it.
-using FindDent = void (*)(const DentNumbers& dent, const double* x, const double* y, const double* z,
-                          const DentedNodes& nodes, const DentColumns& out);
-// The least gap of those of the panel `of`; infinite if there are none.
-using FindDentGap = double (*)(const DentNumbers& dent, const double* x, const double* y, const double* z,
-                               const double* panel, double of);
+// See hang_on.
+using FindDent = void (*)(const DentNumbers& dent, const PanelNodes& nodes, const SeenColumns& seen);
+// The least gap; infinite if there are no such nodes.
+using FindDentGap = double (*)(const DentNumbers& dent, const PanelNodes& nodes);
 
 }  // namespace birm3d

@@ -21,12 +21,14 @@ struct Reach {
 
     bool operator()(const HalfSpace& plane) const { return plane.within_reach(box, margin); }
     bool operator()(const Post& post) const {
+        // Most are out of reach of the ball around the box.
+        const double far = post.radius + margin + radius;
+        if (box.center.head<2>().squaredNorm() > far * far) return false;
         const double dx = std::max(std::abs(box.center.x()) - box.half.x(), 0.0);
         const double dy = std::max(std::abs(box.center.y()) - box.half.y(), 0.0);
         const double side = std::max(std::sqrt(dx * dx + dy * dy) - post.radius, 0.0);
         const double top = std::max(box.center.z() - box.half.z() - post.height, 0.0);
-        return !too_far(std::sqrt(side * side + top * top)) &&
-               !too_far(nearest(post, box.center).gap - radius);
+        return !too_far(std::sqrt(side * side + top * top));
     }
     bool operator()(const Prism& prism) const {
         return !too_far(distance(prism.bounds(), box)) && !too_far(prism.no_nearer(box));
@@ -46,10 +48,6 @@ bool within_reach(const Shape& shape, const Placement& now, const Box& box, doub
         return now.plane_from_own(*plane).within_reach(box, margin);
     const Vec3 center = now.to_own(box.center);
     const double radius = box.half.norm();
-    if (const auto* post = std::get_if<Post>(&shape)) {  // most are out of reach of the ball around the box
-        const double far = post->radius + margin + radius;
-        if (center.head<2>().squaredNorm() > far * far) return false;
-    }
     return std::visit(Reach{{center, now.rotation.cwiseAbs() * box.half}, radius, margin}, shape);
 }
 

@@ -175,7 +175,7 @@ void TrussMesh::find_panels() {
     for (std::size_t padding = skin; padding < skin_blocks * lanes; ++padding)
         block[padding / lanes].panel[padding % lanes] = block[skin_blocks - 1].panel[(skin - 1) % lanes];
     for (std::size_t b = skin_blocks; b < blocks; ++b)
-        block[b].panel.fill(static_cast<double>(panels));  // of none
+        block[b].panel.fill(static_cast<double>(panels)), panels_of[b] = 1U << panels;  // of none of these
     panels_of_group.assign((blocks + group_size - 1) / group_size, 0);
     for (std::size_t b = 0; b < blocks; ++b)
         panels_of_group[b / group_size] |= panels_of[b];

@@ -29,24 +29,6 @@ double nearest_in_blocks(const Shape& shape, const Placement& seen, std::size_t 
 
 }  // namespace
 
-Box box_of(const TrussBlockState& block) {
-    return block.touching ? box_around(block.x, block.y, block.z) : block.box;
-}
-
-Box everything(const TrussMesh& mesh, const TrussState& trusses) {
-    Box box = mesh.anchors;
-    for (std::size_t g = 0; g < trusses.groups.size(); ++g) {
-        const BlockGroup& group = trusses.groups[g];
-        if (!group.touching) {
-            box = box.with(group.box);
-            continue;
-        }
-        for (std::size_t b = g * TrussMesh::group_size; b < mesh.end_of_group(g); ++b)
-            box = box.with(box_of(trusses.block[b]));
-    }
-    return box;
-}
-
 Pose pose_of(const Scene& scene, std::size_t i, const State& state) {
     const Obstacle& obstacle = scene.obstacles[i];
     if (i >= state.segments.size()) return {obstacle.rotation, obstacle.position};
@@ -115,7 +97,7 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
                     shape, seen, i == scene.ground ? mesh.skin_blocks : mesh.blocks,
                     [&](std::size_t b) {
                         const TrussBlockState& block = unit.trusses.block[b];
-                        return Points{box_of(block), &block.x, &block.y, &block.z};
+                        return Points{block.box, &block.x, &block.y, &block.z};
                     },
                     least);
             if (!what.anchors) continue;

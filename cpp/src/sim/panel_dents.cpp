@@ -24,14 +24,13 @@ struct Bound {
     bool operator<(const Bound& other) const { return gap < other.gap; }
 };
 
-// Of those groups that can come within `far`, the nearest first. The boxes of groups that touch are not kept up.
+// Of those groups that can come within `far`, the nearest first.
 std::vector<Bound> groups_by_gap(const Dent& dent, std::size_t panel, const TrussMesh& mesh,
                                  const UnitState& unit, double far) {
     std::vector<Bound> bounds;
     for (std::size_t g = 0; g < unit.trusses.groups.size(); ++g) {
         if ((mesh.panels_of_group[g] >> panel & 1U) == 0) continue;
-        const BlockGroup& group = unit.trusses.groups[g];
-        const double gap = group.touching ? -infinity : -most_inside(dent, group.box);
+        const double gap = -most_inside(dent, unit.trusses.groups[g].box);
         if (gap <= far) bounds.push_back({gap, g});
     }
     std::sort(bounds.begin(), bounds.end());
@@ -49,7 +48,7 @@ double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, 
         blocks.clear();
         for (std::size_t b = group.of * TrussMesh::group_size; b < mesh.end_of_group(group.of); ++b) {
             if ((mesh.panels_of[b] >> panel & 1U) == 0) continue;
-            const double bound = -most_inside(dent, box_of(unit.trusses.block[b]));
+            const double bound = -most_inside(dent, unit.trusses.block[b].box);
             if (bound <= std::min(far, least)) blocks.push_back({bound, b});
         }
         std::sort(blocks.begin(), blocks.end());

@@ -40,7 +40,7 @@ class Skin {
         bool seen = false;  // by any block
     };
 
-    bool may_change(std::size_t g) const;
+    bool look_about_group(std::size_t g);
     void press(std::size_t b);
     void note_met(std::size_t b);
     void look_about(std::size_t b);
@@ -58,6 +58,7 @@ class Skin {
     void find_dents();
     Dented dents_of(std::size_t near);
     bool was_before(std::size_t near, std::size_t panel);
+    double reach_of_dent(const DentedPanel& dented, std::uint8_t of, const Box& box, bool touching) const;
     bool find_dents_of_block(std::size_t b);
     bool is_left_to_dents(std::uint8_t of, std::size_t near) const;
     void leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) const;
@@ -68,7 +69,7 @@ class Skin {
     }
     void find_seen(std::size_t b, double margin);
     bool sees(std::uint8_t of, std::size_t near, const Box& box, double margin) const;
-    PlaneSums* plane_of(std::size_t near);
+    PlaneSums* plane_of(std::size_t near, std::size_t b);
     PlaneSums& sums_of_plane(std::size_t near, const HalfSpace& plane);
     void press_plane(PlaneSums& plane, std::size_t b);
     void press_shapes(std::size_t b);
@@ -77,6 +78,7 @@ class Skin {
     void look(std::size_t b);
     void look_at_surfaces(std::size_t b, const TrussBlockState& block);
     void look_at(std::size_t b, const TrussBlockState& block);
+    bool stay_on_planes(const TrussBlockState& block) const;
     void turn_flat_faces();
     void settle_in_corners(const TrussBlockState& block);
     bool find_entered_faces(const TrussBlockState& block);
@@ -107,7 +109,9 @@ class Skin {
     std::vector<Twist> away_;  // parallel to near_: the same, from an obstacle that moves too
 
     std::vector<NearObstacle>& near_;
-    std::vector<std::size_t> seen_;  // by the block at hand, places in near_
+    // What the group of blocks at hand may see, places in near_ and dents_; and the block at hand.
+    std::vector<std::size_t> group_near_, group_dents_;
+    std::vector<std::size_t> seen_;  // in near_
     std::vector<PlaneSums> planes_;
     std::vector<ObstacleSums> obstacles_;  // parallel to near_
     CrushSums shared_;                     // of blocks that saw several obstacles
@@ -121,7 +125,6 @@ class Skin {
     std::vector<TreadContact> treads_;    // that push
     TrussBlockState sprung_;              // the block at hand, if some of its nodes have sprung back
     bool sprung_back_ = false;
-    Box box_;  // around the nodes of the block at hand
     NodeFaces faces_;
     BlockContact contact_;
     std::optional<Vec3> plane_normal_;        // of all nodes in contact_, where they saw one plane

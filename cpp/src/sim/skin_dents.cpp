@@ -9,6 +9,12 @@
 
 namespace birm3d {
 
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
 void Skin::find_dents() {
     if (mesh_.dent_reach == 0.0) return;
     for (std::size_t k = 0; k < near_.size(); ++k) {
@@ -64,19 +70,24 @@ bool Skin::was_before(std::size_t k, std::size_t p) {
     return then.beside(panel) < 0.0 && gap_of_panel(then, p, mesh_, before_, 0.0, 0.0) > 0.0;
 }
 
-// Which dents can reach the block? Their posts are among what it sees, then. What pushes stays at its dent until it is
-// released: of a block that touches, a dent counts that its nodes can have come off within the step.
+// How near can nodes of some panels, bit by bit, within a box come to a dent (m)? Infinite where it can not reach them.
+// What pushes stays at its dent until it is released: it can have come off within the step.
+double Skin::reach_of_dent(const DentedPanel& dented, std::uint8_t of, const Box& box, bool touching) const {
+    if ((of >> dented.panel & 1U) == 0) return infinity;
+    const double gap = -most_inside(dented.dent, box);
+    return gap <= (touching ? dented.way : 0.0) ? gap : infinity;
+}
+
+// Which dents can reach the block? Their posts are among what it sees, then.
 bool Skin::find_dents_of_block(std::size_t b) {
     block_dents_.clear();
-    for (std::size_t d = 0; d < dents_.size(); ++d) {
-        const DentedPanel& dented = dents_[d];
-        if ((mesh_.panels_of[b] >> dented.panel & 1U) == 0) continue;
-        const double off = from(b).touching ? dented.way : 0.0;
-        const double gap = -most_inside(dented.dent, box_);
-        if (gap > off) continue;
+    for (const std::size_t d : group_dents_) {
+        const double gap = reach_of_dent(dents_[d], mesh_.panels_of[b], from(b).box, from(b).touching);
+        if (gap == infinity) continue;
         block_dents_.push_back({d, gap});
-        if (std::find(seen_.begin(), seen_.end(), dented.near) == seen_.end())
-            seen_.insert(std::lower_bound(seen_.begin(), seen_.end(), dented.near), dented.near);
+        const std::size_t near = dents_[d].near;
+        if (std::find(seen_.begin(), seen_.end(), near) == seen_.end())
+            seen_.insert(std::lower_bound(seen_.begin(), seen_.end(), near), near);
     }
     std::sort(block_dents_.begin(), block_dents_.end(), [](const BlockDent& x, const BlockDent& y) {
         return x.gap != y.gap ? x.gap < y.gap : x.dent < y.dent;
@@ -96,7 +107,7 @@ namespace {
 BIRM3D_LANE_LOOP void leave_out(const Lanes& panel_of, double panel, Lanes& gap) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i)
-        gap[i] = panel_of[i] == panel ? std::numeric_limits<double>::infinity() : gap[i];
+        gap[i] = panel_of[i] == panel ? infinity : gap[i];
 }
 
 }  // namespace
@@ -110,47 +121,26 @@ void Skin::leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) 
 
 namespace {
 
-// Nodes of the panel to which this dent is nearer than what they have seen so far hang on it, unless it would draw them
-// into that: a post that came past the panel's edge stands behind them.
-BIRM3D_LANE_LOOP void take_nearer(const DentLanes& dent, const Lanes& panel_of, double panel, double into_x,
-                                  double into_y, double into_z, std::size_t seen, NodeFaces& faces,
-                                  BlockContact& contact, std::array<std::size_t, lanes>& nearest) {
+BIRM3D_LANE_LOOP void note_nearest(const Lanes& hangs, std::size_t seen,
+                                   std::array<std::size_t, lanes>& nearest) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
-        const double against = contact.nx[i] * into_x + contact.ny[i] * into_y + contact.nz[i] * into_z;
-        const bool barred = against < 0.0 && faces.gap[i] - against * dent.gap[i] < 0.0;
-        const bool takes = panel_of[i] == panel && dent.gap[i] < faces.gap[i] && !barred;
-        nearest[i] = takes ? seen : nearest[i];
-        faces.gap[i] = takes ? dent.gap[i] : faces.gap[i];
-        faces.per_force[i] = takes ? dent.per_force[i] : faces.per_force[i];
-        faces.bx[i] = takes ? into_x : faces.bx[i];
-        faces.by[i] = takes ? into_y : faces.by[i];
-        faces.bz[i] = takes ? into_z : faces.bz[i];
-        contact.nx[i] = takes ? dent.nx[i] : contact.nx[i];
-        contact.ny[i] = takes ? dent.ny[i] : contact.ny[i];
-        contact.nz[i] = takes ? dent.nz[i] : contact.nz[i];
-        contact.px[i] = takes ? dent.px[i] : contact.px[i];
-        contact.py[i] = takes ? dent.py[i] : contact.py[i];
-        contact.pz[i] = takes ? dent.pz[i] : contact.pz[i];
-        contact.tx[i] = takes ? dent.tx[i] : contact.tx[i];
-        contact.ty[i] = takes ? dent.ty[i] : contact.ty[i];
-        contact.tz[i] = takes ? dent.tz[i] : contact.tz[i];
-    }
+    for (std::size_t i = 0; i < lanes; ++i)
+        nearest[i] = hangs[i] > 0.0 ? seen : nearest[i];
 }
 
 }  // namespace
 
 void Skin::draw_in(std::size_t b, const TrussBlockState& block) {
-    alignas(64) DentLanes found;
+    alignas(64) Lanes hangs;
     for (const BlockDent& reached : block_dents_) {
         const DentedPanel& dented = dents_[reached.dent];
-        const OfPanel of{mesh_.block[b].panel, dented.panel, faces_.gap};
-        if (reached.dent != block_dents_.front().dent && reached.gap > furthest_off(block, of)) continue;
-        const Vec3& into = dented.dent.into;
-        dent_of(dented.dent, block, of, found);
+        const Lanes& panel_of = mesh_.block[b].panel;
+        if (reached.dent != block_dents_.front().dent &&
+            reached.gap > furthest_off(block, panel_of, dented.panel, faces_.gap))
+            continue;
+        hang_on(dented.dent, block, panel_of, dented.panel, faces_, contact_, hangs);
         const auto seen = std::find(seen_.begin(), seen_.end(), dented.near) - seen_.begin();
-        take_nearer(found, mesh_.block[b].panel, static_cast<double>(dented.panel), into.x(), into.y(),
-                    into.z(), static_cast<std::size_t>(seen), faces_, contact_, nearest_);
+        if (seen_.size() > 1) note_nearest(hangs, static_cast<std::size_t>(seen), nearest_);
     }
 }
 

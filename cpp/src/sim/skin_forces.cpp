@@ -1,6 +1,7 @@
 #include "birm3d/sim/skin_forces.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/sim/bodies.hpp"
@@ -11,6 +12,8 @@
 namespace birm3d {
 
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Obstacles that were touched an instant before are near, whatever the step has made of it.
 void add_touched(const Scene& scene, std::size_t u, const State& before, const State& now,
@@ -70,22 +73,23 @@ void Skin::press_blocks() {
     if (near_.empty() && before_.touches.empty() && !before_.trusses.hangs_slack()) return;
     find_dents();
     for (std::size_t g = 0; g < before_.trusses.groups.size(); ++g)
-        if (may_change(g))
+        if (look_about_group(g))
             for (std::size_t b = g * TrussMesh::group_size; b < mesh_.end_of_group(g); ++b)
                 press(b);
     if (!treads_.empty()) rub_treads();
 }
 
-// Does any of the blocks push, hang slack, or come within reach of an obstacle or of a dent?
-bool Skin::may_change(std::size_t g) const {
+// Does any of the blocks push, hang slack, or come within reach of an obstacle or of a dent? Notes which of these can.
+bool Skin::look_about_group(std::size_t g) {
     const BlockGroup& group = before_.trusses.groups[g];
-    if (group.touching || group.slack) return true;
     const std::uint8_t of = mesh_.panels_of_group[g];
+    group_near_.clear();
     for (std::size_t k = 0; k < near_.size(); ++k)
-        if (sees(of, k, group.box, 0.0)) return true;
-    return std::any_of(dents_.begin(), dents_.end(), [&](const DentedPanel& dented) {
-        return (of >> dented.panel & 1U) != 0 && most_inside(dented.dent, group.box) >= 0.0;
-    });
+        if (sees(of, k, group.box, group.touching ? margin_ : 0.0)) group_near_.push_back(k);
+    group_dents_.clear();
+    for (std::size_t d = 0; d < dents_.size(); ++d)
+        if (reach_of_dent(dents_[d], of, group.box, group.touching) < infinity) group_dents_.push_back(d);
+    return group.touching || group.slack || !group_near_.empty() || !group_dents_.empty();
 }
 
 // Can nodes of some panels, bit by bit, within a box meet the obstacle itself?
@@ -125,15 +129,12 @@ void Skin::spring_back(std::size_t b) {
 // Which obstacles can the nodes of the block meet?
 void Skin::look_about(std::size_t b) {
     spring_back(b);
-    const TrussBlockState& block = from(b);
-    // Where there is one obstacle, nodes that push do so on it; at a flat one they need no box.
-    const bool only_one = block.touching && near_.size() == 1 && meets(b, 0);
-    const bool flat = only_one && std::holds_alternative<HalfSpace>(scene_.obstacles[near_[0].index].shape);
-    box_ = block.touching && !flat ? box_around(block.x, block.y, block.z) : block.box;
-    if (only_one)
+    const bool touching = from(b).touching;
+    // Where there is one obstacle, nodes that push do so on it.
+    if (touching && near_.size() == 1 && meets(b, 0))
         seen_.assign(1, 0);
     else
-        find_seen(b, block.touching ? margin_ : 0.0);
+        find_seen(b, touching ? margin_ : 0.0);
 }
 
 namespace {
@@ -159,7 +160,7 @@ void Skin::press(std::size_t b) {
     trial_.state.statistics.node_evaluations += lanes;
     for (const std::size_t k : seen_)
         obstacles_[k].seen = true;
-    PlaneSums* const plane = seen_.size() == 1 && !drawn ? plane_of(seen_[0]) : nullptr;
+    PlaneSums* const plane = seen_.size() == 1 && !drawn ? plane_of(seen_[0], b) : nullptr;
     if (plane == nullptr && !seen_.empty()) {
         look(b);
         const bool idle = !from(b).touching && !from(b).slack && !sprung_back_;
@@ -168,37 +169,38 @@ void Skin::press(std::size_t b) {
     trial_.active[u_].add(b);
     trial_.stale[u_].add(b);
     note_met(b);
+    TrussBlockState& next = now_.trusses.block[b];
     if (seen_.empty()) {
-        now_.trusses.block[b] = sprung_;
-        now_.trusses.block[b].met = true;
+        next = sprung_;
     } else if (plane != nullptr) {
         press_plane(*plane, b);
     } else {
         press_shapes(b);
     }
+    next.met = true;
+    next.box = box_around(next.x, next.y, next.z);
 }
 
 // For the statistics.
 void Skin::note_met(std::size_t b) {
-    now_.trusses.block[b].met = true;
     if (before_.trusses.block[b].met) return;
     StepStatistics& statistics = trial_.state.statistics;
     (b < mesh_.skin_blocks ? statistics.skin_nodes : statistics.tread_nodes) += mesh_.nodes_in(b);
 }
 
 // The plane that is all that the block at hand can meet of an obstacle; null if it can meet more.
-Skin::PlaneSums* Skin::plane_of(std::size_t near) {
+Skin::PlaneSums* Skin::plane_of(std::size_t near, std::size_t b) {
     const Shape& shape = scene_.obstacles[near_[near].index].shape;
     if (std::holds_alternative<HalfSpace>(shape) && !planes_.empty() && planes_.back().near == near)
         return &planes_.back();  // the same plane to all blocks
-    const auto plane = flat_part(shape, near_[near].now, box_);
+    const auto plane = flat_part(shape, near_[near].now, from(b).box);
     return plane ? &sums_of_plane(near, *plane) : nullptr;
 }
 
 void Skin::find_seen(std::size_t b, double margin) {
     seen_.clear();
-    for (std::size_t k = 0; k < near_.size(); ++k)
-        if (meets(b, k) && sees(mesh_.panels_of[b], k, box_, margin)) seen_.push_back(k);
+    for (const std::size_t k : group_near_)
+        if (meets(b, k) && sees(mesh_.panels_of[b], k, from(b).box, margin)) seen_.push_back(k);
 }
 
 Skin::PlaneSums& Skin::sums_of_plane(std::size_t near, const HalfSpace& plane) {

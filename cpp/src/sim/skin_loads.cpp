@@ -77,9 +77,9 @@ void Skin::hand_over() {
     std::vector<Touch>& touches = trial_.touches;
     touches.clear();
     const auto add = [&skin](const CrushSums& sums) {
-        skin.work += 0.5 * row_sum(sums.nodes.twice_work) + sums.released_work;
-        skin.stored += 0.5 * row_sum(sums.nodes.twice_stored);
-        skin.stiffness += sums.stiffness;
+        skin.work += sums.work();
+        skin.stored += sums.stored();
+        skin.stiffness += sums.stiffness();
     };
     add(shared_);
     Mat6 resistance = Mat6::Zero();
@@ -90,12 +90,12 @@ void Skin::hand_over() {
         touch.obstacle = near_[k].index;
         touch.contact = sums.contact;
         touch.contact += total_wrench(sums.sums);
-        touch.normal_force = sums.normal_force + row_sum(sums.sums.nodes.force);
+        touch.normal_force = sums.normal_force + sums.sums.normal_force();
         add(sums.sums);
         for (const PlaneSums& plane : planes_) {
             if (plane.near != k) continue;
             touch.contact += total_wrench(plane.surface, plane.sums);
-            touch.normal_force += row_sum(plane.sums.nodes.force);
+            touch.normal_force += plane.sums.normal_force();
             add(plane.sums);
         }
         if (along_) touch.contact = sums.by_trusses;

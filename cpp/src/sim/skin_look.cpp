@@ -52,6 +52,27 @@ BIRM3D_LANE_LOOP bool any_meets(const Lanes& force, const Lanes& gap) {
     return lane_max(meets) > 0.0;
 }
 
+// Of nodes that push and see the k-th obstacle: how far was any off the plane that it sees now, an instant before (m)? It
+// was at p + D p + s then, D by columns.
+BIRM3D_LANE_LOOP double furthest_off_plane(const double* D, const double* s, std::size_t k,
+                                           const TrussBlockState& block, const NodeFaces& faces,
+                                           const BlockContact& contact,
+                                           const std::array<std::size_t, lanes>& nearest) {
+    const double xx = D[0], yx = D[1], zx = D[2], xy = D[3], yy = D[4], zy = D[5], xz = D[6], yz = D[7],
+                 zz = D[8], sx = s[0], sy = s[1], sz = s[2];
+    alignas(64) Lanes off;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const double x = block.x[i], y = block.y[i], z = block.z[i];
+        const double before = faces.gap[i] + contact.nx[i] * (xx * x + xy * y + xz * z + sx) +
+                              contact.ny[i] * (yx * x + yy * y + yz * z + sy) +
+                              contact.nz[i] * (zx * x + zy * y + zz * z + sz);
+        const double way = before > 0.0 ? before : -before;
+        off[i] = block.force[i] > 0.0 && nearest[i] == k ? way : 0.0;
+    }
+    return lane_max(off);
+}
+
 // The same of the instant before.
 BIRM3D_LANE_LOOP void take_nearer_before(const NearestLanes& found, Lanes& gap, NodeFaces& faces) {
     BIRM3D_INDEPENDENT
@@ -110,8 +131,8 @@ void Skin::look_at(std::size_t b, const TrussBlockState& block) {
         take_nearer(found, k, faces_, contact_, nearest_);
     }
     faces_.bx = contact_.nx, faces_.by = contact_.ny, faces_.bz = contact_.nz;
-    // What pushes on no more than dents had their direction then, too.
-    if (!block.touching || !any_meets(block.force, faces_.gap)) return;
+    // What pushes on no more than dents had their direction then, too; nodes that stay on a plane have its own.
+    if (!block.touching || !any_meets(block.force, faces_.gap) || stay_on_planes(block)) return;
     // Of all surfaces at that instant: segments of a wall take over from each other.
     alignas(64) Lanes gap_before;
     gap_before.fill(infinity);
@@ -123,6 +144,21 @@ void Skin::look_at(std::size_t b, const TrussBlockState& block) {
         leave_to_dents(b, k, found);
         take_nearer_before(found, gap_before, faces_);
     }
+}
+
+// Have all nodes that push on what they see done so on the plane that they see now?
+bool Skin::stay_on_planes(const TrussBlockState& block) const {
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+        const NearObstacle& obstacle = near_[seen_[k]];
+        if (std::holds_alternative<Post>(scene_.obstacles[obstacle.index].shape)) return false;
+        const Mat3 to_body = obstacle.now.rotation.transpose();
+        const Mat3 turn = to_body * obstacle.before.rotation - Mat3::Identity();
+        const Vec3 shift = to_body * (obstacle.before.position - obstacle.now.position);
+        const double off =
+            furthest_off_plane(turn.data(), shift.data(), k, block, faces_, contact_, nearest_);
+        if (!(off <= tolerance::touching_gap)) return false;
+    }
+    return true;
 }
 
 // Where a node that leaves one surface would get into another, in the corner between a barrier and the ground or of two

@@ -375,8 +375,7 @@ void accept(const Scene& scene, Trial& trial, State& state) {
         std::swap(to.trusses.block, with.trusses.block);
         trial.stale[u] = trial.active[u];
         if (active.empty()) continue;
-        to.trusses.group(active);
-        to.trusses.around = everything(scene.vehicle->units[u].trusses, to.trusses);
+        to.trusses.group(scene.vehicle->units[u].trusses, active);
     }
     static_cast<Progress&>(state) = trial.state;
     state.segments = trial.state.segments;

@@ -28,7 +28,7 @@ struct Seen {
 // As untouched_step, for a block of nodes; no point of its unit is faster than `fastest` (m/s).
 double untouched_step_of(const TrussBlockState& block, const std::vector<Seen>& near, double fastest,
                          double longest) {
-    const Box box = box_of(block);
+    const Box& box = block.box;
     alignas(64) NearestLanes found, nearest;
     std::array<std::size_t, lanes> of;  // place in near
     nearest.gap.fill(infinity);
@@ -87,7 +87,7 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
         }
         for (std::size_t g = 0; g < unit.trusses.groups.size(); ++g) {
             const BlockGroup& group = unit.trusses.groups[g];
-            if (group.touching || std::any_of(near.begin(), near.end(), [&](const Seen& seen) {
+            if (std::any_of(near.begin(), near.end(), [&](const Seen& seen) {
                     return reaches(*seen.shape, seen.placement, group.box);
                 }))
                 for (std::size_t b = g * TrussMesh::group_size; b < mesh.end_of_group(g); ++b)

@@ -17,10 +17,10 @@ const TrussCurve curve = knee_curve(1e6, 0.1, 2e6, laboratory::infinity, 10e6);
 SkinForces forces_of(const CrushSums& sums, const Wrench& wrench) {
     SkinForces forces;
     forces.contact = wrench;
-    forces.normal_force = row_sum(sums.nodes.force);
-    forces.work = 0.5 * row_sum(sums.nodes.twice_work) + sums.released_work;
-    forces.stored = 0.5 * row_sum(sums.nodes.twice_stored);
-    forces.stiffness = sums.stiffness;
+    forces.normal_force = sums.normal_force();
+    forces.work = sums.work();
+    forces.stored = sums.stored();
+    forces.stiffness = sums.stiffness();
     return forces;
 }
 

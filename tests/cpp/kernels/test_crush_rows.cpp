@@ -40,7 +40,7 @@ TEST("every instruction set gives the same bits") {
     for (int round = 0; round < 50; ++round) {
         // Nodes all about a slanted surface, some pressed already, on their envelopes or below.
         TrussBlockState before = TrussState(mesh).block[0];
-        alignas(64) Lanes factor, gap, nx, ny, nz;
+        alignas(64) Lanes factor, gap, nx, ny, nz, bx, by, bz;
         fill(before.x, 2.7, 0.3);
         fill(before.deflection, 0.3, 0.3);
         fill(before.force, 0.0, 1e4);
@@ -53,6 +53,11 @@ TEST("every instruction set gives the same bits") {
         fill(nx, -0.9, 0.1);
         fill(ny, 0.0, 0.4);
         fill(nz, 0.0, 0.4);
+        fill(bx, -0.9, 0.1);
+        fill(by, 0.0, 0.4);
+        fill(bz, 0.0, 0.4);
+        for (std::size_t i = 0; i < 8; ++i)  // a row of nodes that are free
+            before.force[i] = 0.0, gap[i] = std::abs(gap[i]);
         const bool changed = round % 2 == 1;
         const PressColumns columns = columns_of(mesh, 0, changed ? &factor : nullptr);
         const FlatPress flat{-0.96, 0.28, 0.0, -2.6, -0.95, 0.3, 0.01};
@@ -66,10 +71,11 @@ TEST("every instruction set gives the same bits") {
             Outcome by_flat, by_curved;
             BlockContact& at = by_curved.contact;
             at.px = at.py = at.pz = place, at.tx = at.ty = at.tz = torque;
-            const CurvedPress curved{gap.data(),   nx.data(),    ny.data(),    nz.data(),    nx.data(),
-                                     ny.data(),    nz.data(),    nx.data(),    ny.data(),    nz.data(),
-                                     drawn.data(), at.px.data(), at.py.data(), at.pz.data(), at.tx.data(),
-                                     at.ty.data(), at.tz.data()};
+            const CurvedPress curved{gap.data(),   nx.data(),    ny.data(),    nz.data(),    bx.data(),
+                                     by.data(),    bz.data(),    drawn.data(), at.px.data(), at.py.data(),
+                                     at.pz.data(), at.tx.data(), at.ty.data(), at.tz.data(), 1e-4,
+                                     2e-5,         3e-5,         3e-5,         1e-6,         2e-6,
+                                     3e-6};
             by_flat.nodes = functions[k].flat(columns, flat, columns_of<const double>(before),
                                               columns_of<double>(by_flat.now), gaps.data(),
                                               by_flat.contact.pressure.data(), by_flat.sums);
@@ -84,6 +90,9 @@ TEST("every instruction set gives the same bits") {
             }
             CHECK(same_bits(by_flat, first_flat));
             CHECK(same_bits(by_curved, first_curved));
+            for (std::size_t i = 0; i < 8; ++i)
+                CHECK(by_curved.now.x[i] == before.x[i] && by_curved.now.residual[i] == before.residual[i] &&
+                      by_curved.contact.pressure[i] == 0.0 && by_curved.contact.tx[i] == 0.0);
         }
     }
 }

@@ -1,5 +1,6 @@
 #include "birm3d/kernels/dent.hpp"
 
+#include <algorithm>
 #include <random>
 
 #include "check.hpp"
@@ -21,13 +22,18 @@ Placement standing(const Vec3& foot, double lean = 0.0, double sway = 0.0) {
     return {to_own, -(to_own * foot)};
 }
 
-DentLanes dent_by(const Post& post, const Placement& stands, double reach) {
+// How nodes hang on a dent.
+struct Hung : NodeFaces, BlockContact {};
+
+Hung dent_by(const Post& post, const Placement& stands, double reach) {
     TrussBlockState nodes = uncrushed.block[0];
     nodes.force.fill(1.0);  // of nodes with a force all is said
-    Lanes nothing_seen;
-    nothing_seen.fill(std::numeric_limits<double>::infinity());
-    DentLanes found;
-    dent_of(Dent(post, stands, front, reach), nodes, {mesh.block[0].panel, 1, nothing_seen}, found);
+    Hung found;
+    found.gap.fill(std::numeric_limits<double>::infinity());  // nothing seen so far
+    found.set_normal(Vec3::UnitX());
+    Lanes hangs;
+    hang_on(Dent(post, stands, front, reach), nodes, mesh.block[0].panel, 1, found, found, hangs);
+    CHECK(std::all_of(hangs.begin(), hangs.end(), [](double h) { return h == 1.0; }));
     return found;
 }
 
@@ -54,7 +60,7 @@ TEST("beside an upright post the skin is drawn in with the slope") {
     const double radius = 0.2, axis = 2.7;
     for (const double reach : {0.25, 0.5, 1.0}) {
         const double slope = slope_by(axis - radius, reach);
-        const DentLanes found = dent_by(Post(radius), standing({axis, 0.1, 0.0}), reach);
+        const Hung found = dent_by(Post(radius), standing({axis, 0.1, 0.0}), reach);
         const double arc = radius * slope / std::sqrt(1.0 + slope * slope);
         for (std::size_t i = 0; i < lanes; ++i) {
             const double w = std::abs(node(i).y() - 0.1), on = std::min(w, arc);
@@ -66,8 +72,8 @@ TEST("beside an upright post the skin is drawn in with the slope") {
 
 TEST("above a post the skin is drawn in with the slope, too") {
     const double radius = 0.2, height = 0.3, reach = 0.8, slope = slope_by(2.5, reach);
-    const DentLanes low = dent_by(Post(radius, height), standing({2.7, 0.0, 0.0}), reach);
-    const DentLanes tall = dent_by(Post(radius), standing({2.7, 0.0, 0.0}), reach);
+    const Hung low = dent_by(Post(radius, height), standing({2.7, 0.0, 0.0}), reach);
+    const Hung tall = dent_by(Post(radius), standing({2.7, 0.0, 0.0}), reach);
     for (std::size_t i = 0; i < lanes; ++i) {
         const double above = std::max(0.0, node(i).z() - height);
         const double hair = above > 0.0 ? slope * 0.05 * radius : 0.0;
@@ -80,7 +86,7 @@ TEST("of a post that stands beside the panel only what reaches over its edge pre
     // The axis 0.15 m beyond the edge at y = 1.2 m.
     const double radius = 0.2;
     const double reach = 0.5, slope = slope_by(2.7, reach);
-    const DentLanes found = dent_by(Post(radius), standing({2.9, 1.35, 0.0}), reach);
+    const Hung found = dent_by(Post(radius), standing({2.9, 1.35, 0.0}), reach);
     const double at_edge = 2.9 - std::sqrt(radius * radius - 0.15 * 0.15);
     for (std::size_t i = 0; i < lanes; ++i)
         CHECK_CLOSE(found.gap[i], at_edge + slope * (1.2 - node(i).y()) - node(i).x(), 1e-14, "rounding");
@@ -96,7 +102,7 @@ TEST("force and torque are what the depth of the dent asks for by virtual work")
         const Vec3 foot(2.8 + 0.2 * share(random), 1.4 * share(random), -1.0);
         const double lean = 0.3 * share(random), sway = 0.3 * share(random);
         const Placement stands = standing(foot, lean, sway);
-        const DentLanes here = dent_by(post, stands, 1.0);
+        const Hung here = dent_by(post, stands, 1.0);
         // Both ways along and about each axis.
         for (int axis = 0; axis < 3; ++axis) {
             const Vec3 way = Vec3::Unit(axis);
@@ -107,7 +113,7 @@ TEST("force and torque are what the depth of the dent asks for by virtual work")
                 const Mat3 turn = Eigen::AngleAxisd(by, way).toRotationMatrix();
                 return dent_by(post, {stands.rotation * turn.transpose(), stands.position}, 1.0);
             };
-            const DentLanes forth = moved(h), back = moved(-h), left = turned(h), right = turned(-h);
+            const Hung forth = moved(h), back = moved(-h), left = turned(h), right = turned(-h);
             for (std::size_t i = 0; i < lanes; ++i) {
                 const double force = here.per_force[i] * Vec3(here.nx[i], here.ny[i], here.nz[i])[axis];
                 const double torque = here.per_force[i] * Vec3(here.tx[i], here.ty[i], here.tz[i])[axis];
@@ -123,8 +129,8 @@ TEST("force and torque are what the depth of the dent asks for by virtual work")
         }
         const Dent dent(post, stands, front, 1.0);
         for (std::size_t i = 0; i < lanes; ++i) {
-            above += (node(i) - foot).dot(dent.along) > dent.top ? 1 : 0;
-            beside += std::abs((node(i) - foot).dot(dent.across)) > dent.radius ? 1 : 0;
+            above += (node(i) - foot).dot(dent.along()) > dent.top ? 1 : 0;
+            beside += std::abs((node(i) - foot).dot(dent.across())) > dent.radius ? 1 : 0;
         }
     }
     CHECK(above > 1000);
@@ -141,7 +147,7 @@ TEST("no node is further inside than what the box says, however deep the post") 
         const Placement stands = standing({2.8 + deepest * share(random), 2.0 * share(random), -1.0},
                                           0.4 * share(random), 0.4 * share(random));
         const Dent dent(post, stands, front, reach);
-        const DentLanes found = dent_by(post, stands, reach);
+        const Hung found = dent_by(post, stands, reach);
         const double least = *std::min_element(found.gap.begin(), found.gap.end());
         CHECK(-least <= most_inside(dent, front.box) + 1e-12);
         for (std::size_t i = 0; i < lanes; ++i) {

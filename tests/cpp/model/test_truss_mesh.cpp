@@ -102,7 +102,7 @@ TEST("treads stand in blocks of their own behind the skin, which stays as it was
         CHECK(mesh.block[b].node_y == skin.block[b].node_y && mesh.block[b].panel == skin.block[b].panel);
         CHECK(mesh.panels_of[b] == skin.panels_of[b]);
     }
-    CHECK(mesh.panels_of[3] == 0);
+    CHECK(mesh.panels_of[3] == 1U << panels);
     CHECK(mesh.anchors.half == skin.anchors.half);  // a tread's anchor is none of the rigid body
     for (std::size_t truss = 0; truss < mesh.count; ++truss) {
         CHECK(mesh.node(truss) == with.node[mesh.input_index[truss]]);

@@ -16,6 +16,7 @@ struct alignas(64) NodeSums {
     double moment_x[8] = {}, moment_y[8] = {}, moment_z[8] = {};  // flat surface: first moments of it (N m);
                                                                   // curved: torque (N m)
     double push_x[8] = {}, push_y[8] = {}, push_z[8] = {};        // curved surface: force (N)
+    double stiffness[8] = {};                                     // curved surface: see SkinForces (1/s^2)
     double twice_work[8] = {}, twice_stored[8] = {};              // J
 };
 

@@ -49,20 +49,16 @@ struct FlatContact {
     InverseMass inverse_mass;
 };
 
-// What each node of a block sees of surfaces of any shape (body axes); its normals now are in the BlockContact.
-struct alignas(64) NodeFaces {
-    Lanes gap;         // of the nearest surface (m)
-    Lanes bx, by, bz;  // outward normal of the same surface at the instant before
-    // Of nodes that a dent draws in: b is the way itself, and a truss force along it that much greater as a normal force,
-    // which acts at the place that the BlockContact says. Zero for others.
-    Lanes per_force;
-};
-
 // What the blocks of a unit add up to.
 struct CrushSums {
     NodeSums nodes;
-    double released_work = 0.0;  // work on trusses whose nodes were let go on the way, in addition (J)
-    double stiffness = 0.0;      // see SkinForces (1/s^2)
+    double released_work = 0.0;   // work on trusses whose nodes were let go on the way, in addition (J)
+    double flat_stiffness = 0.0;  // of flat surfaces, see SkinForces (1/s^2)
+
+    double work() const { return 0.5 * row_sum(nodes.twice_work) + released_work; }  // on trusses (J)
+    double stored() const { return 0.5 * row_sum(nodes.twice_stored); }              // J
+    double stiffness() const { return flat_stiffness + row_sum(nodes.stiffness); }   // 1/s^2
+    double normal_force() const { return row_sum(nodes.force); }                     // N
 };
 
 // Takes block `b` from `before` to `now`, fills in the pressures of `contact` and adds to the sums; the normals of

@@ -19,27 +19,24 @@
 // round it to either side.
 #pragma once
 
+#include "birm3d/geometry/dent_numbers.hpp"
 #include "birm3d/geometry/placement.hpp"
 #include "birm3d/geometry/post.hpp"
 #include "birm3d/model/truss_mesh.hpp"
+#include "birm3d/state/contacts.hpp"
 #include "birm3d/state/truss_state.hpp"
 
 namespace birm3d {
 
-// A post seen from a panel. Places from the foot of its axis: across it (w), along it (l) and into the panel (e); m.
-struct Dent {
-    Dent(const Post& post, const Placement& stands, const Panel& panel, double reach);
+struct Dent : DentNumbers {
+    Dent(const Post& post, const Placement& stands, const Panel& panel, double reach_);
 
-    Vec3 into, across, along;  // e, w, l: unit, square to each other, body axes
-    Vec3 foot;                 // of the axis, body axes
-    double low, high;          // of the panel, across from the axis
-    double low_at, high_at;    // along from the foot, of the middles of these edges
-    double top;                // along, of the highest place of the rim
-    double top_rate;           // of that for each unit of change of the axis's part along e
-    double tilt;               // e of the axis for each unit of l
-    double radius, stretch;    // the post's, and that of its section with a plane of e and w over it
-    double surface;            // into, of the outermost node of the panel
     double reach;
+
+    Vec3 into() const { return {ex, ey, ez}; }
+    Vec3 across() const { return {wx, wy, wz}; }
+    Vec3 along() const { return {lx, ly, lz}; }
+    Vec3 foot() const { return {ox, oy, oz}; }
 
     // How far the post stands beside the panel, or ends below it (m); negative: some of it stands before, in or behind it.
     double beside(const Panel& panel) const;
@@ -57,29 +54,16 @@ bool stands_across(const Placement& post, const Panel& panel, bool dents);
 // No node of the box (body axes) is further inside than this (m); negative: none is reached.
 double most_inside(const Dent& dent, const Box& box);
 
-struct alignas(64) DentLanes {
-    Lanes gap;         // along e; negative inside (m)
-    Lanes nx, ny, nz;  // outward normal of the post where it drives the node
-    Lanes per_force;   // normal force for each unit of the truss force along e
-    Lanes px, py, pz;  // where it drives the node, body axes (m)
-    Lanes tx, ty, tz;  // torque on the body for each unit of normal force, about its mass centre (m)
-};
-
 // Least gap of those nodes of a block that are of the panel (m); infinite if there are none.
 double gap_of(const Dent& dent, const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel);
 
-// Nodes of one panel, and gaps of what they have seen so far.
-struct OfPanel {
-    const Lanes& panel_of;  // of each node
-    std::size_t panel;
-    const Lanes& gap;  // m
-};
+// Nodes of the panel to which the dent is nearer than what they have seen so far hang on it, unless it would draw them
+// into that: a post that came past the panel's edge stands behind them. Says in `faces` and `contact` how they do, and
+// which (1, else 0). Of nodes that are outside and without force nothing may be said.
+void hang_on(const Dent& dent, const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel,
+             NodeFaces& faces, BlockContact& contact, Lanes& hangs);
 
-// Also how they hang on it, of those that the dent may hold: of nodes of another panel, of those that are outside and
-// without force, and of those that have seen something nearer the gap may be infinite, and then nothing else is said.
-void dent_of(const Dent& dent, const TrussBlockState& nodes, const OfPanel& of, DentLanes& out);
-
-// No dent that is further from all nodes than this holds any of them (m).
-double furthest_off(const TrussBlockState& nodes, const OfPanel& of);
+// No dent that is further from all nodes than this holds any of them (m). `gap`: of what they have seen so far.
+double furthest_off(const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel, const Lanes& gap);
 
 }  // namespace birm3d

@@ -34,12 +34,6 @@ Twist obstacle_motion(const Scene& scene, std::size_t obstacle, const State& sta
 void find_near(const Scene& scene, std::size_t unit, const State& before, const State& now, double margin,
                std::vector<NearObstacle>& near);
 
-// Around the nodes of a block; that of its state is kept up only while nothing touches.
-Box box_of(const TrussBlockState& block);
-
-// TrussState::around, anew.
-Box everything(const TrussMesh& mesh, const TrussState& trusses);
-
 // Fastest any point of the unit moves (m/s).
 double fastest_point(const Unit& unit, const BodyState& body);
 

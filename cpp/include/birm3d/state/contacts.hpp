@@ -32,6 +32,15 @@ struct alignas(64) BlockContact {
     void set_normal(const Vec3& n) { nx.fill(n.x()), ny.fill(n.y()), nz.fill(n.z()); }
 };
 
+// What each node of a block sees of surfaces of any shape (body axes); its normals now are in the BlockContact.
+struct alignas(64) NodeFaces {
+    Lanes gap;         // of the nearest surface (m)
+    Lanes bx, by, bz;  // outward normal of the same surface at the instant before
+    // Of nodes that a dent draws in: b is the way itself, and a truss force along it that much greater as a normal force,
+    // which acts at the place that the BlockContact says. Zero for others.
+    Lanes per_force;
+};
+
 // Sums over all that a unit's skin touches, world axes.
 struct SkinForces {
     Wrench contact;             // on the vehicle, without friction (N, N m)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <vector>
 
 #include "birm3d/base/hash.hpp"
@@ -15,7 +16,7 @@ struct alignas(64) TrussBlockState {
     Lanes x, y, z;                    // shell nodes in body axes (m)
     Lanes deflection, force;          // of the truss, now (m, N)
     Lanes peak_deflection, residual;  // greatest so far; where the unloading line meets zero force (m)
-    Box box;                          // around the nodes where they were last let go, body axes
+    Box box;                          // around the nodes, body axes
     bool touching;                    // does any node push on an obstacle?
     bool slack;  // has an obstacle drawn any node out beyond the free length of its truss?
     bool met;    // has anything come into it, in any step?
@@ -28,7 +29,7 @@ inline bool is_slack(const TrussBlockState& block, std::size_t i) {
 
 // A group of blocks (see TrussMesh).
 struct BlockGroup {
-    Box box;                // around the boxes of its blocks; kept up only while none of them touches
+    Box box;                // around the boxes of its blocks
     bool touching = false;  // any of them?
     bool slack = false;     // the same
 
@@ -44,9 +45,9 @@ struct TrussState {
     explicit TrussState(const TrussMesh& mesh) : block(mesh.blocks), groups(mesh.panels_of_group.size()) {
         for (std::size_t b = 0; b < block.size(); ++b)
             uncrush(mesh, b);
-        for (std::size_t g = 0; g < groups.size(); ++g)
-            group(g);
-        put_around(mesh);
+        std::vector<std::size_t> all(block.size());
+        std::iota(all.begin(), all.end(), std::size_t{0});
+        group(mesh, all);
     }
 
     // Back to the uncrushed skin.
@@ -54,8 +55,7 @@ struct TrussState {
         const std::vector<std::size_t> changed = met();
         for (const std::size_t b : changed)
             uncrush(mesh, b);
-        group(changed);
-        put_around(mesh);
+        group(mesh, changed);
     }
 
     // Into which blocks has anything come? All others are as they were made.
@@ -67,10 +67,13 @@ struct TrussState {
     }
 
     // After some blocks, in their order, have changed.
-    void group(const std::vector<std::size_t>& changed) {
+    void group(const TrussMesh& mesh, const std::vector<std::size_t>& changed) {
         std::size_t last = groups.size();
         for (const std::size_t b : changed)
-            if (b / TrussMesh::group_size != last) group(last = b / TrussMesh::group_size);
+            if (b / TrussMesh::group_size != last) group(mesh, last = b / TrussMesh::group_size);
+        around = mesh.anchors;
+        for (const BlockGroup& of : groups)
+            around = around.with(of.box);
     }
 
     // Has an obstacle drawn any node out beyond the free length of its truss? Such a node may return by itself.
@@ -105,18 +108,11 @@ struct TrussState {
         block[b].z = mesh.block[b].node_z;
         block[b].box = mesh.node_box[b];
     }
-    void group(std::size_t g) {
+    void group(const TrussMesh& mesh, std::size_t g) {
         groups[g] = {};
-        const std::size_t first = g * TrussMesh::group_size,
-                          end = std::min(first + TrussMesh::group_size, block.size());
-        for (std::size_t b = first; b < end; ++b)
+        const std::size_t first = g * TrussMesh::group_size;
+        for (std::size_t b = first; b < mesh.end_of_group(g); ++b)
             groups[g].add(block[b], b == first);
-    }
-    // While nothing touches.
-    void put_around(const TrussMesh& mesh) {
-        around = mesh.anchors;
-        for (const BlockGroup& of : groups)
-            around = around.with(of.box);
     }
 };
 
