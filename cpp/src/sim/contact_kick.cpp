@@ -134,7 +134,7 @@ void tire_impulses(const Scene& scene, const std::vector<RigidContact>& contacts
 }
 
 // Solves for the impulses of contacts and their friction on top of the bodies' motion, and kicks the bodies.
-void kick_by_contacts(const Scene& scene, const Column& pressed, std::vector<ContactBody>& bodies,
+void kick_by_contacts(const Scene& scene, const KickedBy& by, std::vector<ContactBody>& bodies,
                       ImpulseSolver& solver, ContactKick& kicked, State& state) {
     const std::size_t units = state.units.size();
     kicked.on_ground.assign(units, {});
@@ -172,7 +172,7 @@ void kick_by_contacts(const Scene& scene, const Column& pressed, std::vector<Con
         for (std::size_t u = 0; u < units; ++u) {
             const Unit& unit = scene.vehicle->units[u];
             BodyState& body = state.units[u].body;
-            const Wrench on_ground = tire_friction(unit, scene.settings, body, motion[u], tire[u]);
+            const Wrench on_ground = tire_friction(unit, scene.settings, body, by.tires_roll[u], tire[u]);
             on_members[u] =
                 member_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u]);
             kick(unit.body, difference(on_ground, kicked.on_ground[u]), body);
@@ -186,7 +186,7 @@ void kick_by_contacts(const Scene& scene, const Column& pressed, std::vector<Con
         for (std::size_t b = units; b < bodies.size(); ++b)
             kick_body(scene, b, difference(on_members[b], kicked.on_members[b]), state);
         kicked.on_members = on_members;
-        rub_on_ground(scene, bodies, pressed, kicked, state);
+        rub_on_ground(scene, bodies, by.pressed, kicked, state);
         if (state.segments.empty() && !slides(kicked)) break;
         solve();
     }
@@ -195,7 +195,7 @@ void kick_by_contacts(const Scene& scene, const Column& pressed, std::vector<Con
         if (contact.other >= 0)
             kick_body(scene, static_cast<std::size_t>(contact.other), wrench_on_other(contact), state);
     }
-    bring_to_rest(scene, friction_limits(scene, pressed, kicked), state);
+    bring_to_rest(scene, friction_limits(scene, by.pressed, kicked), state);
 }
 
 // `impulse` on the unit, friction included.
@@ -273,19 +273,19 @@ std::vector<ContactBody> contact_bodies(const Scene& scene, const State& state) 
     return bodies;
 }
 
-ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> contacts, const Column& pressed,
+ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> contacts, const KickedBy& by,
                              State& state) {
-    if (contacts.empty() && pressed.empty()) return {};
+    if (contacts.empty() && by.pressed.empty()) return {};
     ContactKick kicked{std::move(contacts), {}, {}, {}};
     std::vector<ContactBody> bodies = contact_bodies(scene, state);
     ImpulseSolver solver(kicked.contacts, bodies, scene.reference_speed());
-    kick_by_contacts(scene, pressed, bodies, solver, kicked, state);
+    kick_by_contacts(scene, by, bodies, solver, kicked, state);
     return kicked;
 }
 
 ContactKick kick_towards_closed_joints(const Scene& scene, double dt, std::vector<RigidContact> contacts,
-                                       const Column& pressed, State& state) {
-    if (scene.joints.empty()) return kick_by_contacts(scene, std::move(contacts), pressed, state);
+                                       const KickedBy& by, State& state) {
+    if (scene.joints.empty()) return kick_by_contacts(scene, std::move(contacts), by, state);
     std::vector<BodyState> start;
     for (std::size_t b = 0; b < body_count(state); ++b)
         start.push_back(body_state(state, b));
@@ -298,7 +298,7 @@ ContactKick kick_towards_closed_joints(const Scene& scene, double dt, std::vecto
     for (int round = 0; round < most_rounds; ++round) {
         for (std::size_t b = 0; b < start.size(); ++b)
             body_state(state, b) = start[b];
-        kick_by_contacts(scene, pressed, bodies, solver, kicked, state);
+        kick_by_contacts(scene, by, bodies, solver, kicked, state);
         const double gap = correct_targets(scene, state, dt, kicked.contacts);
         if (gap <= tolerance::joint_gap || gap >= last) break;
         last = gap;

@@ -187,10 +187,18 @@ void impact_at_once(const Scene& scene, Stage stage, double reach, std::vector<R
     if (!start) keep(scene, state, impact);
     const std::vector<Twist> before = motions(scene, state);
     const ContactKick kicked =
-        kick_by_contacts(scene, std::move(contacts), Column(state.segments.size()), state);
+        kick_by_contacts(scene, std::move(contacts), {Column(state.segments.size()), before}, state);
     add_impulses(scene, state, kicked, impact.impulses, impact.joint_impulses);
     book_contacts(scene, kicked, before, motions(scene, state), state);
     if (start) keep(scene, state, impact);
+}
+
+std::vector<Twist> together(std::vector<Twist> motions, double share, const std::vector<Twist>& with) {
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+        motions[i].velocity += share * with[i].velocity;
+        motions[i].angular_velocity += share * with[i].angular_velocity;
+    }
+    return motions;
 }
 
 void note_depth(const std::vector<RigidContact>& contacts, StepStatistics& statistics) {
@@ -224,12 +232,17 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
         trial.impact_after = time_to_impact(bodies, contacts);
     if (trial.impact_within()) return;
     set_lasting_targets(stage, trial.dt, trial.impulses, bodies, lasting);
+    // Tyres roll at the motions at the ends of the step: at the later one as contacts will have made it, taken to do
+    // what they did before the drift.
+    const std::vector<Twist> pushed = motions(scene, state);
     const ContactKick kicked =
         stage == Stage::before_drift
-            ? kick_towards_closed_joints(scene, trial.dt, std::move(lasting), pressed, state)
-            : kick_by_contacts(scene, std::move(lasting), pressed, state);
+            ? kick_towards_closed_joints(scene, trial.dt, std::move(lasting), {pressed, before}, state)
+            : kick_by_contacts(scene, std::move(lasting), {pressed, together(pushed, 1.0, trial.by_contacts)},
+                               state);
     add_impulses(scene, state, kicked, trial.impulses, trial.joint_impulses);
     const std::vector<Twist> after = motions(scene, state);
+    if (stage == Stage::before_drift) trial.by_contacts = together(after, -1.0, pushed);
     book_forces(scene, before, after, half, state);
     book_contacts(scene, kicked, before, after, state);
 

@@ -8,9 +8,9 @@
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
-#include "birm3d/kernels/tires.hpp"
 #include "birm3d/sim/bodies.hpp"
 #include "birm3d/sim/obstacles.hpp"
+#include "birm3d/sim/outcome.hpp"
 #include "birm3d/sim/panel_dents.hpp"
 #include "birm3d/sim/step_limits.hpp"
 #include "birm3d/sim/structure_course.hpp"
@@ -20,84 +20,6 @@ namespace birm3d {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-bool touches(const State& state) {
-    return std::any_of(state.units.begin(), state.units.end(),
-                       [](const UnitState& unit) { return unit.skin.normal_force > 0.0; });
-}
-
-// From the nearest point of a convex body around the shape to `p`, own axes.
-Vec3 from_hull(const Shape& shape, const Box& box, const Vec3& p) {
-    if (const auto* plane = std::get_if<HalfSpace>(&shape))
-        return std::max(0.0, plane->gap(p)) * plane->normal;
-    const Vec3 from = p - box.center;
-    return from - from.cwiseMax(-box.half).cwiseMin(box.half);
-}
-
-// Around all that is joined to obstacle `i`, its own axes.
-Box box_of_structure(const Scene& scene, std::size_t i) {
-    const Obstacle& first = scene.obstacles[i];
-    Box box = bounds(first.shape);
-    for (std::size_t j = i + 1; j < scene.obstacles.size() && scene.obstacles[j].structure == i; ++j) {
-        // Segments follow each other along y.
-        const Box own = bounds(scene.obstacles[j].shape);
-        const double shift = first.rotation.col(1).dot(scene.obstacles[j].position - first.position);
-        const double low = std::min(box.center.y() - box.half.y(), shift + own.center.y() - own.half.y());
-        const double high = std::max(box.center.y() + box.half.y(), shift + own.center.y() + own.half.y());
-        box.center.y() = 0.5 * (low + high), box.half.y() = 0.5 * (high - low);
-    }
-    return box;
-}
-
-// Moving away from every element, and either faster than any turning could bring a point back or already out of its
-// reach. On a straight path what recedes goes on receding. From a segment that slides and will stop it recedes both as
-// that moves now and as it will stand.
-bool has_left(const Scene& scene, const State& state) {
-    for (std::size_t u = 0; u < state.units.size(); ++u) {
-        const Unit& unit = scene.vehicle->units[u];
-        const BodyState& body = state.units[u].body;
-        const double turning = angular_velocity(unit.body, body).norm() * unit.trusses.reach;
-        for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
-            const Obstacle& element = scene.obstacles[i];
-            if (element.structure != i) continue;
-            const Pose pose = pose_of(scene, i, state);
-            const Placement seen = placement(pose, body);
-            const Vec3 from = from_hull(element.shape, box_of_structure(scene, i), seen.position);
-            const double distance = from.norm();
-            if (!(distance > 0.0)) return false;
-            const Vec3 direction = from / distance;
-            double away = (pose.rotation.transpose() * body.velocity).dot(from) / distance;
-            if (i < state.segments.size()) {
-                const Vec3 segment = pose.rotation.transpose() * state.segments[i].velocity;
-                away -= std::max(0.0, segment.dot(direction)) +
-                        fastest_point(scene.barrier->segments[i], state.segments[i]) - segment.norm();
-            }
-            if (!(away > 0.0 && (away >= turning || distance > unit.trusses.reach))) return false;
-        }
-    }
-    return true;
-}
-
-// Is the vehicle still lifting a wheel from the ground, or tipped over and not yet at rest?
-bool tips(const Scene& scene, const State& state) {
-    if (!scene.settings.ground || scene.settings.gravity == 0.0) return false;
-    constexpr double tipped = 0.7;  // cosine of the up axis to the vertical: about 45 degrees
-    std::vector<RigidContact> wheels;
-    for (std::size_t u = 0; u < state.units.size(); ++u) {
-        const BodyState& body = state.units[u].body;
-        const Unit& unit = scene.vehicle->units[u];
-        if (unit.wheels.empty()) continue;
-        if ((body.orientation * Vec3::UnitZ()).z() < tipped) return true;
-        wheels.clear();
-        find_tire_contacts(unit, u, body, wheels);
-        const Twist motion = twist(unit.body, body);
-        for (const RigidContact& wheel : wheels)
-            if (wheel.gap > tolerance::lifted_wheel &&
-                (motion.velocity + motion.angular_velocity.cross(wheel.arm)).z() > 0.0)
-                return true;
-    }
-    return false;
-}
 
 // Mean velocity of the pushing nodes along their normals, weighted by their forces (m/s); negative =
 // approaching, zero where nothing pushes.
@@ -163,14 +85,6 @@ double time_to_release(const Scene& scene, const State& state) {
     return latest;
 }
 
-// Segments that friction can stop have stopped.
-bool segments_rest(const Scene& scene, const State& state) {
-    if (state.segments.empty() || scene.settings.gravity == 0.0 ||
-        scene.barrier->free_standing->ground_friction == 0.0)
-        return true;
-    return fastest_segment(scene, state) == 0.0;
-}
-
 // A step at whose end the next segment that slides straight on, untouched, comes to rest (s): its way is exact then.
 double time_to_stop(const Scene& scene, const State& state) {
     double earliest = infinity;
@@ -196,13 +110,6 @@ double on_ladder(double dt) {
 // estimates: longest step at which they keep up with the tolerance (s).
 double longest_step(const Settings& settings) {
     return tolerance::longest_step * std::sqrt(std::min(1.0, settings.tolerance / Settings{}.tolerance));
-}
-
-bool at_rest(const Scene& scene, const State& state) {
-    double start = 0.0;
-    for (const Unit& unit : scene.vehicle->units)
-        start += 0.5 * unit.body.mass * scene.approach.speed * scene.approach.speed;
-    return state.energies.kinetic + state.energies.stored < 1e-6 * start;
 }
 
 }  // namespace
@@ -263,17 +170,17 @@ double Simulation::remaining() const {
 }
 
 void Simulation::take(Trial& trial) {
+    const bool open = scene_.barrier && !state_.decided;
+    if (open) list_bodies(state_, before_);
+    const double released = open ? std::min(time_to_release(scene_, state_), trial.dt) : 0.0;
     accept(scene_, trial, state_);
     recorder_.add(scene_, trial);
     if (!std::isfinite(state_.energies.total()))
         throw std::runtime_error("the state is no longer finite at t = " + to_text(state_.time) +
                                  " s, step " + to_text(trial.dt) + " s");
-    if (!state_.decided && scene_.barrier && state_.touched &&
-        ((!touches(state_) && has_left(scene_, state_) && !tips(scene_, state_) &&
-          segments_rest(scene_, state_)) ||
-         at_rest(scene_, state_))) {
+    if (open && state_.touched && is_decided(scene_, state_)) {
         state_.decided = true;
-        state_.decided_at = state_.time;
+        state_.decided_at = time_of_decision(scene_, before_, released, trial.dt, trial.state);
     }
 }
 

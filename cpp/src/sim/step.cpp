@@ -225,6 +225,7 @@ void begin(const State& from, double dt, Trial& trial) {
     trial.error = 0.0;
     trial.critical_step = trial.impact_after = infinity;
     trial.at_start.happened = trial.at_end.happened = false;
+    trial.by_contacts.assign(body_count(from), Twist{});
     trial.seen.clear();
     for (std::size_t u = 0; u < from.units.size(); ++u) {
         static_cast<UnitMotion&>(trial.state.units[u]) = from.units[u];

@@ -113,6 +113,9 @@ inline constexpr double tail_duration = 0.02;
 // pitch yet (m). Small: every hop after an impact makes the run longer.
 inline constexpr double lifted_wheel = 0.1;
 
+// The instant at which the outcome of a run is decided is found to within this (s).
+inline constexpr double decision_resolution = 1e-6;
+
 // A run without a duration ends here at the latest (s).
 inline constexpr double longest_event = 5.0;
 

@@ -31,15 +31,20 @@ Twist relative_motion(const Scene& scene, const State& state, std::size_t unit, 
 
 std::vector<ContactBody> contact_bodies(const Scene& scene, const State& state);
 
-// Solves for the impulses of contacts and their friction on top of the bodies' motion, and kicks the bodies. `pressed`:
-// (segments) with what else they press on the ground (N s).
-ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> contacts, const Column& pressed,
+// What contacts act on, beside the bodies' motion.
+struct KickedBy {
+    const Column& pressed;              // (segments) with what else they press on the ground (N s)
+    std::span<const Twist> tires_roll;  // (units) the motions at which tyres roll and slide
+};
+
+// Solves for the impulses of contacts and their friction on top of the bodies' motion, and kicks the bodies.
+ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> contacts, const KickedBy& by,
                              State& state);
 
 // The same before a drift of dt, so that joints are closed after it (Ryckaert, Ciccotti and Berendsen, J. Comput.
 // Phys. 23, 1977, p. 327; with velocities that agree after it: Andersen, J. Comput. Phys. 52, 1983, p. 24).
 ContactKick kick_towards_closed_joints(const Scene& scene, double dt, std::vector<RigidContact> contacts,
-                                       const Column& pressed, State& state);
+                                       const KickedBy& by, State& state);
 
 void add_impulses(const Scene& scene, const State& state, const ContactKick& kicked,
                   std::vector<ContactImpulses>& sums, std::vector<Wrench>& joints);

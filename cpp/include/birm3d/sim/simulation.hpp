@@ -64,6 +64,7 @@ class Simulation {
     Scene scene_;
     State state_;
     Trial trial_;
+    std::vector<BodyState> before_;  // the step at hand; only memory
     Recorder recorder_;
 };
 

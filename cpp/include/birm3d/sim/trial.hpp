@@ -75,6 +75,7 @@ struct Trial {
     std::vector<BlockSet> stale;            // (units) blocks that may differ from the state's
     std::vector<ContactImpulses> impulses;  // (units) of lasting contacts, even over the step
     std::vector<Wrench> joint_impulses;     // (joints) the same, on the leading unit, about the joint
+    std::vector<Twist> by_contacts;         // (bodies) by how much these changed motions before the drift
     Impact at_start, at_end;
     std::vector<std::size_t> seen;   // obstacles that blocks of nodes had in reach, once for each unit
     std::vector<NearObstacle> near;  // for skin_forces: reused, so that a step allocates nothing

@@ -1,0 +1,31 @@
+// When the outcome of a run is known.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "birm3d/sim/scene.hpp"
+
+namespace birm3d {
+
+// Does any node push?
+bool touches(const State& state);
+
+// Moving away from every element, and either faster than any turning could bring a point back or already out of its
+// reach. On a straight path what recedes goes on receding. From a segment that slides and will stop it recedes both as
+// that moves now and as it will stand.
+bool has_left(const Scene& scene, const State& state);
+
+// Has the vehicle left the barrier, its wheels not rising and what slides at rest? Or has all come to rest?
+bool is_decided(const Scene& scene, const State& state);
+
+// Units, then segments.
+void list_bodies(const State& state, std::vector<BodyState>& bodies);
+
+// Of a step of dt at whose end the outcome is decided: the instant from which it was (s), within the step, so that it does
+// not hang on how long that is. `before`: the bodies at the start; nothing pushes from `released` on (s after the start);
+// `now`: the state at the end, whose bodies are moved about meanwhile.
+double time_of_decision(const Scene& scene, std::span<const BodyState> before, double released, double dt,
+                        State& now);
+
+}  // namespace birm3d
