@@ -281,4 +281,6 @@ def test_how_the_run_ended(duration: float | None, reason: str) -> None:
     if duration is None:  # the wall pushed until then
         assert math.isclose(_core.tail_duration, 0.02)
         last = result.time[np.flatnonzero(result.barrier_normal_force)[-1]]
-        assert last <= result.time[-1] - 0.02 + 1e-4
+        # The load of the last step, of a few tenths of a ms, goes straight to its end; it is over where its
+        # course is zero.
+        assert last <= result.time[-1] - 0.02 + 5e-4

@@ -90,6 +90,20 @@ BIRM3D_IN_LANE_LOOP bool any_matters(const PanelNodes& nodes, const SeenColumns&
     return any_above(where_on(nodes, lesser(below, so_far), -infinitely_far, i), least);
 }
 
+// What the edges of the panel add to how the depth changes as the post turns about e: nodes that hang on one hang beside
+// the post wherever that goes.
+BIRM3D_IN_LANE_LOOP Row at_edges(const DentNumbers& d, const Standing& n, const Hanging& h) {
+    const Row zero = 0.0, one = 1.0, s = h.slope.slope;
+    const auto at_edge = [&](const Row& of_high, const Row& of_low, const Row& of_neither) {
+        return where_above(h.arc, h.highest, of_high, where_above(h.lowest, h.arc, of_low, of_neither));
+    };
+    const Row within = at_edge(d.high - n.w, n.w - d.low, zero);
+    const Row part = lesser(greater(0.5 + within * (0.5 / edge_width), zero), one);
+    const Row share = at_edge(part, part, zero);
+    const Row edge = at_edge(d.high_at, d.low_at, zero), side = at_edge(-1.0 * s, s, s);
+    return share * (side * (n.l - edge) + h.rise.across * (n.l - edge));
+}
+
 // Which nodes hang on the dent (1, else 0)?
 BIRM3D_IN_LANE_LOOP Row find_hanging(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns& seen,
                                      const Row& gap, std::size_t i) {
@@ -107,7 +121,7 @@ void find_dent(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns&
 double find_dent_gap(const DentNumbers& d, const PanelNodes& nodes);
 
 void find_dent(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns& seen) {
-    const Row zero = 0.0, one = 1.0, top = d.top, top_leans = d.top_rate * d.per_stretch;
+    const Row zero = 0.0, top = d.top, top_leans = d.top_rate * d.per_stretch;
     for (std::size_t i = 0; i < lanes; i += row_length) {
         zero.store(seen.hangs + i);
         const Standing n = stand(d, nodes, i);
@@ -141,15 +155,8 @@ void find_dent(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns&
         tell(seen.pz, d.oz + (h.at * d.ez + h.a * d.wz + n.up * d.lz));
 
         // How the depth changes as the post turns about e, with the dent, and as its axis leans along e.
-        const auto at_edge = [&](const Row& of_high, const Row& of_low, const Row& of_neither) {
-            return where_above(h.arc, h.highest, of_high, where_above(h.lowest, h.arc, of_low, of_neither));
-        };
-        const Row within = at_edge(d.high - n.w, n.w - d.low, zero);
-        const Row part = lesser(greater(0.5 + within * (0.5 / edge_width), zero), one);
-        const Row share = at_edge(part, part, zero);
-        const Row edge = at_edge(d.high_at, d.low_at, d.low_at), side = at_edge(-1.0 * s, s, s);
-        const Row about = share * (side * (n.l - edge) - h.rise.across * edge) -
-                          (1.0 - share) * h.rise.across * n.l + fl * n.w;
+        Row about = fl * n.w - h.rise.across * n.l;
+        if (any_above(h.arc, h.highest) || any_above(h.lowest, h.arc)) about = about + at_edges(d, n, h);
         const Row leaning = d.stretch * d.stretch * fe * n.up +
                             d.stretch * d.tilt * (h.rise.stretch - less * d.radius) +
                             where_above(n.l, top, (fe * d.tilt + s) * top_leans, zero);

@@ -56,14 +56,16 @@ double inverse_effective_mass(const RigidContact& contact, std::span<const Conta
     return sum;
 }
 
-ImpulseSolver::ImpulseSolver(std::span<const RigidContact> contacts, std::span<const ContactBody> bodies,
-                             double speed_scale)
-    : tolerance_(tolerance::contact_velocity * speed_scale),
-      motion_(Eigen::VectorXd::Zero(6 * static_cast<Index>(bodies.size()))) {
-    roots_.reserve(bodies.size());
+void ImpulseSolver::prepare(std::span<const RigidContact> contacts, std::span<const ContactBody> bodies,
+                            double speed_scale) {
+    tolerance_ = tolerance::contact_velocity * speed_scale;
+    motion_.setZero(6 * static_cast<Index>(bodies.size()));
+    factorised_ = false;
+    active_.clear();
+    roots_.clear();
+    rows_.clear();
     for (const ContactBody& body : bodies)
         roots_.push_back({std::sqrt(body.inverse_mass), root_of(body), body.level});
-    rows_.reserve(contacts.size());
     for (const RigidContact& contact : contacts) {
         Row row{contact.body, contact.other, {}, Vec6::Zero()};
         row.held = contact.held;
@@ -279,7 +281,10 @@ void ImpulseSolver::move_by(double Row::* impulses, Eigen::VectorXd& motion) con
 }
 
 void solve_impulses(std::span<RigidContact> contacts, std::span<ContactBody> bodies, double speed_scale) {
-    if (!contacts.empty()) ImpulseSolver(contacts, bodies, speed_scale).solve(contacts, bodies);
+    if (contacts.empty()) return;
+    ImpulseSolver solver;
+    solver.prepare(contacts, bodies, speed_scale);
+    solver.solve(contacts, bodies);
 }
 
 }  // namespace birm3d

@@ -44,8 +44,8 @@ void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& sta
     }
 }
 
-Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState& state, const Twist& motion,
-                     std::span<const double> normal_impulses) {
+Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState& state,
+                     const TireMotion& motion, std::span<const double> normal_impulses) {
     Wrench sum;
     const double mu = settings.mu_tire;
     double total = 0.0;
@@ -57,9 +57,16 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
     // Speed that a friction coefficient of 1 would take from a wheel: twice that of the mass centre, as the
     // body also turns.
     const double speed_change = 2.0 * total * unit.body.inverse_mass;
+    // At small slip the impulse is C N dt * v_across / v_along: v_along is held where that reverses nothing.
+    const double slowest = settings.cornering_stiffness * speed_change;
+    const auto velocity_at = [&](const Vec3& arm) -> Vec3 {
+        const Vec3 now = motion.now.velocity + motion.now.angular_velocity.cross(arm);
+        const Vec3 then = motion.at_end.velocity + motion.at_end.angular_velocity.cross(arm);
+        return now + std::clamp(now.norm() / slowest - 1.0, 0.0, 1.0) * (then - now);
+    };
 
     if (settings.tire_model == TireModel::skid) {
-        const Vec3 velocity(motion.velocity.x(), motion.velocity.y(), 0.0);
+        const Vec3 moving = velocity_at(Vec3::Zero()), velocity(moving.x(), moving.y(), 0.0);
         const double speed = velocity.norm();
         const Vec3 heading = Vec3(R(0, 0), R(1, 0), 0.0).normalized();
         const double across = std::abs(heading.x() * velocity.y() - heading.y() * velocity.x());
@@ -79,13 +86,11 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
     if (level < 1e-9) return sum;
     const Vec3 across = across_raw / level;
     const Vec3 along(across.y(), -across.x(), 0.0);
-    // At small slip the impulse is C N dt * v_across / v_along: v_along is held where that reverses nothing.
-    const double slowest = settings.cornering_stiffness * speed_change;
     const double brakes = settings.braking, steers = std::sqrt(1.0 - brakes * brakes);
     for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
         if (normal_impulses[i] == 0.0) continue;
         const Vec3 arm = lowest_point(unit.wheels[i], R);
-        const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(arm);
+        const Vec3 velocity = velocity_at(arm);
         const double tan_slip = velocity.dot(across) / std::max(std::abs(velocity.dot(along)), slowest);
         const double share = brush(settings.cornering_stiffness * tan_slip / (3.0 * mu));
         // What brakes slides against the velocity; what is left of the friction steers.

@@ -21,6 +21,13 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+void set_motions(const State& state, std::vector<ContactBody>& bodies) {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const BodyState& now = body_state(state, b);
+        bodies[b].motion = {now.velocity, bodies[b].inverse_inertia * now.angular_momentum};
+    }
+}
+
 bool slides(const ContactKick& kicked) {
     const auto is_there = [](const Wrench& friction) { return !friction.force.isZero(0.0); };
     return std::any_of(kicked.on_ground.begin(), kicked.on_ground.end(), is_there) ||
@@ -133,13 +140,15 @@ void tire_impulses(const Scene& scene, const std::vector<RigidContact>& contacts
         if (contact.source == ContactSource::tire) tire[contact.body][contact.index] += contact.impulse;
 }
 
-// Solves for the impulses of contacts and their friction on top of the bodies' motion, and kicks the bodies.
-void kick_by_contacts(const Scene& scene, const KickedBy& by, std::vector<ContactBody>& bodies,
-                      ImpulseSolver& solver, ContactKick& kicked, State& state) {
+// The motions at which they slide are those at hand; `memory.solver` is prepared.
+void settle_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
+    ContactKick& kicked = memory.kick;
+    std::vector<ContactBody>& bodies = memory.bodies;
     const std::size_t units = state.units.size();
     kicked.on_ground.assign(units, {});
     kicked.on_members.assign(bodies.size(), {});
-    const std::vector<Twist> motion = motions(scene, state);
+    list_motions(state, bodies, memory.pushed);
+    const std::vector<Twist>& motion = memory.pushed;
     // What a round before this one has found is where the search begins.
     kicked.on_base.resize(state.segments.size());
     for (std::size_t i = 0; i < kicked.on_base.size(); ++i)
@@ -149,30 +158,30 @@ void kick_by_contacts(const Scene& scene, const KickedBy& by, std::vector<Contac
         const Twist& other = motion[static_cast<std::size_t>(contact.other)];
         contact.sliding_surface = other.velocity + other.angular_velocity.cross(contact.other_arm);
     }
-    std::vector<Column> tire(units);
+    std::vector<Column>& tire = memory.tire;
+    tire.resize(units);
     const auto solve = [&] {
-        for (std::size_t b = 0; b < bodies.size(); ++b) {
-            const BodyState& now = body_state(state, b);
-            bodies[b].motion = {now.velocity, bodies[b].inverse_inertia * now.angular_momentum};
-        }
-        solver.solve(kicked.contacts, bodies);
+        set_motions(state, bodies);
+        memory.solver.solve(kicked.contacts, bodies);
         tire_impulses(scene, kicked.contacts, tire);
     };
     solve();
     // Friction follows from the normal impulses and tips the body, which changes them: to and fro, until they stay.
     constexpr int most_rounds = 30;
-    Column last;
-    std::vector<Wrench> last_on_base;
+    memory.last.clear();
+    memory.on_base.clear();
     for (int round = 0; round < most_rounds; ++round) {
-        const bool pushes_stay = stayed(kicked.contacts, last);
-        const bool frictions_stay = round > 0 && stayed(kicked.on_base, last_on_base);
+        const bool pushes_stay = stayed(kicked.contacts, memory.last);
+        const bool frictions_stay = round > 0 && stayed(kicked.on_base, memory.on_base);
         if (pushes_stay && (frictions_stay || state.segments.empty())) break;
         // Of both sides of closed trusses.
-        std::vector<Wrench> on_members(bodies.size());
+        std::vector<Wrench>& on_members = memory.on_members;
+        on_members.assign(bodies.size(), {});
         for (std::size_t u = 0; u < units; ++u) {
             const Unit& unit = scene.vehicle->units[u];
             BodyState& body = state.units[u].body;
-            const Wrench on_ground = tire_friction(unit, scene.settings, body, by.tires_roll[u], tire[u]);
+            const Wrench on_ground =
+                tire_friction(unit, scene.settings, body, {motion[u], by.at_end[u]}, tire[u]);
             on_members[u] =
                 member_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u]);
             kick(unit.body, difference(on_ground, kicked.on_ground[u]), body);
@@ -242,11 +251,23 @@ Twist mean(const Twist& a, const Twist& b) {
     return {0.5 * (a.velocity + b.velocity), 0.5 * (a.angular_velocity + b.angular_velocity)};
 }
 
-std::vector<Twist> motions(const Scene& scene, const State& state) {
-    std::vector<Twist> result;
-    for (std::size_t b = 0; b < body_count(state); ++b)
-        result.push_back(twist(rigid_body(scene, b), body_state(state, b)));
-    return result;
+void list_bodies(const Scene& scene, const State& state, std::vector<ContactBody>& bodies) {
+    bodies.clear();
+    for (std::size_t b = 0; b < body_count(state); ++b) {
+        const RigidBody& body = rigid_body(scene, b);
+        bodies.push_back({body.inverse_mass,
+                          inverse_inertia_in_world(body, body_state(state, b)),
+                          {},
+                          b >= state.units.size()});
+    }
+    set_motions(state, bodies);
+}
+
+void list_motions(const State& state, std::vector<ContactBody>& bodies, std::vector<Twist>& motions) {
+    set_motions(state, bodies);
+    motions.clear();
+    for (const ContactBody& body : bodies)
+        motions.push_back(body.motion);
 }
 
 Twist relative_motion(const Scene& scene, const State& state, std::size_t u, std::size_t obstacle,
@@ -262,48 +283,37 @@ Twist relative_motion(const Scene& scene, const State& state, std::size_t u, std
     return motion;
 }
 
-std::vector<ContactBody> contact_bodies(const Scene& scene, const State& state) {
-    std::vector<ContactBody> bodies;
-    for (std::size_t b = 0; b < body_count(state); ++b) {
-        const RigidBody& body = rigid_body(scene, b);
-        const BodyState& now = body_state(state, b);
-        bodies.push_back({body.inverse_mass, inverse_inertia_in_world(body, now), twist(body, now),
-                          b >= state.units.size()});
+void kick_by_contacts(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
+    if (memory.kick.contacts.empty() && by.pressed.empty()) {
+        memory.kick.on_ground.clear();
+        memory.kick.on_members.clear();
+        memory.kick.on_base.clear();
+        return;
     }
-    return bodies;
+    memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
+    memory.kick.on_base.clear();
+    settle_impulses(scene, by, memory, state);
 }
 
-ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> contacts, const KickedBy& by,
-                             State& state) {
-    if (contacts.empty() && by.pressed.empty()) return {};
-    ContactKick kicked{std::move(contacts), {}, {}, {}};
-    std::vector<ContactBody> bodies = contact_bodies(scene, state);
-    ImpulseSolver solver(kicked.contacts, bodies, scene.reference_speed());
-    kick_by_contacts(scene, by, bodies, solver, kicked, state);
-    return kicked;
-}
-
-ContactKick kick_towards_closed_joints(const Scene& scene, double dt, std::vector<RigidContact> contacts,
-                                       const KickedBy& by, State& state) {
-    if (scene.joints.empty()) return kick_by_contacts(scene, std::move(contacts), by, state);
+void kick_towards_closed_joints(const Scene& scene, double dt, const KickedBy& by, KickMemory& memory,
+                                State& state) {
+    if (scene.joints.empty()) return kick_by_contacts(scene, by, memory, state);
+    memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
+    memory.kick.on_base.clear();
     std::vector<BodyState> start;
     for (std::size_t b = 0; b < body_count(state); ++b)
         start.push_back(body_state(state, b));
-    ContactKick kicked{std::move(contacts), {}, {}, {}};
-    std::vector<ContactBody> bodies = contact_bodies(scene, state);
-    ImpulseSolver solver(kicked.contacts, bodies, scene.reference_speed());
     // Each round leaves about omega dt of the gap.
     constexpr int most_rounds = 20;
     double last = infinity;
     for (int round = 0; round < most_rounds; ++round) {
         for (std::size_t b = 0; b < start.size(); ++b)
             body_state(state, b) = start[b];
-        kick_by_contacts(scene, by, bodies, solver, kicked, state);
-        const double gap = correct_targets(scene, state, dt, kicked.contacts);
+        settle_impulses(scene, by, memory, state);
+        const double gap = correct_targets(scene, state, dt, memory.kick.contacts);
         if (gap <= tolerance::joint_gap || gap >= last) break;
         last = gap;
     }
-    return kicked;
 }
 
 void add_impulses(const Scene& scene, const State& state, const ContactKick& kicked,

@@ -22,11 +22,13 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-std::vector<RigidContact> find_rigid_contacts(const Scene& scene, const State& state, double dt,
-                                              const StepOptions& options) {
-    std::vector<RigidContact> contacts;
-    std::vector<PlacedShape> placed;
-    std::vector<std::size_t> about;
+// To memory.contacts.
+void find_rigid_contacts(const Scene& scene, const State& state, double dt, const StepOptions& options,
+                         KickMemory& memory) {
+    std::vector<RigidContact>& contacts = memory.contacts;
+    std::vector<PlacedShape>& placed = memory.placed;
+    std::vector<std::size_t>& about = memory.about;
+    contacts.clear();
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Unit& unit = scene.vehicle->units[u];
         const BodyState& body = state.units[u].body;
@@ -62,7 +64,6 @@ std::vector<RigidContact> find_rigid_contacts(const Scene& scene, const State& s
     for (std::size_t j = 0; j < joints.size(); ++j)
         find_joint_rows(joints[j], j, body_state(state, joints[j].leading),
                         body_state(state, joints[j].trailing), contacts);
-    return contacts;
 }
 
 bool approaches_hard(const RigidContact& contact, std::span<const ContactBody> bodies) {
@@ -85,31 +86,37 @@ void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpuls
     }
     std::erase_if(contacts, [&](const RigidContact& contact) {
         if (contact.held) return false;
-        // A tyre that carried load before the drift still touches after it, whatever the turn did to its gap.
-        const bool loaded =
-            contact.source == ContactSource::tire && before_drift[contact.body].tire[contact.index] > 0.0;
-        const bool touching = contact.gap <= tolerance::touching_gap || loaded;
-        return !touching || approaches_hard(contact, bodies);
+        // A tyre that carried load before the drift still touches after it, whatever the turn did to its gap, and does not
+        // rebound from what the forces of the step press it with.
+        if (contact.source == ContactSource::tire && before_drift[contact.body].tire[contact.index] > 0.0)
+            return false;
+        return contact.gap > tolerance::touching_gap || approaches_hard(contact, bodies);
     });
 }
 
-// Impacts, Eq. 1: leaves the contacts that take part, none where nothing approaches hard. Points that arrive
-// together by all but a hair share one impact, or their order would be chance: the later one comes, the faster it may
-// still approach afterwards, up to any speed a hair away. So the outcome is a continuous function of the gaps.
-void set_impact_targets(double restitution, double reach, std::span<const ContactBody> bodies,
-                        std::vector<RigidContact>& contacts) {
+// Speed of the hardest impact within `reach` (s), zero without any (m/s).
+double hardest_impact(double reach, std::span<const ContactBody> bodies,
+                      const std::vector<RigidContact>& contacts) {
     double fastest = 0.0;
     for (const RigidContact& contact : contacts) {
         const double v = separation_velocity(contact, bodies);
         if (approaches_hard(contact, bodies) && contact.gap <= std::max(tolerance::touching_gap, -reach * v))
             fastest = std::max(fastest, -v);
     }
+    return fastest;
+}
+
+// Impacts, Eq. 1: leaves the contacts that take part. Points that arrive
+// together by all but a hair share one impact, or their order would be chance: the later one comes, the faster it may
+// still approach afterwards, up to any speed a hair away. So the outcome is a continuous function of the gaps.
+void set_impact_targets(double restitution, double reach, double fastest, std::span<const ContactBody> bodies,
+                        std::vector<RigidContact>& contacts) {
     // Of its gap, what the coming `reach` leaves.
     const auto late = [&](const RigidContact& contact) {
         return std::max(0.0, contact.gap + reach * std::min(0.0, separation_velocity(contact, bodies)));
     };
     std::erase_if(contacts, [&](const RigidContact& contact) {
-        return fastest == 0.0 || (!contact.held && late(contact) >= tolerance::joint_impact_gap);
+        return !contact.held && late(contact) >= tolerance::joint_impact_gap;
     });
     for (RigidContact& contact : contacts) {
         const double v = separation_velocity(contact, bodies);
@@ -120,12 +127,24 @@ void set_impact_targets(double restitution, double reach, std::span<const Contac
     }
 }
 
-// Time until the first contact that approaches hard reaches its surface (s).
-double time_to_impact(std::span<const ContactBody> bodies, const std::vector<RigidContact>& contacts) {
-    double earliest = infinity;
+void note_hard(std::span<const ContactBody> bodies, const std::vector<RigidContact>& contacts,
+               std::vector<char>& hard) {
+    hard.clear();
     for (const RigidContact& contact : contacts)
-        if (contact.gap > tolerance::touching_gap && approaches_hard(contact, bodies))
-            earliest = std::min(earliest, -contact.gap / separation_velocity(contact, bodies));
+        hard.push_back(approaches_hard(contact, bodies) ? 1 : 0);
+}
+
+// Time until the first contact that approaches hard reaches its surface (s). What the forces of the step alone press there
+// within `at_once` rests: an instant of its own for it would tell nothing. `hard`: which came so before.
+double time_to_impact(double at_once, std::span<const ContactBody> bodies,
+                      const std::vector<RigidContact>& contacts, const std::vector<char>& hard) {
+    double earliest = infinity;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const RigidContact& contact = contacts[i];
+        if (!(contact.gap > tolerance::touching_gap) || !approaches_hard(contact, bodies)) continue;
+        const double time = -contact.gap / separation_velocity(contact, bodies);
+        if (hard[i] != 0 || time > at_once) earliest = std::min(earliest, time);
+    }
     return earliest;
 }
 
@@ -176,29 +195,32 @@ void keep(const Scene& scene, const State& state, Impact& impact) {
 }
 
 // An impact takes no time: it stands apart from the forces of the step, in the ledger and in the record.
-void impact_at_once(const Scene& scene, Stage stage, double reach, std::vector<RigidContact> contacts,
-                    Trial& trial) {
-    if (contacts.empty()) return;
+void impact_at_once(const Scene& scene, Stage stage, double reach, Trial& trial) {
     State& state = trial.state;
-    set_impact_targets(scene.settings.restitution, reach, contact_bodies(scene, state), contacts);
-    if (contacts.empty()) return;
+    KickMemory& memory = trial.memory;
+    list_motions(state, memory.bodies, memory.before);
+    const double fastest = hardest_impact(reach, memory.bodies, memory.contacts);
+    if (fastest == 0.0) return;
+    memory.kick.contacts = memory.contacts;
+    set_impact_targets(scene.settings.restitution, reach, fastest, memory.bodies, memory.kick.contacts);
     const bool start = stage == Stage::before_drift;
     Impact& impact = start ? trial.at_start : trial.at_end;
     if (!start) keep(scene, state, impact);
-    const std::vector<Twist> before = motions(scene, state);
-    const ContactKick kicked =
-        kick_by_contacts(scene, std::move(contacts), {Column(state.segments.size()), before}, state);
-    add_impulses(scene, state, kicked, impact.impulses, impact.joint_impulses);
-    book_contacts(scene, kicked, before, motions(scene, state), state);
+    kick_by_contacts(scene, {Column(state.segments.size()), memory.before}, memory, state);
+    add_impulses(scene, state, memory.kick, impact.impulses, impact.joint_impulses);
+    list_motions(state, memory.bodies, memory.after);
+    book_contacts(scene, memory.kick, memory.before, memory.after, state);
     if (start) keep(scene, state, impact);
 }
 
-std::vector<Twist> together(std::vector<Twist> motions, double share, const std::vector<Twist>& with) {
-    for (std::size_t i = 0; i < motions.size(); ++i) {
-        motions[i].velocity += share * with[i].velocity;
-        motions[i].angular_velocity += share * with[i].angular_velocity;
+// a + share b
+void combine(const std::vector<Twist>& a, double share, const std::vector<Twist>& b,
+             std::vector<Twist>& result) {
+    result = a;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        result[i].velocity += share * b[i].velocity;
+        result[i].angular_velocity += share * b[i].angular_velocity;
     }
-    return motions;
 }
 
 void note_depth(const std::vector<RigidContact>& contacts, StepStatistics& statistics) {
@@ -211,42 +233,45 @@ void note_depth(const std::vector<RigidContact>& contacts, StepStatistics& stati
 
 void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Trial& trial) {
     State& state = trial.state;
+    KickMemory& memory = trial.memory;
+    std::vector<ContactBody>& bodies = memory.bodies;
     const double half = 0.5 * trial.dt;
-    const std::vector<RigidContact> contacts = find_rigid_contacts(scene, state, trial.dt, options);
-    if (stage == Stage::before_drift) {
-        // Where impacts are not located, those of the coming step happen now, before anything has passed.
-        impact_at_once(scene, stage, options.locate_impacts ? 0.0 : trial.dt, contacts, trial);
-    } else {
-        note_depth(contacts, state.statistics);
-    }
+    const bool start = stage == Stage::before_drift;
+    list_bodies(scene, state, bodies);
+    find_rigid_contacts(scene, state, trial.dt, options, memory);
+    // Where impacts are not located, those of the coming step happen now, before anything has passed.
+    if (start) impact_at_once(scene, stage, options.locate_impacts ? 0.0 : trial.dt, trial);
+    if (!start) note_depth(memory.contacts, state.statistics);
 
-    const std::vector<Twist> before = motions(scene, state);
+    list_motions(state, bodies, memory.before);
+    note_hard(bodies, memory.contacts, memory.hard);
     const Column pressed = kick_by_forces(scene, stage, half, trial);
-    if (contacts.empty() && pressed.empty()) {
-        book_forces(scene, before, motions(scene, state), half, state);
+    list_motions(state, bodies, memory.pushed);
+    if (memory.contacts.empty() && pressed.empty()) {
+        book_forces(scene, memory.before, memory.pushed, half, state);
         return;
     }
-    std::vector<RigidContact> lasting = contacts;
-    const std::vector<ContactBody> bodies = contact_bodies(scene, state);
-    if (stage == Stage::before_drift && options.locate_impacts)
-        trial.impact_after = time_to_impact(bodies, contacts);
+    if (start && options.locate_impacts)
+        trial.impact_after =
+            time_to_impact(tolerance::at_once * trial.dt, bodies, memory.contacts, memory.hard);
     if (trial.impact_within()) return;
-    set_lasting_targets(stage, trial.dt, trial.impulses, bodies, lasting);
-    // Tyres roll at the motions at the ends of the step: at the later one as contacts will have made it, taken to do
+    memory.kick.contacts = memory.contacts;
+    set_lasting_targets(stage, trial.dt, trial.impulses, bodies, memory.kick.contacts);
+    // Tyres roll as the body moves at the ends of the step: at the later one as contacts will have made it, taken to do
     // what they did before the drift.
-    const std::vector<Twist> pushed = motions(scene, state);
-    const ContactKick kicked =
-        stage == Stage::before_drift
-            ? kick_towards_closed_joints(scene, trial.dt, std::move(lasting), {pressed, before}, state)
-            : kick_by_contacts(scene, std::move(lasting), {pressed, together(pushed, 1.0, trial.by_contacts)},
-                               state);
-    add_impulses(scene, state, kicked, trial.impulses, trial.joint_impulses);
-    const std::vector<Twist> after = motions(scene, state);
-    if (stage == Stage::before_drift) trial.by_contacts = together(after, -1.0, pushed);
-    book_forces(scene, before, after, half, state);
-    book_contacts(scene, kicked, before, after, state);
+    if (start) {
+        kick_towards_closed_joints(scene, trial.dt, {pressed, memory.before}, memory, state);
+    } else {
+        combine(memory.pushed, 1.0, trial.by_contacts, memory.rolling);
+        kick_by_contacts(scene, {pressed, memory.rolling}, memory, state);
+    }
+    add_impulses(scene, state, memory.kick, trial.impulses, trial.joint_impulses);
+    list_motions(state, bodies, memory.after);
+    if (start) combine(memory.after, -1.0, memory.pushed, trial.by_contacts);
+    book_forces(scene, memory.before, memory.after, half, state);
+    book_contacts(scene, memory.kick, memory.before, memory.after, state);
 
-    if (stage == Stage::after_drift) impact_at_once(scene, stage, 0.0, contacts, trial);
+    if (!start) impact_at_once(scene, stage, 0.0, trial);
 }
 
 }  // namespace birm3d

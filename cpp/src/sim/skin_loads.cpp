@@ -84,8 +84,9 @@ void Skin::hand_over() {
     add(shared_);
     Mat6 resistance = Mat6::Zero();
     for (std::size_t k = 0; k < near_.size(); ++k) {
-        ObstacleSums& sums = obstacles_[k];
-        if (sums.seen) trial_.seen.push_back(near_[k].index);
+        const ObstacleSums& sums = obstacles_[k];
+        if (!sums.seen) continue;
+        trial_.seen.push_back(near_[k].index);
         Touch touch;
         touch.obstacle = near_[k].index;
         touch.contact = sums.contact;

@@ -305,7 +305,8 @@ TEST("a solver used again for other motions gives what a new one gives") {
         contacts.back().compliance = 1e-3;
     }
     std::vector<RigidContact> again = contacts;
-    ImpulseSolver solver(again, std::vector{still}, 5.0);
+    ImpulseSolver solver;
+    solver.prepare(again, std::vector{still}, 5.0);
     for (int i = 0; i < 50; ++i) {
         std::vector<ContactBody> a = {still}, b;
         a[0].motion = {5.0 * random.vector(), random.vector()};

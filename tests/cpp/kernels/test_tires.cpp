@@ -31,7 +31,7 @@ double lowest_rim_point(const Wheel& wheel, const Quat& q) {
 // Friction at 1000 N s under each wheel.
 Wrench friction(const Settings& settings, const BodyState& state, const Twist& motion,
                 double normal = 1000.0) {
-    return tire_friction(unit, settings, state, motion, std::vector<double>(4, normal));
+    return tire_friction(unit, settings, state, {motion, motion}, std::vector<double>(4, normal));
 }
 
 }  // namespace

@@ -99,6 +99,9 @@ inline constexpr double touching_gap = 1e-6;
 // wheels lands first would else hang on rounding. Large: points that are still in the air are stopped.
 inline constexpr double joint_impact_gap = 1e-3;
 
+// Share of a step within which what is pressed onto a surface by the step's own forces is taken to rest there.
+inline constexpr double at_once = 0.01;
+
 // Places of a joint on its two bodies may differ by this much at rest (m): what files are rounded to.
 inline constexpr double joint_fit = 1e-3;
 

@@ -46,9 +46,10 @@ double inverse_effective_mass(const RigidContact& contact, std::span<const Conta
 // Solves for the same contacts once or several times, between which only the bodies' motions change.
 class ImpulseSolver {
   public:
-    // `speed_scale`: of the scene (m/s), for the tolerance. Takes targets and places of the contacts, and masses.
-    ImpulseSolver(std::span<const RigidContact> contacts, std::span<const ContactBody> bodies,
-                  double speed_scale);
+    // Takes places and compliances of the contacts, and masses. `speed_scale`: of the scene (m/s), for the tolerance. In
+    // the memory of what was prepared before.
+    void prepare(std::span<const RigidContact> contacts, std::span<const ContactBody> bodies,
+                 double speed_scale);
 
     // Sets each contact's impulse so that from the bodies' motions its separation velocity reaches at least its
     // target, exactly where it is held; brings the motions up to date.
@@ -96,7 +97,7 @@ class ImpulseSolver {
         bool level;
     };
 
-    double tolerance_;         // of velocities (m/s)
+    double tolerance_ = 0.0;   // of velocities (m/s)
     std::vector<Root> roots_;  // (bodies)
     std::vector<Row> rows_;    // (contacts)
     std::vector<std::size_t> active_, kept_;

@@ -26,9 +26,15 @@ namespace birm3d {
 void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& state,
                         std::vector<RigidContact>& contacts);
 
+// The vehicle's motion at hand, and at the end of the step that the half kick stands for: with this, friction follows the
+// trapezoid rule. Where a wheel all but sticks, that would shake it, and the motion at hand counts.
+struct TireMotion {
+    Twist now, at_end;
+};
+
 // Friction that goes with the normal impulses of the wheels (N s): linear and angular impulse about the mass
 // centre, world axes. An impact's friction is as sudden as the impact.
-Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState& state, const Twist& motion,
-                     std::span<const double> normal_impulses);
+Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState& state,
+                     const TireMotion& motion, std::span<const double> normal_impulses);
 
 }  // namespace birm3d

@@ -10,41 +10,34 @@
 
 namespace birm3d {
 
-struct ContactKick {
-    std::vector<RigidContact> contacts;
-    std::vector<Wrench> on_ground;   // (units) friction impulses of tyres
-    std::vector<Wrench> on_members;  // (bodies) of closed trusses
-    std::vector<Wrench> on_base;     // (segments) of the ground
-};
-
 // Where what is lost to friction on an obstacle is booked.
 double& friction_of(const Scene& scene, std::size_t obstacle, Energies& energies);
 
 double power(const Wrench& w, const Twist& motion);
 Twist mean(const Twist& a, const Twist& b);
 
-// (bodies)
-std::vector<Twist> motions(const Scene& scene, const State& state);
+// Units and segments as the solver sees them.
+void list_bodies(const Scene& scene, const State& state, std::vector<ContactBody>& bodies);
+// Their motions, which are brought up to date.
+void list_motions(const State& state, std::vector<ContactBody>& bodies, std::vector<Twist>& motions);
+
 // Of a unit from an obstacle, about the unit's mass centre, world axes: mean of the bodies' motions before and after.
 Twist relative_motion(const Scene& scene, const State& state, std::size_t unit, std::size_t obstacle,
                       std::span<const Twist> before, std::span<const Twist> after);
 
-std::vector<ContactBody> contact_bodies(const Scene& scene, const State& state);
-
-// What contacts act on, beside the bodies' motion.
+// What contacts act on, beside the bodies' motions.
 struct KickedBy {
-    const Column& pressed;              // (segments) with what else they press on the ground (N s)
-    std::span<const Twist> tires_roll;  // (units) the motions at which tyres roll and slide
+    const Column& pressed;          // (segments) with what else they press on the ground (N s)
+    std::span<const Twist> at_end;  // (units) their motions at that end of the step (see TireMotion)
 };
 
-// Solves for the impulses of contacts and their friction on top of the bodies' motion, and kicks the bodies.
-ContactKick kick_by_contacts(const Scene& scene, std::vector<RigidContact> contacts, const KickedBy& by,
-                             State& state);
+// Solves for the impulses of `memory.kick.contacts` and their friction on top of the bodies' motions, and kicks the bodies.
+void kick_by_contacts(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state);
 
 // The same before a drift of dt, so that joints are closed after it (Ryckaert, Ciccotti and Berendsen, J. Comput.
 // Phys. 23, 1977, p. 327; with velocities that agree after it: Andersen, J. Comput. Phys. 52, 1983, p. 24).
-ContactKick kick_towards_closed_joints(const Scene& scene, double dt, std::vector<RigidContact> contacts,
-                                       const KickedBy& by, State& state);
+void kick_towards_closed_joints(const Scene& scene, double dt, const KickedBy& by, KickMemory& memory,
+                                State& state);
 
 void add_impulses(const Scene& scene, const State& state, const ContactKick& kicked,
                   std::vector<ContactImpulses>& sums, std::vector<Wrench>& joints);

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "birm3d/base/tolerances.hpp"
+#include "birm3d/kernels/detect_members.hpp"
+#include "birm3d/kernels/impulse.hpp"
 #include "birm3d/sim/obstacles.hpp"
 #include "birm3d/state/state.hpp"
 
@@ -37,6 +39,30 @@ struct Impact {
     Energies energies;                      // the same
     std::vector<ContactImpulses> impulses;  // (units)
     std::vector<Wrench> joint_impulses;     // (joints) on the leading unit, about the joint (N s, N m s)
+};
+
+// What rigid contacts and joints do at one end of the drift.
+struct ContactKick {
+    std::vector<RigidContact> contacts;
+    std::vector<Wrench> on_ground;   // (units) friction impulses of tyres
+    std::vector<Wrench> on_members;  // (bodies) of closed trusses
+    std::vector<Wrench> on_base;     // (segments) of the ground
+};
+
+// Memory of half kicks, which find it and leave it with nothing of meaning: so that a step allocates nothing.
+struct KickMemory {
+    std::vector<RigidContact> contacts;
+    std::vector<char> hard;  // (contacts) do they approach hard?
+    std::vector<PlacedShape> placed;
+    std::vector<std::size_t> about;
+    std::vector<ContactBody> bodies;
+    std::vector<Twist> before, pushed, rolling, after;  // motions of the bodies
+    ContactKick kick;
+    // Of the search for its impulses.
+    ImpulseSolver solver;
+    std::vector<Column> tire;
+    Column last;
+    std::vector<Wrench> on_members, on_base;
 };
 
 // Some of the blocks of a mesh.
@@ -80,6 +106,7 @@ struct Trial {
     std::vector<std::size_t> seen;   // obstacles that blocks of nodes had in reach, once for each unit
     std::vector<NearObstacle> near;  // for skin_forces: reused, so that a step allocates nothing
     std::vector<Touch> touches;
+    KickMemory memory;
     double error = 0.0;    // estimated velocity error of this step (m/s)
     double critical_step;  // sqrt(3)/omega of the trusses in contact (s)
     double impact_after;   // a rigid impact begins this long after t (s)
