@@ -89,7 +89,7 @@ void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpuls
         // A tyre that carried load before the drift still touches after it, whatever the turn did to its gap, and does not
         // rebound from what the forces of the step press it with.
         if (contact.source == ContactSource::tire && before_drift[contact.body].tire[contact.index] > 0.0)
-            return false;
+            return contact.comes_hard;
         return contact.gap > tolerance::touching_gap || approaches_hard(contact, bodies);
     });
 }
@@ -106,9 +106,9 @@ double hardest_impact(double reach, std::span<const ContactBody> bodies,
     return fastest;
 }
 
-// Impacts, Eq. 1: leaves the contacts that take part. Points that arrive
-// together by all but a hair share one impact, or their order would be chance: the later one comes, the faster it may
-// still approach afterwards, up to any speed a hair away. So the outcome is a continuous function of the gaps.
+// Impacts, Eq. 1: leaves the contacts that take part. Points that arrive together by all but a hair share one impact, or
+// their order would be chance: the later one comes, the faster it may still approach afterwards, up to any speed a hair
+// away. So the outcome is a continuous function of the gaps.
 void set_impact_targets(double restitution, double reach, double fastest, std::span<const ContactBody> bodies,
                         std::vector<RigidContact>& contacts) {
     // Of its gap, what the coming `reach` leaves.
@@ -127,23 +127,15 @@ void set_impact_targets(double restitution, double reach, double fastest, std::s
     }
 }
 
-void note_hard(std::span<const ContactBody> bodies, const std::vector<RigidContact>& contacts,
-               std::vector<char>& hard) {
-    hard.clear();
-    for (const RigidContact& contact : contacts)
-        hard.push_back(approaches_hard(contact, bodies) ? 1 : 0);
-}
-
 // Time until the first contact that approaches hard reaches its surface (s). What the forces of the step alone press there
-// within `at_once` rests: an instant of its own for it would tell nothing. `hard`: which came so before.
+// within `at_once` rests: an instant of its own for it would tell nothing.
 double time_to_impact(double at_once, std::span<const ContactBody> bodies,
-                      const std::vector<RigidContact>& contacts, const std::vector<char>& hard) {
+                      const std::vector<RigidContact>& contacts) {
     double earliest = infinity;
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-        const RigidContact& contact = contacts[i];
+    for (const RigidContact& contact : contacts) {
         if (!(contact.gap > tolerance::touching_gap) || !approaches_hard(contact, bodies)) continue;
         const double time = -contact.gap / separation_velocity(contact, bodies);
-        if (hard[i] != 0 || time > at_once) earliest = std::min(earliest, time);
+        if (contact.comes_hard || time > at_once) earliest = std::min(earliest, time);
     }
     return earliest;
 }
@@ -244,7 +236,8 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     if (!start) note_depth(memory.contacts, state.statistics);
 
     list_motions(state, bodies, memory.before);
-    note_hard(bodies, memory.contacts, memory.hard);
+    for (RigidContact& contact : memory.contacts)
+        contact.comes_hard = approaches_hard(contact, bodies);
     const Column pressed = kick_by_forces(scene, stage, half, trial);
     list_motions(state, bodies, memory.pushed);
     if (memory.contacts.empty() && pressed.empty()) {
@@ -252,8 +245,7 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
         return;
     }
     if (start && options.locate_impacts)
-        trial.impact_after =
-            time_to_impact(tolerance::at_once * trial.dt, bodies, memory.contacts, memory.hard);
+        trial.impact_after = time_to_impact(tolerance::at_once * trial.dt, bodies, memory.contacts);
     if (trial.impact_within()) return;
     memory.kick.contacts = memory.contacts;
     set_lasting_targets(stage, trial.dt, trial.impulses, bodies, memory.kick.contacts);

@@ -52,7 +52,6 @@ struct ContactKick {
 // Memory of half kicks, which find it and leave it with nothing of meaning: so that a step allocates nothing.
 struct KickMemory {
     std::vector<RigidContact> contacts;
-    std::vector<char> hard;  // (contacts) do they approach hard?
     std::vector<PlacedShape> placed;
     std::vector<std::size_t> about;
     std::vector<ContactBody> bodies;
