@@ -133,16 +133,20 @@ double time_of_decision(const Scene& scene, std::span<const BodyState> before, d
     if (!is_over(scene, now)) return now.time;  // all came to rest
     std::vector<BodyState> after;
     list_bodies(now, after);
-    double open = 0.0, over = 1.0;
-    while ((over - open) * dt > tolerance::decision_resolution) {
-        const double share = 0.5 * (open + over);
+    const auto is_over_at = [&](double share) {
         for (std::size_t b = 0; b < after.size(); ++b)
             body_state(now, b) = between(before[b], after[b], share);
-        (is_over(scene, now) ? over : open) = share;
+        return is_over(scene, now);
+    };
+    double open = released / dt, over = 1.0;
+    if (is_over_at(open)) over = open;
+    while ((over - open) * dt > tolerance::decision_resolution) {
+        const double share = 0.5 * (open + over);
+        (is_over_at(share) ? over : open) = share;
     }
     for (std::size_t b = 0; b < after.size(); ++b)
         body_state(now, b) = after[b];
-    return now.time - dt + std::max(over * dt, released);
+    return now.time - (1.0 - over) * dt;
 }
 
 }  // namespace birm3d
