@@ -21,6 +21,12 @@ BodyState& body_state(State& state, std::size_t body) {
     return body < units ? state.units[body].body : state.segments[body - units];
 }
 
+void list_body_states(const State& state, std::vector<BodyState>& bodies) {
+    bodies.clear();
+    for (std::size_t b = 0; b < body_count(state); ++b)
+        bodies.push_back(body_state(state, b));
+}
+
 void kick_body(const Scene& scene, std::size_t body, const Wrench& impulse, State& state) {
     Wrench part = impulse;
     if (body >= state.units.size()) {

@@ -222,10 +222,9 @@ void add_to_obstacle(const Scene& scene, const State& state, const RigidContact&
 double correct_targets(const Scene& scene, const State& kicked, double dt,
                        std::vector<RigidContact>& contacts) {
     std::vector<BodyState> bodies;
-    for (std::size_t b = 0; b < body_count(kicked); ++b) {
-        bodies.push_back(body_state(kicked, b));
-        drift(rigid_body(scene, b), dt, bodies.back());
-    }
+    list_body_states(kicked, bodies);
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+        drift(rigid_body(scene, b), dt, bodies[b]);
     double widest = 0.0;
     for (RigidContact& contact : contacts) {
         if (!contact.held) continue;
@@ -301,8 +300,7 @@ void kick_towards_closed_joints(const Scene& scene, double dt, const KickedBy& b
     memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
     memory.kick.on_base.clear();
     std::vector<BodyState> start;
-    for (std::size_t b = 0; b < body_count(state); ++b)
-        start.push_back(body_state(state, b));
+    list_body_states(state, start);
     // Each round leaves about omega dt of the gap.
     constexpr int most_rounds = 20;
     double last = infinity;

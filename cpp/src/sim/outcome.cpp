@@ -122,17 +122,11 @@ bool is_decided(const Scene& scene, const State& state) {
     return (!touches(state) && is_over(scene, state)) || at_rest(scene, state);
 }
 
-void list_bodies(const State& state, std::vector<BodyState>& bodies) {
-    bodies.clear();
-    for (std::size_t b = 0; b < body_count(state); ++b)
-        bodies.push_back(body_state(state, b));
-}
-
 double time_of_decision(const Scene& scene, std::span<const BodyState> before, double released, double dt,
                         State& now) {
     if (!is_over(scene, now)) return now.time;  // all came to rest
     std::vector<BodyState> after;
-    list_bodies(now, after);
+    list_body_states(now, after);
     const auto is_over_at = [&](double share) {
         for (std::size_t b = 0; b < after.size(); ++b)
             body_state(now, b) = between(before[b], after[b], share);

@@ -171,7 +171,7 @@ double Simulation::remaining() const {
 
 void Simulation::take(Trial& trial) {
     const bool open = scene_.barrier && !state_.decided;
-    if (open) list_bodies(state_, before_);
+    if (open) list_body_states(state_, before_);
     const double released = open ? std::min(time_to_release(scene_, state_), trial.dt) : 0.0;
     accept(scene_, trial, state_);
     recorder_.add(scene_, trial);

@@ -102,8 +102,8 @@ struct TrussMesh {
     std::vector<TreadNode> tread;           // (count - skin)
     Box anchors;                            // around those of the skin
     std::array<Panel, panels> panel;
-    std::vector<std::uint8_t>
-        panels_of;  // (blocks) bit by bit: which panels have nodes there? The last: treads
+    // (blocks) bit by bit: which panels have nodes there? The bit after them: treads.
+    std::vector<std::uint8_t> panels_of;
     std::vector<std::uint8_t> panels_of_group;  // (groups) the same
     std::vector<std::size_t> input_index;       // (count) the caller's number of each truss
 

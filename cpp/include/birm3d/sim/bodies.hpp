@@ -13,6 +13,8 @@ inline std::size_t body_count(const State& state) {
 const RigidBody& rigid_body(const Scene& scene, std::size_t body);
 const BodyState& body_state(const State& state, std::size_t body);
 BodyState& body_state(State& state, std::size_t body);
+// Of all of them.
+void list_body_states(const State& state, std::vector<BodyState>& bodies);
 
 // impulse: linear and angular about the body's mass centre, world axes (N s, N m s). What pushes a segment down or tips
 // it goes into the ground.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "birm3d/sim/scene.hpp"
 
@@ -18,9 +17,6 @@ bool has_left(const Scene& scene, const State& state);
 
 // Has the vehicle left the barrier, its wheels not rising and what slides at rest? Or has all come to rest?
 bool is_decided(const Scene& scene, const State& state);
-
-// Units, then segments.
-void list_bodies(const State& state, std::vector<BodyState>& bodies);
 
 // Of a step of dt at whose end the outcome is decided: the instant from which it was (s), within the step, so that it does
 // not hang on how long that is. `before`: the bodies at the start; nothing pushes from `released` on (s after the start);
