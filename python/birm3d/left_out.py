@@ -59,7 +59,7 @@ def _nodes(result: Result) -> Iterator[str]:
     if scene.barrier is not None and statistics.tread_nodes < treads:
         left = _of(treads - statistics.tread_nodes, treads)
         yield f"{left} nodes of tyres (never met by the barrier)"
-    tests = statistics.steps * scene.vehicle.n_nodes
+    tests = (statistics.steps + statistics.rejected) * scene.vehicle.n_nodes
     if statistics.node_evaluations < tests:
         share = 1.0 - statistics.node_evaluations / tests
         yield f"{share:.1%} of {tests:,} node tests (their blocks were out of reach in that step)"

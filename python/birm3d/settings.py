@@ -23,7 +23,7 @@ class Settings:
     time_step
         Fixed step [s]; ``None`` chooses steps by an error estimate (adaptive).
     tolerance
-        Wanted relative error of the metrics with adaptive steps, 1e-9 to 0.1.
+        Wanted relative error of the metrics with adaptive steps, 1e-9 to 1.
     output_interval
         Interval of the result's rows [s]; costs nothing while stepping and does not bound the step.
     gravity

@@ -3,7 +3,7 @@
     python tests/bench/bench_accuracy.py [--cases NAME ...] [--repeats 3] [--save]
     python tests/bench/bench_accuracy.py --quick
 
-birm3d.study.work_precision for each case: tolerances 1e-1 to 1e-5, fixed steps, the other contact model, the
+birm3d.study.work_precision for each case: tolerances 1 to 1e-5, fixed steps, the other contact model, the
 triangulated barrier, and meshes of a quarter to four times the elements, against the case's own converged
 answer.
 States whether these hold, and by how much each metric misses what does not:
@@ -173,8 +173,8 @@ def overview(studies: Mapping[str, WorkPrecision]) -> dict[str, Figure]:
             form = "o-" if i < 10 else "s--"  # there are ten colours
             axes.plot(x, [max(row.error, 1e-9) for row in rows], form, ms=3, color=f"C{i}", label=name)
         if file == "requested":
-            axes.plot([1e-5, 1e-1], [1e-5, 1e-1], "k--", lw=1.0, label="achieved = requested")
-            axes.plot([1e-5, 1e-1], [1e-4, 1e0], "k:", lw=1.0, label="ten times that")
+            axes.plot([1e-5, 1.0], [1e-5, 1.0], "k--", lw=1.0, label="achieved = requested")
+            axes.plot([1e-5, 1.0], [1e-4, 10.0], "k:", lw=1.0, label="ten times that")
         axes.set(xscale="log", yscale="log", ylabel="greatest relative error of any metric")
         axes.set_xlabel("run time [ms]" if file == "work_precision" else "requested: tolerance")
         axes.grid(alpha=0.3)

@@ -37,7 +37,7 @@ def refused(name: str, got: float | str, limit: str = "") -> Iterator[None]:
     ("name", "values"),
     [
         ("time_step", (0.0, -1e-4, NAN, INF)),
-        ("tolerance", (0.0, 1e-10, 0.2, -1.0, NAN, INF)),
+        ("tolerance", (0.0, 1e-10, 1.1, -1.0, NAN, INF)),
         ("output_interval", (0.0, -1e-4, NAN, INF)),
         ("gravity", (-9.8, NAN, INF)),
         ("mu_tire", (-0.1, NAN, INF)),

@@ -336,7 +336,7 @@ def test_bad_targets_and_parameters(make: Callable[[], object], message: str) ->
         ({"starts": 0}, "starts must be a whole number >= 1, got 0"),
         ({"seed": -1}, "seed must be a whole number >= 0, got -1"),
         ({"confidence": 95}, "confidence must be between 0 and 1, got 95"),
-        ({"tolerance": 1.0}, "tolerance must be 1e-9 to 0.1, got 1.0"),
+        ({"tolerance": 2.0}, "tolerance must be 1e-9 to 1, got 2.0"),
         ({"jobs": 0}, "jobs must be >= 1, got 0"),
     ],
 )

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from birm3d import Barrier, Simulation, Vehicle
+from birm3d import Barrier, Settings, Simulation, Vehicle
 
 # Depth in which a node may be left where three faces meet (m).
 DEPTH = 5e-3
@@ -133,8 +133,9 @@ def test_a_post_of_many_sides_comes_near_the_round_one(sides: int, limit: float)
         faces += [(i, j, j + sides), (i, j + sides, i + sides)]
     vehicle = Vehicle.preset("passenger_car", mesh_density=0.5).with_dent_reach(0.0)
     post = Barrier.bollards(count=1, diameter=0.4, height=1.0)
+    fine = Settings(tolerance=1e-5)  # less than 1 % of the speed is taken
     exact, mesh = (
-        15.0 - Simulation(vehicle, barrier, 15.0, duration=0.02).run().velocity[-1, 0]
+        15.0 - Simulation(vehicle, barrier, 15.0, duration=0.02, settings=fine).run().velocity[-1, 0]
         for barrier in (post, Barrier.from_mesh(vertices, faces))
     )
     assert mesh == pytest.approx(exact, rel=limit)

@@ -135,7 +135,7 @@ def test_mesh_density_keeps_what_was_changed() -> None:
         (SEDAN, {"vehicle.mass_center_height": -1.0}, "mass_center_height"),
         (SEDAN, {"impact_speed": math.nan}, "speed"),
         (SEDAN, {"barrier.friction": -0.1}, "friction"),
-        (SEDAN, {"settings.tolerance": 1.0}, "tolerance"),
+        (SEDAN, {"settings.tolerance": 2.0}, "tolerance"),
         (BLOCK, {"vehicle.mesh_density": 2.0}, "parameter"),
         (BLOCK, {"truss.k_initial": -1.0}, "k_initial"),
         (SEDAN, {"zone.nose.scale": 1.0}, "zone"),

@@ -10,7 +10,7 @@ namespace birm3d {
 void require_valid(const Settings& s) {
     if (s.time_step && !(std::isfinite(*s.time_step) && *s.time_step >= tolerance::shortest_step))
         refuse("time_step", "finite and >= " + to_text(tolerance::shortest_step) + " s", *s.time_step);
-    require_within("tolerance", s.tolerance, 1e-9, 0.1);
+    require_within("tolerance", s.tolerance, 1e-9, 1.0);
     require_positive("output_interval", s.output_interval);
     require_not_negative("gravity", s.gravity);
     require_not_negative("mu_tire", s.mu_tire);

@@ -186,11 +186,12 @@ void keep(const Scene& scene, const State& state, Impact& impact) {
         impact.energies.kinetic += kinetic_energy(rigid_body(scene, body), body_state(state, body));
 }
 
-// An impact takes no time: it stands apart from the forces of the step, in the ledger and in the record.
-void impact_at_once(const Scene& scene, Stage stage, double reach, Trial& trial) {
+// An impact takes no time: it stands apart from the forces of the step, in the ledger and in the record. `before`: the
+// motions at hand; `after`: those that it leaves, if it happens.
+void impact_at_once(const Scene& scene, Stage stage, double reach, const std::vector<Twist>& before,
+                    std::vector<Twist>& after, Trial& trial) {
     State& state = trial.state;
     KickMemory& memory = trial.memory;
-    list_motions(state, memory.bodies, memory.before);
     const double fastest = hardest_impact(reach, memory.bodies, memory.contacts);
     if (fastest == 0.0) return;
     memory.kick.contacts = memory.contacts;
@@ -198,10 +199,10 @@ void impact_at_once(const Scene& scene, Stage stage, double reach, Trial& trial)
     const bool start = stage == Stage::before_drift;
     Impact& impact = start ? trial.at_start : trial.at_end;
     if (!start) keep(scene, state, impact);
-    kick_by_contacts(scene, {Column(state.segments.size()), memory.before}, memory, state);
+    kick_by_contacts(scene, {Column(state.segments.size()), before}, memory, state);
     add_impulses(scene, state, memory.kick, impact.impulses, impact.joint_impulses);
-    list_motions(state, memory.bodies, memory.after);
-    book_contacts(scene, memory.kick, memory.before, memory.after, state);
+    list_motions(state, memory.bodies, after);
+    book_contacts(scene, memory.kick, before, after, state);
     if (start) keep(scene, state, impact);
 }
 
@@ -221,6 +222,25 @@ void note_depth(const std::vector<RigidContact>& contacts, StepStatistics& stati
             statistics.deepest_point = std::max(statistics.deepest_point, -contact.gap);
 }
 
+// Where no rigid contact and no segment is about, forces are all there is.
+void push_freely(const Scene& scene, Stage stage, double half, Trial& trial) {
+    State& state = trial.state;
+    KickMemory& memory = trial.memory;
+    const bool rubs = std::any_of(state.units.begin(), state.units.end(), [](const UnitState& unit) {
+        return std::any_of(unit.touches.begin(), unit.touches.end(), [](const Touch& touch) {
+            return !touch.friction.force.isZero(0.0) || !touch.friction.torque.isZero(0.0);
+        });
+    });
+    if (rubs) {
+        list_bodies(scene, state, memory.bodies);
+        list_motions(state, memory.bodies, memory.before);
+    }
+    kick_by_forces(scene, stage, half, trial);
+    if (!rubs) return;
+    list_motions(state, memory.bodies, memory.pushed);
+    book_forces(scene, memory.before, memory.pushed, half, state);
+}
+
 }  // namespace
 
 void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Trial& trial) {
@@ -229,21 +249,24 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     std::vector<ContactBody>& bodies = memory.bodies;
     const double half = 0.5 * trial.dt;
     const bool start = stage == Stage::before_drift;
-    list_bodies(scene, state, bodies);
     find_rigid_contacts(scene, state, trial.dt, options, memory);
-    // Where impacts are not located, those of the coming step happen now, before anything has passed.
-    if (start) impact_at_once(scene, stage, options.locate_impacts ? 0.0 : trial.dt, trial);
-    if (!start) note_depth(memory.contacts, state.statistics);
+    if (memory.contacts.empty() && state.segments.empty()) return push_freely(scene, stage, half, trial);
 
+    list_bodies(scene, state, bodies);
     list_motions(state, bodies, memory.before);
+    if (start) {
+        // Where impacts are not located, those of the coming step happen now, before anything has passed.
+        impact_at_once(scene, stage, options.locate_impacts ? 0.0 : trial.dt, memory.before, memory.after,
+                       trial);
+        if (trial.at_start.happened) std::swap(memory.before, memory.after);
+    } else {
+        note_depth(memory.contacts, state.statistics);
+    }
+
     for (RigidContact& contact : memory.contacts)
         contact.comes_hard = approaches_hard(contact, bodies);
     const Column pressed = kick_by_forces(scene, stage, half, trial);
     list_motions(state, bodies, memory.pushed);
-    if (memory.contacts.empty() && pressed.empty()) {
-        book_forces(scene, memory.before, memory.pushed, half, state);
-        return;
-    }
     if (start && options.locate_impacts)
         trial.impact_after = time_to_impact(tolerance::at_once * trial.dt, bodies, memory.contacts);
     if (trial.impact_within()) return;
@@ -263,7 +286,7 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     book_forces(scene, memory.before, memory.after, half, state);
     book_contacts(scene, memory.kick, memory.before, memory.after, state);
 
-    if (!start) impact_at_once(scene, stage, 0.0, trial);
+    if (!start) impact_at_once(scene, stage, 0.0, memory.after, memory.before, trial);
 }
 
 }  // namespace birm3d

@@ -11,108 +11,10 @@
 #include "birm3d/sim/bodies.hpp"
 #include "birm3d/sim/obstacles.hpp"
 #include "birm3d/sim/outcome.hpp"
-#include "birm3d/sim/panel_dents.hpp"
+#include "birm3d/sim/step_control.hpp"
 #include "birm3d/sim/step_limits.hpp"
-#include "birm3d/sim/structure_course.hpp"
 
 namespace birm3d {
-
-namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-// Mean velocity of the pushing nodes along their normals, weighted by their forces (m/s); negative =
-// approaching, zero where nothing pushes.
-double separation_speed(const Scene& scene, const State& state) {
-    double power = 0.0, force = 0.0;
-    for (std::size_t u = 0; u < state.units.size(); ++u) {
-        const UnitState& unit = state.units[u];
-        const Twist motion = twist(scene.vehicle->units[u].body, unit.body);
-        power += unit.skin.contact.force.dot(motion.velocity) +
-                 unit.skin.contact.torque.dot(motion.angular_velocity);
-        for (const Touch& touch : unit.touches) {
-            const int other = body_of_obstacle(scene, touch.obstacle);
-            if (other < 0) continue;
-            const auto b = static_cast<std::size_t>(other);
-            const Twist of = twist(rigid_body(scene, b), body_state(state, b));
-            const Vec3 arm = unit.body.position - body_state(state, b).position;
-            power -= touch.contact.force.dot(of.velocity + of.angular_velocity.cross(arm)) +
-                     touch.contact.torque.dot(of.angular_velocity);
-        }
-        force += unit.skin.normal_force;
-    }
-    return force > 0.0 ? power / force : 0.0;
-}
-
-// Where the approach turns into separation within a step, the trusses' peak is passed unseen and unloading
-// begins late, by up to the way back in half the step: the error in velocity is the force of that way, half
-// a step long.
-struct Turn {
-    double share = 1.0;  // of the step at which the approach ends
-    double error = 0.0;  // m/s
-};
-Turn find_turn(const Scene& scene, const State& before, const Trial& trial) {
-    const double approach = separation_speed(scene, before);
-    const double separation = separation_speed(scene, trial.state);
-    if (!(approach < 0.0 && separation > 0.0)) return {};
-    double stiffness = 0.0;
-    for (const UnitState& unit : trial.state.units)
-        stiffness = std::max(stiffness, unit.skin.stiffness);
-    return {approach / (approach - separation), 0.25 * trial.dt * trial.dt * stiffness * separation};
-}
-
-// When a load is gone, by its course so far (s); infinite where that does not tell.
-double time_to_release(const LoadCourse& course) {
-    const double force = course.now.normal_force, rate = course.rate.normal_force,
-                 bend = course.bend.normal_force, step = course.step;
-    if (!(force > 0.0)) return 0.0;
-    // Root of force + rate s + bend s (s + step), written for small bends.
-    const double slope = rate + bend * step;
-    const double square = slope * slope - 4.0 * bend * force;
-    const bool ends = square > 0.0 && slope < 0.0;
-    return ends ? 2.0 * force / (std::sqrt(square) - slope) : infinity;
-}
-
-// Of the last load.
-double time_to_release(const Scene& scene, const State& state) {
-    double latest = 0.0;
-    for (const UnitState& unit : state.units)
-        for (std::size_t i = 0; i < unit.touches.size();) {
-            const std::size_t structure = scene.obstacles[unit.touches[i].obstacle].structure;
-            latest = std::max(latest, time_to_release(course_of_structure(scene, unit.touches, structure)));
-            i = end_of_structure(scene, unit.touches, i);
-        }
-    return latest;
-}
-
-// A step at whose end the next segment that slides straight on, untouched, comes to rest (s): its way is exact then.
-double time_to_stop(const Scene& scene, const State& state) {
-    double earliest = infinity;
-    if (state.segments.empty() || touches(state)) return earliest;
-    const double deceleration = scene.settings.gravity * scene.barrier->free_standing->ground_friction;
-    if (!(deceleration > 0.0)) return earliest;
-    for (const BodyState& segment : state.segments) {
-        const double time = segment.velocity.norm() / deceleration;
-        if (time > tolerance::shortest_stop) earliest = std::min(earliest, time);
-    }
-    return earliest;
-}
-
-// Steps that an estimate asks for are taken from a ladder of sixteen lengths an octave: estimates are made of
-// high differences of the load, and their rounding must not travel from step to step.
-double on_ladder(double dt) {
-    int octave = 0;
-    const double part = std::frexp(dt, &octave);  // 0.5 to 1
-    return std::ldexp(std::floor(part * 32.0) / 32.0, octave);
-}
-
-// The turning of a body in free flight and the course of tyre forces are followed to second order, which nothing
-// estimates: longest step at which they keep up with the tolerance (s).
-double longest_step(const Settings& settings) {
-    return tolerance::longest_step * std::sqrt(std::min(1.0, settings.tolerance / Settings{}.tolerance));
-}
-
-}  // namespace
 
 Simulation::Simulation(Scene scene)
     : scene_(std::move(scene)),
@@ -216,61 +118,22 @@ void Simulation::refuse_step(double dt, double critical) const {
 }
 
 void Simulation::adaptive_step() {
-    const double allowed =
-        tolerance::step_error_per_tolerance * scene_.settings.tolerance * scene_.reference_speed();
-    double dt = passing_step(scene_, state_,
-                             std::min({state_.next_step, longest_step(scene_.settings), remaining()}));
-    dt = std::min(dt, time_to_stop(scene_, state_));
-    if (touches(state_))
-        dt = std::min(dt, std::max(time_to_release(scene_, state_), tolerance::release_resolution));
-    bool lands = false;
-    double cut = 0.0;  // what an impact has cut short: the next step is no shorter for it (s)
+    StepSearch search = begin_search(scene_, state_, remaining());
+    double dt = search.first;
     for (;;) {
         if (dt < tolerance::shortest_step)
             throw UnstableError(dt, tolerance::shortest_step, state_.time,
                                 "the scene is too stiff for any step worth taking");
         try_step(scene_, state_, dt, {.locate_impacts = true}, trial_);
-        if (trial_.impact_within()) {
-            cut = std::max(cut, dt);
-            dt = std::max(trial_.impact_after, 2.0 * tolerance::shortest_step);
-            ++state_.statistics.rejected;
-            continue;
-        }
-        if (!lands && !touches(state_) && touches(trial_.state)) {
-            // The end of free flight: no further than to the first instant at which a node can be at the barrier.
-            lands = true;
-            const double landing =
-                std::max(tolerance::first_contact_step, untouched_step(scene_, state_, dt));
-            if (landing < dt) {
-                dt = landing;
-                ++state_.statistics.rejected;
-                continue;
-            }
-        }
-        const double stable = tolerance::stable_fraction * trial_.critical_step;
-        double wanted = dt;
-        if (dt > stable) wanted = 0.9 * stable;
-        if (trial_.error > allowed && dt > tolerance::jump_resolution)
-            wanted = std::min(wanted, std::max(dt * std::max(0.2, 0.9 * std::sqrt(allowed / trial_.error)),
-                                               tolerance::jump_resolution));
-        double shorter = wanted < dt ? on_ladder(wanted) : infinity;
-        const Turn turn = find_turn(scene_, state_, trial_);
-        if (turn.error > allowed) shorter = std::min(shorter, dt * std::clamp(turn.share, 0.1, 0.9));
-        if (dt > tolerance::release_resolution && touches(state_) && !touches(trial_.state))
-            shorter = std::min(shorter, std::max(0.5 * dt, tolerance::release_resolution));
+        const double shorter = shorter_step(scene_, state_, trial_, search);
         if (!(shorter < dt)) break;
         dt = shorter;
         ++state_.statistics.rejected;
+        state_.statistics.node_evaluations = trial_.state.statistics.node_evaluations;
     }
+    const double next = step_after(scene_, trial_, search);
     take(trial_);
-
-    // The sixth root rather than the fourth, by which a smooth load's error grows: gentle changes of the step
-    // keep the estimates, which compare three steps, quiet.
-    const double growth = 0.9 * std::pow(allowed / std::max(trial_.error, 1e-300), 1.0 / 6.0);
-    const double longer = growth > 1.0 ? std::max(dt * std::min(4.0, growth), cut)
-                                       : std::max(dt * growth, tolerance::jump_resolution);
-    const double next = on_ladder(std::min(longer, 0.9 * tolerance::stable_fraction * trial_.critical_step));
-    state_.next_step = std::min(next, longest_step(scene_.settings));
+    state_.next_step = next;
 }
 
 bool Simulation::step() {

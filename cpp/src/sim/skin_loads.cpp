@@ -108,7 +108,7 @@ void Skin::hand_over() {
         skin.normal_force += touch.normal_force;
         if (touch.normal_force > 0.0) touches.push_back(touch);
     }
-    skin.resistance = turned(resistance, R_);
+    if (resistance.trace() > 0.0) skin.resistance = turned(resistance, R_);
     // What was touched before and is not now ends its course: at once, or, as part of a structure that is, in the
     // steps by which the structure's course reaches back.
     for (const Touch& last : before_.touches) {

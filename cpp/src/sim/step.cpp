@@ -19,19 +19,34 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+// Radius of gyration (m).
+double gyration(const RigidBody& body) {
+    return std::sqrt(0.5 * body.inertia.trace() * body.inverse_mass);
+}
+
+// What a load pushes on: a unit, and the segment that takes the other side, or null where that is fixed.
+struct Pushed {
+    Pushed(const RigidBody& body_, const BodyState& state)
+        : body(body_),
+          gyration(birm3d::gyration(body_)),
+          inverse_inertia(inverse_inertia_in_world(body_, state)) {}
+
+    const RigidBody& body;
+    double gyration;
+    Mat3 inverse_inertia;  // world axes
+    const Segment* segment = nullptr;
+};
+
 // A slope that changes within the step costs up to an eighth of the departure it makes (m/s).
-// `segment`: what the load pushes on, or null where that is fixed.
-double error_of(const Unit& unit, const BodyState& body, const Segment* segment, const Load& departure,
-                double dt) {
-    const double gyration = std::sqrt(0.5 * unit.body.inertia.trace() * unit.body.inverse_mass);
-    const Vec3 turning = inverse_inertia_in_world(unit.body, body) * departure.wrench.torque;
-    const double error =
-        dt / 8.0 * (unit.body.inverse_mass * departure.wrench.force.norm() + gyration * turning.norm());
-    if (segment == nullptr) return error;
-    const double turn = segment->body.inverse_inertia(2, 2) * std::abs(departure.reaction_torque.z());
-    return error +
-           dt / 8.0 *
-               (segment->body.inverse_mass * departure.wrench.force.norm() + segment->half_length * turn);
+double error_of(const Pushed& pushed, const Load& departure, double dt) {
+    const double force = departure.wrench.force.norm();
+    const Vec3 turning = pushed.inverse_inertia * departure.wrench.torque;
+    double change = pushed.body.inverse_mass * force + pushed.gyration * turning.norm();
+    if (const Segment* segment = pushed.segment) {
+        const double turn = segment->body.inverse_inertia(2, 2) * std::abs(departure.reaction_torque.z());
+        change += segment->body.inverse_mass * force + segment->half_length * turn;
+    }
+    return dt / 8.0 * change;
 }
 
 // What a bend of one adds over a step of dt that follows one of h: to the lead, and with the new bend's change to
@@ -93,9 +108,9 @@ Load correction(const LoadCourse& before, const LoadCourse& now) {
 // The loads of the touches of one structure at the new instant, their courses, and what the higher order adds to the
 // trapezoid rule. Returns the estimated error of the step's velocity (m/s). What hangs on signs and sizes is decided by
 // the structure's load as a whole; the rest is linear in the load.
-double load_and_correct(const Unit& unit, const BodyState& body, const Segment* segment,
-                        const LoadCourse& before, double dt, std::span<const LoadCourse> befores,
-                        std::span<const Load> loads, std::span<Touch> touches) {
+double load_and_correct(const Pushed& pushed, const LoadCourse& before, double dt,
+                        std::span<const LoadCourse> befores, std::span<const Load> loads,
+                        std::span<Touch> touches) {
     Load total;
     for (std::size_t i = 0; i < touches.size(); ++i) {
         total += loads[i];
@@ -105,11 +120,11 @@ double load_and_correct(const Unit& unit, const BodyState& body, const Segment* 
     }
     // Where nothing presses any more, the rate ends with the load: a straight line is the better course
     // through the corner that a release makes.
-    if (total.normal_force == 0.0) return error_of(unit, body, segment, difference(total, before.now), dt);
+    if (total.normal_force == 0.0) return error_of(pushed, difference(total, before.now), dt);
 
     LoadCourse now = course_to(total, before, dt);
-    const double by_departure = error_of(unit, body, segment, departure(before, now), dt);
-    const double by_change = error_of(unit, body, segment, change(before, now), dt);
+    const double by_departure = error_of(pushed, departure(before, now), dt);
+    const double by_change = error_of(pushed, change(before, now), dt);
     if (is_telling(dt, before))
         now.bend_lasts = before.step > 0.0 && by_change < tolerance::lasting_bend * by_departure;
     const double pushing = share_that_pushes(correction(before, now), before, now, dt);
@@ -139,12 +154,14 @@ Load load_of(const Scene& scene, const State& state, const BodyState& body, cons
 }
 
 // Returns the estimated error of the step's velocity (m/s).
-double correct(const Scene& scene, std::size_t u, const UnitState& from, double dt, State& now) {
-    UnitState& moved = now.units[u];
-    double error = 0.0;
+double correct(const Scene& scene, std::size_t u, const UnitState& from, Trial& trial) {
+    UnitState& moved = trial.state.units[u];
     const std::span<Touch> touches(moved.touches);
-    std::vector<LoadCourse> befores;
-    std::vector<Load> loads;
+    if (touches.empty()) return 0.0;
+    Pushed pushed(scene.vehicle->units[u].body, moved.body);
+    std::vector<LoadCourse>& befores = trial.courses;
+    std::vector<Load>& loads = trial.loads;
+    double error = 0.0;
     for (std::size_t i = 0, end = 0; i < touches.size(); i = end) {
         end = end_of_structure(scene, touches, i);
         const LoadCourse before =
@@ -155,13 +172,12 @@ double correct(const Scene& scene, std::size_t u, const UnitState& from, double 
             LoadCourse own = course_at(from.touches, touch.obstacle);
             own.step = before.step, own.step_before = before.step_before, own.bend_lasts = before.bend_lasts;
             befores.push_back(own);
-            loads.push_back(load_of(scene, now, moved.body, touch));
+            loads.push_back(load_of(scene, trial.state, moved.body, touch));
         }
-        const Segment* segment = touches[i].obstacle < scene.free_segments()
-                                     ? &scene.barrier->segments[touches[i].obstacle]
-                                     : nullptr;
-        error += load_and_correct(scene.vehicle->units[u], moved.body, segment, before, dt, befores, loads,
-                                  touches.subspan(i, end - i));
+        pushed.segment = touches[i].obstacle < scene.free_segments()
+                             ? &scene.barrier->segments[touches[i].obstacle]
+                             : nullptr;
+        error += load_and_correct(pushed, before, trial.dt, befores, loads, touches.subspan(i, end - i));
     }
     return error;
 }
@@ -193,6 +209,22 @@ double critical_step(const Scene& scene, const RigidBody& body, const UnitState&
     return stiffness > 0.0 ? tolerance::critical_phase / std::sqrt(stiffness) : infinity;
 }
 
+// What is left of a velocity v that turns by phi in a step of second order: v phi^3/12.
+double missed_share(double turn) {
+    return turn * turn * turn / 12.0;
+}
+
+// Of the turning itself, which the drift follows to second order (m/s).
+double turning_error(const Scene& scene, const State& state, double dt) {
+    double most = 0.0;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const RigidBody& body = scene.vehicle->units[u].body;
+        const double omega = angular_velocity(body, state.units[u].body).norm();
+        most = std::max(most, missed_share(omega * dt) * omega * gyration(body));
+    }
+    return most;
+}
+
 // A joint's force turns with its bodies, which the half kicks follow to second order: of a velocity omega r that
 // turns by phi = omega dt they miss about phi^3/12 (m/s).
 double joint_error(const Scene& scene, const State& state, double dt) {
@@ -201,9 +233,9 @@ double joint_error(const Scene& scene, const State& state, double dt) {
         const auto spin = [&](std::size_t body) {
             return angular_velocity(rigid_body(scene, body), body_state(state, body)).norm();
         };
-        const double omega = std::max(spin(joint.leading), spin(joint.trailing)), turn = omega * dt;
+        const double omega = std::max(spin(joint.leading), spin(joint.trailing));
         const double lever = joint.place_on_leading.norm() + joint.place_on_trailing.norm();
-        most = std::max(most, turn * turn * turn / 12.0 * omega * lever);
+        most = std::max(most, missed_share(omega * dt) * omega * lever);
     }
     return most;
 }
@@ -289,6 +321,13 @@ bool any_sum(const Trial& trial, const Is& is) {
 
 }  // namespace
 
+bool Trial::body_rests() const {
+    return body_held() || any_sum(*this, [](const ContactImpulses& sum) {
+               return std::any_of(sum.tire.begin(), sum.tire.end(),
+                                  [](double impulse) { return impulse > 0.0; });
+           });
+}
+
 bool Trial::body_held() const {
     return any_sum(*this, [](const ContactImpulses& sum) { return sum.member_contacts > 0; });
 }
@@ -314,12 +353,13 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
         if (!scene.obstacles.empty()) skin_forces(scene, u, from, trial);
         if (skin_touches_barrier(scene, moved)) now.touched = true;
 
-        trial.error = std::max(trial.error, correct(scene, u, from.units[u], dt, now));
+        trial.error = std::max(trial.error, correct(scene, u, from.units[u], trial));
         trial.critical_step = std::min(trial.critical_step, critical_step(scene, unit.body, moved));
     }
 
     book_trusses(now);
     trial.error = std::max(trial.error, joint_error(scene, now, dt));
+    trial.error = std::max(trial.error, turning_error(scene, now, dt));
 
     half_kick(scene, Stage::after_drift, options, trial);
     book_motion(scene, now);

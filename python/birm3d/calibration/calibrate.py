@@ -188,8 +188,8 @@ def _check(
             raise ValueError(f"{name} must be a whole number >= {least}, got {number!r}")
     if not 0.0 < confidence < 1.0:
         raise ValueError(f"confidence must be between 0 and 1, got {confidence}")
-    if not 1e-9 <= tolerance <= 0.1:
-        raise ValueError(f"tolerance must be 1e-9 to 0.1, got {tolerance}")
+    if not 1e-9 <= tolerance <= 1.0:
+        raise ValueError(f"tolerance must be 1e-9 to 1, got {tolerance}")
 
 
 def _profiles(evaluator: Evaluator, found: Search, analysis: Analysis, max_steps: int) -> dict[str, Profile]:

@@ -18,7 +18,7 @@ from .triangulated import triangulated
 
 __all__ = ["work_precision"]
 
-_TOLERANCES = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5)
+_TOLERANCES = (1.0, 3e-1, 1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5)
 _REFERENCES = (1e-6, 1e-7, 1e-8)
 _DENSITIES = (0.25, 0.5, 1.0, 2.0, 4.0)
 # Fixed steps as shares of the critical step that adaptive stepping found; without contact, in s.

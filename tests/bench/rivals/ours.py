@@ -9,7 +9,7 @@ from birm3d import Barrier, LedgerWarning, Settings, Simulation, UnstableError
 
 from .definition import COMPARED, STEPS, Answer, Case, RefusedError, Run, vehicle
 
-TOLERANCES = tuple(1e-1 * 10.0 ** (-0.25 * i) for i in range(25))
+TOLERANCES = tuple(10.0 ** (-0.25 * i) for i in range(29))
 
 
 def simulation(case: Case, n: int, **changes: float) -> Simulation:

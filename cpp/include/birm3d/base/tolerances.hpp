@@ -23,24 +23,33 @@ inline constexpr double contact_velocity = 1e-11;
 inline constexpr double critical_phase = 1.7320508;
 
 // Share of the critical step that adaptive stepping uses at the most. 1: the edge of stability.
-inline constexpr double stable_fraction = 0.5;
+inline constexpr double stable_fraction = 0.65;
 
 // Share of the critical step that is advised for fixed steps. Larger: stable, but peaks and turns are passed
 // unseen.
 inline constexpr double advised_fraction = 0.25;
 
-// Longest and shortest adaptive step (s). Longest: of the usual tolerance, see longest_step(). Shortest:
-// a scene that asks for less is refused rather than run for ever.
-inline constexpr double longest_step = 5e-3;
+// Longest and shortest adaptive step (s). Longest: beyond it an estimate has too little to go by. Shortest: a scene that
+// asks for less is refused rather than run for ever.
+inline constexpr double longest_step = 50e-3;
 inline constexpr double shortest_step = 1e-9;
+
+// Longest step of the usual tolerance where tyres or closed trusses carry the vehicle, or joints and segments are (s).
+// Large: what comes down gently lands over a long time.
+inline constexpr double longest_resting_step = 5e-3;
+
+// A step may grow by the third root of how far its error is below what is allowed once that is more than so many times as
+// much, and by this factor at the most. Small: estimates chase each other.
+inline constexpr double ample_room = 16.0;
+inline constexpr double fastest_growth = 10.0;
 
 // The instant at which a load jumps is located within this (s): half of the jump over that time is missed, and the error
 // of a step across it falls no faster than the step.
 inline constexpr double jump_resolution = 1e-8;
 
-// The instant at which a vehicle leaves a barrier is located within this (s): the end of the run, and every
-// value taken there, hangs on it.
-inline constexpr double release_resolution = 2e-4;
+// The instant at which a vehicle leaves a barrier is located within this, see release_resolution() (s): the end of the run,
+// and every value taken there, hangs on it.
+inline constexpr double release_resolution = 1e-4;
 
 // A segment that slides is brought to rest at the end of a step, unless it would rest within this (s): one that pins hold
 // back comes to rest ever more slowly. At full friction the way missed is 5e-8 m.

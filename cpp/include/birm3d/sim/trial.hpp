@@ -105,6 +105,8 @@ struct Trial {
     std::vector<std::size_t> seen;   // obstacles that blocks of nodes had in reach, once for each unit
     std::vector<NearObstacle> near;  // for skin_forces: reused, so that a step allocates nothing
     std::vector<Touch> touches;
+    std::vector<LoadCourse> courses;  // for the higher order: the same
+    std::vector<Load> loads;
     KickMemory memory;
     double error = 0.0;    // estimated velocity error of this step (m/s)
     double critical_step;  // sqrt(3)/omega of the trusses in contact (s)
@@ -113,7 +115,8 @@ struct Trial {
     // Does it begin within the step? Then the step went no further than to see this.
     bool impact_within() const { return impact_after < dt && dt > 2.0 * tolerance::shortest_step; }
 
-    bool body_held() const;  // did the rigid body meet the barrier or the ground?
+    bool body_rests() const;  // on tyres or closed trusses
+    bool body_held() const;   // did the rigid body meet the barrier or the ground?
     bool body_held_by_barrier() const;
 };
 

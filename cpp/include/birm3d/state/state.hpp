@@ -59,7 +59,7 @@ struct Energies {
 struct StepStatistics {
     std::uint64_t steps = 0;
     std::uint64_t rejected = 0;
-    std::uint64_t node_evaluations = 0;
+    std::uint64_t node_evaluations = 0;                              // of rejected steps too
     double shortest_step = std::numeric_limits<double>::infinity();  // s
     double longest_step = 0.0;                                       // s
     double least_critical_step =
