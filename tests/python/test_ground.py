@@ -156,6 +156,17 @@ def test_a_landing_does_not_hang_on_the_steps() -> None:
         assert np.abs(spin).max() < 1e-3 * 26.7, choice
 
 
+def test_wheels_that_come_down_gently_land_at_once() -> None:
+    """At 0.06 m/s, after the crash: a step as long as in free flight would spread the landing over it."""
+
+    def pitch(tolerance: float) -> float:
+        return scenes.paper_table_2(40, settings=Settings(tolerance=tolerance)).run().metrics["max_pitch"]
+
+    fine = pitch(1e-6)
+    for tolerance in (1e-2, 1e-3, 1e-4, 1e-5):
+        assert pitch(tolerance) == pytest.approx(fine, abs=1e-4 * 5.0), tolerance  # measured: 1e-4 deg
+
+
 # ---- braking ----------------------------------------------------------------------------------------------
 
 

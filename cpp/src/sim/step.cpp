@@ -71,14 +71,15 @@ double share_that_pushes(const Load& correction, const LoadCourse& before, const
 }
 
 bool is_telling(double dt, const LoadCourse& before) {
-    return !(dt < tolerance::telling_step * before.step);
+    return !(before.lapse + dt < tolerance::telling_step * before.step);
 }
 
 // The course after a step of dt to `load`.
 LoadCourse course_to(const Load& load, const LoadCourse& before, double dt) {
     LoadCourse now = before;
     now.now = load;
-    if (!is_telling(dt, before)) return now;
+    now.lapse = is_telling(dt, before) ? 0.0 : before.lapse + dt;
+    if (now.lapse > 0.0) return now;
     now.step = dt;
     now.step_before = before.step;
     now.rate = scaled(difference(load, before.now), 1.0 / dt);
@@ -170,7 +171,8 @@ double correct(const Scene& scene, std::size_t u, const UnitState& from, Trial& 
         loads.clear();
         for (const Touch& touch : touches.subspan(i, end - i)) {
             LoadCourse own = course_at(from.touches, touch.obstacle);
-            own.step = before.step, own.step_before = before.step_before, own.bend_lasts = before.bend_lasts;
+            own.step = before.step, own.step_before = before.step_before, own.lapse = before.lapse;
+            own.bend_lasts = before.bend_lasts;
             befores.push_back(own);
             loads.push_back(load_of(scene, trial.state, moved.body, touch));
         }

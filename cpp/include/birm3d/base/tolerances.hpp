@@ -66,8 +66,8 @@ inline constexpr double untouched_way = 0.05;
 // Settings::tolerance. Larger: the asked and the achieved error of the metrics part.
 inline constexpr double step_error_per_tolerance = 0.01;
 
-// A step shorter than this share of the one before, as up to an impact, tells nothing of how the load goes on: its change is
-// that of single nodes.
+// Steps that together are shorter than this share of the one before, as up to an impact, tell nothing of how the load goes
+// on: its change is that of single nodes.
 inline constexpr double telling_step = 0.05;
 
 // A bend of the load lasts through a step if it changes by less than this share of itself; then the scheme

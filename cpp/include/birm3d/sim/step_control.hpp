@@ -12,6 +12,7 @@ namespace birm3d {
 struct StepSearch {
     double first = 0.0;     // the first to be tried (s)
     double approach = 0.0;  // separation speed of the nodes that push at the start (m/s)
+    double error = 0.0;     // estimate of the step tried last, turns of single nodes included (m/s)
     bool lands = false;     // is the landing on the barrier known?
     double pressing = std::numeric_limits<double>::infinity();  // a step that can begin there (s)
     double cut = 0.0;  // what an impact has cut short: the next step is no shorter for it (s)

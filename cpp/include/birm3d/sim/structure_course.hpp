@@ -30,6 +30,7 @@ inline LoadCourse course_of_structure(const Scene& scene, std::span<const Touch>
         if (course.step == 0.0) continue;
         sum.step = course.step;
         sum.step_before = course.step_before;
+        sum.lapse = course.lapse;
         sum.bend_lasts = course.bend_lasts;
     }
     return sum;

@@ -90,6 +90,7 @@ struct LoadCourse {
     Load bend;                 // half the second derivative, of the last two steps, per second^2
     double step = 0.0;         // length of the last step, zero where no rate is known (s)
     double step_before = 0.0;  // and of the one before
+    double lapse = 0.0;        // time since then, in steps too short to tell anything
     bool bend_lasts = false;   // did the bend go on through the last step?
 };
 
