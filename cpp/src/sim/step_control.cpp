@@ -92,10 +92,8 @@ double step_to_turn(const Scene& scene, const State& state, double approach, dou
 }
 
 // A step to the turn that this one has gone beyond (s); infinite where it makes no error that counts.
-double located_turn(const Scene& scene, const Trial& tried, double approach) {
-    if (!(approach < 0.0)) return infinity;
-    const double separation = separation_speed(scene, tried.state);
-    if (!(separation > 0.0)) return infinity;
+double located_turn(const Scene& scene, const Trial& tried, double approach, double separation) {
+    if (!(approach < 0.0 && separation > 0.0)) return infinity;
     if (turn_error(tried.dt, greatest_stiffness(tried.state), separation) <= allowed_error(scene))
         return infinity;
     return tried.dt * std::clamp(approach / (approach - separation), least_share, 1.0 - least_share);
@@ -104,7 +102,7 @@ double located_turn(const Scene& scene, const Trial& tried, double approach) {
 // Where the body turns, its nodes cease to approach one after the other. Those that do within the step pass their peak
 // unseen, by up to a dt^2/8, and begin to unload late: half a step long the force is greater by what that way makes along
 // the unloading slope (m/s).
-double error_of_turns(const Scene& scene, const Trial& tried) {
+double error_of_turns(const Scene& scene, const Trial& tried, double separation) {
     const double rate = separation_rate(scene, tried.state);
     if (!(rate > 0.0)) return 0.0;
     double spread = 0.0;
@@ -115,7 +113,7 @@ double error_of_turns(const Scene& scene, const Trial& tried) {
     }
     // All together within a step is what located_turn() looks for.
     const double change = rate * tried.dt, share = change / (2.0 * spread);
-    if (!(share < 1.0 && std::abs(separation_speed(scene, tried.state)) < spread + change)) return 0.0;
+    if (!(share < 1.0 && std::abs(separation) < spread + change)) return 0.0;
     return share * change * tried.dt * tried.dt / 16.0 * greatest_stiffness(tried.state);
 }
 
@@ -222,14 +220,15 @@ double shorter_step(const Scene& scene, const State& from, const Trial& tried, S
         if (landing < dt) return landing;
     }
     const double allowed = allowed_error(scene);
-    search.error = std::max(tried.error, error_of_turns(scene, tried));
+    const double separation = separation_speed(scene, tried.state);
+    search.error = std::max(tried.error, error_of_turns(scene, tried, separation));
     double wanted = dt;
     if (dt > tolerance::stable_fraction * tried.critical_step) wanted = longest_stable(tried);
     if (search.error > allowed && dt > tolerance::jump_resolution)
         wanted = std::min(wanted, std::max(dt * std::max(0.2, 0.9 * std::sqrt(allowed / search.error)),
                                            tolerance::jump_resolution));
-    double shorter =
-        std::min(wanted < dt ? on_ladder(wanted) : infinity, located_turn(scene, tried, search.approach));
+    double shorter = std::min(wanted < dt ? on_ladder(wanted) : infinity,
+                              located_turn(scene, tried, search.approach, separation));
     const double resolution = release_resolution(scene);
     if (dt > resolution && touches(from) && !touches(tried.state))
         shorter = std::min(shorter, std::max(0.5 * dt, resolution));
