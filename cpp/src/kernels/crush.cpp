@@ -10,42 +10,6 @@ namespace birm3d {
 
 namespace {
 
-// Nodes whose truss ceased to push. One that follows a receding surface stops where its truss reaches zero
-// force; one that the truss pushes off the surface springs to that length at once, and what the truss had
-// stored is lost, which a dent keeps at its surface all the same. Few nodes a step do. Returns what the first kind
-// takes from the work on the trusses (J).
-template <class Share>
-double release(const TrussBlock& truss, const TrussBlockState& before, const Lanes& gap, const Share& share,
-               TrussBlockState& now) {
-    double spared = 0.0;
-    for (std::size_t i = 0; i < lanes; ++i) {
-        if (!(before.force[i] > 0.0 && now.force[i] == 0.0)) continue;
-        const Vec3 anchor(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
-        const Vec3 from(before.x[i], before.y[i], before.z[i]), to(now.x[i], now.y[i], now.z[i]);
-        const double d0 = before.deflection[i], d1 = now.deflection[i];
-        Vec3 b = to - anchor;
-        double d = before.residual[i];
-        if (b.dot(share.direction(i)) < 0.0) {
-            if (!(gap[i] > 0.0)) continue;
-            const double way = d0 - d1;
-            const double part = way > 0.0 ? std::clamp((d0 - d) / way, 0.0, 1.0) : 0.0;
-            b = from + part * (to - from) - anchor;
-            d = d0 - part * way;
-            spared += 0.5 * before.force[i] * (d - d1);
-        } else if (share.drawn(i)) {
-            now.residual[i] = std::max(d, d1);
-            continue;
-        } else if (!(d < d1)) {
-            continue;  // drawn out beyond its length: back there it would be inside
-        }
-        const double length = truss.length[i] - d;
-        const Vec3 place = anchor + (length > tolerance::truss_length ? length / b.norm() : 1.0) * b;
-        now.x[i] = place.x(), now.y[i] = place.y(), now.z[i] = place.z();
-        now.deflection[i] = d;
-    }
-    return spared;
-}
-
 BIRM3D_LANE_LOOP double stiffness_of_pushing(const TrussBlock& truss, const Lanes& force, double constant,
                                              double xx, double yy, double zz, double xy, double xz,
                                              double yz) {
@@ -79,30 +43,9 @@ BIRM3D_LANE_LOOP double greatest_slack(const Lanes& force, const Lanes& deflecti
     return lane_max(slack);
 }
 
-// The direction along which each truss must point to push (CurvedPress), at a plane and at shapes.
-struct PlaneShare {
-    const Vec3& normal;
-    const Vec3& direction(std::size_t) const { return normal; }
-    static bool drawn(std::size_t) { return false; }
-};
-struct NodeShares {
-    const NodeFaces& faces;
-    const BlockContact& contact;
-    Vec3 direction(std::size_t i) const {
-        return drawn(i) ? Vec3(faces.bx[i], faces.by[i], faces.bz[i]) : contact.normal(i);
-    }
-    bool drawn(std::size_t i) const { return faces.per_force[i] > 0.0; }
-};
-
 // Returns how many nodes push.
-template <class Share>
-double finish(const TrussMesh& mesh, std::size_t b, double nodes, const TrussBlockState& before,
-              const Lanes& gap, const Share& share, TrussBlockState& now, CrushSums& sums) {
-    double pushing = nodes;
-    if (nodes >= left) {
-        sums.released_work += release(mesh.block[b], before, gap, share, now);
-        pushing = std::fmod(nodes, left);
-    }
+double finish(double nodes, TrussBlockState& now) {
+    const double pushing = std::fmod(nodes, left);
     now.touching = pushing > 0.0;
     now.slack = pushing < static_cast<double>(lanes) &&
                 greatest_slack(now.force, now.deflection, now.residual) > tolerance::touching_gap;
@@ -131,7 +74,7 @@ bool crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, con
                                          {n.x(), n.y(), n.z(), surface.face.offset, h.x(), h.y(), h.z()},
                                          columns_of<const double>(before), columns_of<double>(now),
                                          gap.data(), contact.pressure.data(), sums.nodes);
-    const double pushing = finish(mesh, b, nodes, before, gap, PlaneShare{n}, now, sums);
+    const double pushing = finish(nodes, now);
     if (now.touching) sums.flat_stiffness += contact_stiffness(surface, mesh, b, now, pushing);
     return nodes >= left;
 }
@@ -151,7 +94,7 @@ bool crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh,
                            2.0 * q(1, 2)},
                           columns_of<const double>(before), columns_of<double>(now), gap.data(),
                           contact.pressure.data(), sums.nodes);
-    finish(mesh, b, nodes, before, gap, NodeShares{faces, contact}, now, sums);
+    finish(nodes, now);
     return nodes >= left;
 }
 

@@ -20,10 +20,10 @@ BIRM3D_IN_LANE_LOOP Row dot(const Vector& a, const Vector& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// Where a row of nodes finds the surface. `way` of a node there for each unit of gap, and the direction `share` by which
-// the truss force becomes a normal force (see crush.hpp).
+// The way of a node to the surface for each unit of gap, and the direction `share` by which the force of its truss becomes
+// a normal force (see crush.hpp).
 struct Place {
-    Vector n, way, share;
+    Vector way, share;
 };
 
 // Both give the places of the eight nodes from i on. A flat surface takes arriving nodes along n.
@@ -33,11 +33,12 @@ struct Flat {
     BIRM3D_IN_LANE_LOOP Row gap(std::size_t, const Vector& node) const { return dot(n, node) - offset; }
     BIRM3D_IN_LANE_LOOP Place at(std::size_t, const Row& F0) const {
         const Row zero = 0.0;
-        return {n,
-                {where_above(F0, zero, h.x, n.x), where_above(F0, zero, h.y, n.y),
+        return {{where_above(F0, zero, h.x, n.x), where_above(F0, zero, h.y, n.y),
                  where_above(F0, zero, h.z, n.z)},
                 n};
     }
+    // Of nodes that a dent draws in, above zero.
+    BIRM3D_IN_LANE_LOOP Row drawn(std::size_t) const { return 0.0; }
     Vector n, h;
     Row offset;
 };
@@ -45,10 +46,13 @@ struct Flat {
 struct Curved {
     BIRM3D_IN_LANE_LOOP explicit Curved(const CurvedPress& press) : s(press) {}
     BIRM3D_IN_LANE_LOOP Row gap(std::size_t i, const Vector&) const { return Row::load(s.gap + i); }
+    BIRM3D_IN_LANE_LOOP Vector normal(std::size_t i) const {
+        return {Row::load(s.nx + i), Row::load(s.ny + i), Row::load(s.nz + i)};
+    }
     // Where normals part sharply, at an edge, the one before says nothing of the path.
     BIRM3D_IN_LANE_LOOP Place at(std::size_t i, const Row& F0) const {
         const Row zero = 0.0, one = 1.0;
-        const Vector n{Row::load(s.nx + i), Row::load(s.ny + i), Row::load(s.nz + i)};
+        const Vector n = normal(i);
         const Vector b{Row::load(s.bx + i), Row::load(s.by + i), Row::load(s.bz + i)};
         const Row cosine = dot(n, b), per_force = Row::load(s.per_force + i);
         const Row follows = where_above(F0, zero, where_above(cosine, sharp_turn, one, zero), zero);
@@ -59,15 +63,15 @@ struct Curved {
         const auto share = [&](const Row& own, const Row& before) {
             return where_above(per_force, zero, before * per_force, own);
         };
-        return {n,
-                {way(n.x, b.x), way(n.y, b.y), way(n.z, b.z)},
+        return {{way(n.x, b.x), way(n.y, b.y), way(n.z, b.z)},
                 {share(n.x, b.x), share(n.y, b.y), share(n.z, b.z)}};
     }
+    BIRM3D_IN_LANE_LOOP Row drawn(std::size_t i) const { return Row::load(s.per_force + i); }
     // Of a unit of normal force; keeps it, and the place, for later.
     BIRM3D_IN_LANE_LOOP Vector torque(std::size_t i, const Vector& node, const Vector& n) const {
-        const Row drawn = Row::load(s.per_force + i), zero = 0.0;
+        const Row of_dent = drawn(i), zero = 0.0;
         const auto keep = [&](double* column, const Row& found) {
-            const Row kept = where_above(drawn, zero, Row::load(column + i), found);
+            const Row kept = where_above(of_dent, zero, Row::load(column + i), found);
             kept.store(column + i);
             return kept;
         };
@@ -100,30 +104,71 @@ BIRM3D_IN_LANE_LOOP void copy(const PressState<const double>& before, const Pres
     Row::load(before.residual + i).store(now.residual + i);
 }
 
-template <bool flat, class Surface>
-BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surface,
-                                 const PressState<const double>& before, const PressState<double>& now,
-                                 double* gaps, double* pressures, NodeSums& sums) {
+// The nodes of the row at i whose truss ceased to push. One that follows a receding surface stops where its truss reaches
+// zero force; one that the truss pushes off the surface springs to that length at once, and what the truss had stored is
+// lost, which a dent keeps at its surface all the same. Returns what the first kind takes from twice the work on the
+// trusses (J).
+template <class Surface>
+Row release(const PressColumns& truss, const Surface& surface, const PressState<const double>& before,
+            const PressState<double>& now, std::size_t i, const Row& gap) {
     const Row zero = 0.0, one = 1.0, least = tolerance::truss_length;
-    const Row node_left = left;
-    Row force = zero, work = zero, stored = zero, nodes = zero;
-    Row stiffness = zero;
-    Vector moment{zero, zero, zero}, push{zero, zero, zero};
+    const Row F0 = Row::load(before.force + i), d0 = Row::load(before.deflection + i);
+    const Row d1 = Row::load(now.deflection + i), slack = Row::load(before.residual + i);
+    const Vector anchor{Row::load(truss.anchor_x + i), Row::load(truss.anchor_y + i),
+                        Row::load(truss.anchor_z + i)};
+    const Vector from{Row::load(before.x + i), Row::load(before.y + i), Row::load(before.z + i)};
+    const Vector to{Row::load(now.x + i), Row::load(now.y + i), Row::load(now.z + i)};
+    const Vector share = surface.at(i, F0).share;
+    const Row drawn = surface.drawn(i);
+    const Row points =
+        dot({anchor.x - to.x, anchor.y - to.y, anchor.z - to.z}, share);  // above zero: into the surface
+    const Row ceased = where_above(Row::load(now.force + i), zero, zero, F0);
+
+    const Row way = d0 - d1;
+    const Row part = where_above(way, zero, greater(lesser((d0 - slack) / way, one), zero), zero);
+    const Row d = where_above(points, zero, d0 - part * way, slack);
+    // Drawn out beyond its length it stays: back there it would be inside.
+    const Row returns = where_above(drawn, zero, zero, where_above(d1, slack, one, zero));
+    const Row moves = where_above(ceased, zero, where_above(points, zero, gap, returns), zero);
+
+    const auto along = [&](const Row& a, const Row& start, const Row& end) {
+        return where_above(points, zero, start + part * (end - start) - a, end - a);
+    };
+    const Vector b{along(anchor.x, from.x, to.x), along(anchor.y, from.y, to.y),
+                   along(anchor.z, from.z, to.z)};
+    const Row length = Row::load(truss.length + i) - d;
+    const Row scale = where_above(length, least, length / square_root(dot(b, b)), one);
+    where_above(moves, zero, anchor.x + scale * b.x, to.x).store(now.x + i);
+    where_above(moves, zero, anchor.y + scale * b.y, to.y).store(now.y + i);
+    where_above(moves, zero, anchor.z + scale * b.z, to.z).store(now.z + i);
+    where_above(moves, zero, d, d1).store(now.deflection + i);
+    const Row kept = where_above(drawn, zero, where_above(points, zero, zero, ceased), zero);
+    const Row residual = Row::load(now.residual + i);
+    where_above(kept, zero, greater(slack, d1), residual).store(now.residual + i);
+    return where_above(moves, zero, where_above(points, zero, F0 * (d - d1), zero), zero);
+}
+
+// Takes the nodes of a block that are at the surface onto it: their places, deflections and the shares of their truss
+// forces along the normal, which stand in for the normal forces until these are known. Rows of which no node pushes or
+// is inside stay as they are, and are not `pressed`.
+template <bool flat, class Surface>
+BIRM3D_IN_LANE_LOOP void hold(const PressColumns& truss, const Surface& surface,
+                              const PressState<const double>& before, const PressState<double>& now,
+                              double* gaps, double* shares, bool* pressed) {
+    const Row zero = 0.0, one = 1.0, least = tolerance::truss_length;
     for (std::size_t i = 0; i < lanes; i += row_length) {
         const Vector from{Row::load(before.x + i), Row::load(before.y + i), Row::load(before.z + i)};
         const Row F0 = Row::load(before.force + i);
         const Row gap = surface.gap(i, from);
         gap.store(gaps + i);
-        // Nodes that neither push nor are inside stay as they are.
-        if (!any_above(greater(F0, -1.0 * gap), zero)) {
+        pressed[i / row_length] = any_above(greater(F0, -1.0 * gap), zero);
+        if (!pressed[i / row_length]) {
             copy(before, now, i);
-            zero.store(pressures + i);
+            zero.store(shares + i);
             if constexpr (!flat) surface.leave(i);
             continue;
         }
         const Place place = surface.at(i, F0);
-
-        // Nodes at the surface go onto it.
         const Row way = where_above(zero, gap, gap, where_above(F0, zero, gap, zero));
         const Vector node{from.x - way * place.way.x, from.y - way * place.way.y, from.z - way * place.way.z};
 
@@ -132,7 +177,30 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
                        Row::load(truss.anchor_z + i) - node.z};
         const Row length = square_root(dot(b, b));
         const Row share = where_above(length, least, greater(dot(b, place.share), zero) / length, one);
-        const Row d = Row::load(truss.length + i) - length;
+        node.x.store(now.x + i);
+        node.y.store(now.y + i);
+        node.z.store(now.z + i);
+        (Row::load(truss.length + i) - length).store(now.deflection + i);
+        share.store(shares + i);
+    }
+}
+
+// Two rounds over the rows, so that the square roots and divisions of several are under way at a time.
+template <bool flat, class Surface>
+BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surface,
+                                 const PressState<const double>& before, const PressState<double>& now,
+                                 double* gaps, double* pressures, NodeSums& sums) {
+    const Row zero = 0.0, one = 1.0;
+    const Row node_left = left;
+    Row force = zero, work = zero, stored = zero, nodes = zero;
+    Row stiffness = zero;
+    Vector moment{zero, zero, zero}, push{zero, zero, zero};
+    bool pressed[lanes / row_length];
+    hold<flat>(truss, surface, before, now, gaps, pressures, pressed);
+    for (std::size_t i = 0; i < lanes; i += row_length) {
+        if (!pressed[i / row_length]) continue;
+        const Row F0 = Row::load(before.force + i), gap = Row::load(gaps + i);
+        const Row d = Row::load(now.deflection + i), share = Row::load(pressures + i);
 
         // Fig. 3: the loading envelope by the changes of slope at its hinges, and the unloading line below it.
         Row envelope = zero;
@@ -148,23 +216,20 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
         const Row F = where_above(zero, gap, law, where_above(F0, zero, law, zero));
         const Row pressure = F * share;
 
-        node.x.store(now.x + i);
-        node.y.store(now.y + i);
-        node.z.store(now.z + i);
-        d.store(now.deflection + i);
         F.store(now.force + i);
         greater(d, Row::load(before.peak_deflection + i)).store(now.peak_deflection + i);
         where_above(line, envelope, d - envelope * compliance, residual).store(now.residual + i);
         pressure.store(pressures + i);
 
+        const Vector node{Row::load(now.x + i), Row::load(now.y + i), Row::load(now.z + i)};
         force = force + pressure;
         if constexpr (flat) {
             moment = {moment.x + pressure * node.x, moment.y + pressure * node.y,
                       moment.z + pressure * node.z};
         } else {
-            const Vector f{pressure * place.n.x, pressure * place.n.y, pressure * place.n.z};
-            push = {push.x + f.x, push.y + f.y, push.z + f.z};
-            const Vector torque = surface.torque(i, node, place.n);
+            const Vector n = surface.normal(i);
+            push = {push.x + pressure * n.x, push.y + pressure * n.y, push.z + pressure * n.z};
+            const Vector torque = surface.torque(i, node, n);
             moment = {moment.x + pressure * torque.x, moment.y + pressure * torque.y,
                       moment.z + pressure * torque.z};
             const Row k = Row::load(truss.k_unloading + i) * greater(share * share, one);
@@ -173,6 +238,8 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
         work = work + (F0 + F) * (d - Row::load(before.deflection + i));
         stored = stored + F * F * compliance;
         nodes = nodes + where_above(F, zero, one, where_above(F0, zero, node_left, zero));
+        if (any_above(where_above(F, zero, zero, F0), zero))
+            work = work + release(truss, surface, before, now, i, gap);
     }
     add_to(sums.force, force);
     add_to(sums.moment_x, moment.x);

@@ -53,10 +53,9 @@ Placement placement(const Pose& obstacle, const BodyState& seen_from) {
 }
 
 void find_near(const Scene& scene, std::size_t u, const State& before, const State& now, double margin,
-               std::vector<NearObstacle>& near) {
+               std::vector<std::size_t>& about, std::vector<NearObstacle>& near) {
     near.clear();
     const Box& box = before.units[u].trusses.around;
-    std::vector<std::size_t> about;
     scene.map.find(now.units[u].body.position, box.radius() + margin, about);
     for (const std::size_t i : about) {
         if (i == scene.ground && !scene.skin_meets_ground[u]) continue;

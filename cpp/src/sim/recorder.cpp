@@ -8,17 +8,6 @@
 
 namespace birm3d {
 
-namespace {
-
-std::vector<BodyState> bodies_of(const State& state) {
-    std::vector<BodyState> bodies;
-    for (const UnitState& unit : state.units)
-        bodies.push_back(unit.body);
-    return bodies;
-}
-
-}  // namespace
-
 Recorder::Recorder(const Scene& scene, const State& start) {
     restart(scene, start);
 }
@@ -33,8 +22,9 @@ void Recorder::restart(const Scene& scene, const State& start) {
     width_ += joint_width * scene.vehicle->joints.size() + segment_width * start.segments.size();
     values_.clear();
     obstacles_.clear();
-    add_row(scene, start.time, start.energies, bodies_of(start),
-            {start.units, start.segments, none, std::vector<Wrench>(scene.vehicle->joints.size()), false});
+    add_row(scene, start.time, start.energies,
+            {start.units, nullptr, start.segments, none, std::vector<Wrench>(scene.vehicle->joints.size()),
+             false});
 }
 
 void Recorder::add(const Scene& scene, const Trial& accepted) {
@@ -44,9 +34,9 @@ void Recorder::add(const Scene& scene, const Trial& accepted) {
         // The forces of that instant are those of the row before.
         const std::size_t before = values_.size() - width_;
         const std::size_t last = rows() - 1;
-        add_row(scene, values_[before + at_time], accepted.at_start.energies, accepted.at_start.bodies,
-                {state.units, accepted.at_start.segments, accepted.at_start.impulses,
-                 accepted.at_start.joint_impulses, false});
+        add_row(scene, values_[before + at_time], accepted.at_start.energies,
+                {state.units, &accepted.at_start.bodies, accepted.at_start.segments,
+                 accepted.at_start.impulses, accepted.at_start.joint_impulses, false});
         const double* from = values_.data() + before + at_units;
         double* to = values_.data() + values_.size() - width_ + at_units;
         for (const Unit& unit : scene.vehicle->units) {
@@ -61,15 +51,13 @@ void Recorder::add(const Scene& scene, const Trial& accepted) {
                 std::copy_n(obstacles_[i].values.begin() + at_load, 6,
                             obstacle_row(last + 1, obstacles_[i].obstacle).values.begin() + at_load);
     }
-    const std::vector<BodyState> bodies = bodies_of(state);
     const Impact& end = accepted.at_end;
     add_row(scene, state.time, end.happened ? end.energies : state.energies,
-            end.happened ? end.bodies : bodies,
-            {state.units, end.happened ? end.segments : state.segments, accepted.impulses,
-             accepted.joint_impulses, true});
+            {state.units, end.happened ? &end.bodies : nullptr, end.happened ? end.segments : state.segments,
+             accepted.impulses, accepted.joint_impulses, true});
     if (end.happened)
-        add_row(scene, state.time, state.energies, bodies,
-                {state.units, state.segments, end.impulses, end.joint_impulses, false});
+        add_row(scene, state.time, state.energies,
+                {state.units, nullptr, state.segments, end.impulses, end.joint_impulses, false});
 }
 
 Recorder::ObstacleRow& Recorder::obstacle_row(std::size_t row, std::size_t obstacle) {
@@ -79,8 +67,7 @@ Recorder::ObstacleRow& Recorder::obstacle_row(std::size_t row, std::size_t obsta
     return obstacles_.back();
 }
 
-void Recorder::add_row(const Scene& scene, double time, const Energies& e,
-                       const std::vector<BodyState>& bodies, const Loads& loads) {
+void Recorder::add_row(const Scene& scene, double time, const Energies& e, const Loads& loads) {
     const std::size_t index = rows();
     const std::size_t begin = values_.size();
     values_.resize(begin + width_);
@@ -96,8 +83,8 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e,
                                  e.joints,           e.segment_friction};
     std::copy(energies.begin(), energies.end(), row + at_energies);
     row += at_units;
-    for (std::size_t u = 0; u < bodies.size(); ++u) {
-        const BodyState& body = bodies[u];
+    for (std::size_t u = 0; u < loads.units.size(); ++u) {
+        const BodyState& body = loads.bodies ? (*loads.bodies)[u] : loads.units[u].body;
         const Unit& model = scene.vehicle->units[u];
         const ContactImpulses& impulses = loads.impulses[u];
         put(row + at_position, body.position);

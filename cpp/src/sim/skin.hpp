@@ -6,10 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "birm3d/kernels/crush.hpp"
-#include "birm3d/kernels/dent.hpp"
 #include "birm3d/kernels/detect.hpp"
-#include "birm3d/kernels/friction_tread.hpp"
 #include "birm3d/sim/trial.hpp"
 
 namespace birm3d {
@@ -25,21 +22,6 @@ class Skin {
   private:
     static constexpr std::size_t several = static_cast<std::size_t>(-1);
 
-    // Sums over blocks that saw one plane, or (by general detection) one obstacle.
-    struct PlaneSums {
-        std::size_t near;
-        FlatContact surface;
-        CrushSums sums;
-    };
-    struct ObstacleSums {
-        CrushSums sums;
-        Wrench by_trusses;  // of the paper's rule, in the stead of the projected force
-        Wrench contact;     // of blocks that saw several obstacles
-        double normal_force = 0.0;
-        Rubbing rubbing;
-        bool seen = false;  // by any block
-    };
-
     bool look_about_group(std::size_t g);
     void press(std::size_t b);
     void note_met(std::size_t b);
@@ -48,13 +30,6 @@ class Skin {
     const TrussBlockState& from(std::size_t b) const {
         return sprung_back_ ? sprung_ : before_.trusses.block[b];
     }
-    // A post and a panel that it dents.
-    struct DentedPanel {
-        std::size_t near;
-        std::size_t panel;
-        Dent dent;
-        double way;  // how far it can have come in within the step, and nodes off it (m)
-    };
     void find_dents();
     Dented dents_of(std::size_t near);
     bool was_before(std::size_t near, std::size_t panel);
@@ -106,24 +81,19 @@ class Skin {
     const double full_speed_;  // see kernels/friction.hpp (m/s)
     double margin_;            // how far a held node can have come off its surface within the step (m)
     Twist motion_;             // body axes; only friction and the rate of deflection ask for it
-    std::vector<Twist> away_;  // parallel to near_: the same, from an obstacle that moves too
+    CrushSums shared_;         // of blocks that saw several obstacles
 
+    // See SkinMemory.
     std::vector<NearObstacle>& near_;
-    // What the group of blocks at hand may see, places in near_ and dents_; and the block at hand.
-    std::vector<std::size_t> group_near_, group_dents_;
-    std::vector<std::size_t> seen_;  // in near_
-    std::vector<PlaneSums> planes_;
-    std::vector<ObstacleSums> obstacles_;  // parallel to near_
-    CrushSums shared_;                     // of blocks that saw several obstacles
-    std::vector<DentedPanel> dents_;
-    // One of dents_ that the block at hand may reach; no node is nearer to it than this (m).
-    struct BlockDent {
-        std::size_t dent;
-        double gap;
-    };
-    std::vector<BlockDent> block_dents_;  // the nearest first
-    std::vector<TreadContact> treads_;    // that push
-    TrussBlockState sprung_;              // the block at hand, if some of its nodes have sprung back
+    std::vector<Twist>& away_;
+    std::vector<ObstacleSums>& obstacles_;
+    std::vector<PlaneSums>& planes_;
+    std::vector<DentedPanel>& dents_;
+    std::vector<TreadContact>& treads_;
+    std::vector<std::size_t>&group_near_, &group_dents_, &seen_;
+    std::vector<BlockDent>& block_dents_;
+
+    TrussBlockState sprung_;  // the block at hand, if some of its nodes have sprung back
     bool sprung_back_ = false;
     NodeFaces faces_;
     BlockContact contact_;

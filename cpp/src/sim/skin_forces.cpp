@@ -44,8 +44,17 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
       margin_(trial.dt * (std::max(fastest_point(unit_, before_.body), fastest_point(unit_, now_.body)) +
                           std::max(fastest_segment(scene, from), fastest_segment(scene, trial.state))) +
               tolerance::touching_gap),
-      near_(trial.near) {
-    find_near(scene, u, from, trial.state, before_.touches.empty() ? 0.0 : margin_, near_);
+      near_(trial.skin.near),
+      away_(trial.skin.away),
+      obstacles_(trial.skin.obstacles),
+      planes_(trial.skin.planes),
+      dents_(trial.skin.dents),
+      treads_(trial.skin.treads),
+      group_near_(trial.skin.group_near),
+      group_dents_(trial.skin.group_dents),
+      seen_(trial.skin.seen),
+      block_dents_(trial.skin.block_dents) {
+    find_near(scene, u, from, trial.state, before_.touches.empty() ? 0.0 : margin_, trial.skin.about, near_);
     add_touched(scene, u, from, trial.state, near_);
     const bool rubs = std::any_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
         return scene.obstacles[obstacle.index].friction > 0.0;
@@ -64,7 +73,10 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
         }
         trial.state.segments = drifted;
     }
-    obstacles_.resize(near_.size());
+    obstacles_.assign(near_.size(), {});
+    planes_.clear();
+    dents_.clear();
+    treads_.clear();
 }
 
 void Skin::press_blocks() {
@@ -189,7 +201,7 @@ void Skin::note_met(std::size_t b) {
 }
 
 // The plane that is all that the block at hand can meet of an obstacle; null if it can meet more.
-Skin::PlaneSums* Skin::plane_of(std::size_t near, std::size_t b) {
+PlaneSums* Skin::plane_of(std::size_t near, std::size_t b) {
     const Shape& shape = scene_.obstacles[near_[near].index].shape;
     if (std::holds_alternative<HalfSpace>(shape) && !planes_.empty() && planes_.back().near == near)
         return &planes_.back();  // the same plane to all blocks
@@ -203,7 +215,7 @@ void Skin::find_seen(std::size_t b, double margin) {
         if (meets(b, k) && sees(mesh_.panels_of[b], k, from(b).box, margin)) seen_.push_back(k);
 }
 
-Skin::PlaneSums& Skin::sums_of_plane(std::size_t near, const HalfSpace& plane) {
+PlaneSums& Skin::sums_of_plane(std::size_t near, const HalfSpace& plane) {
     for (PlaneSums& known : planes_)
         if (known.near == near && known.surface.face.normal == plane.normal) return known;
     const NearObstacle& obstacle = near_[near];

@@ -74,7 +74,7 @@ void Skin::hand_over() {
     SkinForces& skin = now_.skin;
     skin = {};
     skin.rubbed = {R_ * motion_.velocity, R_ * motion_.angular_velocity};
-    std::vector<Touch>& touches = trial_.touches;
+    std::vector<Touch>& touches = trial_.skin.touches;
     touches.clear();
     const auto add = [&skin](const CrushSums& sums) {
         skin.work += sums.work();
@@ -82,7 +82,6 @@ void Skin::hand_over() {
         skin.stiffness += sums.stiffness();
     };
     add(shared_);
-    Mat6 resistance = Mat6::Zero();
     for (std::size_t k = 0; k < near_.size(); ++k) {
         const ObstacleSums& sums = obstacles_[k];
         if (!sums.seen) continue;
@@ -102,13 +101,13 @@ void Skin::hand_over() {
         if (along_) touch.contact = sums.by_trusses;
         touch.contact = turned(touch.contact, R_);
         touch.friction = turned(sums.rubbing.friction, R_);
-        resistance += sums.rubbing.resistance;
+        if (sums.rubbing.resistance.trace() > 0.0) skin.resistance += sums.rubbing.resistance;
         skin.contact += touch.contact;
         skin.friction += touch.friction;
         skin.normal_force += touch.normal_force;
         if (touch.normal_force > 0.0) touches.push_back(touch);
     }
-    if (resistance.trace() > 0.0) skin.resistance = turned(resistance, R_);
+    if (skin.resistance.trace() > 0.0) skin.resistance = turned(skin.resistance, R_);
     // What was touched before and is not now ends its course: at once, or, as part of a structure that is, in the
     // steps by which the structure's course reaches back.
     for (const Touch& last : before_.touches) {

@@ -30,9 +30,9 @@ Placement placement(const Pose& obstacle, const BodyState& seen_from);
 Twist obstacle_motion(const Scene& scene, std::size_t obstacle, const State& state,
                       const BodyState& seen_from);
 
-// Those that any node or anchor of the unit can be nearer to than `margin`, in their order.
+// Those that any node or anchor of the unit can be nearer to than `margin`, in their order. `about`: memory.
 void find_near(const Scene& scene, std::size_t unit, const State& before, const State& now, double margin,
-               std::vector<NearObstacle>& near);
+               std::vector<std::size_t>& about, std::vector<NearObstacle>& near);
 
 // Fastest any point of the unit moves (m/s).
 double fastest_point(const Unit& unit, const BodyState& body);

@@ -92,6 +92,7 @@ class Recorder {
   private:
     struct Loads {
         const std::vector<UnitState>& units;
+        const std::vector<BodyState>* bodies;  // of the units, beside an impact; null: as these have them
         const std::vector<BodyState>& segments;
         const std::vector<ContactImpulses>& impulses;
         const std::vector<Wrench>& joint_impulses;
@@ -102,8 +103,7 @@ class Recorder {
         std::array<double, 18> values;
     };
 
-    void add_row(const Scene& scene, double time, const Energies& energies,
-                 const std::vector<BodyState>& bodies, const Loads& loads);
+    void add_row(const Scene& scene, double time, const Energies& energies, const Loads& loads);
     ObstacleRow& obstacle_row(std::size_t row, std::size_t obstacle);
     // `step_of`: row at which the step begins that holds each output instant.
     void resample_energies(const std::vector<std::size_t>& step_of, History& history) const;

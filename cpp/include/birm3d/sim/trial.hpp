@@ -8,6 +8,7 @@
 #include "birm3d/kernels/detect_members.hpp"
 #include "birm3d/kernels/impulse.hpp"
 #include "birm3d/sim/obstacles.hpp"
+#include "birm3d/sim/skin_memory.hpp"
 #include "birm3d/state/state.hpp"
 
 namespace birm3d {
@@ -102,10 +103,9 @@ struct Trial {
     std::vector<Wrench> joint_impulses;     // (joints) the same, on the leading unit, about the joint
     std::vector<Twist> by_contacts;         // (bodies) by how much these changed motions before the drift
     Impact at_start, at_end;
-    std::vector<std::size_t> seen;   // obstacles that blocks of nodes had in reach, once for each unit
-    std::vector<NearObstacle> near;  // for skin_forces: reused, so that a step allocates nothing
-    std::vector<Touch> touches;
-    std::vector<LoadCourse> courses;  // for the higher order: the same
+    std::vector<std::size_t> seen;  // obstacles that blocks of nodes had in reach, once for each unit
+    SkinMemory skin;
+    std::vector<LoadCourse> courses;  // for the higher order: memory too
     std::vector<Load> loads;
     KickMemory memory;
     double error = 0.0;    // estimated velocity error of this step (m/s)
