@@ -69,9 +69,10 @@ Mat6 resistance(double q, const Vec3& r, const Vec3& normal) {
 }
 
 Twist settled(const Twist& motion, const Twist& before, const Mat6& resistance, double dt,
-              const Mat6& inertia) {
+              const Mat6& inertia, const Mat6& held) {
     const Mat6 half = 0.5 * dt * resistance;
-    const Vec6 loss = (inertia + half).ldlt().solve(half * (column(motion) - column(before)));
+    const Vec6 free = column(motion);
+    const Vec6 loss = (inertia + held + half).ldlt().solve(half * (free - column(before)) + held * free);
     return {motion.velocity - loss.head<3>(), motion.angular_velocity - loss.tail<3>()};
 }
 

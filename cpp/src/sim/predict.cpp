@@ -3,29 +3,50 @@
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/friction.hpp"
 #include "birm3d/kernels/integrate.hpp"
+#include "birm3d/kernels/tires.hpp"
 #include "birm3d/sim/bodies.hpp"
 
 namespace birm3d {
 
 namespace {
 
-// World axes, about the mass centre. A wheel that the ground carries is held: whatever friction adds, the ground answers.
-Mat6 inertia_on_wheels(const Unit& unit, const Mat3& R, const std::vector<double>& tire_impulses) {
+// Of a body about its mass centre, world axes.
+Mat6 inertia_of(const RigidBody& body, const Mat3& R) {
     Mat6 inertia = Mat6::Zero();
-    inertia.topLeftCorner<3, 3>().diagonal().array() = unit.body.mass;
-    inertia.bottomRightCorner<3, 3>() = R * unit.body.inertia * R.transpose();
-    for (std::size_t w = 0; w < unit.wheels.size(); ++w) {
-        if (!(tire_impulses[w] > 0.0)) continue;
-        Vec6 row;
-        row << Vec3::UnitZ(), (R * unit.wheels[w].center).cross(Vec3::UnitZ());
-        inertia += tolerance::held_by_ground * unit.body.mass * row * row.transpose();
-    }
+    inertia.topLeftCorner<3, 3>().diagonal().array() = body.mass;
+    inertia.bottomRightCorner<3, 3>() = R * body.inertia * R.transpose();
     return inertia;
+}
+
+// Of the wheels on the ground that would go into it but for its push in the second half, which `motion` takes to be that of
+// the first: see settled().
+Mat6 hold_of_ground(const Unit& unit, const BodyState& body, const Mat6& inertia, const Twist& motion,
+                    const std::vector<double>& tire_impulses, std::vector<RigidContact>& memory) {
+    memory.clear();
+    find_tire_contacts(unit, 0, body, memory);
+    const auto row_of = [](const RigidContact& contact) {
+        Vec6 row;
+        row << contact.normal, contact.arm.cross(contact.normal);
+        return row;
+    };
+    Vec6 unpushed, push = Vec6::Zero();
+    unpushed << motion.velocity, motion.angular_velocity;
+    for (const RigidContact& contact : memory)
+        push += tire_impulses[contact.index] * row_of(contact);
+    unpushed -= inertia.ldlt().solve(push);
+    Mat6 held = Mat6::Zero();
+    for (const RigidContact& contact : memory) {
+        const bool stands = tire_impulses[contact.index] > 0.0 || contact.gap <= tolerance::touching_gap;
+        const Vec6 row = row_of(contact);
+        if (stands && row.dot(unpushed) < 0.0)
+            held += tolerance::held_by_ground * unit.body.mass * row * row.transpose();
+    }
+    return held;
 }
 
 }  // namespace
 
-Twist predicted_motion(const Scene& scene, std::size_t u, const State& from, const Trial& trial) {
+Twist predicted_motion(const Scene& scene, std::size_t u, const State& from, Trial& trial) {
     const Unit& unit = scene.vehicle->units[u];
     const BodyState& start = trial.at_start.happened ? trial.at_start.bodies[u] : from.units[u].body;
     BodyState body = trial.state.units[u].body;
@@ -34,9 +55,13 @@ Twist predicted_motion(const Scene& scene, std::size_t u, const State& from, con
     Twist motion{body.velocity, angular_velocity(unit.body, body)};
     const Mat3 R = body.orientation.toRotationMatrix();
     const SkinForces& before = from.units[u].skin;
-    if (before.resistance.trace() > 0.0)
-        motion = settled(motion, before.rubbed, before.resistance, trial.dt,
-                         inertia_on_wheels(unit, R, trial.impulses[u].tire));
+    if (before.resistance.trace() > 0.0) {
+        const Mat6 inertia = inertia_of(unit.body, R);
+        Mat6 held = Mat6::Zero();
+        if (scene.settings.ground)
+            held = hold_of_ground(unit, body, inertia, motion, trial.impulses[u].tire, trial.memory.contacts);
+        motion = settled(motion, before.rubbed, before.resistance, trial.dt, inertia, held);
+    }
     return {R.transpose() * motion.velocity, R.transpose() * motion.angular_velocity};
 }
 

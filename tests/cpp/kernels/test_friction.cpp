@@ -94,11 +94,30 @@ TEST("slow sliding that linear friction brakes follows the trapezoid rule at any
                     motion.angular_velocity + 0.5 * dt * body.inverse_inertia * by.torque};
         };
         const Twist drifted = half_kick(before, f.friction);
-        const Twist end = settled(half_kick(drifted, f.friction), before, f.resistance, dt, inertia);
+        const Twist end =
+            settled(half_kick(drifted, f.friction), before, f.resistance, dt, inertia, Mat6::Zero());
         const Twist kicked = half_kick(drifted, pressed.friction(0.4, 0.2, end).friction);
         CHECK_CLOSE((kicked.velocity - end.velocity).norm(), 0.0, 1e-13, "rounding");
         CHECK_CLOSE((kicked.angular_velocity - end.angular_velocity).norm(), 0.0, 1e-13, "rounding");
     }
+}
+
+TEST("what is held stays at rest whatever friction adds") {
+    const Pressed pressed(250.0);
+    const RigidBody body = laboratory::body();
+    Mat6 inertia = Mat6::Zero();
+    inertia.topLeftCorner<3, 3>() = body.mass * Mat3::Identity();
+    inertia.bottomRightCorner<3, 3>() = body.inertia;
+    Vec6 row;
+    row << Vec3::UnitZ(), Vec3(0.8, -1.2, 0.0).cross(Vec3::UnitZ());
+    const double stiff = 1e6 * body.mass;
+    const Twist before{Vec3(0.0, 0.02, 0.01), Vec3(0.01, 0.0, -0.02)}, motion{Vec3(0.0, 0.01, -0.03), {}};
+    const Rubbing f = pressed.friction(0.4, 0.2, before);
+    const Twist end = settled(motion, before, f.resistance, 1e-2, inertia, stiff * row * row.transpose());
+    const double speed = row.head<3>().dot(end.velocity) + row.tail<3>().dot(end.angular_velocity);
+    CHECK_CLOSE(speed, 0.0, 0.03 * 1e-5,
+                "the body's share of what holds it, 1e-6, of 0.03 m/s, and leverage");
+    CHECK((end.velocity - motion.velocity).norm() > 1e-3);
 }
 
 TEST("a turn about the normal is braked by a torque alone") {

@@ -25,8 +25,9 @@ void add_friction(double mu, double full_speed, const Twist& motion, const Place
 Mat6 resistance(double q, const Vec3& r, const Vec3& normal);
 
 // The twist to which half a step of friction brings a body that would come to `motion` if friction stayed as it was at
-// the twist `before`: M (u - motion) = -dt/2 resistance (u - before). World axes, inertia too.
+// the twist `before`, and if nothing held it: M (u - motion) = -dt/2 resistance (u - before) - held u. World axes, inertia
+// too; `held`: so hard is it held at rest (kg, kg m, kg m^2).
 Twist settled(const Twist& motion, const Twist& before, const Mat6& resistance, double dt,
-              const Mat6& inertia);
+              const Mat6& inertia, const Mat6& held);
 
 }  // namespace birm3d
