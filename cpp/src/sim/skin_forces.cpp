@@ -327,7 +327,7 @@ std::optional<double> Skin::let_go_into_another(std::size_t b) {
         if (!inside) continue;
         if (!sprung_back_) sprung_ = before_.trusses.block[b];
         sprung_back_ = true;
-        // The face held it to the end of the step, but where it moved off by itself: see release() in crush.cpp.
+        // The face held it to the end of the step, but where it moved off by itself: see release() in crush_rows.cpp.
         const Vec3 held(contact_.px[i], contact_.py[i], contact_.pz[i]);
         const double length = (held - Vec3(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i])).norm();
         const double let_go = faces_.gap[i] > 0.0 ? next.deflection[i] : truss.length[i] - length;
