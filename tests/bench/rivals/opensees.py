@@ -7,9 +7,12 @@ nil it ends. No contact, no turning: W1 and W2 with a flat face only.
 
 from __future__ import annotations
 
+import ctypes
+import importlib.util
 import os
 import time
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from .definition import STEPS, AbsentError, Answer, Case, Run, block
@@ -17,10 +20,22 @@ from .definition import STEPS, AbsentError, Answer, Case, Run, block
 FIRST = 1e-6  # m
 
 
+def load_libraries() -> None:
+    """Load those that its Linux package brings along, in a folder where the loader does not look."""
+    package = importlib.util.find_spec("openseespylinux")
+    if package is None or package.origin is None:
+        return
+    for name in ("libgfortran.so.4", "libblas.so.3", "liblapack.so.3"):  # each needs those before it
+        library = Path(package.origin).parent / "lib" / name
+        if library.exists():
+            ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
+
+
 def engine() -> Any:
     try:
+        load_libraries()
         import openseespy.opensees as opensees
-    except (ImportError, RuntimeError) as error:
+    except (ImportError, OSError, RuntimeError) as error:
         raise AbsentError(f"openseespy is not installed or its libraries are missing ({error})") from None
     return opensees
 
