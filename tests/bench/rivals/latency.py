@@ -25,8 +25,12 @@ PACKAGE = {
     "opensees": "openseespy.opensees",
 }
 PROGRAM = Path(__file__).parents[1] / "bench_rivals.py"
-# In a process that has nothing but NumPy: what it costs to import.
+# In a process that has nothing but NumPy, and what else it can not do without: what it costs to import.
 IMPORT = "import time, numpy; t = time.perf_counter(); import {}; print('seconds', time.perf_counter() - t)"
+BEFORE = {
+    "opensees": f"import sys; sys.path.insert(0, {str(PROGRAM.parent)!r}); "
+    "from rivals.opensees import load_libraries; load_libraries(); "
+}
 
 
 def resident(what: str) -> float:
@@ -81,7 +85,7 @@ def table(modules: Sequence[str], n: int) -> str:
         package = PACKAGE.get(module)
         taken = 0.0
         if package is not None:
-            printed = child("-c", IMPORT.format(package))
+            printed = child("-c", BEFORE.get(module, "") + IMPORT.format(package))
             taken = float(next(x for x in printed.splitlines() if x.startswith("seconds")).split()[1])
         lines.append(
             f"{module:20s}{taken:12.3f}{found['first']:12.3f}{found['case']:>5s}{found['error']:10.1e}"
