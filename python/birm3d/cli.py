@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,18 +12,17 @@ import click
 
 from . import units
 from .cli_calibrate import calibrate_file
+from .cli_files import HTML, MOVIE, PICTURE, RESULT, TABLE
 from .cli_scene import scene_options, simulation_of
 from .cli_sweep import sweep
 from .cli_table import print_table
 from .outcome import ELEMENT_COLUMNS, element_rows, elements_in_si, outcome_rows
+from .whole_file import whole_file
 
 if TYPE_CHECKING:
     from .result import Result
 
 __all__ = ["main"]
-
-
-_FILE = click.Path(dir_okay=False, path_type=Path)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -38,11 +38,11 @@ _cli.add_command(calibrate_file)
 @scene_options
 @click.option("--json", "as_json", is_flag=True, help="Metrics and loads on elements as JSON on stdout.")
 @click.option("--report", "with_report", is_flag=True, help="Also what was computed and what was left out.")
-@click.option("--plot", type=_FILE, help="Write figures to this file (.png, .pdf, .svg).")
-@click.option("--csv", "csv_path", type=_FILE, help="Write histories to this file.")
-@click.option("--save", type=_FILE, help="Write the result to this file; birm3d.load() reads it.")
-@click.option("--html", type=_FILE, help="Write an interactive page that needs no network to this file.")
-@click.option("--movie", type=_FILE, help="Write a movie to this file (.mp4, .gif, ...).")
+@click.option("--plot", type=PICTURE, help="Write figures to this file (.png, .pdf, .svg).")
+@click.option("--csv", "csv_path", type=TABLE, help="Write histories to this file (.csv).")
+@click.option("--save", type=RESULT, help="Write the result to this file (.npz); birm3d.load() reads it.")
+@click.option("--html", type=HTML, help="Write an interactive page that needs no network to this file.")
+@click.option("--movie", type=MOVIE, help="Write a movie to this file (.mp4, .gif, ...).")
 def run(
     scene: Path | None,
     as_json: bool,
@@ -64,10 +64,12 @@ def run(
     if with_report:
         click.echo(result.report(), err=as_json)
     if csv_path is not None:
-        result.to_dataframe().to_csv(csv_path)
+        with whole_file(csv_path) as part:
+            result.to_dataframe().to_csv(part)
         click.echo(f"histories: {csv_path}", err=True)
     if plot is not None:
-        result.plot().savefig(plot, dpi=150)
+        with whole_file(plot) as part:
+            result.plot().savefig(part, dpi=150)
         click.echo(f"figures: {plot}", err=True)
     if save is not None:
         result.save(save)
@@ -183,3 +185,10 @@ def main() -> None:
     except (ValueError, UnstableError, ImportError) as error:  # the last: an extra is missing
         click.echo(f"birm3d: {error}", err=True)
         sys.exit(2)
+    except BrokenPipeError:  # who reads stdout has seen enough, as head
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(1)
+    except OSError as error:  # a disk that is full, a file that went away
+        place = "" if error.filename is None else f"{error.filename}: "
+        click.echo(f"birm3d: {place}{error.strerror or error}", err=True)
+        sys.exit(1)

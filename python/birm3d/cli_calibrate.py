@@ -8,17 +8,25 @@ from pathlib import Path
 
 import click
 
-__all__ = ["calibrate_file"]
+from .cli_files import JSON, PICTURE, VEHICLE
+from .whole_file import whole_file
 
-_OUT = click.Path(dir_okay=False, path_type=Path)
+__all__ = ["calibrate_file"]
 
 
 @click.command("calibrate")
 @click.argument("fit_file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
 @click.option("--json", "as_json", is_flag=True, help="The whole result as JSON on stdout.")
-@click.option("--plot", type=_OUT, help="Write measured and computed curves to this file (.png, .pdf, .svg).")
-@click.option("--profiles", type=_OUT, help="Write the profile of every parameter to this file.")
-@click.option("--save", "save_path", type=_OUT, help="Write the whole result to this file (.json).")
+@click.option(
+    "--plot", type=PICTURE, help="Write measured and computed curves to this file (.png, .pdf, .svg)."
+)
+@click.option("--profiles", type=PICTURE, help="Write the profile of every parameter to this file.")
+@click.option("--save", "save_path", type=JSON, help="Write the whole result to this file (.json).")
+@click.option(
+    "--save-vehicle",
+    type=VEHICLE,
+    help="Write the fitted vehicle of the first simulation to this file (.toml), for `birm3d run --vehicle`.",
+)
 @click.option("--jobs", type=click.IntRange(min=1), help="Threads.  [default: one a processor]")
 @click.option("--quiet", is_flag=True, help="No progress.")
 def calibrate_file(
@@ -27,14 +35,18 @@ def calibrate_file(
     plot: Path | None,
     profiles: Path | None,
     save_path: Path | None,
+    save_vehicle: Path | None,
     jobs: int | None,
     quiet: bool,
 ) -> None:
     """Fit scenes to measurements: FIT_FILE names scenes, measured curves and scalars, parameters."""
     from .calibration import CalibrationError, CalibrationInterruptedError, calibrate
     from .calibration.fit_file import read_fit_file
+    from .vehicle_writer import check_savable
 
     fit = read_fit_file(fit_file)
+    if save_vehicle is not None:
+        check_savable(fit.simulations[0].scene.vehicle)
     try:
         result = calibrate(
             fit.simulations,
@@ -63,11 +75,15 @@ def calibrate_file(
             click.echo(f"\n{comparison.summary()}")
     for path, make in ((plot, result.plot_fit), (profiles, result.plot_profiles)):
         if path is not None:
-            make().savefig(path, dpi=150)
+            with whole_file(path) as part:
+                make().savefig(part, dpi=150)
             click.echo(f"figure: {path}", err=True)
     if save_path is not None:
         result.save(save_path)
         click.echo(f"result: {save_path}", err=True)
+    if save_vehicle is not None:
+        result.vehicle.save(save_vehicle)
+        click.echo(f"vehicle: {save_vehicle}", err=True)
 
 
 def _tell_best(labels: list[str], values: tuple[float, ...] | None) -> None:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from . import units
+from .cli_files import CSV, STORE
 from .cli_scene import scene_options, simulation_of
 from .cli_table import print_table
 
@@ -51,14 +52,12 @@ _MOST_VALUES = 100_000
 @click.option("--random", "n", type=int, help="Draw this many runs from distributions instead.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Of --random.")
 @click.option("--metrics", help="Comma-separated.  [default: all in files, some in the table]")
-@click.option(
-    "--csv", "csv_path", type=click.Path(dir_okay=False, path_type=Path), help="Write all runs here."
-)
+@click.option("--csv", "csv_path", type=CSV, help="Write all runs to this file (.csv).")
 @click.option("--json", "as_json", is_flag=True, help="All runs as JSON on stdout.")
 @click.option("--jobs", type=click.IntRange(min=1), help="Threads.  [default: one for each core]")
 @click.option(
     "--store",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=STORE,
     help="Keep finished runs in this file (SQLite); the same command goes on from there.",
 )
 def sweep(

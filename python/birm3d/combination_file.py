@@ -14,19 +14,21 @@
     source = ["..."]
     status = "estimated"
 
-Head and sources are those of any vehicle file. Places are in the axes of each unit's own file.
+Head and sources are those of any vehicle file. Places are in the axes of each unit's own file. In place of
+the key ``file`` a unit may have all blocks of its vehicle file, as ``[[unit.solid]]``: so
+:meth:`birm3d.Vehicle.save` writes one file for both.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from .toml_document import Document, Strict, frozen, reject
-from .vehicle_blocks import Block, Name, Point, Positive, Source, Text, check_known
-from .vehicle_file import VehicleFile, VehicleFileError, read_vehicle_file
+from .toml_document import KeyPath, Strict, frozen, reject
+from .vehicle_blocks import Block, Point, Positive, Source, Text, check_known
+from .vehicle_file import VehicleFile, VehicleFileError, ZonesInOrder, read_vehicle_file
 
 __all__ = ["Combination", "CombinationFile", "JointBlock", "UnitReference", "read_combination"]
 
@@ -63,12 +65,12 @@ class CombinationFile(Strict):
     """A vehicle of two units as its file describes it."""
 
     format_version: Literal[1]
-    name: Name
+    name: Text
     title: Text
     description: Text
     gvw_kg: Positive
     sources: Annotated[tuple[Source, ...], Field(alias="source", min_length=1)]
-    units: Annotated[tuple[UnitReference, ...], Field(alias="unit", min_length=2, max_length=2)]
+    units: Annotated[tuple[UnitReference | VehicleFile, ...], Field(alias="unit", min_length=2, max_length=2)]
     joint: JointBlock
 
     @model_validator(mode="after")
@@ -84,10 +86,6 @@ class Combination(Strict):
     units: tuple[VehicleFile, VehicleFile]
 
 
-class _CombinationDocument(Document):
-    error = VehicleFileError
-
-
 def read_combination(path: str | Path) -> Combination | None:
     """Read and check a file of two units and theirs; ``None`` for a file that names no units.
 
@@ -96,11 +94,17 @@ def read_combination(path: str | Path) -> Combination | None:
     VehicleFileError
         With file, line, key, limit and value of everything that is wrong.
     """
-    document = _CombinationDocument(Path(path))
+    document = ZonesInOrder(Path(path))
     if "unit" not in document.data:
         return None
-    file = document.validate(CombinationFile, frozen(document.data))
-    leading, trailing = (read_vehicle_file(document.path.parent / unit.file) for unit in file.units)
+    data = frozen(document.data)
+    if isinstance(data["unit"], tuple):
+        data["unit"] = tuple(_unit(document, i, unit) for i, unit in enumerate(data["unit"]))
+    file = document.validate(CombinationFile, data)
+    leading, trailing = (
+        unit if isinstance(unit, VehicleFile) else read_vehicle_file(document.path.parent / unit.file)
+        for unit in file.units
+    )
     total = leading.gvw_kg + trailing.gvw_kg
     if abs(total - file.gvw_kg) > _MASS * file.gvw_kg:
         limit = f"within {_MASS:.0%} of the units' masses, {total:.2f}"
@@ -110,3 +114,13 @@ def read_combination(path: str | Path) -> Combination | None:
             message = f"names of zones must differ between the units, got '{zone}' in both"
             raise VehicleFileError(f"{document.place(('unit',))}: unit: {message}")
     return Combination(file=file, units=(leading, trailing))
+
+
+def _unit(document: ZonesInOrder, i: int, unit: Any) -> Any:
+    """Return a unit as it stands in the file, checked; what is no table is left for the whole to refuse."""
+    at: KeyPath = ("unit", i)
+    if not isinstance(unit, dict):
+        return unit
+    if "name" not in unit:
+        return document.validate(UnitReference, unit, at)
+    return document.validate(VehicleFile, document.zones_in_order(at), at)

@@ -155,17 +155,17 @@ class Document:
         """Return where a key of the checked data stands in the file."""
         return key
 
-    def validate(self, model: type[Model], data: Any) -> Model:
-        """Return the checked data, or fail with everything that is wrong with them."""
+    def validate(self, model: type[Model], data: Any, at: KeyPath = ()) -> Model:
+        """Return the checked data of the block at a key, or fail with everything that is wrong with them."""
         try:
             return model.model_validate(data)
         except ValidationError as error:
             # A misspelt key is an unknown one and a missing one: the unknown one says more.
             problems = sorted(error.errors(include_url=False), key=lambda e: e["type"] == "missing")
-            raise self.error("\n".join(self._message(problem) for problem in problems)) from error
+            raise self.error("\n".join(self._message(problem, at) for problem in problems)) from error
 
-    def _message(self, error: ErrorDetails) -> str:
-        key = self.written_key(error["loc"])
+    def _message(self, error: ErrorDetails, at: KeyPath) -> str:
+        key = self.written_key((*at, *error["loc"]))
         context = error.get("ctx", {})
         if error["type"] == "document":
             text = context["message"]

@@ -140,16 +140,38 @@ class Vehicle:
             Naming file, line, key, limit and value of everything that is wrong.
         """
         from .combination_file import read_combination
+        from .vehicle_changes import vehicle_of
         from .vehicle_file import read_vehicle_file
 
         combination = read_combination(path)
         if combination is None:
-            return _from_file(read_vehicle_file(path), gvw, mesh_density, None)
+            return vehicle_of(read_vehicle_file(path), gvw, mesh_density)
         from .articulated import combine
 
-        units = [_from_file(unit, None, mesh_density, None) for unit in combination.units]
+        units = [vehicle_of(unit, None, mesh_density) for unit in combination.units]
         vehicle = combine(units, combination.file)
         return vehicle if gvw is None else vehicle.with_gvw(gvw)
+
+    def save(self, path: str | Path) -> None:
+        """Write the vehicle to a file (TOML) that :meth:`from_file` reads back as the same vehicle.
+
+        The file has all blocks of the one that the vehicle comes from, with their sources, and a block
+        ``[changes]`` with what the methods ``with_...`` have changed since: mass, payload, zones, height of
+        the mass centre, mesh density, rate sensitivity, dents, tyres.
+
+        Parameters
+        ----------
+        path
+            File to write, in a folder that exists; replaced only when all of it is written.
+
+        Raises
+        ------
+        ValueError
+            If the vehicle was made from arrays, or has been changed in what a file can not hold.
+        """
+        from .vehicle_writer import save_vehicle
+
+        save_vehicle(self, path)
 
     @staticmethod
     def from_arrays(
@@ -375,6 +397,8 @@ class Vehicle:
         Mass and inertia about the mass centre stay. A later :meth:`with_gvw` keeps the shift.
         """
         height = positive("mass_center_height", height)
+        if self._file is not None:
+            return self._raised_by(height - self.mass_center_height)
         up = np.array([0.0, 0.0, height - self.mass_center_height])
         wheels = self.wheels.copy()
         wheels[:, :3] -= up
@@ -385,7 +409,23 @@ class Vehicle:
             anchors=self.anchors - up,
             wheels=wheels,
             mass_center_height=height,
-            _raised=self._raised + float(up[2]),
+        )
+
+    def _raised_by(self, up: float) -> Vehicle:
+        """Return a vehicle of a file with its mass centre that much higher [m], as its file would make it."""
+        assert self._file is not None
+        assert self._mesh is not None  # made together with _file
+        return self._anew(
+            _assemble(
+                self._file,
+                self._mesh,
+                self.mass,
+                self._mesh_density,
+                self.zones,
+                self._raised + up,
+                self._draft,
+                self._load_density,
+            )
         )
 
     def with_zone(self, name: str, **changes: Any) -> Vehicle:
@@ -445,7 +485,7 @@ class Vehicle:
         if not (self.wheel_of_node >= 0).any():
             vehicle = vehicle.without_tire_contact()
         return dataclasses.replace(
-            vehicle, rate_sensitivity=self.rate_sensitivity, dent_reach=self.dent_reach
+            vehicle, name=self.name, rate_sensitivity=self.rate_sensitivity, dent_reach=self.dent_reach
         )
 
     def draft(self) -> Vehicle:
@@ -556,9 +596,12 @@ class Vehicle:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Vehicle):
             return NotImplemented
-        mine, theirs = self._arguments(), other._arguments()
         # The mesh follows from file and density.
-        return all(np.array_equal(mine[key], theirs[key]) for key in mine if key != "_mesh")
+        names = (field.name for field in dataclasses.fields(Vehicle) if field.name != "_mesh")
+        return all(self._same(other, name) for name in names)
+
+    def _same(self, other: Vehicle, name: str) -> bool:
+        return bool(np.array_equal(getattr(self, name), getattr(other, name)))
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -616,7 +659,7 @@ def _assemble(
     tread = build_tread(file, mesh_density)
     return Vehicle(
         name=file.name,
-        mass=properties.mass,
+        mass=mass,  # the solids' up to rounding, which would grow with every change
         center_of_mass=center,
         inertia=np.array(properties.inertia),
         nodes=np.concatenate([mesh.nodes, tread.nodes]) - center,

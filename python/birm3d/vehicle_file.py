@@ -37,6 +37,7 @@ from .vehicle_blocks import (
     check_known,
     check_unique,
 )
+from .vehicle_changes import Changes
 
 __all__ = [
     "Block",
@@ -52,6 +53,7 @@ __all__ = [
     "VehicleFileError",
     "Wheel",
     "Zone",
+    "ZonesInOrder",
     "preset_names",
     "preset_path",
     "read_vehicle_file",
@@ -70,6 +72,7 @@ class VehicleFile(Strict):
     """A vehicle as its file describes it: SI units, file axes, immutable.
 
     zones_at_kg: mass of the vehicle that the stiffness of the zones holds for; without it, gvw_kg.
+    changes: how the vehicle differs from what the rest describes, see :meth:`birm3d.Vehicle.save`.
     """
 
     format_version: Literal[1]
@@ -87,6 +90,7 @@ class VehicleFile(Strict):
     dents: Dents | None = None
     core: Annotated[tuple[CoreBox, ...], Field(min_length=1)]
     zones: Annotated[tuple[Zone, ...], Field(alias="zone", min_length=1)]
+    changes: Changes | None = None
 
     @field_validator("core", "solids", "wheels", "sources")
     @classmethod
@@ -105,6 +109,8 @@ class VehicleFile(Strict):
         for zone in self.zones:
             check_known(f"zone.{zone.name}.blocks", zone.blocks, blocks)
             check_known(f"zone.{zone.name}.core", zone.core, boxes)
+        for name in () if self.changes is None else self.changes.zone:
+            check_known(f"changes.zone.{name}", (name,), set(self.zone_names))
         known = {source.id for source in self.sources}
         for key, block in self._blocks():
             check_known(f"{key}.source", block.source, known)
@@ -154,16 +160,45 @@ class VehicleFile(Strict):
         return tuple(zone.name for zone in self.zones)
 
 
-class _VehicleDocument(Document):
-    """A vehicle file with what it extends merged in."""
+class ZonesInOrder(Document):
+    """A file whose zones are a table, at its top or in each of its units; as a model they are a sequence."""
 
     error = VehicleFileError
+
+    def zones_in_order(self, at: KeyPath = ()) -> Any:
+        """Return the data of a block with the table of zones as a sequence, each with its name."""
+        data = frozen(self._at(at))
+        if isinstance(table := data.get("zone"), dict):
+            for name, block in table.items():
+                if not isinstance(block, dict) or "name" in block:
+                    place = self.place((*at, "zone", name, "name"))
+                    message = f"must be a table without the key 'name', got {received(block)}"
+                    raise VehicleFileError(f"{place}: zone.{name}: {message}")
+            data["zone"] = tuple({"name": name, **block} for name, block in table.items())
+        return data
+
+    def written_key(self, key: KeyPath) -> KeyPath:
+        """Zones are a table in the file: their place in the sequence is their name there."""
+        for i, part in enumerate(key[:-1]):
+            number = key[i + 1]
+            if part == "zone" and isinstance(number, int):
+                return (*key[: i + 1], list(self._at(key[: i + 1]))[number], *key[i + 2 :])
+        return key
+
+    def _at(self, key: KeyPath) -> Any:
+        block: Any = self.data
+        for part in key:
+            block = block[part]
+        return block
+
+
+class _VehicleDocument(ZonesInOrder):
+    """A vehicle file with what it extends merged in."""
 
     def __init__(self, path: Path, parents: tuple[Path, ...] = ()) -> None:
         if path.resolve() in parents:
             raise VehicleFileError(f"{path}: extends: the files extend each other in a circle")
         super().__init__(path)
-        self._zones: list[str] = []
         if "extends" in self.data:
             self._extend(parents)
 
@@ -195,25 +230,6 @@ class _VehicleDocument(Document):
             elif key and key[0] not in own:
                 self._places[key] = where
         self.data = merged
-
-    def zones_in_order(self) -> Any:
-        """Return the data with the table of zones as a sequence, each with its name."""
-        data = frozen(self.data)
-        if isinstance(table := data.get("zone"), dict):
-            for name, block in table.items():
-                if not isinstance(block, dict) or "name" in block:
-                    place = self.place(("zone", name, "name"))
-                    message = f"must be a table without the key 'name', got {received(block)}"
-                    raise VehicleFileError(f"{place}: zone.{name}: {message}")
-            self._zones = list(table)
-            data["zone"] = tuple({"name": name, **block} for name, block in table.items())
-        return data
-
-    def written_key(self, key: KeyPath) -> KeyPath:
-        """Zones are a table in the file: their place in the sequence is their name there."""
-        if len(key) > 1 and key[0] == "zone" and isinstance(key[1], int):
-            return ("zone", self._zones[key[1]], *key[2:])
-        return key
 
 
 def read_vehicle_file(path: str | Path) -> VehicleFile:

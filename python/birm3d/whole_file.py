@@ -14,6 +14,8 @@ __all__ = ["check_format", "whole_file"]
 def whole_file(path: str | Path) -> Iterator[Path]:
     """Yield a path to write to; it becomes `path` when the block ends well, and vanishes when it does not.
 
+    A device or a pipe is written to as it is.
+
     Raises
     ------
     ValueError
@@ -24,6 +26,9 @@ def whole_file(path: str | Path) -> Iterator[Path]:
         raise ValueError(f"path must be a file, got the folder {str(path)!r}")
     if not path.parent.is_dir():
         raise ValueError(f"path must be in a folder that exists, got {str(path)!r}")
+    if path.exists() and not path.is_file():  # a device or a pipe, which stays what it is
+        yield path
+        return
     # The ending stays last: writers of pictures and movies go by it.
     part = path.with_name(f".part-{path.name}")
     try:

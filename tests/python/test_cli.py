@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from birm3d import Result, Study, load, units
+from birm3d import Result, Simulation, Study, load, units
 from birm3d.cli import main
 
 SEDAN = [
@@ -22,6 +23,11 @@ SEDAN = [
     "--mesh-density",
     "0.3",
 ]
+
+
+LINUX = pytest.mark.skipif(
+    sys.platform != "linux", reason="/proc is a folder that not even root can write to"
+)
 
 
 def birm3d(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
@@ -67,6 +73,61 @@ def test_run_with_result_page_and_movie(monkeypatch, capsys, tmp_path):
     assert page.read_text(encoding="utf-8").endswith("</html>\n")
     assert movie.read_bytes().startswith(b"GIF89a")
     assert [line.split(":")[0] for line in err.splitlines()] == ["result", "page", "movie"]
+
+
+@pytest.mark.parametrize(
+    ("option", "name", "message"),
+    [
+        ("--plot", "crash.xyz", "--plot must end in .png, "),
+        ("--plot", "crash", "--plot must end in .png, "),
+        ("--csv", "crash.npz", "--csv must end in .csv, "),
+        ("--save", "crash.csv", "--save must end in .npz, "),
+        ("--html", "crash.png", "--html must end in .html or .htm, "),
+        ("--movie", "crash.mpg", "--movie must end in .mp4, "),
+        ("--plot", "none/crash.png", "--plot must be in a folder that exists, "),
+        ("--csv", "folder.csv", "--csv must be a file, got the folder "),
+        pytest.param(
+            "--save", "/proc/crash.npz", "--save must be in a folder that can be written to, ", marks=LINUX
+        ),
+        pytest.param(
+            "--html", "/proc/crash.html", "--html must be in a folder that can be written to, ", marks=LINUX
+        ),
+        pytest.param(
+            "--movie", "/proc/crash.gif", "--movie must be in a folder that can be written to, ", marks=LINUX
+        ),
+    ],
+)
+def test_files_that_can_not_be_written_are_told_before_the_run(
+    monkeypatch, capsys, tmp_path, option, name, message
+):
+    def run(self):
+        raise AssertionError("it ran")
+
+    monkeypatch.setattr(Simulation, "run", run)
+    (tmp_path / "folder.csv").mkdir()
+    assert birm3d(monkeypatch, *SEDAN, option, str(tmp_path / name)) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith(f"birm3d: {message}")
+    assert str(tmp_path / name) in err
+    assert err.count("\n") == 1
+
+
+def test_one_file_for_two_outputs_is_refused(monkeypatch, capsys, tmp_path):
+    page = str(tmp_path / "x.csv.txt")
+    table = ["--csv", page, "--vary", "impact_speed=5"]
+    assert birm3d(monkeypatch, *SWEEP, *table, "--store", page) == 2
+    assert "--store must be another file than --csv" in capsys.readouterr().err
+
+
+def test_a_disk_that_fills_is_one_line(monkeypatch, capsys, tmp_path):
+    def full(self, path):
+        raise OSError(errno.ENOSPC, "No space left on device", str(path))
+
+    monkeypatch.setattr(Result, "save", full)
+    kept = tmp_path / "crash.npz"
+    assert birm3d(monkeypatch, *SEDAN, "--json", "--save", str(kept)) == 1
+    assert capsys.readouterr().err == f"birm3d: {kept}: No space left on device\n"
 
 
 def test_missing_extra_is_one_line(monkeypatch, capsys, tmp_path):

@@ -122,6 +122,31 @@ def test_json_and_figures(monkeypatch, capsys, folder):
     assert all(path.stat().st_size > 5_000 for path in figures)
 
 
+def test_the_fitted_vehicle_runs_from_its_file(monkeypatch, capsys, folder):
+    vehicle = folder / "fitted.toml"
+    files = ["--save-vehicle", vehicle, "--save", folder / "out.json"]
+    assert birm3d(monkeypatch, folder / "fit.toml", "--quiet", *files) == 0
+    assert f"vehicle: {vehicle}" in capsys.readouterr().err
+    # Run from the file, and by hand with the fitted value.
+    arguments = ["run", "--vehicle", str(vehicle), "--speed", "57.09km/h", "--json"]
+    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
+    main()
+    run = json.loads(capsys.readouterr().out)
+    engine = load(folder / "out.json").values["engine"]
+    by_hand = varied(read_fit_file(folder / "fit.toml").simulations[0], dict.fromkeys(ENGINE, engine)).run()
+    assert run["state_hash"] == f"{by_hand.state_hash:016x}"
+    assert run["mass"] == pytest.approx(1719.0)
+
+
+def test_files_that_can_not_be_written_are_told_before_the_fit(monkeypatch, capsys, folder):
+    for option, name in (("--save-vehicle", "v.json"), ("--save", "fit.toml2"), ("--profiles", "p.csv")):
+        assert birm3d(monkeypatch, folder / "fit.toml", option, folder / name) == 2
+        out, err = capsys.readouterr()
+        assert out == ""
+        assert err.startswith(f"birm3d: {option} must end in .")
+        assert err.count("\n") == 1
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [

@@ -12,12 +12,12 @@ import numpy.typing as npt
 from ..progress import progress_bar
 from ..whole_file import whole_file
 from .camera import View
-from .stage import Color, Stage
+from .stage import Color, Stage, check_drawing
 
 if TYPE_CHECKING:
     from ..result import Result
 
-__all__ = ["animate"]
+__all__ = ["animate", "check_movie"]
 
 Picture = npt.NDArray[np.uint8]
 
@@ -80,6 +80,12 @@ def animate(
                 advance(1)
 
         write(part, pictures(), fps, size)
+
+
+def check_movie(path: Path) -> None:
+    """Refuse what :func:`animate` would refuse: a file's ending, missing packages, no drawing."""
+    _writer(path, (2, 2))
+    check_drawing()
 
 
 def _writer(

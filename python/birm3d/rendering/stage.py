@@ -187,6 +187,20 @@ def _pyvista() -> Any:
     return pyvista
 
 
+def check_drawing() -> None:
+    """Refuse an installation without pyvista, and a machine that can not draw.
+
+    Raises
+    ------
+    ImportError
+        Without pyvista.
+    RuntimeError
+        Without a display and the libraries that stand in for one.
+    """
+    _pyvista()
+    _check_drawing()
+
+
 def _check_drawing() -> None:
     """Refuse a machine on which VTK would crash: without a display it needs one of these libraries."""
     if not sys.platform.startswith("linux") or os.environ.get("DISPLAY"):

@@ -1,0 +1,175 @@
+"""Vehicle.save: what from_file reads back is the same vehicle, whatever has been changed."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from birm3d import Barrier, Joint, Simulation, Vehicle, Zone
+from birm3d.vehicle_file import VehicleFileError
+
+Change = Callable[[Vehicle], Vehicle]
+
+
+def first_zone(vehicle: Vehicle) -> str:
+    return next(iter(vehicle.zones))
+
+
+def knee(vehicle: Vehicle) -> Vehicle:
+    law = {"k_initial": 1.1e6, "knee": 0.1, "k_hardening": 0.0, "f_max": np.inf, "k_unloading": 7e6}
+    return vehicle.with_zone(first_zone(vehicle), **law)
+
+
+def several(vehicle: Vehicle) -> Vehicle:
+    height = vehicle.mass_center_height
+    changed = vehicle.scaled_to(1.3 * vehicle.mass).with_gvw(1.41 * vehicle.mass)
+    changed = changed.with_mass_center_height(height + 0.05).with_rate_sensitivity(0.05)
+    changed = changed.without_tire_contact().with_mesh_density(0.2).with_mass_center_height(height + 0.07)
+    return knee(changed).with_gvw(1.2 * vehicle.mass)
+
+
+CHANGES: dict[str, Change] = {
+    "nothing": lambda v: v,
+    "heavier": lambda v: v.with_gvw(1.07 * v.mass),
+    "lighter": lambda v: v.with_gvw(0.95 * v.mass),
+    "no payload": lambda v: v.with_payload(0.0),
+    "payload": lambda v: v.with_payload(321.0),
+    "similar": lambda v: v.scaled_to(1.3 * v.mass),
+    "zone scaled": lambda v: v.with_zones({first_zone(v): v.zones[first_zone(v)].scaled(1 / 3)}),
+    "knee in place of an envelope": knee,
+    "mass centre": lambda v: v.with_mass_center_height(v.mass_center_height + 0.123),
+    "rate": lambda v: v.with_rate_sensitivity(0.061),
+    "no dents": lambda v: v.with_dent_reach(0.0),
+    "dents": lambda v: v.with_dent_reach(0.7),
+    "tyres": lambda v: v.without_tire_contact(),
+    "mesh": lambda v: v.with_mesh_density(0.37),
+    "all together": several,
+}
+
+
+@pytest.fixture(scope="module", params=Vehicle.presets())
+def preset(request) -> Vehicle:
+    return Vehicle.preset(request.param, mesh_density=0.1)
+
+
+def test_every_preset_with_every_change(preset, tmp_path):
+    path = tmp_path / "v.toml"
+    for what, change in CHANGES.items():
+        try:
+            vehicle = change(preset)
+        except ValueError:  # as a payload of a vehicle that has none
+            assert what in ("payload", "no payload")
+            continue
+        vehicle.save(path)
+        assert Vehicle.from_file(path) == vehicle, what
+
+
+def test_goods_of_another_density(tmp_path):
+    truck = Vehicle.preset("cargo_truck", mesh_density=0.1).with_payload(2000.0, density=300.0)
+    truck.save(tmp_path / "v.toml")
+    again = Vehicle.from_file(tmp_path / "v.toml")
+    assert again == truck
+    assert again.with_gvw(9000.0) == truck.with_gvw(9000.0)  # and it goes on as the vehicle would
+
+
+def test_the_same_run(tmp_path):
+    car = several(Vehicle.preset("passenger_car"))
+    car.save(tmp_path / "v.toml")
+    hashes = [
+        Simulation(vehicle, Barrier.rigid_wall(), 14.0, 60.0).run().state_hash
+        for vehicle in (car, Vehicle.from_file(tmp_path / "v.toml"))
+    ]
+    assert hashes[0] == hashes[1]
+
+
+def test_two_units_in_one_file(tmp_path):
+    tractor, trailer = Vehicle.preset("semi_truck", mesh_density=0.1).units
+    trailer = dataclasses.replace(trailer, name="A trailer, lighter").with_gvw(12000.0)
+    joint = Joint((-5.5, 0.0, 1.2), (0.1, 0.0, 1.2), roll_limit=5.0)
+    train = Vehicle.articulated([tractor.without_tire_contact(), trailer], joint)
+    train.save(tmp_path / "train.toml")
+    again = Vehicle.from_file(tmp_path / "train.toml")
+    assert again == train
+    assert again.joint.roll_limit == 5.0
+    assert again.units[1].name == "A trailer, lighter"
+
+
+def test_units_without_changes_are_as_in_their_own_files(tmp_path):
+    semi = Vehicle.preset("semi_truck", mesh_density=0.1)
+    semi.with_gvw(20000.0).with_joint("welded").save(tmp_path / "semi.toml")
+    again = Vehicle.from_file(tmp_path / "semi.toml", gvw=semi.mass)
+    assert again.joint.kind == "welded"
+    assert again.with_joint("fifth_wheel").units[0] == semi.units[0]
+    assert again.mass == pytest.approx(semi.mass, rel=1e-12)
+
+
+def test_arguments_of_from_file_go_on_from_what_was_saved(tmp_path):
+    car = Vehicle.preset("passenger_car", mesh_density=0.2).with_rate_sensitivity(0.05)
+    car.save(tmp_path / "v.toml")
+    again = Vehicle.from_file(tmp_path / "v.toml", gvw=2000.0, mesh_density=2.0)
+    assert again == car.with_gvw(2000.0).with_mesh_density(0.4)
+
+
+def test_sources_stay_and_changes_are_apart(tmp_path):
+    knee(Vehicle.preset("pickup", mesh_density=0.1)).save(tmp_path / "v.toml")
+    blocks, changes = (tmp_path / "v.toml").read_text().split("\n[changes]\n")
+    assert 'id = "fit-7360-7582"' in blocks
+    assert "envelope_m_Pa = [[0.0, 0.0]" in blocks  # the file's own law, with its source
+    assert "k_initial_Pa_per_m = 1100000.0" in changes
+    assert "mesh_density = 0.1" in changes
+
+
+def test_what_a_file_can_not_hold_is_refused(tmp_path):
+    path = tmp_path / "v.toml"
+    box = Vehicle.from_arrays(
+        mass=1e3, inertia=np.eye(3), nodes=np.eye(3), anchors=-np.eye(3), k_initial=1.0, k_unloading=1.0
+    )
+    with pytest.raises(ValueError, match=r"preset or a file .* got 'from_arrays' from arrays; Result\.save"):
+        box.save(path)
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    with pytest.raises(ValueError, match="got 'passenger_car' with another inertia"):
+        dataclasses.replace(car, inertia=2.0 * car.inertia).save(path)
+    with pytest.raises(ValueError, match="folder that exists"):
+        car.save(tmp_path / "none" / "v.toml")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("[changes.zone.bumper]", "[changes.zone.bumpr]", r"changes\.zone\.bumpr: must be one of .* 'bumpr'"),
+        ("mesh_density = 0.1", "mesh_densty = 0.1", r"changes\.mesh_densty: unknown key"),
+        ("mesh_density = 0.1", "mesh_density = -0.1", r"changes\.mesh_density: must be greater than 0"),
+        ("k_initial_Pa_per_m = 1100000.0", "k_initial_Pa_per_m = -1.0", r"changes\.zone\.bumper: k_initial"),
+    ],
+)
+def test_wrong_changes_name_line_and_key(tmp_path, old, new, message):
+    path = tmp_path / "v.toml"
+    knee(Vehicle.preset("passenger_car", mesh_density=0.1)).save(path)
+    text = path.read_text()
+    head, tail = text.split("\n[changes]\n")
+    assert old in tail
+    path.write_text(head + "\n[changes]\n" + tail.replace(old, new, 1))
+    with pytest.raises(VehicleFileError, match=message) as raised:
+        Vehicle.from_file(path)
+    line = int(str(raised.value).split(":")[1])
+    assert line > head.count("\n") + 1
+
+
+def test_wrong_units_name_line_and_key(tmp_path):
+    path = tmp_path / "semi.toml"
+    Vehicle.preset("semi_truck", mesh_density=0.1).save(path)
+    lines = path.read_text().splitlines()
+    at = max(i for i, line in enumerate(lines) if line.startswith("k_unloading_Pa_per_m"))
+    lines[at] = "k_unloading_Pa_per_m = -1.0"
+    path.write_text("\n".join(lines))
+    with pytest.raises(VehicleFileError, match=rf"semi.toml:{at + 1}: unit\.1\.zone\.\w+\.k_unloading"):
+        Vehicle.from_file(path)
+
+
+def test_a_zone_without_a_plateau_comes_back(tmp_path):
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    car.with_zones({"bumper": Zone(1e6, np.inf, 0.0, np.inf, 1e6)}).save(tmp_path / "v.toml")
+    assert Vehicle.from_file(tmp_path / "v.toml").zones["bumper"].knee == np.inf
