@@ -1,5 +1,6 @@
 #include "birm3d/base/error.hpp"
 
+#include "bound_simulation.hpp"
 #include "register.hpp"
 
 namespace birm3d::bindings {
@@ -7,6 +8,7 @@ namespace birm3d::bindings {
 // InvalidArgument derives from std::invalid_argument, which pybind11 turns into ValueError by itself.
 void register_errors(pybind11::module_& m) {
     pybind11::register_exception<UnstableError>(m, "UnstableError", PyExc_ValueError);
+    pybind11::register_exception<BusyError>(m, "BusyError", PyExc_RuntimeError);
 }
 
 }  // namespace birm3d::bindings

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "bound_simulation.hpp"
 #include "register.hpp"
 
 namespace birm3d::bindings {
@@ -32,7 +33,8 @@ struct Run {
     }
 };
 
-using Job = std::pair<const Simulation*, Approach>;
+// Scenes of simulations do not change, so that they may be in use.
+using Job = std::pair<const BoundSimulation*, Approach>;
 
 // Those that were run before `stop`.
 std::vector<Run> run_all(Runner& runner, const std::vector<Job>& jobs, const ExtremeGroups& wanted,
@@ -42,7 +44,7 @@ std::vector<Run> run_all(Runner& runner, const std::vector<Job>& jobs, const Ext
     };
     std::vector<Run> runs;
     runs.reserve(jobs.size());
-    const Simulation* last = nullptr;
+    const BoundSimulation* last = nullptr;
     for (const auto& [simulation, approach] : jobs) {
         Run run;
         try {

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "arrays.hpp"
+#include "bound_simulation.hpp"
 #include "register.hpp"
 
 namespace birm3d::bindings {
@@ -29,7 +30,7 @@ OutputArray in_input_order(const Simulation& simulation, std::size_t unit, Lanes
 }
 
 // The same for the three coordinates of the nodes.
-OutputArray nodes_in_input_order(const Simulation& simulation, std::size_t unit) {
+OutputArray nodes_in_input_order(Simulation& simulation, std::size_t unit) {
     const TrussMesh& mesh = simulation.scene().vehicle->units.at(unit).trusses;
     const TrussState& trusses = simulation.state().units.at(unit).trusses;
     OutputArray nodes({static_cast<py::ssize_t>(mesh.count), py::ssize_t{3}});
@@ -41,6 +42,15 @@ OutputArray nodes_in_input_order(const Simulation& simulation, std::size_t unit)
         at(row, 0) = block.x[i % lanes], at(row, 1) = block.y[i % lanes], at(row, 2) = block.z[i % lanes];
     }
     return read_only(std::move(nodes));
+}
+
+// Without the interpreter's lock, but for a look at signals now and then.
+void run(Simulation& simulation) {
+    const py::gil_scoped_release release;
+    simulation.run([] {
+        const py::gil_scoped_acquire acquire;
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    });
 }
 
 }  // namespace
@@ -82,88 +92,87 @@ void register_simulation(py::module_& m) {
              py::kw_only(), py::arg("speed"), py::arg("angle"), py::arg("offset"), py::arg("standoff"),
              py::arg("yaw"), py::arg("roll"));
 
-    py::class_<Simulation::Snapshot>(m, "Snapshot", "A checkpoint: state and record.")
-        .def_property_readonly("time", [](const Simulation::Snapshot& s) { return s.state.time; }, "s");
+    py::class_<Simulation::Snapshot>(m, "Snapshot",
+                                     "A checkpoint: state and record. It lives in memory only.")
+        .def_property_readonly(
+            "time", [](const Simulation::Snapshot& s) { return s.state.time; }, "s")
+        .def("__reduce__", [](const Simulation::Snapshot&) -> py::object {
+            throw py::type_error(
+                "a snapshot lives in memory and is not pickled: pickle the Simulation, which keeps its "
+                "state");
+        });
 
-    py::class_<Simulation>(m, "Simulation", "A run of one scene (SI, rad).")
+    // Reads of one number or column, and what changes the state: each has the simulation to itself.
+    py::class_<BoundSimulation>(
+        m, "Simulation",
+        "A run of one scene (SI, rad). One user at a time: any other gets a BusyError. `with "
+        "simulation:` keeps others out\nbetween several calls.")
         .def(py::init([](std::shared_ptr<Vehicle> vehicle,
                          const std::vector<std::shared_ptr<Barrier>>& barriers, const Approach& approach,
                          const Settings& settings, std::optional<double> duration) {
-                 return Simulation(Scene(std::move(vehicle), only(barriers), approach, settings, duration));
+                 return std::make_unique<BoundSimulation>(
+                     Scene(std::move(vehicle), only(barriers), approach, settings, duration));
              }),
              py::kw_only(), py::arg("vehicle"), py::arg("barriers"), py::arg("approach"), py::arg("settings"),
              py::arg("duration"))
-        .def("step", &Simulation::step, py::call_guard<py::gil_scoped_release>(),
+        .def("__enter__", [](BoundSimulation& simulation) { simulation.in_block.take(); })
+        .def("__exit__", [](BoundSimulation& simulation, const py::object&, const py::object&,
+                            const py::object&) { simulation.in_block.release(); })
+        .def("step", alone(+[](Simulation& s) { return s.step(); }), py::call_guard<py::gil_scoped_release>(),
              "One accepted step; False when the run is over.")
-        .def(
-            "run",
-            [](Simulation& simulation) {
-                const py::gil_scoped_release release;
-                simulation.run([] {
-                    const py::gil_scoped_acquire acquire;
-                    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-                });
-            },
-            "From the present state to the end; Ctrl-C stops it.")
-        .def("reset", &Simulation::reset)
-        .def("snapshot", &Simulation::snapshot)
-        .def("restore", &Simulation::restore, py::arg("snapshot"))
-        .def(
-            "history", [](const Simulation& s) { return s.recorder().resample(s.scene()); },
-            py::call_guard<py::gil_scoped_release>(), "Evenly spaced output so far.")
-        .def_property_readonly("state_hash", [](const Simulation& s) { return s.state().hash(); })
-        .def_property_readonly(
-            "time", [](const Simulation& s) { return s.state().time; }, "s")
-        .def_property_readonly("end_reason", &Simulation::end_reason)
-        .def_property_readonly("touched", [](const Simulation& s) { return s.state().touched; })
-        .def_property_readonly("deepest_node", &Simulation::deepest_node,
+        .def("run", alone(&run), "From the present state to the end; Ctrl-C stops it.")
+        .def("reset", alone(+[](Simulation& s) { s.reset(); }))
+        .def("snapshot", alone(+[](Simulation& s) { return s.snapshot(); }))
+        .def("restore", alone(+[](Simulation& s, const Simulation::Snapshot& from) { s.restore(from); }),
+             py::arg("snapshot"))
+        .def("history", alone(+[](Simulation& s) { return s.recorder().resample(s.scene()); }),
+             py::call_guard<py::gil_scoped_release>(), "Evenly spaced output so far.")
+        .def_property_readonly("state_hash", alone(+[](Simulation& s) { return s.state().hash(); }))
+        .def_property_readonly("time", alone(+[](Simulation& s) { return s.state().time; }), "s")
+        .def_property_readonly("end_reason", alone(+[](Simulation& s) { return s.end_reason(); }))
+        .def_property_readonly("failed", alone(+[](Simulation& s) { return s.failed(); }),
+                               "Did the last step fail half way? Then only reset and restore are of use.")
+        .def_property_readonly("replays", alone(+[](Simulation& s) { return s.replays(); }),
+                               "Do as many steps from the start lead to this state?")
+        .def_property_readonly("touched", alone(+[](Simulation& s) { return s.state().touched; }))
+        .def_property_readonly("deepest_node", alone(+[](Simulation& s) { return s.deepest_node(); }),
                                "m: depth of the deepest shell node inside the barrier now, 0 if none is")
-        .def_property_readonly("deepest_anchor", &Simulation::deepest_anchor,
+        .def_property_readonly("deepest_anchor", alone(+[](Simulation& s) { return s.deepest_anchor(); }),
                                "m: depth of the deepest truss anchor inside the barrier now, 0 if none is")
-        .def_property_readonly("statistics", [](const Simulation& s) { return s.state().statistics; })
+        .def_property_readonly("statistics", alone(+[](Simulation& s) { return s.state().statistics; }))
+        .def("velocity", alone(+[](Simulation& s, std::size_t unit) {
+                 return copy(s.state().units.at(unit).body.velocity);
+             }),
+             py::arg("unit") = 0, "(3,) m/s, world, now")
+        .def("pose", alone(+[](Simulation& s, std::size_t unit) {
+                 const BodyState& body = s.state().units.at(unit).body;
+                 return std::pair(copy(body.position), copy(Mat3(body.orientation.toRotationMatrix())));
+             }),
+             py::arg("unit") = 0,
+             "Now: mass centre, (3,) m, world; rotation from body axes to the world's, (3, 3)")
         .def(
-            "velocity",
-            [](const Simulation& s, std::size_t unit) {
-                return copy(s.state().units.at(unit).body.velocity);
-            },
-            py::arg("unit") = 0, "(3,) m/s, world, now")
-        .def(
-            "pose",
-            [](const Simulation& s, std::size_t unit) {
-                const BodyState& body = s.state().units.at(unit).body;
-                return std::pair(copy(body.position), copy(Mat3(body.orientation.toRotationMatrix())));
-            },
-            py::arg("unit") = 0,
-            "Now: mass centre, (3,) m, world; rotation from body axes to the world's, (3, 3)")
-        .def(
-            "skin_load",
-            [](const Simulation& s, std::size_t unit) {
+            "skin_load", alone(+[](Simulation& s, std::size_t unit) {
                 const SkinForces& skin = s.state().units.at(unit).skin;
                 return std::tuple(copy(skin.contact.force), copy(skin.friction.force), skin.normal_force);
-            },
+            }),
             py::arg("unit") = 0,
             "Now: force of all that nodes push on, without friction, (3,) N, world; friction, (3,) N; sum of "
             "the "
             "nodes' normal forces, N")
-        .def("nodes", &nodes_in_input_order, py::arg("unit") = 0, "(n, 3) m: shell nodes now, body axes")
-        .def(
-            "deflection",
-            [](const Simulation& s, std::size_t unit) {
-                return in_input_order(s, unit, &TrussBlockState::deflection);
-            },
-            py::arg("unit") = 0, "(n,) m: truss deflections now")
-        .def(
-            "peak_deflection",
-            [](const Simulation& s, std::size_t unit) {
-                return in_input_order(s, unit, &TrussBlockState::peak_deflection);
-            },
-            py::arg("unit") = 0, "(n,) m: greatest truss deflections so far")
-        .def(
-            "truss_force",
-            [](const Simulation& s, std::size_t unit) {
-                return in_input_order(s, unit, &TrussBlockState::force);
-            },
-            py::arg("unit") = 0, "(n,) N: truss forces now");
+        .def("nodes", alone(&nodes_in_input_order), py::arg("unit") = 0,
+             "(n, 3) m: shell nodes now, body axes")
+        .def("deflection", alone(+[](Simulation& s, std::size_t unit) {
+                 return in_input_order(s, unit, &TrussBlockState::deflection);
+             }),
+             py::arg("unit") = 0, "(n,) m: truss deflections now")
+        .def("peak_deflection", alone(+[](Simulation& s, std::size_t unit) {
+                 return in_input_order(s, unit, &TrussBlockState::peak_deflection);
+             }),
+             py::arg("unit") = 0, "(n,) m: greatest truss deflections so far")
+        .def("truss_force", alone(+[](Simulation& s, std::size_t unit) {
+                 return in_input_order(s, unit, &TrussBlockState::force);
+             }),
+             py::arg("unit") = 0, "(n,) N: truss forces now");
 }
 
 }  // namespace birm3d::bindings

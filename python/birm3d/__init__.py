@@ -7,7 +7,7 @@ SI units, angles in degrees, arrays read-only. Start with :class:`Vehicle`, :cla
 from __future__ import annotations
 
 from . import calibration, scenes, units
-from ._core import UnstableError
+from ._core import BusyError, UnstableError
 from ._version import __version__
 from .articulated import ArticulatedVehicle, Joint
 from .barrier import Barrier
@@ -37,6 +37,7 @@ from .vehicle import Vehicle, Zone
 __all__ = [
     "ArticulatedVehicle",
     "Barrier",
+    "BusyError",
     "Channel",
     "CoarseSkinWarning",
     "CurveComparison",

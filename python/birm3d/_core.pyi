@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Approach', 'Barrier', 'ContactModel', 'Element', 'EndReason', 'ExtremeAttitude', 'ExtremeEnergy', 'ExtremeGroups', 'ExtremeMotion', 'ExtremeNormalForce', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
+__all__: list[str] = ['Approach', 'Barrier', 'BusyError', 'ContactModel', 'Element', 'EndReason', 'ExtremeAttitude', 'ExtremeEnergy', 'ExtremeGroups', 'ExtremeMotion', 'ExtremeNormalForce', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
 class Approach:
     """
     How the vehicle comes (SI, rad). Immutable.
@@ -31,6 +31,8 @@ class Barrier:
         """
         The elements where they are free-standing, else none.
         """
+class BusyError(RuntimeError):
+    pass
 class ContactModel:
     """
     Members:
@@ -577,8 +579,13 @@ class Settings:
         ...
 class Simulation:
     """
-    A run of one scene (SI, rad).
+    A run of one scene (SI, rad). One user at a time: any other gets a BusyError. `with simulation:` keeps others out
+    between several calls.
     """
+    def __enter__(self) -> None:
+        ...
+    def __exit__(self, arg0: typing.Any, arg1: typing.Any, arg2: typing.Any) -> None:
+        ...
     def __init__(self, *, vehicle: Vehicle, barriers: collections.abc.Sequence[Barrier], approach: Approach, settings: Settings, duration: typing.SupportsFloat | typing.SupportsIndex | None) -> None:
         ...
     def deflection(self, unit: typing.SupportsInt | typing.SupportsIndex = 0) -> numpy.typing.NDArray[numpy.float64]:
@@ -641,6 +648,16 @@ class Simulation:
     def end_reason(self) -> EndReason:
         ...
     @property
+    def failed(self) -> bool:
+        """
+        Did the last step fail half way? Then only reset and restore are of use.
+        """
+    @property
+    def replays(self) -> bool:
+        """
+        Do as many steps from the start lead to this state?
+        """
+    @property
     def state_hash(self) -> int:
         ...
     @property
@@ -656,8 +673,10 @@ class Simulation:
         ...
 class Snapshot:
     """
-    A checkpoint: state and record.
+    A checkpoint: state and record. It lives in memory only.
     """
+    def __reduce__(self) -> typing.Any:
+        ...
     @property
     def time(self) -> float:
         """

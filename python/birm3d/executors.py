@@ -88,7 +88,8 @@ def run_all(
     if isinstance(pool, ThreadPoolExecutor):
         task = (partial(_run_chunk, stop=stop), simulation, names, metrics)
     else:
-        packed = pickle.dumps((simulation, names, metrics), pickle.HIGHEST_PROTOCOL)
+        packed = pickle.dumps((_at_start(simulation), names, metrics), pickle.HIGHEST_PROTOCOL)
+        todo = ((run, tuple(map(_at_start, row))) for run, row in todo)
         task = (_run_packed, _shipped(executor, packed, files))
     pending: set[Future[Timed]] = set()
     left = iter(todo)
@@ -131,6 +132,11 @@ def run_all(
         files.close()
         if own is not None:
             own.shutdown()
+
+
+def _at_start(thing: Any) -> Any:
+    """Return a simulation as it was at t = 0, or anything else: a pickle would take the steps again."""
+    return thing._at_start() if isinstance(thing, Simulation) and thing.time > 0.0 else thing
 
 
 def _shipped(executor: Any, packed: bytes, files: ExitStack) -> Any:

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from . import _core
+from ._version import __version__
 from .barrier import Barrier
 from .coarse_skin import warn_if_coarse
 from .ledger import warn_if_open
@@ -51,6 +52,16 @@ class Scene:
         scene.__dict__.update(numbers)
         return scene
 
+    def start(self) -> _core.Simulation:
+        """Return the run of the core at t = 0, checked."""
+        return _core.Simulation(
+            vehicle=self.vehicle.core,
+            barriers=[] if self.barrier is None else [self.barrier.core],
+            approach=self.approach,
+            settings=replace(self.settings, mu_tire_barrier=self.mu_tire_barrier).core,
+            duration=self.duration,
+        )
+
     @property
     def approach(self) -> _core.Approach:
         """How the vehicle comes, for the core."""
@@ -69,6 +80,10 @@ class Simulation:
 
     The vehicle comes along a straight path, its nose ahead unless stated, and stands before the barrier at
     t = 0.
+
+    One thread uses a simulation at a time; any other gets a :class:`birm3d.BusyError`. A copy
+    (``copy.copy``) has the same state and is independent. A pickle keeps the state too: it holds the scene
+    and the number of steps. They are taken again when it is read, and the hash of the state is compared.
 
     Parameters
     ----------
@@ -134,13 +149,7 @@ class Simulation:
             duration,
             settings if settings is not None else Settings(),
         )
-        self._core = _core.Simulation(
-            vehicle=vehicle.core,
-            barriers=[] if barrier is None else [barrier.core],
-            approach=self._scene.approach,
-            settings=replace(self._scene.settings, mu_tire_barrier=self._scene.mu_tire_barrier).core,
-            duration=duration,
-        )
+        self._core = self._scene.start()
         self._run_time = 0.0
         warn_if_coarse(self._scene)
 
@@ -168,10 +177,13 @@ class Simulation:
     @property
     def time(self) -> float:
         """Present time of the state [s]."""
-        return self._core.time
+        with self._core:
+            return self._core.time
 
     def run(self, *, frames: int | Sequence[float] | None = None) -> Result:
-        """Run from the present state to the end; a run that is over starts anew. Ctrl-C stops it.
+        """Run from the present state to the end; a run that is over starts anew.
+
+        Ctrl-C stops it between two steps; called again, it goes on from there.
 
         Parameters
         ----------
@@ -183,51 +195,101 @@ class Simulation:
         ------
         UnstableError
             If a fixed time step is beyond what the scene allows; the message names one that would do.
+        BusyError
+            If another thread uses the simulation.
         LedgerWarning
             As a warning, if a fixed time step is stable and the energy ledger does not close with it.
         ValueError
             If the frames are more than the result's rows or outside the run.
         """
-        if self._core.end_reason != _core.EndReason.running:
-            self.reset()
-        start = time.perf_counter()
-        self._core.run()
-        self._run_time += time.perf_counter() - start
-        result = self.result()
+        with self._core:
+            if self._core.failed or self._core.end_reason != _core.EndReason.running:
+                self._reset()
+            start = time.perf_counter()
+            try:
+                self._core.run()
+            finally:
+                self._run_time += time.perf_counter() - start
+            result = self._result()
         if self._scene.settings.time_step is not None:
             warn_if_open(result.scene, result._energy_extremes)
         return result if frames is None else result.with_frames(frames)
 
     def step(self) -> bool:
         """Take one accepted step; return ``False`` when the run is over and nothing was done."""
-        start = time.perf_counter()
-        moved = self._core.step()
-        self._run_time += time.perf_counter() - start
+        with self._core:
+            start = time.perf_counter()
+            moved = self._core.step()
+            self._run_time += time.perf_counter() - start
         return moved
 
     def result(self) -> Result:
         """Return the result so far."""
+        with self._core:
+            return self._result()
+
+    def _result(self) -> Result:
         return Result._of(self._scene, self._core, self._run_time)
 
     def reset(self) -> None:
         """Go back to t = 0."""
+        with self._core:
+            self._reset()
+
+    def _reset(self) -> None:
         self._core.reset()
         self._run_time = 0.0
 
     def state_hash(self) -> int:
         """Return a 64-bit hash of the state: equal hashes mean equal bits."""
-        return self._core.state_hash
+        with self._core:
+            return self._core.state_hash
 
     def snapshot(self) -> _core.Snapshot:
         """Return a checkpoint: the whole state and the record so far."""
-        return self._core.snapshot()
+        with self._core:
+            return self._core.snapshot()
 
     def restore(self, snapshot: _core.Snapshot) -> None:
-        """Go back to a checkpoint of the same scene."""
-        self._core.restore(snapshot)
+        """Go back to a checkpoint of the same scene; its duration may differ.
+
+        Raises
+        ------
+        ValueError
+            If the snapshot is of another vehicle or barrier, of another approach, of other settings, or of an
+            instant beyond the duration of this run.
+        """
+        with self._core:
+            self._core.restore(snapshot)
+
+    def __copy__(self) -> Simulation:
+        """Return a simulation of the same scene in the same state, for another thread or another end."""
+        twin = self._at_start()
+        with self._core:
+            twin._core.restore(self._core.snapshot())
+            twin._run_time = self._run_time
+        return twin
+
+    def _at_start(self) -> Simulation:
+        """Return another one of the same scene, at t = 0; what the first one warned of is not said again."""
+        twin = object.__new__(Simulation)
+        twin._scene, twin._core, twin._run_time = self._scene, self._scene.start(), 0.0
+        return twin
+
+    def __deepcopy__(self, memo: dict[int, object]) -> Simulation:
+        return self.__copy__()  # a scene is immutable
 
     def __reduce__(self) -> tuple[object, ...]:
-        return (Simulation.from_scene, (self._scene,))
+        with self._core:
+            steps = self._core.statistics.steps
+            if steps == 0:
+                return (Simulation.from_scene, (self._scene,))
+            if not self._core.replays:
+                raise ValueError(
+                    "simulation must have come to its state by steps of its own to be pickled, got one "
+                    "restored from a run of another duration; copy.copy() keeps the state"
+                )
+            return (_stepped, (self._scene, steps, self._core.state_hash, __version__))
 
     def __repr__(self) -> str:
         scene = self._scene
@@ -235,3 +297,16 @@ class Simulation:
             f"Simulation({scene.vehicle.name}, {scene.barrier}, {scene.impact_speed:g} m/s, "
             f"{scene.impact_angle:g} deg)"
         )
+
+
+def _stepped(scene: Scene, steps: int, state_hash: int, version: str) -> Simulation:
+    """Return a simulation in the state that it was pickled in: as many steps lead to the same bits."""
+    simulation = Simulation.from_scene(scene)
+    while simulation._core.statistics.steps < steps and simulation.step():
+        pass
+    if simulation.state_hash() != state_hash:
+        raise ValueError(
+            f"simulation must be unpickled by the version that pickled it (birm3d {version}) to come to the "
+            f"same state after {steps} steps, got birm3d {__version__}"
+        )
+    return simulation

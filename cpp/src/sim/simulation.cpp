@@ -33,17 +33,38 @@ void Simulation::start(const Scene& scene) {
 
 void Simulation::start(const Approach& approach) {
     scene_.set_approach(approach);
+    reset();
+}
+
+void Simulation::reset() {
     scene_.start(state_);
     trial_.restart(*scene_.vehicle, state_);
     recorder_.restart(scene_, state_);
+    failed_ = false;
+    replays_ = true;
+}
+
+Simulation::Snapshot Simulation::snapshot() const {
+    return {
+        scene_.fingerprint(), scene_.approach, scene_.settings, scene_.duration, replays_, state_, recorder_};
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
     if (snapshot.scene != scene_.fingerprint())
         refuse("snapshot", "of a simulation of the same vehicle and barrier", "one of others");
+    if (snapshot.approach != scene_.approach)
+        refuse("snapshot", "of a simulation with the same speed, angle, offset, standoff, yaw and roll",
+               "one with others");
+    if (snapshot.settings != scene_.settings)
+        refuse("snapshot", "of a simulation with the same settings", "one with others");
+    if (scene_.duration && snapshot.state.time > *scene_.duration)
+        refuse("snapshot", "within the duration of " + to_text(*scene_.duration) + " s",
+               to_text(snapshot.state.time) + " s");
     state_ = snapshot.state;
     trial_.restart(*scene_.vehicle, state_);
     recorder_ = snapshot.recorder;
+    failed_ = false;
+    replays_ = snapshot.replays && snapshot.duration == scene_.duration;
 }
 
 EndReason Simulation::end_reason() const {
@@ -75,15 +96,17 @@ void Simulation::take(Trial& trial) {
     const bool open = scene_.barrier && !state_.decided;
     if (open) list_body_states(state_, before_);
     const double released = open ? std::min(time_to_release(scene_, state_), trial.dt) : 0.0;
+    if (!std::isfinite(trial.state.energies.total()))
+        throw std::runtime_error("the state is no longer finite at t = " + to_text(trial.state.time) +
+                                 " s, step " + to_text(trial.dt) + " s");
+    failed_ = true;  // unless all of what follows is done
     accept(scene_, trial, state_);
     recorder_.add(scene_, trial);
-    if (!std::isfinite(state_.energies.total()))
-        throw std::runtime_error("the state is no longer finite at t = " + to_text(state_.time) +
-                                 " s, step " + to_text(trial.dt) + " s");
     if (open && state_.touched && is_decided(scene_, state_)) {
         state_.decided = true;
         state_.decided_at = time_of_decision(scene_, before_, released, trial.dt, trial.state);
     }
+    failed_ = false;
 }
 
 void Simulation::fixed_step() {
@@ -137,6 +160,7 @@ void Simulation::adaptive_step() {
 }
 
 bool Simulation::step() {
+    if (failed_) throw std::runtime_error("the last step failed half way: reset the simulation");
     if (finished()) return false;
     if (scene_.settings.time_step)
         fixed_step();

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-import re
+from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -11,15 +11,15 @@ import numpy as np
 
 from .. import units
 from ..channel import Channel
+from ..file_format import FileFormatError, reads, received
 from ._lines import number, read_text
 
 __all__ = ["read_csv_channels"]
 
-# "force [kN]" or "force (kN)"
-_HEAD = re.compile(r"\s*(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\))\s*")
 _DELIMITERS = ",;\t"
 
 
+@reads("must be a table with units in its head")
 def read_csv_channels(
     path: str | Path,
     columns: Iterable[str] | None = None,
@@ -51,7 +51,7 @@ def read_csv_channels(
 
     Raises
     ------
-    ValueError
+    FileFormatError
         With file and line, if a name is missing or there twice, a unit is missing or unknown, there is no
         time column or no way to choose, a row has too few or too many cells or one that is no finite number,
         or time does not increase.
@@ -63,7 +63,7 @@ def read_csv_channels(
         if line.strip() and not line.lstrip().startswith("#")
     ]
     if not lines:
-        raise ValueError(f"{file}: path must have a head and rows, got an empty table")
+        raise FileFormatError.at(file, None, "path must have a head and rows, got an empty table")
     delimiter = _delimiter(lines[0][1])
     rows = [
         (i, [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]) for i, line in lines
@@ -71,26 +71,30 @@ def read_csv_channels(
     names, symbols, body = _head(file, rows)
     for line, cells in body:
         if len(cells) != len(names):
-            raise ValueError(f"{file}:{line}: a row must have {len(names)} cells, got {len(cells)}")
+            raise FileFormatError.at(file, line, f"a row must have {len(names)} cells, got {len(cells)}")
     time_name = _time_column(file, rows[0][0], names, symbols, time)
     wanted = [name for name in names if name != time_name] if columns is None else list(columns)
     for name in wanted:
         if name not in names:
-            raise ValueError(f"{file}:{rows[0][0]}: columns must be of {', '.join(names)}, got {name!r}")
+            raise FileFormatError.at(
+                file, rows[0][0], f"columns must be of {', '.join(names)}, got {received(name)}"
+            )
 
     def column(name: str) -> list[float]:
         k = names.index(name)
         return [number(file, line, cells[k], f"column {name!r}") for line, cells in body]
 
     if len(body) < 2:
-        raise ValueError(f"{file}:{rows[-1][0]}: a table must have at least two rows, got {len(body)}")
+        raise FileFormatError.at(file, rows[-1][0], f"a table must have at least two rows, got {len(body)}")
     instants = np.array(column(time_name)) * units.measure(symbols[names.index(time_name)]).size
     back = np.flatnonzero(np.diff(instants) <= 0.0)
     if len(back):
         row = int(back[0]) + 1
-        raise ValueError(
-            f"{file}:{body[row][0]}: {time_name!r} must be strictly increasing, got {instants[row - 1]:g} s "
-            f"and then {instants[row]:g} s"
+        raise FileFormatError.at(
+            file,
+            body[row][0],
+            f"{time_name!r} must be strictly increasing, got {instants[row - 1]:g} s "
+            f"and then {instants[row]:g} s",
         )
     return {
         name: Channel(
@@ -109,35 +113,49 @@ def _head(
 ) -> tuple[list[str], list[str], list[tuple[int, list[str]]]]:
     """Names and units of the columns, and the rows below the head."""
     line, cells = rows[0]
-    matches = [_HEAD.fullmatch(cell) for cell in cells]
-    if any(matches):
-        names = [m[1] if m else cell for m, cell in zip(matches, cells, strict=True)]
-        symbols = [(m[2] if m[2] is not None else m[3]) if m else "" for m in matches]
+    parts = [_name_and_unit(cell) for cell in cells]
+    if any(parts):
+        names = [part[0] if part else cell for part, cell in zip(parts, cells, strict=True)]
+        symbols = [part[1] if part else "" for part in parts]
         body = rows[1:]
     else:
         if len(rows) < 2:
-            raise ValueError(f"{file}:{line}: the head must have units, such as 'force [kN]', got none")
+            raise FileFormatError.at(file, line, "the head must have units, such as 'force [kN]', got none")
         names, (line, symbols), body = cells, rows[1], rows[2:]
         if len(symbols) != len(names):
-            raise ValueError(
-                f"{file}:{line}: the row of units must have {len(names)} cells, got {len(symbols)}"
+            raise FileFormatError.at(
+                file, line, f"the row of units must have {len(names)} cells, got {len(symbols)}"
             )
+    times = Counter(names)
     for name, symbol in zip(names, symbols, strict=True):
-        if not name or names.count(name) > 1:
-            raise ValueError(f"{file}:{rows[0][0]}: columns must have names of their own, got {name!r} twice")
+        if not name or times[name] > 1:
+            raise FileFormatError.at(
+                file, rows[0][0], f"columns must have names of their own, got {received(name)} twice"
+            )
         try:
             units.measure(symbol)
         except ValueError as error:
-            raise ValueError(f"{file}:{line}: column {name!r}: {error}") from None
+            raise FileFormatError.at(file, line, f"column {received(name)}: {error}") from None
     return names, symbols, body
+
+
+def _name_and_unit(cell: str) -> tuple[str, str] | None:
+    """Take "force [kN]" or "force (kN)" apart; None: there is no unit."""
+    cell = cell.strip()
+    for opening, closing in ("[]", "()"):
+        if cell.endswith(closing):
+            name, found, unit = cell[:-1].rpartition(opening)
+            if found and closing not in unit:
+                return name.strip(), unit
+    return None
 
 
 def _time_column(file: Path, line: int, names: list[str], symbols: list[str], wanted: str | None) -> str:
     times = [n for n, s in zip(names, symbols, strict=True) if units.measure(s).quantity == "time"]
     if wanted is not None:
         if wanted not in times:
-            raise ValueError(f"{file}:{line}: time must name a column of time ({times}), got {wanted!r}")
+            raise FileFormatError.at(file, line, f"time must name a column of time ({times}), got {wanted!r}")
         return wanted
     if len(times) != 1:
-        raise ValueError(f"{file}:{line}: time must be named unless one column is of time, got {times}")
+        raise FileFormatError.at(file, line, f"time must be named unless one column is of time, got {times}")
     return times[0]

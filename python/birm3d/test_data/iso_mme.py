@@ -26,6 +26,7 @@ import numpy.typing as npt
 
 from .. import units
 from ..channel import Channel
+from ..file_format import FileFormatError, reading, reads, received
 from ._lines import number, read_text
 
 __all__ = ["ChannelCode", "IsoMmeTest", "read_iso_mme"]
@@ -111,29 +112,35 @@ class IsoMmeTest:
 
         Raises
         ------
-        ValueError
+        FileFormatError
             With file and line, if there is no such channel or file, a key is missing, the file's code is
             another one, the unit is unknown or not one of the code's dimension, the number of values is not
             the one given, or a value is no finite number.
         """
         if code not in self.codes:
-            raise ValueError(f"{self.path}: code must be one of {', '.join(self.codes)}, got {code!r}")
+            raise FileFormatError.at(
+                self.path, None, f"code must be one of {', '.join(self.codes)}, got {code!r}"
+            )
+        with reading(self.codes[code], "must be a channel in the ISO MME format"):
+            return self._channel(code)
+
+    def _channel(self, code: str) -> Channel:
         file = self.codes[code]
         keys, values = _channel_file(file)
         own = keys.text("Channel code")
         if own != code:
-            raise ValueError(
-                f"{file}:{keys.line('Channel code')}: code must be {code!r} as indexed, got {own!r}"
+            raise FileFormatError.at(
+                file, keys.line("Channel code"), f"code must be {code!r} as indexed, got {received(own)}"
             )
         parts = ChannelCode.parse(code)
         unit = _UNITS.get(keys.text("Unit"), keys.text("Unit"))
         try:
             quantity = units.measure(unit).quantity
         except ValueError as error:
-            raise ValueError(f"{file}:{keys.line('Unit')}: {error}") from None
+            raise FileFormatError.at(file, keys.line("Unit"), str(error)) from None
         if parts.quantity not in (None, quantity):
-            raise ValueError(
-                f"{file}:{keys.line('Unit')}: unit must measure {parts.quantity} as {code} does, got {unit!r}"
+            raise FileFormatError.at(
+                file, keys.line("Unit"), f"unit must measure {parts.quantity} as {code} does, got {unit!r}"
             )
         return Channel(
             name=keys.texts.get("Name of the channel", code),
@@ -157,9 +164,10 @@ class IsoMmeTest:
         if keys.texts.get("Reference channel", "implicit").lower() == "explicit":
             name = keys.text("Reference channel name")
             if name not in self.codes:
-                raise ValueError(
-                    f"{file}:{keys.line('Reference channel name')}: reference channel must be indexed, "
-                    f"got {name!r}"
+                raise FileFormatError.at(
+                    file,
+                    keys.line("Reference channel name"),
+                    f"reference channel must be indexed, got {name!r}",
                 )
             head, time = _channel_file(self.codes[name])
             unit = units.measure(head.text("Unit"))
@@ -171,8 +179,8 @@ class IsoMmeTest:
             return np.multiply(time, unit.size)
         interval, first = keys.number("Sampling interval"), keys.number("Time of first sample")
         if not interval > 0.0:
-            raise ValueError(
-                f"{file}:{keys.line('Sampling interval')}: sampling interval must be > 0, got {interval:g} s"
+            raise FileFormatError.at(
+                file, keys.line("Sampling interval"), f"sampling interval must be > 0, got {interval:g} s"
             )
         return np.asarray(first + interval * np.arange(rows), float)
 
@@ -180,6 +188,7 @@ class IsoMmeTest:
         return f"IsoMmeTest({self.path.stem}, {len(self.codes)} channels)"
 
 
+@reads("must be the header or the folder of a test in the ISO MME format")
 def read_iso_mme(path: str | Path) -> IsoMmeTest:
     """Read the header and index of a test in the ISO MME format.
 
@@ -190,7 +199,7 @@ def read_iso_mme(path: str | Path) -> IsoMmeTest:
 
     Raises
     ------
-    ValueError
+    FileFormatError
         With file and line, if there is not one header and one index, a line has no key, or the channels are
         not as many as the index says, or not in files of their own.
     """
@@ -207,16 +216,18 @@ def read_iso_mme(path: str | Path) -> IsoMmeTest:
             continue
         code = text.split("/")[0].strip()
         if code in codes:
-            raise ValueError(
-                f"{index}:{keys.line(key)}: channels must have codes of their own, got {code} twice"
+            raise FileFormatError.at(
+                index, keys.line(key), f"channels must have codes of their own, got {code} twice"
             )
         codes[code] = folder / f"{index.stem}.{match[1]}"
         if not codes[code].is_file():
-            raise ValueError(f"{index}:{keys.line(key)}: must have the file {codes[code].name}, got none")
+            raise FileFormatError.at(
+                index, keys.line(key), f"must have the file {codes[code].name}, got none"
+            )
     number_of = keys.number("Number of channels")
     if len(codes) != number_of:
-        raise ValueError(
-            f"{index}:{keys.line('Number of channels')}: must list {number_of:g} channels, got {len(codes)}"
+        raise FileFormatError.at(
+            index, keys.line("Number of channels"), f"must list {number_of:g} channels, got {len(codes)}"
         )
     info = _keys(file, read_text(file).splitlines()).texts
     return IsoMmeTest(file, MappingProxyType(info), MappingProxyType(codes))
@@ -232,7 +243,7 @@ class _Keys(NamedTuple):
     def text(self, key: str) -> str:
         value = self.texts.get(key, "")
         if value in _NOTHING:
-            raise ValueError(f"{self.file}: {key!r} must have a value, got {value or 'none'!r}")
+            raise FileFormatError.at(self.file, None, f"{key!r} must have a value, got {value or 'none'!r}")
         return value
 
     def number(self, key: str) -> float:
@@ -249,7 +260,7 @@ def _keys(file: Path, lines: list[str]) -> _Keys:
             continue
         key, colon, text = (part.strip() for part in line.partition(":"))
         if not (key and colon):
-            raise ValueError(f"{file}:{i}: a line must be 'key :value', got {line.strip()!r}")
+            raise FileFormatError.at(file, i, f"a line must be 'key :value', got {received(line.strip())}")
         keys.texts[key] = f"{keys.texts[key]}\n{text}" if key in keys.texts else text
         keys.lines.setdefault(key, i)
     return keys
@@ -264,8 +275,8 @@ def _channel_file(file: Path) -> tuple[_Keys, Floats]:
     values = np.array([number(file, i, line.strip(), "value") for i, line in rows])
     expected = keys.number("Number of samples")
     if not math.isclose(expected, len(values)):
-        raise ValueError(
-            f"{file}:{keys.line('Number of samples')}: must have {expected:g} values, got {len(values)}"
+        raise FileFormatError.at(
+            file, keys.line("Number of samples"), f"must have {expected:g} values, got {len(values)}"
         )
     return keys, values
 
@@ -273,5 +284,5 @@ def _channel_file(file: Path) -> tuple[_Keys, Floats]:
 def _only(folder: Path, suffix: str) -> Path:
     found = sorted(p for p in folder.iterdir() if p.suffix.lower() == suffix)
     if len(found) != 1:
-        raise ValueError(f"{folder}: must have one file {suffix}, got {[p.name for p in found]}")
+        raise FileFormatError.at(folder, None, f"must have one file {suffix}, got {[p.name for p in found]}")
     return found[0]

@@ -19,6 +19,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ..channel import Channel
+from ..file_format import FileFormatError, reading, reads, received
 from ._lines import number, read_text
 
 __all__ = ["NhtsaCurve", "NhtsaTest", "read_nhtsa"]
@@ -123,29 +124,42 @@ class NhtsaTest:
 
         Raises
         ------
-        ValueError
+        FileFormatError
             With file and line, if there is no such curve or file, its status is another one, its unit is not
             known, or the file is not what its header line says: rows, first instant, interval.
         """
         line = curve if isinstance(curve, NhtsaCurve) else self._curve(curve)
-        where = f"{self.path}:{line.line}: curve {line.number}"
+        with reading(self.path, "must be the header of a test of NHTSA (EV5)"):
+            return self._channel(line, status)
+
+    def _channel(self, line: NhtsaCurve, status: str | None) -> Channel:
+        curve = f"curve {line.number}"
         if status is not None and line.status != status:
-            raise ValueError(f"{where} must have the status {status!r}, got {line.status!r} ({line.comment})")
+            raise FileFormatError.at(
+                self.path,
+                line.line,
+                f"{curve} must have the status {status!r}, got {line.status!r} ({line.comment[:60]})",
+            )
         if line.unit not in self.units:
-            raise ValueError(
-                f"{where}: unit must be one of {', '.join(self.units)}, got {line.unit!r}; add it by units="
+            raise FileFormatError.at(
+                self.path,
+                line.line,
+                f"{curve}: unit must be one of {', '.join(self.units)}, got {line.unit!r}; add it by units=",
             )
         file = self._file(line.number)
         time, values = _columns(file)
         rows, start = line.last - line.first + 1, line.first * line.interval
         if len(time) != rows:
-            raise ValueError(f"{file}: must have {rows} rows as {self.path.name} says, got {len(time)}")
+            raise FileFormatError.at(
+                file, None, f"must have {rows} rows as {self.path.name} says, got {len(time)}"
+            )
         expected = np.asarray(start + line.interval * np.arange(rows), float)
         off = np.flatnonzero(np.abs(time - expected) > _TIME)
         if len(off):
-            raise ValueError(
-                f"{file}:{off[0] + 1}: time must be {expected[off[0]]:g} s as {self.path.name} says, "
-                f"got {time[off[0]]:g} s"
+            raise FileFormatError.at(
+                file,
+                int(off[0]) + 1,
+                f"time must be {expected[off[0]]:g} s as {self.path.name} says, got {time[off[0]]:g} s",
             )
         details = (
             "sensor",
@@ -177,7 +191,9 @@ class NhtsaTest:
         for curve in self.curves:
             if curve.number == wanted:
                 return curve
-        raise ValueError(f"{self.path}: curve must be one of its {len(self.curves)}, got {wanted}")
+        raise FileFormatError.at(
+            self.path, None, f"curve must be one of its {len(self.curves)}, got {wanted}"
+        )
 
     def _file(self, wanted: int) -> Path:
         stem = self.path.stem
@@ -186,12 +202,15 @@ class NhtsaTest:
             file = self.path.with_name(name)
             if file.is_file():
                 return file
-        raise ValueError(f"{self.path}: curve {wanted} must have the file {' or '.join(names)}, got none")
+        raise FileFormatError.at(
+            self.path, None, f"curve {wanted} must have the file {' or '.join(names)}, got none"
+        )
 
     def __repr__(self) -> str:
         return f"NhtsaTest({self.path.stem}: {self.info['title']}, {len(self.curves)} curves)"
 
 
+@reads("must be the header of a test of NHTSA (EV5)")
 def read_nhtsa(path: str | Path, *, units: Mapping[str, str] | None = None) -> NhtsaTest:
     """Read the header of a test of the NHTSA vehicle crash test database.
 
@@ -204,7 +223,7 @@ def read_nhtsa(path: str | Path, *, units: Mapping[str, str] | None = None) -> N
 
     Raises
     ------
-    ValueError
+    FileFormatError
         With file and line, if a section is missing, a line has too few fields, or a number is none.
     """
     file = Path(path)
@@ -217,12 +236,14 @@ def read_nhtsa(path: str | Path, *, units: Mapping[str, str] | None = None) -> N
             rows.append((i, [cell.strip() for cell in line.split("|")]))
     for name, least in _LEAST.items():
         if not sections.get(name):
-            raise ValueError(
-                f"{file}: must have a section {name} with lines, got {', '.join(sections) or 'none'}"
+            raise FileFormatError.at(
+                file, None, f"must have a section {name} with lines, got {', '.join(sections) or 'none'}"
             )
         for i, cells in sections[name]:
             if len(cells) < least:
-                raise ValueError(f"{file}:{i}: {name} must have {least} fields or more, got {len(cells)}")
+                raise FileFormatError.at(
+                    file, i, f"{name} must have {least} fields or more, got {len(cells)}"
+                )
     _, test = sections["TEST"][0]
     return NhtsaTest(
         path=file,
@@ -239,20 +260,21 @@ def read_nhtsa(path: str | Path, *, units: Mapping[str, str] | None = None) -> N
 def _parse_curve(file: Path, line: int, cells: list[str]) -> NhtsaCurve:
     texts = {name: cells[place] for name, place in _CURVE.items()}
     if texts["x_unit"] != "SEC":
-        raise ValueError(f"{file}:{line}: curves must be over time [SEC], got {texts['x_unit']!r}")
+        raise FileFormatError.at(file, line, f"curves must be over time [SEC], got {texts['x_unit']!r}")
 
     def integer(name: str) -> int:
         value = number(file, line, texts[name], name)
         if value != int(value):
-            raise ValueError(f"{file}:{line}: {name} must be a whole number, got {texts[name]!r}")
+            raise FileFormatError.at(file, line, f"{name} must be a whole number, got {texts[name]!r}")
         return int(value)
 
     interval = number(file, line, texts["interval"], "interval") * 1e-6  # microseconds
     first, last = integer("first"), integer("last")
     if not (interval > 0.0 and last > first):
-        raise ValueError(
-            f"{file}:{line}: interval must be > 0 and last beyond first, got {texts['interval']} us, "
-            f"{first} to {last}"
+        raise FileFormatError.at(
+            file,
+            line,
+            f"interval must be > 0 and last beyond first, got {texts['interval']} us, {first} to {last}",
         )
     return NhtsaCurve(
         number=integer("curve"), line=line, vehicle=integer("vehicle"), sensor=texts["sensor"],
@@ -270,7 +292,7 @@ def _columns(file: Path) -> tuple[np.ndarray, np.ndarray]:
             continue
         cells = line.replace(",", " ").split()
         if len(cells) != 2:
-            raise ValueError(f"{file}:{i}: a row must have time and value, got {line.strip()!r}")
+            raise FileFormatError.at(file, i, f"a row must have time and value, got {received(line.strip())}")
         rows.append(
             [number(file, i, cell, name) for cell, name in zip(cells, ("time", "value"), strict=True)]
         )

@@ -30,6 +30,8 @@ struct Settings {
     double restitution = 0.1;  // of rigid contacts (paper 5.2)
     ContactModel contact_model = ContactModel::projected;
     TireModel tire_model = TireModel::slip;
+
+    bool operator==(const Settings&) const = default;
 };
 
 void require_valid(const Settings& settings);

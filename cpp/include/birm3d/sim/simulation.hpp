@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "birm3d/sim/recorder.hpp"
@@ -18,6 +19,7 @@ enum class EndReason {
     longest,    // tolerance::longest_event
 };
 
+// One thread at a time: nothing in here is locked.
 class Simulation {
   public:
     explicit Simulation(Scene scene);
@@ -26,10 +28,13 @@ class Simulation {
     // step is beyond the critical one; the state then stands as it was before the step.
     bool step();
 
+    // Did the last step fail half way, such as for want of memory? Then only reset, start and restore are of use.
+    bool failed() const { return failed_; }
+
     // From the present state to the end. `poll` is called now and then; what it throws ends the run.
     void run(const std::function<void()>& poll);
 
-    void reset() { start(Approach(scene_.approach)); }
+    void reset();
 
     // To the start of another scene, or of this one with another approach. Memory is used again, where the vehicle is
     // the same one. Refuses what Scene refuses; then a start that is not refused comes next.
@@ -46,12 +51,22 @@ class Simulation {
     double deepest_anchor() const;
 
     struct Snapshot {
-        std::uint64_t scene;  // fingerprint
+        std::uint64_t scene;  // fingerprint of the vehicle and the barrier
+        Approach approach;
+        Settings settings;
+        std::optional<double> duration;
+        bool replays;
         State state;
         Recorder recorder;
     };
-    Snapshot snapshot() const { return {scene_.fingerprint(), state_, recorder_}; }
+    Snapshot snapshot() const;
+
+    // Refuses a checkpoint of another vehicle, barrier, approach or settings, and one beyond the duration of this run.
     void restore(const Snapshot& snapshot);
+
+    // Do as many steps from the start lead to this state? Not where it was restored from a run of another duration, whose
+    // last step was cut to end there.
+    bool replays() const { return replays_; }
 
   private:
     bool finished() const { return end_reason() != EndReason::running; }
@@ -66,6 +81,8 @@ class Simulation {
     Trial trial_;
     std::vector<BodyState> before_;  // the step at hand; only memory
     Recorder recorder_;
+    bool failed_ = false;
+    bool replays_ = true;
 };
 
 }  // namespace birm3d
