@@ -58,7 +58,10 @@ void register_history(py::module_& m) {
              "(n, 3) N, of the ground on the skin, interval means, world");
     add_view(unit, "tire_friction_force", &UnitHistory::tire_friction_force,
              "(n, 3) N, interval means, world");
-    add_view(unit, "barrier_normal_force", &UnitHistory::barrier_normal_force, "(n,) N, interval means");
+    add_view(unit, "barrier_normal_force", &UnitHistory::barrier_normal_force,
+             "(n,) N, component of barrier_force along the barrier's normal, interval means");
+    add_view(unit, "sum_of_contact_forces", &UnitHistory::sum_of_contact_forces,
+             "(n,) N, magnitudes of the nodes' normal forces on the barrier, interval means");
     unit.def_property_readonly(
         "roll_pitch_yaw",
         [](const UnitHistory& history) {
@@ -122,7 +125,8 @@ void register_history(py::module_& m) {
              py::kw_only(), py::arg("normal_force") = false, py::arg("motion") = false,
              py::arg("attitude") = false, py::arg("energy") = false);
     py::class_<Extremes::NormalForce>(m, "ExtremeNormalForce")
-        .def_readonly("peak", &Extremes::NormalForce::peak, "N, sum over all units, interval means")
+        .def_readonly("peak", &Extremes::NormalForce::peak,
+                      "N, component of the force on all units along the normal")
         .def_readonly("last", &Extremes::NormalForce::last, "N, in the last interval");
     py::class_<Extremes::Motion>(m, "ExtremeMotion", "Of unit 0.")
         .def_property_readonly(

@@ -33,6 +33,7 @@ void register_settings(py::module_& m) {
              py::arg("restitution"), py::arg("contact_model"), py::arg("tire_model"));
     // s: so long a run goes on once its outcome is known.
     m.attr("tail_duration") = tolerance::tail_duration;
+    m.attr("along_line") = tolerance::along_line;
 }
 
 }  // namespace birm3d::bindings

@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Approach', 'Barrier', 'BusyError', 'ContactModel', 'Element', 'EndReason', 'ExtremeAttitude', 'ExtremeEnergy', 'ExtremeGroups', 'ExtremeMotion', 'ExtremeNormalForce', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
+__all__: list[str] = ['Approach', 'Barrier', 'BusyError', 'ContactModel', 'Element', 'EndReason', 'ExtremeAttitude', 'ExtremeEnergy', 'ExtremeGroups', 'ExtremeMotion', 'ExtremeNormalForce', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'along_line', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
 class Approach:
     """
     How the vehicle comes (SI, rad). Immutable.
@@ -213,7 +213,7 @@ class ExtremeNormalForce:
     @property
     def peak(self) -> float:
         """
-        N, sum over all units, interval means
+        N, component of the force on all units along the normal
         """
 class Extremes:
     """
@@ -857,7 +857,7 @@ class UnitHistory:
     @property
     def barrier_normal_force(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) N, interval means
+        (n,) N, component of barrier_force along the barrier's normal, interval means
         """
     @property
     def ground_force(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -878,6 +878,11 @@ class UnitHistory:
     def roll_pitch_yaw(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n, 3) rad
+        """
+    @property
+    def sum_of_contact_forces(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) N, magnitudes of the nodes' normal forces on the barrier, interval means
         """
     @property
     def tire_friction_force(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -939,4 +944,5 @@ def tumble(inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], ang
     """
     Free motion from the identity orientation: energy (n,) J, angular momentum (n, 3), quaternion (n, 4) w x y z.
     """
+along_line: float = 1e-09
 tail_duration: float = 0.02

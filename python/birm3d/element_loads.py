@@ -36,6 +36,9 @@ class ElementLoad:
     origin. A free-standing segment takes its foot along; its line is that at the start.
     A moment follows the right-hand rule: a force along +x at a height has a moment about +y.
 
+    Peaks are magnitudes of resultants: of the sum of the force vectors of all nodes on the element, and for
+    50-ms values of the mean of that vector.
+
     Unfiltered peaks have the blow of the rigid body in one interval where a crush zone is used up; compare
     50-ms means, or filter the histories, where that happens.
 

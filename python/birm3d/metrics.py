@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from .simulation import Scene
 
 __all__ = [
+    "ALONG_LINE",
     "JOINT_METRICS",
     "METRIC_UNITS",
     "SEGMENT_METRICS",
@@ -92,8 +93,8 @@ _Function = Callable[["_Run"], float | None]  # None: the run does not have it
 
 # Below this speed a direction of travel means nothing, m/s.
 _SLOWEST = 1e-3
-# Below this sine of its angle a path runs along the barrier's line.
-_ALONG = 1e-9
+ALONG_LINE = _core.along_line
+"""Below this sine of its angle a path runs along the barrier's line."""
 # Residuals of a vehicle that stands are judged against the energy it has at this speed, m/s.
 _STANDSTILL = 0.1
 
@@ -108,7 +109,9 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
 
     With wheels and a ground: ``wheel_climb`` (greatest height of any wheel's lowest point above it) [m].
 
-    With a barrier: ``peak_normal_force``, ``peak_force_50ms`` [N]; greatest of all its elements:
+    With a barrier: ``peak_normal_force``, and ``peak_force_50ms`` of its mean over 50 ms: component of the
+    barrier's total force on the vehicle along the barrier's normal, compression positive [N] (see
+    :attr:`birm3d.Result.barrier_normal_force`); greatest magnitude of the force vector on any element:
     ``peak_element_force``, ``peak_element_force_50ms`` [N], ``peak_overturning_moment`` and
     ``peak_overturning_moment_50ms`` [N m] (see :class:`birm3d.element_loads.ElementLoad`);
     ``dynamic_crush``, ``residual_crush`` (greatest truss shortening, also of tyres, during the run and at its
@@ -257,7 +260,7 @@ class _Run:
 
     @property
     def along(self) -> bool:
-        return abs(math.sin(math.radians(self.scene.impact_angle))) < _ALONG
+        return abs(math.sin(math.radians(self.scene.impact_angle))) < ALONG_LINE
 
     @property
     def deceleration(self) -> Floats:
@@ -304,7 +307,7 @@ def _cfc60(run: _Run, values: Floats) -> float | None:
 
 
 def _of_force(metric: Callable[[_Run, Floats], float | None]) -> _Function:
-    """Of the history of the normal force."""
+    """Of the history of the force along the barrier's normal."""
     return lambda run: None if run.barrier is None else metric(run, run.result.barrier_normal_force)
 
 

@@ -190,8 +190,23 @@ class Result:
 
     @cached_property
     def barrier_normal_force(self) -> Floats:
-        """Sum of the normal forces of all nodes of all units, shape (n,) [N]; interval means."""
+        """Component of ``barrier_force`` along the barrier's normal, shape (n,) [N]; interval means.
+
+        F_n = -F . n with n the horizontal unit vector square to the barrier's line, away from the traffic; on
+        paths along the line (angles 0 and 180) n is the path's direction. Compression is positive. It is the
+        load in this direction: forces of two posts, or of two faces of one post, that oppose each other
+        across n do not add to it; friction with a component along n, as on a slope, is in it.
+        """
         return self._sum("barrier_normal_force")
+
+    @cached_property
+    def sum_of_contact_forces(self) -> Floats:
+        """Sum of the magnitudes of the normal forces of all nodes, all units, shape (n,) [N]; interval means.
+
+        No load: opposed forces add up in it. It bounds the friction on the barrier, and is above zero exactly
+        where there is contact.
+        """
+        return self._sum("sum_of_contact_forces")
 
     @cached_property
     def element_loads(self) -> tuple[ElementLoad, ...]:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import platform
 import zipfile
 import zlib
@@ -24,12 +25,14 @@ import numpy.typing as npt
 
 from . import _core
 from .frames import Frames
+from .metrics import ALONG_LINE
 from .scene_codec import decode, encode
-from .unit_result import UnitResult
+from .unit_result import UnitResult, read_only
 from .whole_file import check_format, whole_file
 
 if TYPE_CHECKING:
     from .result import Result
+    from .simulation import Scene
 
 __all__ = ["FORMAT_VERSION", "StoredHistory", "load", "save"]
 
@@ -187,12 +190,14 @@ def _result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -
     units, joints, elements = (
         [Stored(_values(one, arrays)) for one in header[name]] for name in ("units", "joints", "elements")
     )
+    scene = decode(header["scene"], arrays)
+    units = [_with_normal_force(unit, scene) for unit in units]
     frames = None
     if "frames/time" in arrays:
         moved = tuple(arrays[f"frames/{i}/displacement"] for i in range(len(units)))
         frames = Frames(arrays["frames/time"], moved)
     result = Result(
-        scene=decode(header["scene"], arrays),
+        scene=scene,
         history=StoredHistory(_values(header["history"], arrays), units, joints, elements),
         statistics=Stored(_values(header["statistics"], arrays)),
         end_reason=header["end_reason"],
@@ -210,6 +215,27 @@ def _result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -
         result.__dict__["metrics"] = MappingProxyType(header["metrics"])
         result.__dict__["_report"] = header["report"]
     return result
+
+
+def _with_normal_force(unit: Stored, scene: Scene) -> Stored:
+    """Return the history of a unit with the force along the normal, as files of 0.1.0 do not have it.
+
+    What they call ``barrier_normal_force`` is the sum of the magnitudes over all nodes.
+    """
+    if "sum_of_contact_forces" in unit._values:
+        return unit
+    component = read_only(-unit.barrier_force @ _towards(scene))
+    sums = unit.barrier_normal_force
+    return Stored({**unit._values, "barrier_normal_force": component, "sum_of_contact_forces": sums})
+
+
+def _towards(scene: Scene) -> npt.NDArray[np.float64]:
+    """Return the direction along which the normal force pushes back, as ``Scene::towards`` of the core."""
+    angle = math.radians(scene.impact_angle)
+    if scene.barrier is not None and abs(math.sin(angle)) >= ALONG_LINE:
+        return -np.asarray(scene.barrier.core.normal)
+    yaw = 0.5 * math.pi - angle + math.radians(scene.barrier.heading if scene.barrier else 0.0)
+    return np.array([math.cos(yaw), math.sin(yaw), 0.0])
 
 
 def _parts(record: Any, kind: type, arrays: dict[str, npt.NDArray[Any]], name: str) -> dict[str, Any]:

@@ -92,8 +92,19 @@ class UnitResult:
 
     @property
     def barrier_normal_force(self) -> Floats:
-        """Sum of the normal forces of all its nodes, shape (n,) [N]; interval means."""
+        """Component of ``barrier_force`` along the barrier's normal, shape (n,) [N]; interval means.
+
+        See :attr:`birm3d.Result.barrier_normal_force`.
+        """
         return self._unit.barrier_normal_force
+
+    @property
+    def sum_of_contact_forces(self) -> Floats:
+        """Sum of the magnitudes of the normal forces of all its nodes, shape (n,) [N]; interval means.
+
+        See :attr:`birm3d.Result.sum_of_contact_forces`.
+        """
+        return self._unit.sum_of_contact_forces
 
     @property
     def tire_reaction(self) -> Floats:
@@ -104,6 +115,11 @@ class UnitResult:
     def tire_friction_force(self) -> Floats:
         """Of the ground on the unit, tangential, world axes, shape (n, 3) [N]; interval means."""
         return self._unit.tire_friction_force
+
+    @property
+    def ground_force(self) -> Floats:
+        """Of the ground on its body, not the tyres, world axes, shape (n, 3) [N]; interval means."""
+        return self._unit.ground_force
 
     @property
     def joint_force(self) -> Floats:

@@ -85,7 +85,7 @@ def test_numbers_are_those_of_the_result(page: Page, result: Result) -> None:
     panels = {panel["title"]: panel for panel in data["panels"]}
     force = {curve["name"]: curve["y"] for curve in panels["Barrier force"]["curves"]}
     expected = cfc(result.barrier_normal_force / 1e3, 60, 1e-4)[::step]
-    assert np.abs(np.array(force["normal, CFC 60"]) - expected).max() < 1e-5 * expected.max()
+    assert np.abs(np.array(force["along the normal, CFC 60"]) - expected).max() < 1e-5 * expected.max()
     energy = {curve["name"]: curve["y"] for curve in panels["Energy ledger"]["curves"]}
     assert set(energy) == {name.replace("_", " ") for name in result.energy} - {"residual"}
     assert panels["Angles"]["unit"] == "deg"

@@ -137,8 +137,8 @@ def test_barrier_force_stands_on_its_normal(scene_result: Result) -> None:
     if not isinstance(
         r.scene.barrier, RigidWall
     ):  # normals differ from node to node: what is left is a bound
-        bound = math.hypot(1.0, greatest_friction(r)) * r.barrier_normal_force
-        largest = r.barrier_normal_force.max()
+        bound = math.hypot(1.0, greatest_friction(r)) * r.sum_of_contact_forces
+        largest = r.sum_of_contact_forces.max()
         # Rows within a step follow parabolas, the force's components and the normal force each its own; they
         # part where the last nodes let go. Measured: 2e-7, a newton of five meganewtons.
         assert (np.linalg.norm(r.barrier_force, axis=1) <= bound + 1e-6 * largest).all()
@@ -146,6 +146,7 @@ def test_barrier_force_stands_on_its_normal(scene_result: Result) -> None:
     along = r.barrier_force @ np.array(r.scene.barrier.core.normal)
     largest = r.barrier_normal_force.max()
     assert np.abs(along - r.barrier_normal_force).max() < 1e-9 * largest
+    assert np.abs(along - r.sum_of_contact_forces).max() < 1e-9 * largest
     assert r.barrier_normal_force.min() >= -1e-9 * largest
     across = np.linalg.norm(r.barrier_force - along[:, None] * np.array(r.scene.barrier.core.normal), axis=1)
     # Friction is at most mu times the normal force. It is so at the ends of a step; between them both follow

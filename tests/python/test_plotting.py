@@ -47,7 +47,7 @@ def image(figure: Figure, tmp_path: Path) -> np.ndarray:
 def test_histories(oblique: Result) -> None:
     figure = oblique.plot_histories()
     force, acceleration, velocity, rates, tires, angles = figure.get_axes()
-    assert names(force) == ["normal force, CFC 60", "50-ms mean"]
+    assert names(force) == ["along the normal, CFC 60", "50-ms mean"]
     assert names(acceleration) == ["r, CFC 60", "s, CFC 60", "t, CFC 60"]
     assert names(rates) == ["roll rate, CFC 180", "pitch rate, CFC 180", "yaw rate, CFC 180"]
     assert names(angles) == ["roll", "pitch", "yaw"]

@@ -13,8 +13,8 @@ enum UnitOffset : std::size_t {
     at_velocity = 7,
     at_angular_velocity = 10,  // body axes
     at_barrier_force = 13,     // contact and friction, world axes
-    at_normal_force = 16,
-    at_tire_friction = 17,  // impulse
+    at_normal_force = 16,      // sum of the magnitudes over the nodes
+    at_tire_friction = 17,     // impulse
     at_barrier_impulse = 20,
     at_normal_impulse = 23,
     at_barrier_bend = 24,  // what the higher order adds to the straight course of the force: impulse
@@ -70,12 +70,17 @@ struct StepView {
                 force_integral(i + 2, bend + 2, t)};
     }
     double impulse(std::size_t i, double t) const { return share(t) * b[i]; }
-    double normal_impulse(double t) const {
+    // Of the barrier on the unit, world axes.
+    Vec3 barrier_impulse(double t) const {
+        return force_integral3(at_barrier_force, at_barrier_bend, t) + share(t) * vec(b + at_barrier_impulse);
+    }
+    // Of the magnitudes of the normal forces of all nodes.
+    double contact_impulse(double t) const {
         return force_integral(at_normal_force, at_normal_bend, t) + impulse(at_normal_impulse, t);
     }
 };
 
-// Impulses since the start of the run, but that of the normal force (N s).
+// Impulses since the start of the run (N s).
 struct Impulses {
     Vec3 barrier = Vec3::Zero(), ground = Vec3::Zero();
     Vec3 tire_friction = Vec3::Zero();
@@ -84,8 +89,7 @@ struct Impulses {
 
     // Those within a step up to `t` from its start.
     void set(const StepView& step, double t, std::size_t wheels) {
-        barrier = step.force_integral3(at_barrier_force, at_barrier_bend, t) +
-                  step.share(t) * vec(step.b + at_barrier_impulse);
+        barrier = step.barrier_impulse(t);
         ground = step.force_integral3(at_ground_force, at_ground_bend, t) +
                  step.share(t) * vec(step.b + at_ground_impulse);
         tire_friction = step.share(t) * vec(step.b + at_tire_friction);

@@ -10,14 +10,6 @@ namespace birm3d {
 
 namespace {
 
-// Below this sine of its angle a path runs along the barrier's line.
-constexpr double along = 1e-9;
-
-Vec3 towards_barrier(const Scene& scene, const Vec3& start) {
-    if (scene.barrier && !(std::abs(std::sin(scene.approach.angle)) < along)) return -scene.barrier->normal();
-    return start / std::max(start.norm(), tolerance::slowest_reference_speed);
-}
-
 // Where the output instants fall in a record of rows of `width` numbers, of which a unit's begin at `offset`.
 struct Steps {
     const Column& values;
@@ -68,7 +60,7 @@ void Recorder::resample(const Scene& scene, const Channels& wanted, History& his
         step_of[k] = row;
     }
 
-    history.towards = towards_barrier(scene, vec(values_.data() + at_units + at_velocity));
+    history.towards = scene.towards();
 
     if (wanted.energies) resample_energies(step_of, history);
     history.units.resize(scene.vehicle->units.size());
@@ -77,12 +69,14 @@ void Recorder::resample(const Scene& scene, const Channels& wanted, History& his
     for (std::size_t u = 0; u < history.units.size(); ++u) {
         const Unit& model = scene.vehicle->units[u];
         UnitHistory& unit = history.units[u];
-        if (wanted.normal_force) resample_normal_force(step_of, offset, history.time, unit);
+        if (wanted.normal_force) resample_normal_force(step_of, offset, history.time, history.towards, unit);
         if (wanted.motion)
             resample_motion(step_of, offset, history.time, model, scene.settings.gravity, unit);
-        if (wanted.forces)
+        if (wanted.forces) {
+            resample_contact_forces(step_of, offset, history.time, unit);
             largest = std::max(largest, resample_forces(step_of, offset, history.time, model,
                                                         scene.settings.gravity, unit, worst));
+        }
         offset += unit_width(model);
     }
     history.momentum_residual = largest > 0.0 ? worst / largest : 0.0;
@@ -119,23 +113,43 @@ void Recorder::resample_energies(const std::vector<std::size_t>& step_of, Histor
 }
 
 void Recorder::resample_normal_force(const std::vector<std::size_t>& step_of, std::size_t offset,
-                                     const Column& time, UnitHistory& unit) const {
+                                     const Column& time, const Vec3& towards, UnitHistory& unit) const {
     const Steps steps{values_, width_, offset, time, step_of};
     unit.barrier_normal_force.assign(time.size(), 0.0);
-    double before_step = 0.0;  // impulse up to the start of the step that holds the instant
-    double previous = 0.0;     // and up to the previous output instant
+    Vec3 before_step = Vec3::Zero();  // impulse up to the start of the step that holds the instant
+    Vec3 previous = Vec3::Zero();     // and up to the previous output instant
     std::size_t row = 0;
     for (std::size_t k = 0; k < time.size() && rows() > 1; ++k) {
         for (; row < step_of[k]; ++row) {
             const StepView whole = steps.view(row);
-            before_step += whole.normal_impulse(whole.dt);
+            before_step += whole.barrier_impulse(whole.dt);
         }
         const StepView step = steps.view(row);
-        const double now = before_step + step.normal_impulse(steps.within_step(k, step.dt));
-        if (k > 0) unit.barrier_normal_force[k] = 1.0 / (time[k] - time[k - 1]) * (now - previous);
+        const Vec3 now = before_step + step.barrier_impulse(steps.within_step(k, step.dt));
+        if (k > 0)
+            unit.barrier_normal_force[k] = 1.0 / (time[k] - time[k - 1]) * (previous - now).dot(towards);
         previous = now;
     }
     show_first_mean(unit.barrier_normal_force);
+}
+
+void Recorder::resample_contact_forces(const std::vector<std::size_t>& step_of, std::size_t offset,
+                                       const Column& time, UnitHistory& unit) const {
+    const Steps steps{values_, width_, offset, time, step_of};
+    unit.sum_of_contact_forces.assign(time.size(), 0.0);
+    double before_step = 0.0, previous = 0.0;  // the same impulses
+    std::size_t row = 0;
+    for (std::size_t k = 0; k < time.size() && rows() > 1; ++k) {
+        for (; row < step_of[k]; ++row) {
+            const StepView whole = steps.view(row);
+            before_step += whole.contact_impulse(whole.dt);
+        }
+        const StepView step = steps.view(row);
+        const double now = before_step + step.contact_impulse(steps.within_step(k, step.dt));
+        if (k > 0) unit.sum_of_contact_forces[k] = 1.0 / (time[k] - time[k - 1]) * (now - previous);
+        previous = now;
+    }
+    show_first_mean(unit.sum_of_contact_forces);
 }
 
 void Recorder::resample_motion(const std::vector<std::size_t>& step_of, std::size_t offset,

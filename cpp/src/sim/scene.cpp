@@ -152,6 +152,12 @@ void place(const Scene& scene, const Vec3& heading, State& state) {
     move(state, -way * heading);
 }
 
+// At barrier heading 0 the line runs along +y: the path (sin, cos) meets it at the impact angle.
+double yaw_of_path(const Scene& scene) {
+    const double barrier_heading = scene.barrier ? scene.barrier->heading : 0.0;
+    return barrier_heading + 0.5 * std::numbers::pi - scene.approach.angle;
+}
+
 }  // namespace
 
 Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barrier> barrier_,
@@ -204,6 +210,16 @@ void Scene::set_approach(const Approach& a) {
         refuse("standoff", "finite and >= 0 m, or the vehicle would start inside the barrier", a.standoff);
     if (!duration && !(a.speed > 0.0)) refuse("duration", "given (s) where the vehicle stands still", "none");
     approach = a;
+}
+
+Vec3 Scene::heading() const {
+    const double yaw = yaw_of_path(*this);
+    return {std::cos(yaw), std::sin(yaw), 0.0};
+}
+
+Vec3 Scene::towards() const {
+    const bool along = std::abs(std::sin(approach.angle)) < tolerance::along_line;
+    return barrier && !along ? Vec3(-barrier->normal()) : heading();
 }
 
 double Scene::reference_speed() const {
@@ -287,9 +303,8 @@ void Scene::start(State& state) const {
     }
     const double barrier_heading = barrier ? barrier->heading : 0.0;
     const Vec3 origin = barrier ? barrier->origin : Vec3::Zero();
-    // At barrier heading 0 the line runs along +y: the path (sin, cos) meets it at the impact angle.
-    const double yaw = barrier_heading + 0.5 * std::numbers::pi - approach.angle;
-    const Vec3 heading(std::cos(yaw), std::sin(yaw), 0.0);
+    const double yaw = yaw_of_path(*this);
+    const Vec3 heading = this->heading();
     const Vec3 line(-std::sin(barrier_heading), std::cos(barrier_heading), 0.0);
 
     const double turn = yaw + approach.yaw;

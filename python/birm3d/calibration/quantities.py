@@ -47,7 +47,9 @@ class Quantity:
 
 QUANTITIES: Mapping[str, Quantity] = MappingProxyType(
     {
-        "normal_force": Quantity("normal force", "N", True, "zero", "pushes the vehicle off the barrier"),
+        "normal_force": Quantity(
+            "force along the normal", "N", True, "zero", "pushes the vehicle off the barrier"
+        ),
         "acceleration_r": Quantity("acceleration along r", "m/s^2", True, "zero", "forward in the vehicle"),
         "acceleration_normal": Quantity(
             "acceleration along the normal", "m/s^2", True, "zero", "towards the barrier"

@@ -58,11 +58,14 @@ def _panels(result: Result) -> list[tuple[str, str, list[tuple[str, Floats]]]]:
     panels = []
     if result.scene.barrier is not None:
         normal = result.barrier_normal_force / 1e3
-        forces = [curve("normal", normal, 60), ("normal, 50-ms mean", moving_average(normal, 0.05, interval))]
+        forces = [
+            curve("along the normal", normal, 60),
+            ("along the normal, 50-ms mean", moving_average(normal, 0.05, interval)),
+        ]
         forces += [
             curve(f"{axis} (world)", result.barrier_force[:, i] / 1e3, 60) for i, axis in enumerate("xyz")
         ]
-        forces.append(("normal, unfiltered", normal))
+        forces.append(("along the normal, unfiltered", normal))
         panels.append(("Barrier force", "kN", forces))
         loads = touched_elements(result)
         if len(loads) > 1:
@@ -70,7 +73,13 @@ def _panels(result: Result) -> list[tuple[str, str, list[tuple[str, Floats]]]]:
                 (load.name, np.linalg.norm(filtered(load.force / 1e3, 60, interval)[0], axis=1))
                 for load in loads
             ]
-            panels.append((f"Force on the barrier's elements, {forces[0][0].split(', ')[1]}", "kN", on_each))
+            panels.append(
+                (
+                    f"Magnitude of the force on the barrier's elements, {forces[0][0].split(', ')[1]}",
+                    "kN",
+                    on_each,
+                )
+            )
     acceleration = [curve(axis, result.acceleration[:, i] / units.g, 60) for i, axis in enumerate("rst")]
     panels.append(("Acceleration of the mass centre, body axes", "g", acceleration))
     velocity = [(axis, result.velocity[:, i]) for i, axis in enumerate("xyz")]

@@ -38,7 +38,7 @@ def plot_histories(result: Result) -> Figure:
 
     if result.scene.barrier is not None:
         normal = result.barrier_normal_force / 1e3
-        plot_filtered(force, result, normal, _STRUCTURE, "normal force", BLUE)
+        plot_filtered(force, result, normal, _STRUCTURE, "along the normal", BLUE)
         mean = moving_average(normal, 0.05, interval)
         force.plot(ms, mean, color=RED, ls="--", label="50-ms mean")
         legend([force])

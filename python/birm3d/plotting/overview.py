@@ -30,9 +30,9 @@ def plot_result(result: Result) -> Figure:
 
     right = force.twinx()
     if result.scene.barrier is not None:
-        plot_filtered(force, result, result.barrier_normal_force / 1e3, 60, "normal force", BLUE)
+        plot_filtered(force, result, result.barrier_normal_force / 1e3, 60, "along the normal", BLUE)
     plot_filtered(right, result, deceleration, 60, "deceleration along r", RED, "--")
-    force.set_ylabel("barrier normal force [kN]")
+    force.set_ylabel("barrier force [kN]")
     right.set_ylabel("deceleration of the mass centre [g]")
     force.set_title("Force and deceleration")
     for axes in (force, right):

@@ -123,7 +123,7 @@ def _exit_box(axes: Axes, result: Result, plan: Callable[[Floats], Floats]) -> F
     length, width = (float(np.ptp(rest[:, i])) for i in (0, 1))
     a, b = (2.2, 10.0) if result.scene.vehicle.mass <= _CAR else (4.4, 20.0)
     depth = a + width + 0.16 * length
-    last = int(np.flatnonzero(result.barrier_normal_force > 0.0)[-1])
+    last = int(np.flatnonzero(result.sum_of_contact_forces > 0.0)[-1])
     leaving = result.position[last]
     way = result.final_velocity / np.linalg.norm(result.final_velocity[:2])
     start = plan(leaving)[0]

@@ -125,6 +125,9 @@ inline constexpr double tail_duration = 0.02;
 // pitch yet (m). Small: every hop after an impact makes the run longer.
 inline constexpr double lifted_wheel = 0.1;
 
+// Below this sine of its angle a path runs along the barrier's line.
+inline constexpr double along_line = 1e-9;
+
 // The instant at which the outcome of a run is decided is found to within this (s).
 inline constexpr double decision_resolution = 1e-6;
 

@@ -24,7 +24,7 @@ struct Extremes {
     std::size_t rows = 0;   // output instants
     double end_time = 0.0;  // the last of them (s)
 
-    // Sum of the normal forces on all units, interval means.
+    // Of the barrier on all units, component against History::towards, interval means.
     struct NormalForce {
         double peak;  // N
         double last;  // in the last interval (N)

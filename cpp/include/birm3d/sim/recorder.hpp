@@ -26,9 +26,10 @@ struct UnitHistory {
     std::vector<Vec3> barrier_force;        // on the vehicle, mean over the interval, world (N)
     std::vector<Vec3> ground_force;         // of the ground on the skin, the same (N)
     std::vector<Vec3> tire_friction_force;  // the same, tangential to the ground (N)
-    Column barrier_normal_force;            // sum of the normal forces, mean over the interval (N)
-    std::vector<Vec3> joint_force;          // of all its joints, mean over the interval, world (N)
-    std::vector<Column> tire_reaction;      // (wheels)(n) normal force, mean over the interval (N)
+    Column barrier_normal_force;            // component of barrier_force against History::towards (N)
+    Column sum_of_contact_forces;  // magnitudes of the normal forces of all nodes, mean over the interval (N)
+    std::vector<Vec3> joint_force;      // of all its joints, mean over the interval, world (N)
+    std::vector<Column> tire_reaction;  // (wheels)(n) normal force, mean over the interval (N)
 };
 
 // What one element of the barrier feels, means over the interval, world axes.
@@ -108,7 +109,9 @@ class Recorder {
     // `step_of`: row at which the step begins that holds each output instant.
     void resample_energies(const std::vector<std::size_t>& step_of, History& history) const;
     void resample_normal_force(const std::vector<std::size_t>& step_of, std::size_t offset,
-                               const Column& time, UnitHistory& unit) const;
+                               const Column& time, const Vec3& towards, UnitHistory& unit) const;
+    void resample_contact_forces(const std::vector<std::size_t>& step_of, std::size_t offset,
+                                 const Column& time, UnitHistory& unit) const;
     void resample_motion(const std::vector<std::size_t>& step_of, std::size_t offset, const Column& time,
                          const Unit& model, double gravity, UnitHistory& unit) const;
     double resample_forces(const std::vector<std::size_t>& step_of, std::size_t offset, const Column& time,

@@ -67,6 +67,11 @@ struct Scene {
     // Hash of the vehicle and the barrier: equal for equal scenes, wherever they were made.
     std::uint64_t fingerprint() const;
 
+    // Unit vectors along the ground: where the vehicle's path leads, and square to the barrier's line away from the
+    // traffic. The second is the first where there is no barrier or the path runs along the line.
+    Vec3 heading() const;
+    Vec3 towards() const;
+
     // Velocity against which errors are judged (m/s).
     double reference_speed() const;
 
