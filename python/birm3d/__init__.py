@@ -6,7 +6,7 @@ SI units, angles in degrees, arrays read-only. Start with :class:`Vehicle`, :cla
 
 from __future__ import annotations
 
-from . import calibration, scenes, units
+from . import calibration, filters, metrics, reference, scene_parameters, scenes, study, units
 from ._core import BusyError, UnstableError
 from ._version import __version__
 from .articulated import ArticulatedVehicle, Joint
@@ -62,14 +62,24 @@ __all__ = [
     "compare_curves",
     "critical_impact_point",
     "ensemble",
+    "filters",
     "fragility",
     "load",
+    "metrics",
     "monte_carlo",
     "read_csv_channels",
     "read_iso_mme",
     "read_nhtsa",
+    "reference",
+    "scene_parameters",
     "scenes",
     "sobol",
+    "study",
     "sweep",
     "units",
 ]
+
+
+def __dir__() -> list[str]:
+    """Public names; modules that are loaded for them are not."""
+    return sorted(__all__)

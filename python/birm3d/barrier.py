@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .checks import MOST_ELEMENTS, whole_number
 
 if TYPE_CHECKING:
     from .barrier_kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
@@ -55,10 +56,8 @@ class Barrier:
         x, y, z = (float(value) for value in self.origin)
         object.__setattr__(self, "origin", (x, y, z))
         for name in self._counts:
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 1 and int(value) == value):
-                raise ValueError(f"{name} must be a whole number >= 1, got {value}")
-            object.__setattr__(self, name, int(value))  # a sweep gives 3.0
+            count = whole_number(name, getattr(self, name), most=MOST_ELEMENTS)
+            object.__setattr__(self, name, count)  # a sweep gives 3.0
         if not math.isfinite(self.heading):
             raise ValueError(f"heading must be finite, got {self.heading}")
         _ = self.core

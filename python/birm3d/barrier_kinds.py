@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from . import _core
 from .barrier import Barrier
+from .checks import MOST_ELEMENTS
 from .free_standing import FreeStanding
 
 __all__ = ["PROFILES", "Bollards", "Jersey", "MeshBarrier", "Pole", "RigidWall"]
@@ -113,6 +114,10 @@ class Bollards(Barrier):
 
     def elements(self) -> list[_core.Element]:
         """Return the bollards, row by row from the front, each from low y to high y."""
+        if self.count * self.rows > MOST_ELEMENTS:
+            raise ValueError(
+                f"count must make at most {MOST_ELEMENTS:,} bollards with {self.rows} rows, got {self.count}"
+            )
         _finite("diameter", self.diameter)
         _positive("height", self.height)
         for name, number in (("spacing", self.count), ("row_spacing", self.rows)):

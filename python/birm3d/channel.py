@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy.typing as npt
 
 from . import units
 from .filters import cfc as cfc_filter
+from .frozen_mapping import FrozenMapping
 
 if TYPE_CHECKING:
     from .channel_checks import Findings
@@ -94,7 +94,7 @@ class Channel:
                 f"time must be strictly increasing, got {self.time[row]:g} s and then "
                 f"{self.time[row + 1]:g} s at row {row + 1}"
             )
-        object.__setattr__(self, "info", MappingProxyType(dict(self.info)))
+        object.__setattr__(self, "info", FrozenMapping(dict(self.info)))
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Built anew when unpickled: pickled arrays would come back writable, and a mapping proxy not at all.

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import re
-from collections.abc import Sequence
+import shlex
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -83,12 +87,13 @@ def sweep(
     names = None if metrics is None else [name.strip() for name in metrics.split(",")]
     with nullcontext() if jobs is None else ThreadPoolExecutor(jobs) as executor:
         shared: dict[str, Any] = {"metrics": names, "executor": executor, "store": store}
-        if n is None:
-            lists = {name: _values(name, text) for name, text in wanted.items()}
-            study = run_sweep(simulation, parameters=lists, **shared)
-        else:
-            drawn = {name: _distribution(name, text) for name, text in wanted.items()}
-            study = monte_carlo(simulation, drawn, n, seed, **shared)
+        with _kept_when_stopped(store):
+            if n is None:
+                lists = {name: _values(name, text) for name, text in wanted.items()}
+                study = run_sweep(simulation, lists, **shared)
+            else:
+                drawn = {name: _distribution(name, text) for name, text in wanted.items()}
+                study = monte_carlo(simulation, drawn, n, seed, **shared)
     if csv_path is not None:
         study.save(csv_path)
         click.echo(f"runs: {csv_path}", err=True)
@@ -101,6 +106,41 @@ def sweep(
     if study.failed:
         run, reason = next(iter(study.failed.items()))
         click.echo(f"{len(study.failed)} of {len(study)} runs failed; run {run}: {reason}", err=True)
+
+
+@contextmanager
+def _kept_when_stopped(store: Path | None) -> Iterator[None]:
+    """Keep the finished runs of a study that is stopped, and say how to go on."""
+    from .runs import StudyInterrupted, StudyStoppedError
+
+    try:
+        yield
+    except (StudyInterrupted, StudyStoppedError) as stopped:
+        command = sys.argv[1:]
+        if store is None:
+            if len(stopped.study) == 0:
+                raise
+            store = _free_name()
+            stopped.keep(store)
+            command += ["--store", str(store)]
+        message = str(stopped).replace("kept in the error's 'study'", f"kept in {str(store)!r}")
+        text = f"{message}\ngo on with: {shlex.join(['birm3d', *command])}"
+        raise type(stopped)(text, stopped.study) from None
+
+
+def _free_name() -> Path:
+    """Return the name of a new store, in this folder where it can be written to."""
+    for folder in (Path(), Path(tempfile.gettempdir())):
+        for number in itertools.count(1):
+            path = folder / ("birm3d-sweep.db" if number == 1 else f"birm3d-sweep-{number}.db")
+            try:
+                path.touch(exist_ok=False)
+            except FileExistsError:
+                continue
+            except OSError:
+                break
+            return path
+    raise ValueError("store must be given: neither this folder nor that of temporary files can be written to")
 
 
 def _split(vary: Sequence[str]) -> dict[str, str]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .checks import check_runs, shown
 from .scene_parameters import value_of
 from .simulation import Simulation
 
@@ -47,13 +48,14 @@ def check_distributions(simulation: Simulation, distributions: Mapping[str, Any]
 def check_seed(seed: int) -> None:
     """Refuse what is no seed."""
     if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
-        raise ValueError(f"seed must be an integer >= 0, got {seed!r}")
+        raise ValueError(f"seed must be an integer >= 0, got {shown(seed)}")
 
 
-def check_count(name: str, n: int, least: int = 1) -> None:
-    """Refuse a number of samples that is none."""
+def check_count(name: str, n: int, least: int = 1, *, each: int = 1) -> None:
+    """Refuse a number of samples that is none, or so many that `each` runs for each can not be held."""
     if isinstance(n, bool) or not isinstance(n, (int, np.integer)) or n < least:
-        raise ValueError(f"{name} must be an integer >= {least}, got {n!r}")
+        raise ValueError(f"{name} must be an integer >= {least}, got {shown(n)}")
+    check_runs(name, int(n) * each, f" with {name} = {n}" if each > 1 else "")
 
 
 def uniforms(name: str, n: int, seed: int) -> Floats:

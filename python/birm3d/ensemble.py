@@ -76,7 +76,7 @@ def ensemble(
     outcomes: dict[int, Outcome] = {}
 
     def study() -> Study:
-        return Study._of("ensemble", (), [], units, outcomes)
+        return Study._of(None, (), [], units, outcomes)
 
     total = len(simulations) if isinstance(simulations, Sized) else None
     todo = ((run, (scene,)) for run, scene in enumerate(simulations))

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .distributions import check_count, check_distributions, check_seed, sample
-from .lognormal_fit import LognormalFit, fit_lognormal
+from .lognormal_fit import Draws, LognormalFit, fit_lognormal
 from .metrics import METRIC_UNITS
 from .runs import run_study
 from .simulation import Simulation
@@ -121,8 +121,9 @@ def fragility(
     distributions
         Parameter -> frozen distribution of :mod:`scipy.stats`; not ``impact_speed``.
     n
-        Runs for each speed, >= 1; drawn anew for every speed, so that counts are independent. A greater n
-        keeps the earlier runs.
+        Runs for each speed, >= 1. Run i of every speed has the same draw (common random numbers), so that
+        differences between speeds are the speeds', not those of the draws; the errors of the fit count draws
+        as independent, not runs. A greater n keeps the earlier runs.
     seed
         Integer >= 0.
     exceeds
@@ -145,7 +146,7 @@ def fragility(
         a speed failed.
     """
     listed = _speeds(speeds)
-    check_count("n", n)
+    check_count("n", n, each=len(listed))
     check_seed(seed)
     if not 0.0 < confidence < 1.0:
         raise ValueError(f"confidence must be between 0 and 1, got {confidence}")
@@ -153,9 +154,8 @@ def fragility(
         raise ValueError("distributions must leave impact_speed to speeds, got it in both")
     check_distributions(simulation, distributions)
     metrics = _limits(exceeds)
-    drawn = [sample(distributions, n, seed, stream=f"@{speed!r}").tolist() for speed in listed]
     # All speeds of the first draw, then of the second: with a greater n the earlier runs come first.
-    rows = [(speed, *drawn[j][i]) for i in range(n) for j, speed in enumerate(listed)]
+    rows = [(speed, *draw) for draw in sample(distributions, n, seed).tolist() for speed in listed]
     study = run_study(
         simulation,
         ("impact_speed", *distributions),
@@ -173,9 +173,10 @@ def fragility(
         speed = listed[int(np.argmin(runs))]
         reason = next(iter(study.failed.values()))
         raise ValueError(f"speeds must have runs that succeed, but all {n} at {speed:g} m/s failed: {reason}")
-    events = (happened.reshape(n, len(listed)) & valid).sum(axis=0)
+    happened = happened.reshape(n, len(listed)) & valid
+    events = happened.sum(axis=0)
     low, high = _wilson(events, runs, confidence)
-    fit, no_fit = fit_lognormal(np.array(listed), events, runs)
+    fit, no_fit = fit_lognormal(np.array(listed), events, runs, Draws(happened, valid))
     if exceeds is None:
         event = "stopped"
     else:

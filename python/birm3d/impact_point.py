@@ -114,7 +114,7 @@ def critical_impact_point(
     """
     names = tuple(ranges)
     low, high = _bounds(simulation, ranges)
-    check_count("points", points, least=3)
+    check_count("points", points, least=3, each=points ** (len(names) - 1) if isinstance(points, int) else 1)
     check_count("max_runs", max_runs)
     if tolerance is None:
         tolerance = simulation.scene.settings.tolerance

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["LognormalFit", "fit_lognormal"]
+__all__ = ["Draws", "LognormalFit", "fit_lognormal"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -30,10 +30,12 @@ class LognormalFit:
     dispersion : float
         Standard deviation of the logarithm of the speed at which the event begins.
     coefficients, covariance : ndarray, shapes (2,), (2, 2)
-        Of Phi(a + b ln v), from the expected information.
+        Of Phi(a + b ln v): from the expected information; where runs share draws, with the scatter between
+        the draws (Liang and Zeger 1986).
     lack_of_fit : float or None
-        Probability of a deviance as great as this one if the curve is right (chi squared); ``None`` for two
-        speeds, which any curve meets.
+        Probability of counts as far from the curve as these if it is right (chi squared of the deviance;
+        where runs share draws, Hotelling's test of the residuals); ``None`` for two speeds, which any curve
+        meets.
     """
 
     coefficients: Floats
@@ -78,7 +80,16 @@ class LognormalFit:
         return np.asarray(ndtr(middle - half)), np.asarray(ndtr(middle + half))
 
 
-def fit_lognormal(speeds: Floats, events: Any, runs: Any) -> tuple[LognormalFit | None, str]:
+class Draws(NamedTuple):
+    """Runs that share their draws: run i of every speed has draw i; shape (n, k) each."""
+
+    happened: npt.NDArray[np.bool_]
+    valid: npt.NDArray[np.bool_]
+
+
+def fit_lognormal(
+    speeds: Floats, events: Any, runs: Any, draws: Draws | None = None
+) -> tuple[LognormalFit | None, str]:
     """Fit Phi(a + b ln v) to counts, or say why there is no curve.
 
     Without overlap of the two outcomes the likelihood has no maximum: in one variable there is one if and
@@ -91,6 +102,8 @@ def fit_lognormal(speeds: Floats, events: Any, runs: Any) -> tuple[LognormalFit 
         Shape (k,), k >= 2, > 0 [m/s].
     events, runs
         Shape (k,): number of events in so many runs, >= 1.
+    draws
+        The same runs one by one, where those of different speeds depend on each other; ``None``: none do.
 
     Returns
     -------
@@ -127,10 +140,21 @@ def fit_lognormal(speeds: Floats, events: Any, runs: Any) -> tuple[LognormalFit 
     eta = terms @ found.x
     weight = runs * np.exp(2.0 * norm.logpdf(eta) - log_ndtr(eta) - log_ndtr(-eta))
     covariance = np.linalg.inv((terms.T * weight) @ terms)
+    if draws is not None:
+        off: Floats = draws.happened - np.where(
+            draws.valid, np.exp(log_ndtr(eta)), 0.0
+        )  # (n, k), from the curve
+        pull = np.exp(norm.logpdf(eta) - log_ndtr(eta) - log_ndtr(-eta))
+        lack = _lack_of_fit(off, terms, weight, pull, covariance)
+        scores = off @ (pull[:, None] * terms)
+        size_correction = len(off) / max(1, len(off) - 1)
+        covariance = size_correction * covariance @ (scores.T @ scores) @ covariance
     if abs(found.x[1]) < _SLOPE * math.sqrt(covariance[1, 1]):
         return None, "the probability changes with speed by no more than chance would"
     # Back to Phi(a + b ln v).
     back = np.array([[1.0, -center / size], [0.0, 1.0 / size]])
+    if draws is not None:
+        return LognormalFit(back @ found.x, back @ covariance @ back.T, lack), ""
     freedom = len(speeds) - 2
     with np.errstate(divide="ignore", invalid="ignore"):
         share = events / runs
@@ -139,3 +163,34 @@ def fit_lognormal(speeds: Floats, events: Any, runs: Any) -> tuple[LognormalFit 
     deviance = 2.0 * (float(full.sum()) + float(found.fun))
     lack = float(chi2.sf(deviance, freedom)) if freedom else None
     return LognormalFit(back @ found.x, back @ covariance @ back.T, lack), ""
+
+
+def _lack_of_fit(off: Floats, terms: Floats, weight: Floats, pull: Floats, inverse: Floats) -> float | None:
+    """Probability of residuals as great as these, with their covariance from the scatter between draws.
+
+    Parameters
+    ----------
+    off
+        Outcome less the fitted probability, shape (n, k).
+    terms, weight, pull
+        Of the fit: columns of the predictor (k, 2), information a speed (k,), and the factor from residual to
+        score (k,).
+    inverse
+        Of the information, shape (2, 2).
+    """
+    from scipy.stats import f as f_distribution
+
+    # Residuals after the fit are those before it, less what the two coefficients have taken.
+    left = np.eye(len(pull)) - ((weight / pull)[:, None] * terms) @ inverse @ (terms.T * pull)
+    centred = off - off.mean(axis=0)
+    spread = left @ (centred.T @ centred) @ left.T
+    values, vectors = np.linalg.eigh(spread)
+    told = values > 1e-9 * max(values[-1], 1e-300)
+    freedom = min(int(told.sum()), len(pull) - 2)
+    rest = len(off) - freedom
+    if freedom < 1 or rest < 1:
+        return None
+    shares = (vectors.T @ off.sum(axis=0))[-freedom:]
+    # Hotelling: the covariance is itself an estimate.
+    squared = float(np.sum(shares**2 / values[-freedom:])) / len(off)
+    return float(f_distribution.sf(squared * rest / freedom, freedom, rest))

@@ -68,7 +68,7 @@ def plot_elements(self: Result) -> Figure:
 
 def render(
     self: Result,
-    time: float | Sequence[float] | None = None,
+    time: float | Sequence[float] | str | Path | None = None,
     path: str | Path | None = None,
     *,
     view: View = "three_quarter",
@@ -76,7 +76,10 @@ def render(
     size: tuple[int, int] = (1280, 720),
     follow: bool = False,
 ) -> npt.NDArray[np.uint8]:
-    """Return 3-D pictures of some instants, drawn off-screen; see :func:`birm3d.rendering.render`."""
+    """Return 3-D pictures of some instants, drawn off-screen; see :func:`birm3d.rendering.render`.
+
+    ``render("end.png")`` writes the end to a file, as ``animate("crash.mp4")`` writes the whole run.
+    """
     from .rendering import render
 
     return render(self, time, path, view=view, color=color, size=size, follow=follow)

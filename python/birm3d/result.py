@@ -17,6 +17,7 @@ from ._version import __version__
 from .element_loads import ElementLoad, element_loads
 from .frames import Frames, capture, pose
 from .free_standing import is_pinned, overturning_ratio
+from .frozen_mapping import FrozenMapping
 from .metrics import compute_metrics
 from .report import report
 from .unit_result import UnitResult, read_only
@@ -342,7 +343,7 @@ class Result:
         if self.scene.vehicle.joint is not None or is_pinned(self.scene.barrier):
             terms["joints"] = self._history.joint_work
         total = np.sum(list(terms.values()), axis=0)
-        return MappingProxyType({**terms, "total": read_only(total), "residual": read_only(total - total[0])})
+        return FrozenMapping({**terms, "total": read_only(total), "residual": read_only(total - total[0])})
 
     @property
     def momentum_residual(self) -> float:

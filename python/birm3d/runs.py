@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
 from functools import partial
 from numbers import Real
 from pathlib import Path
@@ -28,20 +29,41 @@ __all__ = ["StudyInterrupted", "StudyStoppedError", "checked_metrics", "run_stud
 _STUDY_METRICS = tuple(name for name in METRIC_UNITS if name != "run_time")
 
 
-class StudyStoppedError(RuntimeError):
+Keep = Callable[[Path], None]
+
+
+class _Unfinished(BaseException):
+    """The finished runs of a study that was stopped."""
+
+    def __init__(self, message: str, study: Study, keep: Keep | None = None) -> None:
+        super().__init__(message)
+        self.study = study
+        self._keep = keep
+
+    def keep(self, path: str | Path) -> None:
+        """Write the finished runs to a store; the same call with ``store=path`` goes on from there.
+
+        Raises
+        ------
+        ValueError
+            If the study can have no store, as an ensemble, or the file can be none.
+        """
+        if self._keep is None:
+            raise ValueError(
+                f"keep() needs a study over parameters that has just stopped, got {self.study!r}"
+            )
+        self._keep(Path(path))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (type(self), (self.args[0], self.study))
+
+
+class StudyStoppedError(_Unfinished, RuntimeError):
     """The executor died; ``study`` has the finished runs, which a store has too."""
 
-    def __init__(self, message: str, study: Study) -> None:
-        super().__init__(message)
-        self.study = study
 
-
-class StudyInterrupted(KeyboardInterrupt):
+class StudyInterrupted(_Unfinished, KeyboardInterrupt):
     """Ctrl-C; ``study`` has the finished runs, which a store has too."""
-
-    def __init__(self, message: str, study: Study) -> None:
-        super().__init__(message)
-        self.study = study
 
 
 def run_study(
@@ -108,11 +130,17 @@ def run_study(
     table = [tuple(_plain(value) for value in row) for row in rows]
     _check_rows(simulation, names, table)
     units = {name: METRIC_UNITS[name] for name in wanted}
-    study = partial(Study._of, simulation.scene.vehicle.name, names, table, units)
-    kept: RunStore | None = None
-    if store is not None:
+    study = partial(Study._of, simulation.scene, names, table, units)
+
+    def open_store(path: str | Path) -> RunStore:
         key = fingerprint(simulation.scene, names, wanted, __version__)
-        kept = RunStore(store, study=key, version=__version__, names=names, rows=table, units=units)
+        return RunStore(path, study=key, version=__version__, names=names, rows=table, units=units)
+
+    def keep(path: Path) -> None:
+        with closing(open_store(path)) as new:
+            new.add(outcomes)
+
+    kept = None if store is None else open_store(store)
     outcomes: dict[int, Outcome] = {}
     where = f"kept in {str(store)!r}" if store is not None else "kept in the error's 'study'"
     try:
@@ -131,14 +159,14 @@ def run_study(
             run_all(simulation, names, wanted, todo, len(todo), executor, finish)
     except KeyboardInterrupt:
         message = f"stopped: {len(outcomes)} of {len(table)} runs are finished and {where}"
-        raise StudyInterrupted(message, study(outcomes)) from None
+        raise StudyInterrupted(message, study(outcomes), keep) from None
     except ExecutorError as died:
         cause = died.__cause__
         message = (
             f"the executor died ({type(cause).__name__}: {cause}); {len(outcomes)} of {len(table)} runs are "
             f"finished and {where}"
         )
-        raise StudyStoppedError(message, study(outcomes)) from cause
+        raise StudyStoppedError(message, study(outcomes), keep) from cause
     finally:
         if kept is not None:
             kept.close()

@@ -6,13 +6,13 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from .distributions import check_count, check_distributions, check_seed, quantiles, spread
+from .frozen_mapping import FrozenMapping
 from .runs import run_study
 from .simulation import Simulation
 from .study import Study
@@ -59,7 +59,7 @@ class SobolDesign:
     confidence: float = 0.95
 
     def __post_init__(self) -> None:
-        check_count("n", self.n, least=2)
+        check_count("n", self.n, least=2, each=len(self.distributions) + 2)
         if self.n & (self.n - 1):
             raise ValueError(f"n must be a power of 2 (the balance of Sobol' points needs it), got {self.n}")
         check_seed(self.seed)
@@ -115,8 +115,8 @@ class SobolIndices:
         self.parameters = tuple(design.distributions)
         self.design = design
         self.study = study
-        self.metrics = MappingProxyType(dict(metrics))
-        self.left_out = MappingProxyType(dict(left_out))
+        self.metrics = FrozenMapping(dict(metrics))
+        self.left_out = FrozenMapping(dict(left_out))
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return a table: a row for each metric and parameter; first and total order with half widths."""

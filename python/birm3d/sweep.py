@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
+from .checks import MOST_RUNS, check_runs, shown
 from .runs import run_study
 from .simulation import Simulation
 from .study import Study
@@ -16,8 +18,8 @@ __all__ = ["sweep"]
 
 def sweep(
     simulation: Simulation,
-    *,
     parameters: Mapping[str, Iterable[Any]] | None = None,
+    *,
     mode: Literal["grid", "list"] = "grid",
     metrics: Sequence[str] | None = None,
     executor: Any = None,
@@ -32,7 +34,7 @@ def sweep(
     simulation
         The scene to vary.
     parameters
-        Name -> values, for names with a dot: ``{"barrier.friction": [0.1, 0.2]}``. See
+        Name -> values: ``{"impact_speed": [10.0, 20.0], "barrier.friction": [0.1, 0.2]}``. See
         :mod:`birm3d.scene_parameters` for all names.
     mode
         ``"grid"``: all combinations, the last list fastest; ``"list"``: the first values together, then the
@@ -40,8 +42,8 @@ def sweep(
     metrics, executor, store, progress
         See :func:`birm3d.runs.run_study`.
     **lists
-        Name -> values, for names without: ``impact_speed=[10, 20]`` [m/s], ``impact_angle=[20, 90]`` [deg],
-        ``vehicle=["pickup", "passenger_car"]``.
+        The same as keywords, for names without a dot: ``impact_speed=[10, 20]`` [m/s],
+        ``impact_angle=[20, 90]`` [deg], ``vehicle=["pickup", "passenger_car"]``.
 
     Returns
     -------
@@ -56,9 +58,11 @@ def sweep(
 
     Examples
     --------
-    >>> study = birm3d.sweep(sim, impact_speed=[10.0, 15.0], parameters={"barrier.friction": [0.0, 0.2]})
+    >>> study = birm3d.sweep(sim, {"impact_speed": [10.0, 15.0], "barrier.friction": [0.0, 0.2]})
     >>> study.to_dataframe()["dynamic_crush"]
     """
+    if parameters is not None and not isinstance(parameters, Mapping):
+        raise ValueError(f"parameters must be a mapping of names to lists of values, got {shown(parameters)}")
     wanted: dict[str, list[Any]] = {}
     for name, values in itertools.chain(lists.items(), (parameters or {}).items()):
         if name in wanted:
@@ -72,6 +76,8 @@ def sweep(
             raise ValueError(f"lists side by side must have equal lengths, got {lengths}")
         rows: Iterable[tuple[Any, ...]] = zip(*wanted.values(), strict=True)
     elif mode == "grid":
+        sizes = [len(values) for values in wanted.values()]
+        check_runs("parameters", math.prod(sizes), f" in a grid of {' x '.join(map(str, sizes))}")
         rows = itertools.product(*wanted.values())
     else:
         raise ValueError(f"mode must be 'grid' or 'list', got {mode!r}")
@@ -91,7 +97,7 @@ def sweep(
 def _values(name: str, values: Iterable[Any]) -> list[Any]:
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise ValueError(f"{name} must be a list of values, got {values!r}")
-    listed = list(values)
+    listed = list(itertools.islice(values, MOST_RUNS + 1))  # an endless one ends too
     if not listed:
         raise ValueError(f"{name} must have at least one value, got an empty list")
     return listed

@@ -8,13 +8,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .frozen_mapping import FrozenMapping
 from .loading import check_load, solids_at, structure_mass
 from .zone import KNEE, TRUSS_LAW, Zone, positive
 
@@ -100,7 +100,7 @@ class Vehicle:
             value = getattr(self, field.name)
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
-        object.__setattr__(self, "zones", MappingProxyType(dict(self.zones)))
+        object.__setattr__(self, "zones", FrozenMapping(dict(self.zones)))
         if not self._draft:
             _ = self.core  # the core checks every number
 
@@ -528,7 +528,7 @@ class Vehicle:
             raise ValueError(f"truss law needs a vehicle made from arrays, got {self.name!r} with zones")
         total = self._truss_laws.sum(axis=0)
         total[TRUSS_LAW.index("knee")] /= len(self._truss_laws)
-        return MappingProxyType(dict(zip(TRUSS_LAW, total.tolist(), strict=True)))
+        return FrozenMapping(dict(zip(TRUSS_LAW, total.tolist(), strict=True)))
 
     @property
     def n_nodes(self) -> int:
@@ -601,7 +601,10 @@ class Vehicle:
         return all(self._same(other, name) for name in names)
 
     def _same(self, other: Vehicle, name: str) -> bool:
-        return bool(np.array_equal(getattr(self, name), getattr(other, name)))
+        mine, theirs = getattr(self, name), getattr(other, name)
+        if isinstance(mine, np.ndarray) or isinstance(theirs, np.ndarray):
+            return np.array_equal(mine, theirs)
+        return bool(mine == theirs)
 
     __hash__ = None  # type: ignore[assignment]
 

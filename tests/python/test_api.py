@@ -30,6 +30,8 @@ def test_names() -> None:
     )
     assert all(hasattr(birm3d, name) for name in birm3d.__all__)
     assert birm3d.__version__
+    assert dir(birm3d) == sorted(birm3d.__all__)
+    assert not {"annotations", "vehicle", "barrier", "simulation", "_core"} & set(dir(birm3d))
     assert issubclass(birm3d.UnstableError, ValueError)
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 from birm3d import Settings, Simulation, Vehicle, calibrate, scenes
-from birm3d.calibration import CurveTarget, Parameter, ScalarTarget
+from birm3d.calibration import CurveTarget, Parameter, ScalarTarget, load
 from birm3d.calibration.problem import independent_share
 from birm3d.filters import cfc
 from birm3d.scene_parameters import varied
@@ -435,3 +436,25 @@ class TestVerdicts:
         assert len(fits[1].identified) == 2
         start = "truss.k_initial and impact_speed are told apart poorly (correlation -1.000)"
         assert any(note.startswith(start) for note in fits[1].notes)
+        assert any(doubt.startswith(start) for doubt in fits[1].doubts)
+        assert "every parameter is identified" not in fits[1].summary()
+        assert start in fits[1].verdict
+        assert fits[1].summary().count(start) == 1
+
+    def test_an_interval_at_its_bound_is_a_doubt(self, tmp_path: Path) -> None:
+        """The data would let the knee go on to 0.403."""
+        parameters = unknowns(knee={"lower": 0.3, "upper": 0.4015, "start": 0.39})
+        fit = calibrate(block(), noisy(0), parameters[2], starts=1, uncertainty="given")
+        assert fit.intervals["truss.knee"][1] == 0.4015
+        doubt = "the interval of truss.knee ends at its upper bound 0.4015, not by the data"
+        assert fit.doubts == (doubt,)
+        assert fit.verdict.startswith("every parameter has an interval, NOT all are identified by the data")
+        assert doubt in fit.verdict
+        fit.save(tmp_path / "fit.json")
+        assert load(tmp_path / "fit.json").verdict == fit.verdict
+
+    def test_scalars_carry_their_unit(self) -> None:
+        fit = calibrate(block(), ScalarTarget("delta_v", 20.0, 1.0), unknowns()[0], starts=1)
+        assert fit.targets[0].unit == "m/s"
+        assert "SI" not in fit.summary()
+        assert ScalarTarget("restitution", 0.1, 0.1).unit == ""

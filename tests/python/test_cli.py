@@ -4,7 +4,13 @@ from __future__ import annotations
 
 import errno
 import json
+import os
+import re
+import shlex
+import signal
+import sqlite3
 import sys
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -333,9 +339,30 @@ def test_sweep_errors_say_what_is_wrong(monkeypatch, capsys, arguments, parts):
         assert part in err
 
 
+def test_a_stopped_sweep_without_a_store_keeps_what_is_done(monkeypatch, capsys, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    Path("birm3d-sweep.db").write_text("of another study")
+    command = [*SWEEP, "--vary", "impact_speed=8:12:0.001"]
+    timer = threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    assert birm3d(monkeypatch, *command) == 130
+    timer.join()
+    told, advice = capsys.readouterr().err.strip().splitlines()
+    done = int(
+        re.fullmatch(r"stopped: (\d+) of 4001 runs are finished and kept in 'birm3d-sweep-2.db'", told)[1]
+    )
+    assert advice == f"go on with: birm3d {shlex.join(command)} --store birm3d-sweep-2.db"
+    with sqlite3.connect("birm3d-sweep-2.db") as connection:
+        assert connection.execute("SELECT count(*) FROM runs").fetchone() == (done,)
+    connection.close()
+    assert Path("birm3d-sweep.db").read_text() == "of another study"
+
+
 def test_a_stopped_sweep_says_what_is_kept(monkeypatch, capsys, tmp_path, interrupt_once_stored):
     store = tmp_path / "runs.db"
     interrupt_once_stored(store)
     vary = ["--vary", "impact_speed=8:20:0.001", "--store", str(store)]
     assert birm3d(monkeypatch, *SWEEP, *vary) == 130
-    assert "of 12001 runs are finished and kept in" in capsys.readouterr().err
+    err = capsys.readouterr().err
+    assert "of 12001 runs are finished and kept in" in err
+    assert f"go on with: {shlex.join(['birm3d', *SWEEP, *vary])}\n" in err

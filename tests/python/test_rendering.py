@@ -54,6 +54,11 @@ def test_one_picture(result: Result) -> None:
 
 def test_pictures_of_several_instants(result: Result, tmp_path: Path) -> None:
     times = [0.0, 0.1, 0.29]
+    end = result.render(tmp_path / "end.png", size=SIZE)  # a path alone, as animate takes it
+    assert end.shape == (SIZE[1], SIZE[0], 3)
+    assert (tmp_path / "end.png").read_bytes().startswith(b"\x89PNG")
+    with pytest.raises(ValueError, match="path must be given once"):
+        result.render("a.png", "b.png")
     pictures = result.render(times, tmp_path / "strip.png", size=SIZE)
     assert pictures.shape == (3, 136, 240, 3)
     with Image.open(tmp_path / "strip.png") as image:

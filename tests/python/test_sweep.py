@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import copy
+import itertools
 import math
 import os
+import pickle
 import signal
 import sqlite3
 import subprocess
 import sys
+import threading
 import time
 import warnings
 from collections.abc import Callable, Iterator
@@ -21,7 +25,7 @@ from typing import Any
 import birm3d
 import numpy as np
 import pytest
-from birm3d import Study, scenes
+from birm3d import Study, Vehicle, scenes
 from birm3d.fingerprint import fingerprint
 from birm3d.runs import run_study
 
@@ -417,6 +421,84 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path: Path, interrupt_once_stored: Ca
         assert connection.execute("SELECT count(*) FROM runs").fetchone() == (len(part),)
     assert not part.failed
     assert part.state_hash[0] == birm3d.sweep(SEDAN, impact_speed=speeds[:1]).state_hash[0]
+
+
+def test_what_a_stopped_study_has_is_kept_and_gone_on_from(tmp_path: Path) -> None:
+    """Without a store: ``keep`` writes one, and the same call with it runs the rest."""
+    speeds = [8.0 + 0.001 * i for i in range(3000)]
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(birm3d.StudyInterrupted) as stopped:
+        birm3d.sweep(SEDAN, {"impact_speed": speeds})
+    timer.join()
+    part = stopped.value.study
+    assert 0 < len(part) < 3000
+    stopped.value.keep(tmp_path / "runs.db")
+    counting = Counting()
+    few = birm3d.sweep(
+        SEDAN, {"impact_speed": speeds[: len(part)]}, store=tmp_path / "runs.db", executor=counting
+    )
+    assert counting.runs == len(set(range(len(part))) - set(part.run.tolist()))
+    assert set(part.state_hash) <= set(few.state_hash) | {
+        part.state_hash[i] for i in np.flatnonzero(part.run >= len(part))
+    }
+    with pytest.raises(ValueError, match="has just stopped"):
+        pickle.loads(pickle.dumps(stopped.value)).keep(tmp_path / "other.db")
+
+
+def test_a_row_is_reopened(tmp_path: Path) -> None:
+    """Its simulation ends in the hash that the row has, whatever was varied; also of a file."""
+    van = Vehicle.preset("minivan", mesh_density=0.1)
+    study = birm3d.sweep(
+        SEDAN,
+        {
+            "vehicle": [van, SEDAN.scene.vehicle],
+            "impact_speed": [9.0, 12.0],
+            "settings.contact_model": ["projected", "along_truss"],
+            "settings.time_step": [None, 1e-4],
+        },
+    )
+    for row in (0, 5, 10, 15):
+        again = study.simulation(row)
+        assert again.time == 0.0
+        assert again.scene.impact_speed == study["impact_speed"][row]
+        assert f"{again.run().state_hash:016x}" == study.state_hash[row]
+    assert study.simulation(5).scene.vehicle is van
+    assert f"{copy.deepcopy(study).simulation(7).run().state_hash:016x}" == study.state_hash[7]
+    numbers = birm3d.sweep(SEDAN, {"impact_speed": [9.0], "settings.time_step": [None, 1e-4]})
+    numbers.save(tmp_path / "runs.csv")
+    loaded = Study.load(tmp_path / "runs.csv")
+    for row in (0, 1):
+        assert f"{loaded.simulation(row, SEDAN).run().state_hash:016x}" == numbers.state_hash[row]
+    with pytest.raises(ValueError, match="base must be the simulation that was varied"):
+        loaded.simulation(0)
+    with pytest.raises(ValueError, match=r"base must be a birm3d\.Simulation, got int"):
+        loaded.simulation(0, 3)
+    with pytest.raises(ValueError, match="row must be a whole number from 0 to 15, got 16"):
+        study.simulation(16)
+    with pytest.raises(ValueError, match="ensemble"):
+        birm3d.ensemble([SEDAN], metrics=["delta_v"]).simulation(0)
+
+
+def test_parameters_in_a_mapping_are_the_same_as_keywords() -> None:
+    by_mapping = birm3d.sweep(
+        SEDAN, {"impact_speed": [9.0, 10.0], "impact_angle": [80.0]}, metrics=["delta_v"]
+    )
+    by_name = birm3d.sweep(SEDAN, impact_speed=[9.0, 10.0], impact_angle=[80.0], metrics=["delta_v"])
+    assert by_mapping.state_hash == by_name.state_hash
+    assert by_mapping.parameters.keys() == by_name.parameters.keys()
+
+
+def test_a_grid_that_can_not_be_held_is_refused() -> None:
+    many = [float(i) for i in range(10_000)]
+    with pytest.raises(
+        ValueError, match=r"at most 5,000,000 runs, got 100,000,000 in a grid of 10000 x 10000"
+    ):
+        birm3d.sweep(SEDAN, {"impact_speed": many, "impact_angle": many})
+    with pytest.raises(ValueError, match="at most 5,000,000 runs, got 5,000,001"):
+        birm3d.sweep(SEDAN, {"impact_speed": itertools.count(5)})
+    with pytest.raises(ValueError, match="parameters must be a mapping of names to lists of values, got 5"):
+        birm3d.sweep(SEDAN, 5)
 
 
 def test_progress_goes_to_stderr(capsys: pytest.CaptureFixture[str]) -> None:

@@ -223,6 +223,44 @@ def test_fit_has_the_errors_it_says() -> None:
     assert 180 <= covered <= 198
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.1])
+def test_fit_has_the_errors_it_says_where_speeds_share_their_draws(noise: float) -> None:
+    """300 studies of 40 draws: as if all runs were independent, the interval covers 80 % instead of 95."""
+    from birm3d.lognormal_fit import Draws, fit_lognormal
+
+    speeds = np.array([8.0, 9.0, 10.0, 11.0, 12.0])
+    source = np.random.default_rng(4)
+    covered = rejected = 0
+    for _ in range(300):
+        limit = 10.0 * np.exp(
+            0.15 * source.standard_normal((40, 1)) + noise * source.standard_normal((40, 5))
+        )
+        happened = speeds > limit
+        draws = Draws(happened, np.ones_like(happened))
+        fit, why = fit_lognormal(speeds, happened.sum(axis=0), np.full(5, 40), draws)
+        assert fit is not None, why
+        covered += abs(fit.median - 10.0) < 1.96 * fit.standard_errors[0]
+        rejected += fit.lack_of_fit < 0.05
+    assert 270 <= covered <= 297
+    assert 3 <= rejected <= 36  # 5 % of 300, and some more for so few draws
+
+
+def test_a_lack_of_fit_is_seen_where_speeds_share_their_draws() -> None:
+    """Two kinds of cases, whose limits are far apart, are no lognormal curve."""
+    from birm3d.lognormal_fit import Draws, fit_lognormal
+
+    speeds = np.array([6.0, 8.0, 10.0, 13.0, 16.0])
+    limit = np.where(np.arange(200) % 2, 7.0, 15.0)[:, None] * np.exp(
+        0.05 * np.random.default_rng(2).standard_normal((200, 1))
+    )
+    happened = speeds > limit
+    fit, why = fit_lognormal(
+        speeds, happened.sum(axis=0), np.full(5, 200), Draws(happened, np.ones_like(happened))
+    )
+    assert fit is not None, why
+    assert fit.lack_of_fit < 1e-3
+
+
 def test_a_flat_curve_has_no_median() -> None:
     from birm3d.lognormal_fit import fit_lognormal
 
@@ -253,7 +291,9 @@ def test_more_runs_for_each_speed_keep_the_earlier_ones(block: Simulation, tmp_p
         for n in (3, 6)
     )
     assert many.study["vehicle.gvw"][:6].tobytes() == few.study["vehicle.gvw"].tobytes()
-    assert len(np.unique(many.study["vehicle.gvw"])) == 12  # every speed has its own draws
+    draws = many.study["vehicle.gvw"].reshape(6, 2)
+    assert len(np.unique(draws)) == 6
+    assert (draws[:, 0] == draws[:, 1]).all()  # every speed has the same ones
 
 
 @pytest.mark.parametrize(
@@ -303,6 +343,16 @@ GOOD = {"impact_speed": norm(20.0, 1.0)}
         (lambda s: birm3d.monte_carlo(s, GOOD, 0), "n must be an integer >= 1, got 0"),
         (lambda s: birm3d.monte_carlo(s, GOOD, 2.5), "n must be an integer >= 1, got 2.5"),
         (lambda s: birm3d.monte_carlo(s, GOOD, 2, seed=-1), "seed must be an integer >= 0, got -1"),
+        (lambda s: birm3d.monte_carlo(s, GOOD, 10**12), "n must make at most 5,000,000 runs, got 1,000,000,"),
+        (lambda s: birm3d.sobol(s, GOOD, 2**40), "n must make at most 5,000,000 runs, got 3,298,534,883,328"),
+        (
+            lambda s: birm3d.fragility(s, [5.0, 6.0], {"vehicle.gvw": norm(MASS)}, 10**12),
+            "n must make at most 5,000,000 runs, got 2,000,000,000,000",
+        ),
+        (
+            lambda s: birm3d.critical_impact_point(s, "delta_v", {"impact_offset": (0, 1)}, points=10**12),
+            "points must make at most 5,000,000 runs",
+        ),
         (lambda s: birm3d.sobol(s, GOOD, 10), "n must be a power of 2.*got 10"),
         (lambda s: birm3d.sobol(s, GOOD, 4, confidence=95.0), "confidence must be between 0 and 1, got 95.0"),
         (lambda s: birm3d.fragility(s, [], {}, 3), "speeds must have at least two"),

@@ -72,6 +72,8 @@ class Analysis:
     reasons : dict
         Number of a parameter -> why the data do not tell its value.
     notes : list of str
+    doubts : list of str
+        Why intervals that are given say less than they seem to.
     condition_number : float or None
         Of the Jacobian by the shares; ``None`` where a column is nil.
     singular_values : ndarray, shape (p,)
@@ -84,6 +86,7 @@ class Analysis:
     condition_number: float | None
     reasons: dict[int, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    doubts: list[str] = field(default_factory=list)
 
 
 def analyse(search: Search, *, confidence: float, uncertainty: str, profiled: bool) -> Analysis:
@@ -227,11 +230,6 @@ def _practical(analysis: Analysis, point: Floats, problem: Problem, free: npt.ND
         label = problem.parameters.labels[k]
         low, high = point[k] - half[k], point[k] + half[k]
         if min(1.0, high) - max(0.0, low) < _AS_WIDE_AS_BOUNDS:
-            for side, beyond in (("lower", low < 0.0), ("upper", high > 1.0)):
-                if beyond:
-                    analysis.notes.append(
-                        f"the interval of {label} ends at its {side} bound, not by the data"
-                    )
             continue
         partners = [
             f"{problem.parameters.labels[j]} ({related[k, j]:+.2f})"
@@ -281,14 +279,14 @@ def _other_optima(analysis: Analysis, search: Search) -> None:
 
 
 def _weak(analysis: Analysis, problem: Problem) -> None:
-    """Note pairs that are told apart poorly, and intervals that are the prior's own."""
+    """Doubt pairs that are told apart poorly, and intervals that are the prior's own."""
     labels = problem.parameters.labels
     related = correlation(analysis.covariance)
     told = [k for k in range(len(labels)) if k not in analysis.reasons]
     for i in told:
         for j in told:
             if i < j and abs(related[i, j]) > _POORLY_APART:
-                analysis.notes.append(
+                analysis.doubts.append(
                     f"{labels[i]} and {labels[j]} are told apart poorly (correlation {related[i, j]:+.3f})"
                 )
     for k in told:
@@ -297,7 +295,7 @@ def _weak(analysis: Analysis, problem: Problem) -> None:
             continue
         _, slope = parameter.prior_row(0.0)
         if analysis.covariance[k, k] * slope**2 > 0.9 * min(1.0, analysis.spread.factor):
-            analysis.notes.append(f"the interval of {labels[k]} is its prior's: the data add nothing")
+            analysis.doubts.append(f"the interval of {labels[k]} is its prior's: the data add nothing")
 
 
 def describe(search: Search) -> list[dict[str, Any]]:

@@ -64,6 +64,7 @@ def outcome(
                 analysis.reasons.get(k),
             )
         )
+    doubts = (*analysis.doubts, *_ends_at_bounds(fitted))
     told = [k for k in range(len(parameters)) if k not in analysis.reasons]
     covariance = (analysis.covariance * np.outer(slopes, slopes))[np.ix_(told, told)]
     return CalibrationResult(
@@ -75,7 +76,8 @@ def outcome(
         covariance=covariance,
         correlation=correlation(covariance),
         condition_number=analysis.condition_number,
-        notes=(*notes, *analysis.notes),
+        notes=(*notes, *analysis.notes, *doubts),
+        doubts=doubts,
         starts=tuple(describe(found)),
         history=evaluator.history,
         settings=settings,
@@ -88,6 +90,19 @@ def outcome(
 def _interval(parameter: Parameter, share: float, half: float) -> tuple[float, float]:
     """Return the ends of an interval; it goes no farther than the bounds."""
     return parameter.from_unit(max(0.0, share - half)), parameter.from_unit(min(1.0, share + half))
+
+
+def _ends_at_bounds(fitted: list[FittedParameter]) -> list[str]:
+    """Intervals that end at a bound: there it is the bound that ends them, not the data."""
+    return [
+        f"the interval of {parameter.label} ends at its {side} bound {bound:g}, not by the data"
+        for parameter in fitted
+        if parameter.interval is not None
+        for side, end, bound in zip(
+            ("lower", "upper"), parameter.interval, (parameter.lower, parameter.upper), strict=True
+        )
+        if math.isclose(end, bound, rel_tol=1e-9, abs_tol=1e-9 * (parameter.upper - parameter.lower))
+    ]
 
 
 def _targets(found: Search, values: Floats) -> tuple[FittedTarget, ...]:
@@ -104,7 +119,7 @@ def _targets(found: Search, values: Floats) -> tuple[FittedTarget, ...]:
         rows.append(
             FittedTarget(
                 label=target.label,
-                unit=QUANTITIES[target.quantity].unit if isinstance(target, CurveTarget) else "SI",
+                unit=QUANTITIES[target.quantity].unit if isinstance(target, CurveTarget) else target.unit,
                 simulation=owner,
                 against=target.against if isinstance(target, CurveTarget) else None,
                 x=target.points if isinstance(target, CurveTarget) else np.zeros(1),

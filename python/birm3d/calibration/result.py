@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -52,7 +52,10 @@ class CalibrationResult:
     condition_number : float or None
         Of the Jacobian with the bounds as scale; ``None`` where a parameter moves nothing.
     notes : tuple of str
-        What a reader should know beside the verdict.
+        What a reader should know, the doubts among it.
+    doubts : tuple of str
+        Why intervals say less than they seem to: pairs told apart poorly, ends at bounds, a prior's own
+        interval. They are part of the verdict.
     starts : tuple of dict
         Where every start began and ended.
     history : tuple of Evaluation
@@ -76,6 +79,7 @@ class CalibrationResult:
     history: tuple[Evaluation, ...]
     settings: Mapping[str, Any]
     profiles: dict[str, Profile] = field(default_factory=dict)
+    doubts: tuple[str, ...] = ()
     _problem: Problem | None = None
     _noise: Noise | None = None
 
@@ -98,9 +102,12 @@ class CalibrationResult:
     def verdict(self) -> str:
         """What the data can and can not tell, in plain words."""
         missing = [f"{p.label}: {p.reason}" for p in self.parameters if p.reason is not None]
-        if not missing:
+        if not missing and not self.doubts:
             return "every parameter is identified"
-        return "NOT identified, no interval is given\n" + "\n".join(f"  {line}" for line in missing)
+        if not missing:
+            return _listed("every parameter has an interval, NOT all are identified by the data", self.doubts)
+        lines = _listed("NOT identified, no interval is given", missing)
+        return f"{lines}\n{_listed('intervals with doubts', self.doubts)}" if self.doubts else lines
 
     @property
     def failed_runs(self) -> int:
@@ -238,3 +245,7 @@ class CalibrationResult:
     def __repr__(self) -> str:
         told = ", ".join(f"{label}={value:.4g}" for label, value in self.values.items())
         return f"CalibrationResult({told}; {len(self.identified)} of {len(self.parameters)} identified)"
+
+
+def _listed(head: str, lines: Sequence[str]) -> str:
+    return "\n".join([head, *(f"  {line}" for line in lines)])

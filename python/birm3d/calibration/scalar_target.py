@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from ..metrics import METRIC_UNITS
+
 if TYPE_CHECKING:
     from ..result import Result
 
@@ -49,6 +51,11 @@ class ScalarTarget:
     def label(self) -> str:
         """Name for reports."""
         return self.metric
+
+    @property
+    def unit(self) -> str:
+        """Of the metric; "" for a pure number."""
+        return METRIC_UNITS.get(self.metric, "")
 
     @property
     def measured(self) -> Floats:

@@ -69,6 +69,7 @@ def load(path: str | Path) -> CalibrationResult:
             Evaluation(**{**item, "values": tuple(item["values"])}) for item in document["history"]
         ),
         settings=document["settings"],
+        doubts=tuple(document.get("doubts", ())),  # files of earlier versions have none
         profiles={name: Profile(**_arrays(item, Profile)) for name, item in document["profiles"].items()},
     )
 

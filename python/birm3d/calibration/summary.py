@@ -29,7 +29,7 @@ def summary(result: CalibrationResult) -> str:
     lines.append(f"Intervals: {100 * result.confidence:g} %, {source}, quantile {spread.quantile:.3f}")
     lines.append(_starts(result))
     lines.append(f"Verdict: {result.verdict}")
-    lines += [f"Note: {note}" for note in result.notes]
+    lines += [f"Note: {note}" for note in result.notes if note not in result.doubts]
     return "\n".join(lines)
 
 

@@ -25,7 +25,7 @@ _INSTANTS = 61  # of the window's slider
 
 def render(
     result: Result,
-    time: float | Sequence[float] | None = None,
+    time: float | Sequence[float] | str | Path | None = None,
     path: str | Path | None = None,
     *,
     view: View = "three_quarter",
@@ -38,7 +38,7 @@ def render(
     Parameters
     ----------
     time
-        One instant or several [s]; ``None``: the end.
+        One instant or several [s]; ``None``: the end. A path in its place is `path`.
     path
         Also write the picture to this file (.png, .jpg); several stand below each other.
     view, color, size, follow
@@ -58,6 +58,12 @@ def render(
     RuntimeError
         If this machine has no way to draw.
     """
+    if isinstance(time, (str, Path)):
+        if path is not None:
+            raise ValueError(f"path must be given once, got {str(time)!r} and {str(path)!r}")
+        time, path = None, time
+    if path is not None:  # before it is drawn
+        _check_ending(Path(path))
     times = np.asarray(result.time[-1] if time is None else time, float)
     with Stage(result, times, view=view, color=color, size=size, follow=follow) as stage:
         pictures = []
@@ -67,11 +73,17 @@ def render(
     if path is not None:
         from PIL import Image
 
-        if Path(path).suffix.lower() not in Image.registered_extensions():
-            raise ValueError(f"path must end in .png, .jpg or another kind of picture, got {str(path)!r}")
         with whole_file(path) as part:
             Image.fromarray(np.vstack(pictures)).save(part)
     return pictures[0] if times.ndim == 0 else np.stack(pictures)
+
+
+def _check_ending(path: Path) -> None:
+    from PIL import Image
+
+    known = Image.registered_extensions()
+    if known.get(path.suffix.lower()) not in Image.SAVE:
+        raise ValueError(f"path must end in .png, .jpg or another kind of picture, got {str(path)!r}")
 
 
 def show(result: Result, *, view: View = "three_quarter", color: Color = "crush") -> None:

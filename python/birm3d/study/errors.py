@@ -22,9 +22,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
-from types import MappingProxyType
 
 from .. import units
+from ..frozen_mapping import FrozenMapping
 from ..metrics import METRIC_UNITS
 from ..simulation import Scene
 
@@ -78,7 +78,7 @@ def least_scales(scene: Scene, given: Mapping[str, float] | None = None) -> Mapp
         if not 0.0 < scale < float("inf"):
             raise ValueError(f"scales[{name!r}] must be finite and > 0, got {scale}")
         scales[name] = float(scale)
-    return MappingProxyType(scales)
+    return FrozenMapping(scales)
 
 
 def relative_errors(

@@ -7,12 +7,12 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ..frozen_mapping import FrozenMapping
 from ..metrics import METRIC_UNITS
 from ..settings import Settings
 from .convergence import Limit
@@ -128,8 +128,8 @@ class WorkPrecision:
     ) -> None:
         self.title = title
         self.rows = tuple(rows)
-        self.of_variant = MappingProxyType({k: MappingProxyType(dict(v)) for k, v in of_variant.items()})
-        self.scales = MappingProxyType(dict(scales))
+        self.of_variant = FrozenMapping({k: FrozenMapping(dict(v)) for k, v in of_variant.items()})
+        self.scales = FrozenMapping(dict(scales))
         self.default = default
 
     @property
@@ -182,7 +182,7 @@ class WorkPrecision:
             columns[f"error.{name}"] = np.array([row.errors.get(name, math.nan) for row in self.rows])
         for name in self.scales:
             columns[name] = np.array([row.values.get(name, math.nan) for row in self.rows])
-        return MappingProxyType(columns)
+        return FrozenMapping(columns)
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return :attr:`table`; units of the metrics are in ``attrs["units"]``."""

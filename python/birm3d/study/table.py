@@ -7,13 +7,13 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from .._version import __version__
+from ..frozen_mapping import FrozenMapping
 from ..scene_parameters import unit_of
 
 if TYPE_CHECKING:
@@ -22,11 +22,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..run_store import Outcome
+    from ..simulation import Scene, Simulation
 
 __all__ = ["Study", "Summary"]
 
 _FORMAT = "birm3d study 1"
 _TEXTS = ("end_reason", "state_hash", "error")
+_WORDS = {"None": None, "True": True, "False": False}  # values of parameters as a file shows them
 
 
 class Summary(NamedTuple):
@@ -63,6 +65,8 @@ class Study:
         The values of each parameter, if the runs are a grid; the last parameter changes fastest.
     version : str
         Of the package that made the runs.
+
+    :meth:`simulation` makes the simulation of a row anew.
     """
 
     def __init__(
@@ -78,22 +82,26 @@ class Study:
         units: Mapping[str, str],
         grid: Mapping[str, Sequence[Any]] | None = None,
         version: str = __version__,
+        scene: Scene | None = None,
+        given: Mapping[str, Sequence[Any]] | None = None,
     ) -> None:
         self.vehicle = vehicle
         self.run = _read_only(run, np.int64)
-        self.parameters = MappingProxyType({name: _read_only(v) for name, v in parameters.items()})
-        self.metrics = MappingProxyType({name: _read_only(v, float) for name, v in metrics.items()})
+        self.parameters = FrozenMapping({name: _read_only(v) for name, v in parameters.items()})
+        self.metrics = FrozenMapping({name: _read_only(v, float) for name, v in metrics.items()})
         self.end_reason = tuple(end_reason)
         self.state_hash = tuple(state_hash)
         self.error = tuple(error)
-        self.units = MappingProxyType(dict(units))
-        self.grid = None if grid is None else MappingProxyType({k: tuple(v) for k, v in grid.items()})
+        self.units = FrozenMapping(dict(units))
+        self.grid = None if grid is None else FrozenMapping({k: tuple(v) for k, v in grid.items()})
         self.version = version
+        self._scene = scene  # that was varied
+        self._given = {name: tuple(values) for name, values in (given or {}).items()}  # that are no numbers
 
     @classmethod
     def _of(
         cls,
-        vehicle: str,
+        scene: Scene | None,
         names: Sequence[str],
         rows: Sequence[Sequence[Any]],
         metric_units: Mapping[str, str],
@@ -102,9 +110,10 @@ class Study:
     ) -> Study:
         runs = sorted(outcomes)
         table = np.array([outcomes[run].metrics for run in runs]).reshape(len(runs), len(metric_units))
-        values = {name: _column([rows[run][i] for run in runs]) for i, name in enumerate(names)}
+        given = {name: [rows[run][i] for run in runs] for i, name in enumerate(names)}
+        values = {name: _column(column) for name, column in given.items()}
         return cls(
-            vehicle=vehicle,
+            vehicle="ensemble" if scene is None else scene.vehicle.name,
             run=runs,
             parameters=values,
             metrics=dict(zip(metric_units, table.T, strict=True)),
@@ -113,6 +122,8 @@ class Study:
             error=[outcomes[run].error for run in runs],
             units={**{name: unit_of(name) for name in names}, **metric_units},
             grid=None if grid is None else {name: _column(values).tolist() for name, values in grid.items()},
+            scene=scene,
+            given={name: column for name, column in given.items() if values[name].dtype.kind != "f"},
         )
 
     @staticmethod
@@ -133,6 +144,12 @@ class Study:
             error=[text for study in studies for text in study.error],
             units=first.units,
             version=first.version,
+            scene=first._scene if all(study._scene is first._scene for study in studies) else None,
+            given={
+                name: [value for study in studies for value in study._given.get(name, study[name].tolist())]
+                for name in first.parameters
+                if any(name in study._given for study in studies)
+            },
         )
 
     def __len__(self) -> int:
@@ -144,6 +161,55 @@ class Study:
             if name in columns:
                 return columns[name]
         raise KeyError(f"column must be one of {', '.join((*self.parameters, *self.metrics))}; got {name!r}")
+
+    def simulation(self, row: int, base: Simulation | None = None) -> Simulation:
+        """Return the simulation of a row, at t = 0: its run ends in the row's ``state_hash``.
+
+        Parameters
+        ----------
+        row
+            Place in the columns, 0 to n - 1; of a study that was stopped not the number of the run.
+        base
+            The simulation that was varied. A study that was read from a file needs it.
+
+        Raises
+        ------
+        ValueError
+            If there is no such row, if the study needs a base and has none, or if the row's scene can not be
+            made (``error`` says so too).
+        """
+        from ..scene_parameters import varied
+        from ..simulation import Simulation
+
+        if isinstance(row, bool) or not isinstance(row, (int, np.integer)) or not 0 <= row < len(self):
+            raise ValueError(f"row must be a whole number from 0 to {len(self) - 1}, got {row!r}")
+        if not self.parameters:
+            raise ValueError(
+                "row must be of a study over parameters, got one of an ensemble, whose caller has it"
+            )
+        if base is None and self._scene is None:
+            raise ValueError(
+                "base must be the simulation that was varied where a study is from a file, got None"
+            )
+        origin = Simulation.from_scene(self._scene) if base is None and self._scene is not None else base
+        if not isinstance(origin, Simulation):
+            raise ValueError(f"base must be a birm3d.Simulation, got {type(base).__name__}")
+        return varied(origin, {name: self._value(name, int(row)) for name in self.parameters})
+
+    def _value(self, name: str, row: int) -> Any:
+        """Return a parameter of a row as it was given; of a study from a file as far as its text tells."""
+        if name in self._given:
+            return self._given[name][row]
+        value = self.parameters[name][row]
+        try:
+            return float(value)  # also where a column has texts beside numbers
+        except ValueError:
+            return _WORDS.get(value, value)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        names = ("vehicle", "run", "parameters", "metrics", *_TEXTS, "units", "grid", "version")
+        content = {name: getattr(self, name) for name in names}
+        return (_rebuild, ({**content, "scene": self._scene, "given": self._given},))
 
     @property
     def failed(self) -> Mapping[int, str]:
@@ -258,6 +324,10 @@ class Study:
             f"Study({self.vehicle}, {len(self)} runs over {', '.join(self.parameters)}"
             f"{f', {failed} failed' if failed else ''}; metrics: {', '.join(self.metrics)})"
         )
+
+
+def _rebuild(content: dict[str, Any]) -> Study:
+    return Study(**content)
 
 
 def _summary(values: npt.NDArray[np.float64]) -> Summary:

@@ -18,7 +18,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
-from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -27,6 +26,7 @@ import numpy.typing as npt
 from .. import units
 from ..channel import Channel
 from ..file_format import FileFormatError, reading, reads, received
+from ..frozen_mapping import FrozenMapping
 from ._lines import number, read_text
 
 __all__ = ["ChannelCode", "IsoMmeTest", "read_iso_mme"]
@@ -230,7 +230,7 @@ def read_iso_mme(path: str | Path) -> IsoMmeTest:
             index, keys.line("Number of channels"), f"must list {number_of:g} channels, got {len(codes)}"
         )
     info = _keys(file, read_text(file).splitlines()).texts
-    return IsoMmeTest(file, MappingProxyType(info), MappingProxyType(codes))
+    return IsoMmeTest(file, FrozenMapping(info), FrozenMapping(codes))
 
 
 class _Keys(NamedTuple):

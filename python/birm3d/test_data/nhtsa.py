@@ -14,12 +14,12 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 
 import numpy as np
 
 from ..channel import Channel
 from ..file_format import FileFormatError, reading, reads, received
+from ..frozen_mapping import FrozenMapping
 from ._lines import number, read_text
 
 __all__ = ["NhtsaCurve", "NhtsaTest", "read_nhtsa"]
@@ -247,13 +247,13 @@ def read_nhtsa(path: str | Path, *, units: Mapping[str, str] | None = None) -> N
     _, test = sections["TEST"][0]
     return NhtsaTest(
         path=file,
-        info=MappingProxyType({name: test[place] for name, place in _TEST.items()}),
+        info=FrozenMapping({name: test[place] for name, place in _TEST.items()}),
         vehicles=tuple(
-            MappingProxyType({name: cells[place] for name, place in _VEHICLE.items()})
+            FrozenMapping({name: cells[place] for name, place in _VEHICLE.items()})
             for _, cells in sections["VEHICLE"]
         ),
         curves=tuple(_parse_curve(file, i, cells) for i, cells in sections["INSTRUMENTATION"]),
-        units=MappingProxyType({**_UNITS, **(units or {})}),
+        units=FrozenMapping({**_UNITS, **(units or {})}),
     )
 
 
