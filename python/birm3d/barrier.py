@@ -269,14 +269,15 @@ class Barrier:
         vertices
             Shape (n, 3), in axes that stand at ``origin``, turned by ``heading``, z up [m].
         faces
-            Shape (m, 3), indices into the vertices, counter-clockwise seen from outside.
+            Shape (m, 3), indices into the vertices, counter-clockwise seen from outside. They close a solid,
+            or one that is open only where it stands on the ground: a hole has no inside.
         friction, origin, heading
             See :class:`Barrier`.
 
         Raises
         ------
         ValueError
-            If shapes or indices are wrong, the triangles are no surface, or a closed surface is inside out;
+            If shapes or indices are wrong, the triangles have a hole, or the solid is inside out;
             the message names the culprit.
         """
         from .barrier_kinds import MeshBarrier

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from . import _core
 from .barrier import Barrier
 from .checks import MOST_ELEMENTS
+from .closed_mesh import check_closed
 from .free_standing import FreeStanding
 
 __all__ = ["PROFILES", "Bollards", "Jersey", "MeshBarrier", "Pole", "RigidWall"]
@@ -244,7 +245,7 @@ class Jersey(Barrier):
 
 @dataclass(frozen=True, eq=False)
 class MeshBarrier(Barrier):
-    """A barrier of triangles."""
+    """A barrier of triangles that close a solid; it may be open where it stands on the ground."""
 
     vertices: Floats = field(default_factory=lambda: np.empty((0, 3)))
     faces: npt.NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 3), np.int64))
@@ -260,6 +261,7 @@ class MeshBarrier(Barrier):
         for array in (self.vertices, self.faces):
             array.setflags(write=False)
         super().__post_init__()
+        check_closed(self.vertices, self.faces, ground=1e-9 - self.origin[2])
         volume = self._volume()
         if volume < 0.0:
             raise ValueError(
@@ -267,12 +269,10 @@ class MeshBarrier(Barrier):
             )
 
     def _volume(self) -> float:
-        """Volume that a closed surface encloses [m^3], negative if it is inside out; 0 of an open one."""
-        edges = np.vstack([self.faces[:, [0, 1]], self.faces[:, [1, 2]], self.faces[:, [2, 0]]])
-        there = set(map(tuple, edges.tolist()))
-        if any((b, a) not in there for a, b in there):
-            return 0.0
-        a, b, c = (self.vertices[self.faces[:, i]] - self.vertices[0] for i in range(3))
+        """Volume that the surface encloses [m^3], negative if it is inside out."""
+        # From a point in the plane of the foot, which adds nothing where it is open.
+        below = np.array([*self.vertices[0, :2], self.vertices[:, 2].min()])
+        a, b, c = (self.vertices[self.faces[:, i]] - below for i in range(3))
         return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
 
     @cached_property

@@ -42,11 +42,12 @@ def whole_number(name: str, value: Any, least: int = 1, most: int | None = None)
     ValueError
         If the value is no whole number, or out of its limits.
     """
-    limit = f"a whole number >= {least}" if most is None else f"a whole number from {least} to {most:,}"
     found = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 else value
     whole = isinstance(found, Real) and not isinstance(found, (bool, np.bool_))
-    if not (whole and found >= least and (most is None or found <= most) and found % 1 == 0):
-        raise ValueError(f"{name} must be {limit}, got {shown(value)}")
+    if not (whole and found >= least and found % 1 == 0):
+        raise ValueError(f"{name} must be a whole number >= {least}, got {shown(value)}")
+    if most is not None and found > most:
+        raise ValueError(f"{name} must be at most {most:,}, got {shown(value)}")
     return int(found)
 
 

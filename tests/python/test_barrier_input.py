@@ -116,5 +116,31 @@ def test_meshes(vertices: Any, faces: Any, name: str) -> None:
         Barrier.from_mesh(vertices, faces)
 
 
-def test_an_open_surface_is_one() -> None:
-    assert len(Barrier.from_mesh(CUBE, FACES[:-1]).faces) == 11
+def test_a_mesh_with_a_hole_names_an_edge_and_how_many() -> None:
+    with pytest.raises(
+        ValueError, match=r"close a solid, got a hole: 3 edges .* from \(0, 0, 1\) to \(0, 1, 1\) m"
+    ):
+        Barrier.from_mesh(CUBE, FACES[:-1])
+    # Triangles with corners of their own close a solid too.
+    own = np.arange(36).reshape(12, 3)
+    assert len(Barrier.from_mesh(CUBE[FACES.ravel()], own).faces) == 12
+
+
+def test_a_mesh_may_be_open_where_it_stands() -> None:
+    foot = (CUBE[FACES][:, :, 2] == 0.0).all(axis=1)
+    assert foot.sum() == 2
+    assert len(Barrier.from_mesh(CUBE, FACES[~foot]).faces) == 10
+    with pytest.raises(ValueError, match="got a hole: 4 edges"):
+        Barrier.from_mesh(CUBE, FACES[~foot], origin=(0.0, 0.0, 0.1))
+    with pytest.raises(ValueError, match="counter-clockwise"):
+        Barrier.from_mesh(CUBE, FACES[~foot][:, ::-1])
+
+
+def test_counts_that_can_not_be_held() -> None:
+    for name, value in (("count", 1_000_000), ("count", 1e300), ("rows", 10**400)):
+        with pytest.raises(ValueError, match=rf"{name} must be at most 10,000, got "):
+            Barrier.bollards(**{name: value})
+    with pytest.raises(ValueError, match="count must make at most 10,000 bollards with 200 rows, got 100"):
+        Barrier.bollards(count=100, rows=200)
+    with pytest.raises(ValueError, match="segments must be at most 10,000, got 1000000"):
+        Barrier.jersey(length=1e6, segments=1_000_000)
