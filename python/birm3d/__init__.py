@@ -32,6 +32,7 @@ from .sobol import sobol
 from .study import Study
 from .sweep import sweep
 from .test_data import read_csv_channels, read_iso_mme, read_nhtsa
+from .unit_check import UnitWarning
 from .vehicle import Vehicle, Zone
 
 __all__ = [
@@ -52,6 +53,7 @@ __all__ = [
     "Study",
     "StudyInterrupted",
     "StudyStoppedError",
+    "UnitWarning",
     "UnstableError",
     "Vehicle",
     "Zone",

@@ -13,6 +13,8 @@ import numpy.typing as npt
 
 from . import _core
 from .checks import MOST_ELEMENTS, whole_number
+from .unit_check import USUAL, given, warn_if_mesh_unusual
+from .units import Quantity, si
 
 if TYPE_CHECKING:
     from .barrier_kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
@@ -38,8 +40,9 @@ class Barrier:
         Tyres have one of their own, :attr:`birm3d.Settings.mu_tire_barrier`; at 0 they slide without
         friction too, unless the settings give them a number.
     origin
-        A point of the barrier's line, at the foot of its traffic face, of posts of their axes; world axes,
-        shape (3,) [m].
+        The middle of the barrier on its line, at the foot of its traffic face, of posts of their axes; world
+        axes, shape (3,) [m]. Moved along its line the barrier is met at another place: the vehicle keeps its
+        path, see ``impact_offset`` of :class:`birm3d.Simulation` and :meth:`station`.
     heading
         Turn of the barrier's line about the vertical [deg].
     """
@@ -51,10 +54,10 @@ class Barrier:
     _counts: ClassVar[tuple[str, ...]] = ()  # fields that are whole numbers
 
     def __post_init__(self) -> None:
-        if np.shape(self.origin) != (3,):
-            raise ValueError(f"origin must have shape (3,), got {np.shape(self.origin)}")
-        x, y, z = (float(value) for value in self.origin)
-        object.__setattr__(self, "origin", (x, y, z))
+        object.__setattr__(self, "origin", _point(self.origin))
+        for name, value in vars(self).items():  # a changed copy is given text too
+            if isinstance(value, str) and name in USUAL:
+                object.__setattr__(self, name, given(name, value))
         for name in self._counts:
             count = whole_number(name, getattr(self, name), most=MOST_ELEMENTS)
             object.__setattr__(self, name, count)  # a sweep gives 3.0
@@ -67,13 +70,13 @@ class Barrier:
     @staticmethod
     def rigid_wall(
         *,
-        width: float | None = None,
-        height: float | None = None,
-        thickness: float = 0.5,
+        width: Quantity | None = None,
+        height: Quantity | None = None,
+        thickness: Quantity = 0.5,
         segments: int = 1,
         friction: float = 0.2,
-        origin: Sequence[float] = (0.0, 0.0, 0.0),
-        heading: float = 0.0,
+        origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
+        heading: Quantity = 0.0,
     ) -> RigidWall:
         """Return a flat, rigid, vertical wall; see :class:`birm3d.barrier_kinds.RigidWall`.
 
@@ -98,20 +101,20 @@ class Barrier:
         return RigidWall(
             float(friction),
             _point(origin),
-            float(heading),
-            width=math.inf if width is None else float(width),
-            height=math.inf if height is None else float(height),
-            thickness=float(thickness),
+            given("heading", heading),
+            width=math.inf if width is None else given("width", width),
+            height=math.inf if height is None else given("height", height),
+            thickness=given("thickness", thickness),
             segments=segments,
         )
 
     @staticmethod
     def pole(
         *,
-        diameter: float = 0.3,
+        diameter: Quantity = 0.3,
         friction: float = 0.2,
-        origin: Sequence[float] = (0.0, 0.0, 0.0),
-        heading: float = 0.0,
+        origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
+        heading: Quantity = 0.0,
     ) -> Pole:
         """Return one rigid, upright cylinder, taller than any vehicle.
 
@@ -129,21 +132,26 @@ class Barrier:
         """
         from .barrier_kinds import Pole
 
-        return Pole(float(friction), _point(origin), float(heading), diameter=float(diameter))
+        return Pole(
+            float(friction),
+            _point(origin),
+            given("heading", heading),
+            diameter=given("diameter", diameter),
+        )
 
     @staticmethod
     def bollards(
         *,
         count: int = 5,
-        diameter: float = 0.32,
-        height: float = 1.0,
-        spacing: float = 1.2,
+        diameter: Quantity = 0.32,
+        height: Quantity = 1.0,
+        spacing: Quantity = 1.2,
         rows: int = 1,
-        row_spacing: float = 1.2,
-        row_offset: float = 0.0,
+        row_spacing: Quantity = 1.2,
+        row_offset: Quantity = 0.0,
         friction: float = 0.2,
-        origin: Sequence[float] = (0.0, 0.0, 0.0),
-        heading: float = 0.0,
+        origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
+        heading: Quantity = 0.0,
     ) -> Bollards:
         """Return rigid bollards in one or more rows along the barrier's line.
 
@@ -172,28 +180,28 @@ class Barrier:
         return Bollards(
             float(friction),
             _point(origin),
-            float(heading),
+            given("heading", heading),
             count=count,
-            diameter=float(diameter),
-            height=float(height),
-            spacing=float(spacing),
+            diameter=given("diameter", diameter),
+            height=given("height", height),
+            spacing=given("spacing", spacing),
             rows=rows,
-            row_spacing=float(row_spacing),
-            row_offset=float(row_offset),
+            row_spacing=given("row_spacing", row_spacing),
+            row_offset=given("row_offset", row_offset),
         )
 
     @staticmethod
     def jersey(
         *,
         profile: str | Sequence[Sequence[float]] = "new_jersey",
-        height: float | None = None,
-        length: float | None = None,
+        height: Quantity | None = None,
+        length: Quantity | None = None,
         segments: int = 1,
         free_standing: bool | FreeStanding = False,
-        density: float | None = None,
+        density: Quantity | None = None,
         friction: float = 0.2,
-        origin: Sequence[float] = (0.0, 0.0, 0.0),
-        heading: float = 0.0,
+        origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
+        heading: Quantity = 0.0,
     ) -> Jersey:
         """Return a concrete barrier with sloped faces; see :class:`birm3d.barrier_kinds.Jersey`.
 
@@ -233,7 +241,7 @@ class Barrier:
             free: FreeStanding | None = free_standing
         else:
             if density is not None:
-                density = float(density)
+                density = given("density", density)
             stands = FreeStanding(density=density)  # refuses a density that is none
             free = stands if free_standing else None
 
@@ -245,10 +253,10 @@ class Barrier:
         return Jersey(
             float(friction),
             _point(origin),
-            float(heading),
+            given("heading", heading),
             profile=points,
-            height=None if height is None else float(height),
-            length=math.inf if length is None else float(length),
+            height=None if height is None else given("height", height),
+            length=math.inf if length is None else given("length", length),
             segments=segments,
             free_standing=free,
         )
@@ -259,8 +267,8 @@ class Barrier:
         faces: npt.ArrayLike,
         *,
         friction: float = 0.2,
-        origin: Sequence[float] = (0.0, 0.0, 0.0),
-        heading: float = 0.0,
+        origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
+        heading: Quantity = 0.0,
     ) -> MeshBarrier:
         """Return a barrier of triangles, met by the paper's vertex-to-face algorithm (Eq. 8-15).
 
@@ -282,11 +290,14 @@ class Barrier:
         """
         from .barrier_kinds import MeshBarrier
 
+        points = np.array(vertices, float)
+        if points.ndim == 2 and points.shape[0] > 0 and points.shape[1] == 3:
+            warn_if_mesh_unusual(float(np.ptp(points[:, 2])), stacklevel=3)
         return MeshBarrier(
             float(friction),
             _point(origin),
-            float(heading),
-            vertices=np.array(vertices, float),
+            given("heading", heading),
+            vertices=points,
             faces=np.array(faces),
         )
 
@@ -326,12 +337,34 @@ class Barrier:
         turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
         return np.asarray(np.asarray(self.origin) + np.array([*(turn @ [across, along]), 0.0]))
 
+    def station(self, point: Sequence[Quantity] | None = None) -> float:
+        """Return how far along the barrier's line a point is [m], counted as ``impact_offset`` is.
+
+        That is from the point of the line nearest to the world's origin: ``point . (-sin h, cos h)`` at the
+        heading h. ``impact_offset=barrier.station()`` is a path through the barrier's origin.
+
+        Parameters
+        ----------
+        point
+            World axes, shape (2,) or (3,) [m]; ``None``: the barrier's ``origin``.
+
+        Raises
+        ------
+        ValueError
+            If the point is none.
+        """
+        place = [si("point", value, "length") for value in (self.origin if point is None else point)]
+        if len(place) not in (2, 3) or not all(math.isfinite(value) for value in place):
+            raise ValueError(f"point must be two or three finite numbers (m), got {point}")
+        angle = math.radians(self.heading)
+        return float(place[1] * math.cos(angle) - place[0] * math.sin(angle))
+
     def __getstate__(self) -> dict[str, object]:
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
-def _point(origin: Sequence[float]) -> Point:
+def _point(origin: Sequence[Quantity]) -> Point:
     if np.shape(origin) != (3,):
         raise ValueError(f"origin must have shape (3,), got {np.shape(origin)}")
-    x, y, z = (float(value) for value in origin)
+    x, y, z = (si("origin", value, "length") for value in origin)
     return x, y, z

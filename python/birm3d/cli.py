@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -165,11 +166,17 @@ def _print_outcome(result: Result) -> None:
     print_table(loads)
 
 
+def _show_warning(message: Warning | str, *_: object) -> None:
+    """Show a warning as one line, without the line of this package that it comes from."""
+    click.echo(f"birm3d: warning: {message}", err=True)
+
+
 def main() -> None:
     """Entry point: errors that users can mend end with one line on stderr and exit code 2."""
     from ._core import UnstableError
     from .runs import StudyStoppedError
 
+    warnings.showwarning = _show_warning  # type: ignore[assignment]
     try:
         _cli(standalone_mode=False)
     except click.ClickException as error:

@@ -13,13 +13,13 @@ from . import units
 if TYPE_CHECKING:
     from .simulation import Simulation
 
-__all__ = ["Quantity", "scene_options", "simulation_of"]
+__all__ = ["QuantityOption", "scene_options", "simulation_of"]
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
-class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]
-    """A number with a unit, such as 50mph; without one SI, angles in degrees."""
+class QuantityOption(click.ParamType):  # type: ignore[type-arg,unused-ignore]
+    """A number with a unit, such as 50mph; without one SI, angles in degrees. A speed must have its unit."""
 
     def __init__(self, quantity: str) -> None:
         self.name = quantity
@@ -29,7 +29,7 @@ class Quantity(click.ParamType):  # type: ignore[type-arg,unused-ignore]
         if isinstance(value, float):
             return value
         try:
-            return units.parse(value, self.name)
+            return units.parse(value, self.name, plain=self.name != "speed")
         except ValueError as error:
             self.fail(str(error), param, ctx)
 
@@ -45,7 +45,9 @@ _SIZES = {
 _OPTIONS = (
     click.argument("scene", required=False, type=click.Path(exists=True, dir_okay=False, path_type=Path)),
     click.option("--vehicle", help="Preset (see `birm3d vehicles`) or vehicle file (.toml)."),
-    click.option("--gvw", type=Quantity("mass"), help="Gross vehicle weight, such as 4500lb or 1719kg."),
+    click.option(
+        "--gvw", type=QuantityOption("mass"), help="Gross vehicle weight: 4500lb, 7.5t or 1719 (kg)."
+    ),
     click.option(
         "--mesh-density", type=float, default=1.0, show_default=True, help="Elements relative to the file's."
     ),
@@ -55,19 +57,23 @@ _OPTIONS = (
         default="rigid_wall",
         show_default=True,
     ),
-    click.option("--width", type=Quantity("length"), help="Of the wall.  [default: without end]"),
-    click.option("--height", type=Quantity("length"), help="Of wall, bollards or Jersey barrier."),
-    click.option("--thickness", type=Quantity("length"), help="Of a wall with an end or a top."),
-    click.option("--diameter", type=Quantity("length"), help="Of pole or bollards."),
+    click.option("--width", type=QuantityOption("length"), help="Of the wall.  [default: without end]"),
+    click.option("--height", type=QuantityOption("length"), help="Of wall, bollards or Jersey barrier."),
+    click.option("--thickness", type=QuantityOption("length"), help="Of a wall with an end or a top."),
+    click.option("--diameter", type=QuantityOption("length"), help="Of pole or bollards."),
     click.option("--count", type=int, help="Bollards in a row."),
-    click.option("--spacing", type=Quantity("length"), help="Of bollards, centre to centre."),
+    click.option("--spacing", type=QuantityOption("length"), help="Of bollards, centre to centre."),
     click.option("--rows", type=int, help="Of bollards."),
-    click.option("--row-spacing", type=Quantity("length"), help="Of rows of bollards, axis to axis."),
-    click.option("--row-offset", type=Quantity("length"), help="Shift of each row from the one before it."),
+    click.option("--row-spacing", type=QuantityOption("length"), help="Of rows of bollards, axis to axis."),
+    click.option(
+        "--row-offset", type=QuantityOption("length"), help="Shift of each row from the one before it."
+    ),
     click.option(
         "--profile", type=click.Choice(["new_jersey", "f_shape", "single_slope"]), help="Of a Jersey barrier."
     ),
-    click.option("--length", type=Quantity("length"), help="Of a Jersey barrier.  [default: without end]"),
+    click.option(
+        "--length", type=QuantityOption("length"), help="Of a Jersey barrier.  [default: without end]"
+    ),
     click.option("--segments", type=int, help="Of a wall or Jersey barrier that has ends."),
     click.option(
         "--free-standing",
@@ -75,32 +81,44 @@ _OPTIONS = (
         default=None,
         help="Segments of a Jersey barrier slide on the ground, pinned end to end.",
     ),
-    click.option("--density", type=float, help="Of a free-standing Jersey barrier, kg/m^3.  [default: 2400]"),
-    click.option("--friction", type=float, default=0.2, show_default=True, help="Vehicle on barrier."),
-    click.option("--speed", type=Quantity("speed"), help="Such as 50mph, 57.09km/h or 15.9 (m/s)."),
     click.option(
-        "--angle", type=Quantity("angle"), default=90.0, show_default=True, help="Path to barrier line, deg."
+        "--density",
+        type=QuantityOption("density"),
+        help="Of a free-standing Jersey barrier, kg/m^3.  [default: 2400]",
+    ),
+    click.option("--friction", type=float, default=0.2, show_default=True, help="Vehicle on barrier."),
+    click.option("--speed", type=QuantityOption("speed"), help="With its unit: 50mph, 57.09km/h or 15.9m/s."),
+    click.option(
+        "--angle",
+        type=QuantityOption("angle"),
+        default=90.0,
+        show_default=True,
+        help="Path to barrier line, deg.",
     ),
     click.option(
         "--offset",
-        type=Quantity("length"),
+        type=QuantityOption("length"),
         default=0.0,
         show_default=True,
         help="Along the barrier, m; at angle 0 behind its line.",
     ),
     click.option(
         "--yaw",
-        type=Quantity("angle"),
+        type=QuantityOption("angle"),
         default=0.0,
         show_default=True,
         help="Nose to the left of the path, deg.",
     ),
     click.option(
-        "--roll", type=Quantity("angle"), default=0.0, show_default=True, help="To the right at impact, deg."
+        "--roll",
+        type=QuantityOption("angle"),
+        default=0.0,
+        show_default=True,
+        help="To the right at impact, deg.",
     ),
-    click.option("--duration", type=Quantity("time"), help="Default: until the outcome is decided."),
+    click.option("--duration", type=QuantityOption("time"), help="Default: until the outcome is decided."),
     click.option("--tolerance", type=float, help="Wanted relative error.  [default: 0.001]"),
-    click.option("--time-step", type=Quantity("time"), help="Fixed step.  [default: adaptive]"),
+    click.option("--time-step", type=QuantityOption("time"), help="Fixed step.  [default: adaptive]"),
 )
 
 

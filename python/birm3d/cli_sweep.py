@@ -36,7 +36,6 @@ _SHOWN = (
     "peak_deceleration_cfc60",
     "exit_speed",
 )
-_QUANTITIES = {"m/s": "speed", "deg": "angle", "m": "length", "kg": "mass", "s": "time"}
 _DISTRIBUTION = re.compile(r"\s*(normal|lognormal|uniform)\s*\(([^,()]*),([^,()]*)\)\s*")
 _MOST_VALUES = 100_000
 
@@ -48,10 +47,10 @@ _MOST_VALUES = 100_000
     multiple=True,
     required=True,
     metavar="NAME=VALUES",
-    help="Values as 30mph,40mph, as FIRST:LAST:STEP such as 10:30:5deg, or, with --random, as "
-    "normal(MEAN, DEVIATION), lognormal(MEDIAN, DEVIATION OF THE LOGARITHM) or uniform(LEAST, GREATEST). "
-    "Several: all combinations. Names: impact_speed, impact_angle, vehicle, barrier.friction, vehicle.gvw, "
-    "zone.bumper.scale, ...",
+    help="Values as 30mph,40mph (a speed must have its unit), as FIRST:LAST:STEP such as 10:30:5deg, or, "
+    "with --random, as normal(MEAN, DEVIATION), lognormal(MEDIAN, DEVIATION OF THE LOGARITHM) or "
+    "uniform(LEAST, GREATEST). Several: all combinations. Names: impact_speed, impact_angle, vehicle, "
+    "barrier.friction, vehicle.gvw, zone.bumper.scale, ...",
 )
 @click.option("--random", "n", type=int, help="Draw this many runs from distributions instead.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Of --random.")
@@ -174,7 +173,7 @@ def _values(name: str, text: str) -> list[Any]:
 
 def _value(name: str, text: str) -> Any:
     """Return a number in SI where the parameter has a unit, else a number, none, true, false or a text."""
-    from .scene_parameters import unit_of
+    from .scene_parameters import quantity_of
 
     text = text.strip()
     words = {"none": None, "true": True, "false": False}
@@ -182,9 +181,12 @@ def _value(name: str, text: str) -> Any:
         return words[text.lower()]
     if not text:
         raise ValueError(f"{name} must have values, got an empty one")
-    quantity = _QUANTITIES.get(unit_of(name))
+    quantity = quantity_of(name)
     if quantity is not None:
-        return units.parse(text, quantity)
+        try:
+            return units.parse(text, quantity, plain=quantity != "speed")
+        except ValueError as error:
+            raise ValueError(f"{name}: {error}") from None
     try:
         return float(text)
     except ValueError:

@@ -91,7 +91,7 @@ def warn_if_coarse(scene: Scene) -> None:
         narrowest = min(met, key=lambda part: part.width)
         # Nothing passes between nodes that is wider than all of the skin: no spacing is asked for at walls.
         if narrowest.width < (high - low).max() and narrowest.width < unit.node_spacing:
-            warnings.warn(_told(scene, unit, narrowest), CoarseSkinWarning, stacklevel=3)
+            warnings.warn(_told(scene, unit, narrowest), CoarseSkinWarning, stacklevel=4)
             return
 
 

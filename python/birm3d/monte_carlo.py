@@ -10,6 +10,7 @@ from .distributions import check_count, check_distributions, check_seed, sample
 from .runs import run_study
 from .simulation import Simulation
 from .study import Study
+from .unit_check import warn_if_any_unusual
 
 __all__ = ["monte_carlo"]
 
@@ -59,6 +60,8 @@ def monte_carlo(
     check_count("n", n)
     check_seed(seed)
     check_distributions(simulation, distributions)
+    for name, distribution in distributions.items():
+        warn_if_any_unusual(name, [float(distribution.ppf(0.5))], stacklevel=3)
     return run_study(
         simulation,
         tuple(distributions),

@@ -89,6 +89,7 @@ class _Barrier(Strict):
 
     kind: Literal["rigid_wall", "pole", "bollards", "jersey"]
     friction: Annotated[float, Field(ge=0.0)] = 0.2
+    origin_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     heading_deg: float = 0.0
     width_m: float | None = None
     height_m: float | None = None
@@ -107,7 +108,7 @@ class _Barrier(Strict):
 
     @model_validator(mode="after")
     def _check(self) -> _Barrier:
-        for key in self.model_fields_set - {"kind", "friction", "heading_deg"}:
+        for key in self.model_fields_set - {"kind", "friction", "origin_m", "heading_deg"}:
             if key not in _BARRIERS[self.kind]:
                 kinds = [kind for kind, keys in _BARRIERS.items() if key in keys]
                 reject(key, f"belongs to {' or '.join(kinds)}, not to {self.kind}")
@@ -124,7 +125,7 @@ class _Barrier(Strict):
         if isinstance(self.free_standing, _FreeStanding):
             given["free_standing"] = self.free_standing.made()
         barrier: Barrier = getattr(Barrier, self.kind)(
-            friction=self.friction, heading=self.heading_deg, **given
+            friction=self.friction, origin=self.origin_m, heading=self.heading_deg, **given
         )
         return barrier
 
@@ -144,12 +145,12 @@ class _Impact(Strict):
     @classmethod
     def _readable(cls, value: str | None, info: ValidationInfo) -> str | None:
         if value is not None:
-            units.parse(value, _QUANTITY[str(info.field_name)])
+            _parsed(value, str(info.field_name))
         return value
 
     def si(self, name: str) -> float:
         """Return a quantity in SI, angles in degrees."""
-        return units.parse(getattr(self, name), _QUANTITY[name])
+        return _parsed(getattr(self, name), name)
 
 
 _QUANTITY = {
@@ -161,6 +162,12 @@ _QUANTITY = {
     "roll": "angle",
     "duration": "time",
 }
+
+
+def _parsed(text: str, name: str) -> float:
+    """Read a quantity of an impact; a speed must have its unit, others without one are SI and degrees."""
+    quantity = _QUANTITY[name]
+    return units.parse(text, quantity, plain=quantity != "speed")
 
 
 class _Settings(Strict):

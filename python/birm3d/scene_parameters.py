@@ -32,10 +32,11 @@ from functools import lru_cache
 from typing import Any
 
 from .settings import Settings
-from .simulation import Scene, Simulation
+from .simulation import APPROACH, Scene, Simulation
+from .units import quantity_in, si
 from .vehicle import TRUSS_LAW, Vehicle, Zone
 
-__all__ = ["parameter_names", "unit_of", "value_of", "varied"]
+__all__ = ["in_si", "parameter_names", "quantity_of", "unit_of", "value_of", "varied"]
 
 _VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity", "dent_reach")
 _UNITS = {
@@ -43,6 +44,8 @@ _UNITS = {
     "impact_angle": "deg",
     "impact_offset": "m",
     "standoff": "m",
+    "impact_yaw": "deg",
+    "impact_roll": "deg",
     "duration": "s",
     "barrier.origin": "m",
     "barrier.heading": "deg",
@@ -61,6 +64,7 @@ _UNITS = {
     "vehicle.gvw": "kg",
     "vehicle.mass_center_height": "m",
     "vehicle.rate_sensitivity": "s/m",
+    "vehicle.dent_reach": "m",
 }
 _ZONE_UNITS = {
     "k_initial": "N/m",
@@ -71,6 +75,8 @@ _ZONE_UNITS = {
     "stress": "N",
     "deflection": "m",
 }
+# Per area of the skin.
+_PER_AREA = {"N/m per m^2": "pressure per length", "N per m^2": "pressure"}
 _POINT = re.compile(r"(stress|deflection)\[(\d+)\]")
 
 
@@ -87,6 +93,26 @@ def unit_of(name: str) -> str:
         unit = _ZONE_UNITS.get(number, "")
         return unit if unit in ("m", "") else unit + per_area
     return _UNITS.get(name, "")
+
+
+def in_si(name: str, value: Any) -> Any:
+    """Return the value of a parameter with text such as ``"30 mph"`` as a number in SI (angles: deg).
+
+    Raises
+    ------
+    ValueError
+        If the parameter has a unit and the text is no number with a unit of the same quantity.
+    """
+    quantity = quantity_of(name)
+    if quantity is not None and (isinstance(value, str) or name in APPROACH):
+        return si(name, value, quantity)
+    return value
+
+
+def quantity_of(name: str) -> str | None:
+    """Return the quantity of a parameter, as "speed"; ``None`` for a pure number."""
+    unit = unit_of(name)
+    return _PER_AREA.get(unit) or quantity_in(unit)
 
 
 def _names(scene: Scene) -> tuple[str, ...]:
@@ -137,6 +163,7 @@ def varied(simulation: Simulation, changes: Mapping[str, Any]) -> Simulation:
     ValueError
         If a name is unknown or a value is out of range; the message names it.
     """
+    changes = {name: in_si(name, value) for name, value in changes.items()}
     given = {field.name: getattr(simulation.scene, field.name) for field in dataclasses.fields(Scene)}
     whole = {name: value for name, value in changes.items() if name in given}
     given.update(whole)
@@ -169,17 +196,7 @@ _preset = lru_cache(maxsize=16)(Vehicle.preset)
 
 
 def _build(given: Mapping[str, Any]) -> Simulation:
-    keywords = {
-        name: given[name] for name in ("standoff", "impact_yaw", "impact_roll", "duration", "settings")
-    }
-    return Simulation(
-        given["vehicle"],
-        given["barrier"],
-        given["impact_speed"],
-        given["impact_angle"],
-        given["impact_offset"],
-        **keywords,
-    )
+    return Simulation.from_scene(Scene(**given))
 
 
 def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -> Vehicle:

@@ -14,6 +14,8 @@ from .coarse_skin import warn_if_coarse
 from .ledger import warn_if_open
 from .result import Result
 from .settings import MU_TIRE_BARRIER, Settings
+from .unit_check import given
+from .units import Quantity, si
 from .vehicle import Vehicle
 
 __all__ = ["APPROACH", "Scene", "Simulation"]
@@ -81,6 +83,16 @@ class Simulation:
     The vehicle comes along a straight path, its nose ahead unless stated, and stands before the barrier at
     t = 0.
 
+    Seen from above, the barrier's line is a ruler whose zero is its point nearest to the world's origin; at
+    heading 0 it is the line x = origin[0], and its marks are y. The path crosses the ruler at the mark
+    ``impact_offset``. Where the barrier stands along the ruler is its ``origin``: a pole at origin
+    (0, 0.6, 0) is met 0.6 m beside the vehicle's middle. A barrier that is moved across its line takes its
+    ruler along, and the vehicle still starts ``standoff`` before it. To move a whole scene, or to aim at a
+    point of a site plan, give ``impact_offset=barrier.station(point)``, see
+    :meth:`birm3d.Barrier.station`.
+
+    Numbers are SI and degrees; text with a unit says another, as ``impact_speed="30 mph"``.
+
     One thread uses a simulation at a time; any other gets a :class:`birm3d.BusyError`. A copy
     (``copy.copy``) has the same state and is independent. A pickle keeps the state too: it holds the scene
     and the number of steps. They are taken again when it is read, and the hash of the state is compared.
@@ -97,9 +109,9 @@ class Simulation:
         Between the vehicle's path and the barrier's line [deg], 0 to 180; 90 is head-on. At 0 and 180 the
         barrier must have an end to meet.
     impact_offset
-        Where the path of the mass centre (of the leading unit) meets the barrier's line, from its origin [m].
-        At angles 0 and 180 the distance of the path from the line, positive behind it: half the thickness
-        leads to the middle of a wall's end.
+        Where the path of the mass centre (of the leading unit) meets the barrier's line [m], counted from the
+        line's point nearest to the world's origin. At angles 0 and 180 the distance of the path from the
+        line, positive behind it: half the thickness leads to the middle of a wall's end.
     standoff
         Distance of the nearest node from the barrier at t = 0 [m], >= 0.
     impact_yaw
@@ -115,6 +127,8 @@ class Simulation:
     ------
     ValueError
         Naming the argument, its limit and the value received.
+    UnitWarning
+        As a warning, if a number is most likely in another unit, as an impact_speed of 300.
     CoarseSkinWarning
         As a warning, if the barrier is so narrow that it can pass between the nodes of the skin.
     """
@@ -123,51 +137,47 @@ class Simulation:
         self,
         vehicle: Vehicle,
         barrier: Barrier | None,
-        impact_speed: float,
-        impact_angle: float = 90.0,
-        impact_offset: float = 0.0,
+        impact_speed: Quantity,
+        impact_angle: Quantity = 90.0,
+        impact_offset: Quantity = 0.0,
         *,
-        standoff: float = 0.0,
-        impact_yaw: float = 0.0,
-        impact_roll: float = 0.0,
-        duration: float | None = None,
+        standoff: Quantity = 0.0,
+        impact_yaw: Quantity = 0.0,
+        impact_roll: Quantity = 0.0,
+        duration: Quantity | None = None,
         settings: Settings | None = None,
     ) -> None:
+        scene = Scene(
+            vehicle,
+            barrier,
+            given("impact_speed", impact_speed),
+            given("impact_angle", impact_angle),
+            si("impact_offset", impact_offset, "length"),
+            given("standoff", standoff),
+            given("impact_yaw", impact_yaw),
+            given("impact_roll", impact_roll),
+            None if duration is None else given("duration", duration),
+            settings if settings is not None else Settings(),
+        )
+        self._begin(scene)
+
+    def _begin(self, scene: Scene) -> None:
+        vehicle, barrier = scene.vehicle, scene.barrier
         if not isinstance(vehicle, Vehicle):
             raise TypeError(f"vehicle must be a birm3d.Vehicle, got {type(vehicle).__name__}")
         if barrier is not None and not isinstance(barrier, Barrier):
             raise TypeError(f"barrier must be a birm3d.Barrier or None, got {type(barrier).__name__}")
-        self._scene = Scene(
-            vehicle,
-            barrier,
-            float(impact_speed),
-            float(impact_angle),
-            float(impact_offset),
-            float(standoff),
-            float(impact_yaw),
-            float(impact_roll),
-            duration,
-            settings if settings is not None else Settings(),
-        )
-        self._core = self._scene.start()
+        self._scene = scene
+        self._core = scene.start()
         self._run_time = 0.0
         warn_if_coarse(self._scene)
 
     @staticmethod
     def from_scene(scene: Scene) -> Simulation:
         """Return the simulation of a scene, such as that of a loaded result."""
-        return Simulation(
-            scene.vehicle,
-            scene.barrier,
-            scene.impact_speed,
-            scene.impact_angle,
-            scene.impact_offset,
-            standoff=scene.standoff,
-            impact_yaw=scene.impact_yaw,
-            impact_roll=scene.impact_roll,
-            duration=scene.duration,
-            settings=scene.settings,
-        )
+        simulation = object.__new__(Simulation)  # its numbers are known: nobody is told of their unit again
+        simulation._begin(scene)
+        return simulation
 
     @property
     def scene(self) -> Scene:

@@ -10,8 +10,10 @@ from typing import Any, Literal
 
 from .checks import MOST_RUNS, check_runs, shown
 from .runs import run_study
+from .scene_parameters import in_si
 from .simulation import Simulation
 from .study import Study
+from .unit_check import warn_if_any_unusual
 
 __all__ = ["sweep"]
 
@@ -35,7 +37,8 @@ def sweep(
         The scene to vary.
     parameters
         Name -> values: ``{"impact_speed": [10.0, 20.0], "barrier.friction": [0.1, 0.2]}``. See
-        :mod:`birm3d.scene_parameters` for all names.
+        :mod:`birm3d.scene_parameters` for all names. Numbers are SI and degrees; text with a unit, as
+        ``"30 mph"``, is taken where the parameter has one.
     mode
         ``"grid"``: all combinations, the last list fastest; ``"list"``: the first values together, then the
         second, and so on.
@@ -97,7 +100,9 @@ def sweep(
 def _values(name: str, values: Iterable[Any]) -> list[Any]:
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise ValueError(f"{name} must be a list of values, got {values!r}")
-    listed = list(itertools.islice(values, MOST_RUNS + 1))  # an endless one ends too
+    wanted = list(itertools.islice(values, MOST_RUNS + 1))  # an endless one ends too
+    warn_if_any_unusual(name, wanted, stacklevel=4)
+    listed = [in_si(name, value) for value in wanted]
     if not listed:
         raise ValueError(f"{name} must have at least one value, got an empty list")
     return listed

@@ -2,16 +2,21 @@
 
 Each unit is a number, its size in SI, that can also be called: ``units.mph(50)`` and ``50 * units.mph`` are
 50 mph in m/s, and ``speed / units.mph`` goes back.
+
+Wherever the package takes a number that has a dimension it also takes text with a unit, as ``"50 mph"``,
+``"4500 lb"`` or ``"0.5 m"``: type :data:`Quantity`, read by :func:`parse`, the command line's parser. A plain
+number is SI, angles are in degrees.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 __all__ = [
     "Measure",
+    "Quantity",
     "Unit",
     "ft",
     "g",
@@ -28,8 +33,14 @@ __all__ = [
     "mm",
     "mph",
     "parse",
+    "quantity_in",
     "s",
+    "si",
 ]
+
+
+Quantity: TypeAlias = float | str
+"""A number in SI (angles: deg), or text with a unit, as ``"50 mph"``."""
 
 
 class Unit(float):
@@ -57,29 +68,6 @@ kN = Unit(1e3)  # noqa: N816
 kgf = Unit(9.80665)
 lbf = Unit(4.4482216152605)
 
-_NAMES = {
-    "m": m,
-    "mm": mm,
-    "in": inch,
-    "ft": ft,
-    "s": s,
-    "ms": Unit(1e-3),
-    "m/s": m_s,
-    "km/h": km_h,
-    "kmh": km_h,
-    "mph": mph,
-    "kg": kg,
-    "t": Unit(1e3),
-    "lb": lb,
-    "deg": Unit(1.0),
-}
-_QUANTITIES = {
-    "speed": ("m/s", "km/h", "kmh", "mph"),
-    "mass": ("kg", "t", "lb"),
-    "length": ("m", "mm", "in", "ft"),
-    "time": ("s", "ms"),
-    "angle": ("deg",),
-}
 # What measured data come in: quantity -> its unit here, and the size of each unit in that one.
 _MEASURED: dict[str, tuple[str, dict[str, float]]] = {
     "time": ("s", {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "sec": 1.0}),
@@ -145,18 +133,28 @@ def measure(symbol: str) -> Measure:
     return found
 
 
-_VALUE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([A-Za-z/]*)\s*")
+# What is given to a scene and is no channel's quantity.
+_GIVEN: dict[str, tuple[str, dict[str, float]]] = {
+    "density": ("kg/m^3", {**dict.fromkeys(("kg/m^3", "kg/m3", "kg/m³"), 1.0), "lb/ft^3": lb / ft**3}),
+    "mass per length": ("kg/m", {"kg/m": 1.0, "t/m": 1e3, "lb/ft": lb / ft}),
+    "pressure per length": ("Pa/m", {"Pa/m": 1.0, "kPa/m": 1e3, "MPa/m": 1e6}),
+    "time per length": ("s/m", {"s/m": 1.0}),
+}
+_QUANTITIES = {**_MEASURED, **_GIVEN}
+_VALUE = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)", re.DOTALL)
 
 
-def parse(text: str, quantity: str) -> float:
-    """Read a number with a unit, such as ``"50mph"`` or ``"1719 kg"``; without one it is SI (angles: deg).
+def parse(text: str, quantity: str, *, plain: bool = True) -> float:
+    """Read a number with a unit, such as ``"50mph"`` or ``"1719 kg"``; letter case counts.
 
     Parameters
     ----------
     text
         The number and its unit.
     quantity
-        ``"speed"``, ``"mass"``, ``"length"``, ``"time"`` or ``"angle"``.
+        ``"speed"``, ``"mass"``, ``"length"``, ``"time"``, ``"angle"``, ``"density"``, ...
+    plain
+        Whether a number without a unit is taken too, as SI (angles: deg).
 
     Returns
     -------
@@ -166,12 +164,52 @@ def parse(text: str, quantity: str) -> float:
     Raises
     ------
     ValueError
-        If there is no number, or the unit does not belong to the quantity.
+        If there is no number, or its unit does not belong to the quantity or is missing.
     """
-    allowed = _QUANTITIES[quantity]
-    match = _VALUE.fullmatch(text)
-    if match is None or (match[2] and match[2] not in allowed):
+    _, allowed = _QUANTITIES[quantity]
+    match = _VALUE.fullmatch(text.strip())
+    if match is None or not (match[2] in allowed or (plain and not match[2])):
         raise ValueError(
             f"{quantity} must be a number with one of the units {', '.join(allowed)}; got {text!r}"
         )
-    return float(match[1]) * (float(_NAMES[match[2]]) if match[2] else 1.0)
+    return float(match[1]) * (float(allowed[match[2]]) if match[2] else 1.0)
+
+
+def si(name: str, value: Quantity, quantity: str) -> float:
+    """Return a number, or text with a unit, in SI; degrees for angles.
+
+    Parameters
+    ----------
+    name
+        Of the argument, for the message.
+    value
+        A number, which is SI, or text, which must have a unit: ``"30"`` alone does not say which.
+    quantity
+        As in :func:`parse`.
+
+    Raises
+    ------
+    ValueError
+        If the text is no number with a unit of the quantity, or the value is neither number nor text; the
+        message names the argument and the units.
+    """
+    if isinstance(value, str):
+        try:
+            return parse(value, quantity, plain=False)
+        except ValueError:
+            pass
+    else:
+        try:
+            return float(value)
+        except (TypeError, ValueError):
+            pass
+    unit, allowed = _QUANTITIES[quantity]
+    raise ValueError(
+        f"{name} must be a number in {unit}, or text with one of the {quantity} units {', '.join(allowed)}; "
+        f"got {value!r}"
+    )
+
+
+def quantity_in(unit: str) -> str | None:
+    """Return the quantity that a unit of this package is of, as "speed" for "m/s"; ``None`` for a number."""
+    return next((name for name, (si_unit, _) in _QUANTITIES.items() if si_unit == unit and unit != "1"), None)

@@ -157,15 +157,15 @@ def test_vehicles(monkeypatch, capsys):
     ("arguments", "parts"),
     [
         (["--vehicle", "pickup"], ["--speed", "missing"]),
-        (["--vehicle", "pikcup", "--speed", "5"], ["preset", "pickup", "'pikcup'"]),
+        (["--vehicle", "pikcup", "--speed", "5m/s"], ["preset", "pickup", "'pikcup'"]),
         (["--vehicle", "pickup", "--speed", "5 knots"], ["speed", "mph", "5 knots"]),
-        (["--vehicle", "pickup", "--speed", "-3"], ["impact_speed", ">= 0", "-3"]),
-        (["--vehicle", "pickup", "--speed", "5", "--angle", "190"], ["impact_angle", "180", "190"]),
-        (["--vehicle", "pickup", "--speed", "5", "--friction", "-1"], ["friction", ">= 0", "-1"]),
-        (["--vehicle", "pickup", "--speed", "5", "--barrier", "none"], ["duration", "no barrier"]),
-        (["--vehicle", "missing.toml", "--speed", "5"], ["missing.toml", "can not be read"]),
+        (["--vehicle", "pickup", "--speed", "-3m/s"], ["impact_speed", ">= 0", "-3"]),
+        (["--vehicle", "pickup", "--speed", "5m/s", "--angle", "190"], ["impact_angle", "180", "190"]),
+        (["--vehicle", "pickup", "--speed", "5m/s", "--friction", "-1"], ["friction", ">= 0", "-1"]),
+        (["--vehicle", "pickup", "--speed", "5m/s", "--barrier", "none"], ["duration", "no barrier"]),
+        (["--vehicle", "missing.toml", "--speed", "5m/s"], ["missing.toml", "can not be read"]),
         (
-            ["--vehicle", "pickup", "--speed", "15", "--time-step", "0.2"],
+            ["--vehicle", "pickup", "--speed", "15m/s", "--time-step", "0.2"],
             ["time_step", "critical step", "0.2"],
         ),
     ],
@@ -256,7 +256,7 @@ def test_scene_file_errors(monkeypatch, capsys, tmp_path, wrong, line, parts):
 
 
 def test_options_beside_a_scene_file_are_refused(monkeypatch, capsys, tmp_path):
-    assert birm3d(monkeypatch, "run", scene_file(tmp_path, SCENE), "--speed", "5") == 2
+    assert birm3d(monkeypatch, "run", scene_file(tmp_path, SCENE), "--speed", "5m/s") == 2
     assert "--speed" in capsys.readouterr().err
 
 
@@ -309,7 +309,7 @@ def test_random_sweep(monkeypatch, capsys):
 
 
 def test_failed_runs_of_a_sweep_are_told(monkeypatch, capsys):
-    assert birm3d(monkeypatch, *SWEEP, "--vary", "impact_speed=9,-3", "--metrics", "delta_v") == 0
+    assert birm3d(monkeypatch, *SWEEP, "--vary", "impact_speed=9m/s,-3m/s", "--metrics", "delta_v") == 0
     out, err = capsys.readouterr()
     assert "failed" in out
     assert "1 of 2 runs failed; run 1: ValueError: impact_speed must be" in err
@@ -322,13 +322,19 @@ def test_failed_runs_of_a_sweep_are_told(monkeypatch, capsys):
         (["--vary", "impact_speed"], ["--vary", "NAME=VALUES", "impact_speed"]),
         (["--vary", "impact_speed="], ["impact_speed", "empty"]),
         (["--vary", "impact_sped=5"], ["--speed is missing"]),
-        (["--speed", "5", "--vary", "impact_sped=5"], ["impact_speed", "'impact_sped'"]),
+        (["--speed", "5m/s", "--vary", "impact_sped=5"], ["impact_speed", "'impact_sped'"]),
         (["--vary", "impact_speed=5kg"], ["speed", "mph", "5kg"]),
-        (["--vary", "impact_speed=5:1:1"], ["impact_speed", "step", "5:1:1"]),
-        (["--vary", "impact_speed=1:5"], ["impact_speed", "FIRST:LAST:STEP", "1:5"]),
-        (["--vary", "impact_speed=5", "--metrics", "crush"], ["metrics", "dynamic_crush", "'crush'"]),
-        (["--vary", "impact_speed=5", "--random", "3", "--speed", "5"], ["impact_speed", "normal(", "'5'"]),
-        (["--vary", "impact_speed=normal(5, 1)", "--random", "0", "--speed", "5"], ["n must be", "0"]),
+        (["--vary", "impact_speed=5:1:1m/s"], ["impact_speed", "step", "5:1:1m/s"]),
+        (["--vary", "impact_speed=1:5m/s"], ["impact_speed", "FIRST:LAST:STEP", "1:5m/s"]),
+        (["--vary", "impact_speed=5m/s", "--metrics", "crush"], ["metrics", "dynamic_crush", "'crush'"]),
+        (
+            ["--vary", "impact_speed=5", "--random", "3", "--speed", "5m/s"],
+            ["impact_speed", "normal(", "'5'"],
+        ),
+        (
+            ["--vary", "impact_speed=normal(5m/s, 1m/s)", "--random", "0", "--speed", "5m/s"],
+            ["n must be", "0"],
+        ),
     ],
 )
 def test_sweep_errors_say_what_is_wrong(monkeypatch, capsys, arguments, parts):
@@ -361,7 +367,7 @@ def test_a_stopped_sweep_without_a_store_keeps_what_is_done(monkeypatch, capsys,
 def test_a_stopped_sweep_says_what_is_kept(monkeypatch, capsys, tmp_path, interrupt_once_stored):
     store = tmp_path / "runs.db"
     interrupt_once_stored(store)
-    vary = ["--vary", "impact_speed=8:20:0.001", "--store", str(store)]
+    vary = ["--vary", "impact_speed=8:20:0.001m/s", "--store", str(store)]
     assert birm3d(monkeypatch, *SWEEP, *vary) == 130
     err = capsys.readouterr().err
     assert "of 12001 runs are finished and kept in" in err

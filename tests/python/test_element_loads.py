@@ -77,7 +77,7 @@ def one_node(height: float, mass: float = 1000.0) -> Vehicle:
 )
 def test_a_force_at_a_known_height(barrier: Barrier, reach: float, height: float) -> None:
     """Head-on and without friction: the moment about the foot is height times force, about y at heading 0."""
-    result = Simulation(one_node(height), barrier, 5.0, settings=FREE).run()
+    result = Simulation(one_node(height), barrier, 5.0, 90.0, barrier.station(), settings=FREE).run()
     (load,) = [load for load in result.element_loads if load.touched]
     if len(result.element_loads) == 3:
         assert load.index == 1

@@ -162,7 +162,7 @@ def test_penetration_is_the_foremost_anchor_past_the_line() -> None:
     """A body that no post meets goes as far past the line as its path does."""
     body = box()
     gap = Barrier.bollards(count=2, spacing=4.0, friction=0.0, heading=15.0, origin=(3.0, 1.0, 0.0))
-    result = Simulation(body, gap, 10.0, 90.0, 0.0, duration=0.5, settings=FREE).run()
+    result = Simulation(body, gap, 10.0, 90.0, gap.station(), duration=0.5, settings=FREE).run()
     past = np.array([math.cos(math.radians(15.0)), math.sin(math.radians(15.0)), 0.0])
     travel = float((result.position[-1] - [3.0, 1.0, 0.0]) @ past)
     assert result.metrics["vehicle_penetration"] == pytest.approx(travel + 1.0, abs=1e-9)  # anchor at r = 1 m

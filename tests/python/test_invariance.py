@@ -155,7 +155,7 @@ def test_the_world_has_no_place_and_no_direction(
     # Up to the instant at which the outcome of an ordinary crash is decided.
     here = Simulation(make(), Barrier.rigid_wall(), 20.0, angle, duration=0.15, settings=choice).run()
     wall = Barrier.rigid_wall(heading=heading, origin=origin)
-    there = Simulation(make(), wall, 20.0, angle, duration=0.15, settings=choice).run()
+    there = Simulation(make(), wall, 20.0, angle, wall.station(), duration=0.15, settings=choice).run()
     assert_same_metrics(here.metrics, there.metrics, tolerance)
     h = math.radians(heading)
     turn = np.array([[math.cos(h), -math.sin(h), 0.0], [math.sin(h), math.cos(h), 0.0], [0.0, 0.0, 1.0]])
@@ -173,6 +173,43 @@ def test_offset_along_the_barrier_changes_nothing() -> None:
     b = Simulation(block(), Barrier.rigid_wall(), 20.0, 65.0, 7.5, settings=Settings(**FREE)).run()
     assert_same_metrics(a.metrics, b.metrics, 1e-8)
     assert np.abs(b.position - a.position - [0.0, 7.5, 0.0]).max() < 1e-8
+
+
+@pytest.mark.parametrize("heading", [0.0, 65.0])
+def test_the_vehicle_keeps_its_path_when_a_pole_is_moved_along_its_line(heading: float) -> None:
+    """A pole 0.6 m to the left is met as a path 0.6 m to the right of a pole that stands at the origin."""
+    h = math.radians(heading)
+    line, across = np.array([-math.sin(h), math.cos(h), 0.0]), np.array([math.cos(h), math.sin(h), 0.0])
+    short = {"duration": 0.06, "settings": Settings(**FREE)}
+
+    def at(pole: Barrier, offset: float = 0.0) -> Result:
+        return Simulation(car(), pole, 12.0, 80.0, offset, **short).run()
+
+    moved = at(Barrier.pole(heading=heading, origin=tuple(0.6 * line)))
+    aimed = at(Barrier.pole(heading=heading), -0.6)
+    assert_same_metrics(moved.metrics, aimed.metrics, 1e-7)
+    assert np.abs(moved.position - aimed.position - 0.6 * line).max() < 1e-7
+    middle = at(Barrier.pole(heading=heading))
+    assert abs(aimed.yaw[-1] - middle.yaw[-1]) > 0.1  # it is no hit in the middle
+    behind = at(Barrier.pole(heading=heading, origin=tuple(0.6 * line + 3.0 * across)))
+    assert np.abs(behind.position - moved.position - 3.0 * across).max() < 1e-7
+
+
+def test_a_site_plan_is_aimed_at_by_stations() -> None:
+    """Vehicle and barrier moved together, by a point of the plan: the same crash."""
+    here = Barrier.bollards(count=3, spacing=1.3, heading=20.0)
+    there = Barrier.bollards(count=3, spacing=1.3, heading=20.0, origin=(40.0, -7.0, 0.0))
+    aim = there.place(0.0, 0.4)  # 0.4 m beside the middle bollard
+    assert there.station() + 0.4 == pytest.approx(there.station(aim), abs=1e-12)
+    assert here.station((40.0, -7.0)) == there.station()
+    short = {"duration": 0.05, "settings": Settings(**FREE)}
+    a = Simulation(car(), here, 12.0, 75.0, 0.4, **short).run()
+    b = Simulation(car(), there, 12.0, 75.0, there.station(aim), **short).run()
+    assert_same_metrics(a.metrics, b.metrics, 1e-7)
+    assert np.abs(b.position - a.position - [40.0, -7.0, 0.0]).max() < 1e-7
+    for wrong in ((1.0,), (math.nan, 0.0)):
+        with pytest.raises(ValueError, match="point must be two or three finite numbers"):
+            there.station(wrong)
 
 
 def test_standoff_only_delays() -> None:

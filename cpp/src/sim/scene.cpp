@@ -310,10 +310,12 @@ void Scene::start(State& state) const {
     const double turn = yaw + approach.yaw;
     const Quat orientation = from_roll_pitch_yaw({approach.roll, 0.0, turn});
     const Unit& first = vehicle->units.front();
+    // Zero of the line is the point nearest to the world's origin, wherever along it the elements stand.
+    const Vec3 away(std::cos(barrier_heading), std::sin(barrier_heading), 0.0);
+    const Vec3 zero = origin.dot(away) * away;
     // A path along the line never meets it: the offset is its distance, away from the traffic.
     const bool meets_line = std::abs(std::sin(approach.angle)) > 1e-12;
-    const Vec3 away(std::cos(barrier_heading), std::sin(barrier_heading), 0.0);
-    const Vec3 foot = Vec3(origin.x(), origin.y(), 0.0) + approach.offset * (meets_line ? line : away);
+    const Vec3 foot = zero + approach.offset * (meets_line ? line : away);
     const Vec3 center = foot + from_roll_pitch_yaw({0.0, 0.0, turn}) * first.place();
     for (std::size_t u = 0; u < vehicle->units.size(); ++u) {
         BodyState& body = state.units[u].body;

@@ -49,7 +49,7 @@ TEST("speed and angle are those asked for, and the nose is ahead") {
     CHECK_CLOSE(scene.initial_state().energies.kinetic, 0.5 * 6804.0 * 400.0, 1e-6, "rounding");
 }
 
-TEST("the path of the mass centre meets the wall's line at the offset") {
+TEST("the path of the mass centre meets the wall's line at the offset from the world's origin") {
     const double heading = 0.7, angle = 0.6;
     const Vec3 origin(2.0, 1.0, 0.0);
     const Scene scene(laboratory::block(laboratory::w2_curve()), laboratory::wall(0.0, heading, origin),
@@ -58,7 +58,23 @@ TEST("the path of the mass centre meets the wall's line at the offset") {
     const double t =
         (body.position - origin).dot(scene.barrier->normal()) / -scene.barrier->normal().dot(body.velocity);
     const Vec3 line(-std::sin(heading), std::cos(heading), 0.0);
-    CHECK_CLOSE((body.position + t * body.velocity - origin - 1.25 * line).norm(), 0.0, 1e-13, "rounding");
+    const Vec3 nearest = origin - origin.dot(line) * line;
+    CHECK_CLOSE((body.position + t * body.velocity - nearest - 1.25 * line).norm(), 0.0, 1e-13, "rounding");
+}
+
+TEST("the vehicle does not follow a barrier that is moved along its line") {
+    const double heading = 0.7;
+    const Vec3 line(-std::sin(heading), std::cos(heading), 0.0), away(line.y(), -line.x(), 0.0);
+    const auto start = [&](const Vec3& origin) {
+        return Scene(laboratory::block(laboratory::w2_curve()), laboratory::wall(0.0, heading, origin),
+                     Approach{20.0, 0.6, 1.25, 0.3}, laboratory::weightless(), {})
+            .initial_state()
+            .units[0]
+            .body.position;
+    };
+    const Vec3 here = start(Vec3::Zero());
+    CHECK_CLOSE((start(0.6 * line) - here).norm(), 0.0, 1e-13, "rounding");
+    CHECK_CLOSE((start(2.0 * away) - here - 2.0 * away).norm(), 0.0, 1e-13, "rounding");
 }
 
 TEST("what can not be run is refused") {

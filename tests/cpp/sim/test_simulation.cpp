@@ -30,9 +30,11 @@ double greatest_force(const Simulation& simulation) {
 Scene busy_scene(double heading, double time_step = 0.0) {
     Settings settings;
     if (time_step > 0.0) settings.time_step = time_step;
+    const Vec3 origin(7.0, -3.0, 0.0);
+    const double station = origin.dot(Vec3(-std::sin(heading), std::cos(heading), 0.0));
     return {laboratory::block(laboratory::w2_curve(), 10, 10, laboratory::four_wheels(), 1.0),
-            laboratory::wall(0.2, heading, {7.0, -3.0, 0.0}),
-            Approach{15.0, 40.0 * pi / 180.0, 0.3, 0.05},
+            laboratory::wall(0.2, heading, origin),
+            Approach{15.0, 40.0 * pi / 180.0, station + 0.3, 0.05},
             settings,
             {}};
 }

@@ -1,0 +1,165 @@
+"""What tells a user that a number was most likely given in another unit."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterable, Mapping
+from numbers import Real
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from .units import Quantity, quantity_in, si
+
+__all__ = [
+    "USUAL",
+    "UnitWarning",
+    "Usual",
+    "given",
+    "warn_if_any_unusual",
+    "warn_if_mesh_unusual",
+    "warn_if_unusual",
+]
+
+
+class UnitWarning(UserWarning):
+    """A number is far outside what its argument has in practice: most likely it is in another unit.
+
+    The message has the range that is accepted without it. Text with a unit, as ``"300 km/h"``, says what is
+    meant and is never warned of.
+    """
+
+
+class Usual(NamedTuple):
+    """Range of an argument that is accepted without a word, and the mistake that lies outside it.
+
+    ``text`` says the same number in the unit that was probably meant. ``zero``: 0 is accepted beside the
+    range. ``magnitude``: the range is of the magnitude. ``radians``: a round angle in radians is warned of.
+    """
+
+    low: float
+    high: float
+    unit: str
+    text: str
+    zero: bool = False
+    magnitude: bool = False
+    radians: bool = False
+
+
+_SIZE = Usual(0.01, 20.0, "m", "mm")
+_LONG = Usual(0.05, 1000.0, "m", "mm")
+_TURN = Usual(-math.inf, math.inf, "deg", "rad", radians=True)
+
+USUAL: Mapping[str, Usual] = MappingProxyType(
+    {
+        "impact_speed": Usual(0.0, 90.0, "m/s", "km/h"),
+        "impact_angle": Usual(3.2, math.inf, "deg", "rad", zero=True),
+        "impact_yaw": _TURN,
+        "impact_roll": _TURN,
+        "heading": _TURN,
+        "standoff": Usual(0.0, 200.0, "m", "mm"),
+        "duration": Usual(0.0, 100.0, "s", "ms"),
+        "diameter": Usual(0.01, 5.0, "m", "mm"),
+        "height": _SIZE,
+        "thickness": _SIZE,
+        "spacing": Usual(0.01, 100.0, "m", "mm"),
+        "row_spacing": Usual(0.01, 100.0, "m", "mm"),
+        "row_offset": Usual(0.0, 100.0, "m", "mm", magnitude=True),
+        "width": _LONG,
+        "length": _LONG,
+        "density": Usual(100.0, 20000.0, "kg/m^3", "t/m^3"),
+        "mass_per_length": Usual(10.0, 20000.0, "kg/m", "t/m"),
+        "payload": Usual(10.0, 100_000.0, "kg", "t", zero=True),
+        "dent_reach": Usual(0.0, 5.0, "m", "mm"),
+        "gravity": Usual(1.5, 30.0, "m/s^2", "g", zero=True),
+        "output_interval": Usual(0.0, 0.02, "s", "ms"),
+    }
+)
+"""Argument -> range that is accepted without a :class:`UnitWarning`."""
+
+# Of a mesh from its foot to its top [m]; how long it is says less.
+_MESH_HEIGHT = Usual(0.01, 50.0, "m", "mm")
+# Of a round angle in radians: multiples of 5 deg, within this [rad].
+_ROUND, _NEAR = math.pi / 36.0, 1e-3
+
+
+def given(name: str, value: Quantity, *, stacklevel: int = 3) -> float:
+    """Return an argument of :data:`USUAL` in SI (angles: deg), with a word if it is an unusual number.
+
+    Raises
+    ------
+    ValueError
+        If it is no number and no text with a unit of its quantity.
+    UnitWarning
+        As a warning, if it is a number outside the range of :data:`USUAL`.
+    """
+    quantity = quantity_in(USUAL[name].unit)
+    assert quantity is not None  # all units of USUAL are known
+    number = si(name, value, quantity)
+    if not isinstance(value, str):
+        warn_if_unusual(name, number, USUAL[name], stacklevel=stacklevel + 1)
+    return number
+
+
+def warn_if_any_unusual(name: str, values: Iterable[Any], *, stacklevel: int = 2) -> None:
+    """Warn with :class:`UnitWarning` of the first number that is unusual for a parameter of a scene.
+
+    ``name`` as in :mod:`birm3d.scene_parameters`; parameters without a usual range are left alone.
+    """
+    group, _, field = name.rpartition(".")
+    usual = USUAL.get(field) if group in ("", "barrier", "settings") else None
+    if usual is None:
+        return
+    for value in values:
+        if isinstance(value, Real) and _is_unusual(float(value), usual):
+            warn_if_unusual(name, float(value), usual, stacklevel=stacklevel + 1)
+            return
+
+
+def _is_unusual(value: float, usual: Usual) -> bool:
+    if not math.isfinite(value):
+        return False
+    if usual.radians:
+        return _is_round_in_radians(value)
+    size = abs(value) if usual.magnitude else value
+    # What is below zero is refused by its own limit, with an error.
+    return size >= 0.0 and not (usual.low <= size <= usual.high or (usual.zero and size == 0.0))
+
+
+def warn_if_unusual(name: str, value: float, usual: Usual, *, stacklevel: int = 2) -> None:
+    """Warn with :class:`UnitWarning` of a number outside its usual range; what is no number is left alone."""
+    if not _is_unusual(value, usual):
+        return
+    guess = "in another unit"
+    limits = f"{usual.low:,.6g} to {usual.high:,.6g}" if math.isfinite(usual.high) else f"above {usual.low:g}"
+    accepted = f"{'0 or ' if usual.zero else ''}{limits} {usual.unit}"
+    if usual.radians:
+        guess, accepted = f"in radians ({math.degrees(value):.4g} deg)", "what is no round angle in radians"
+    _warn(
+        f"{name} = {value:g} {usual.unit}",
+        guess,
+        f"accepted without this warning is {accepted}, or text with its unit, as '{value:g} {usual.text}'",
+        stacklevel,
+    )
+
+
+def warn_if_mesh_unusual(height: float, *, stacklevel: int = 2) -> None:
+    """Warn with :class:`UnitWarning` of vertices that are most likely in millimetres; height in m."""
+    if _MESH_HEIGHT.low <= height <= _MESH_HEIGHT.high:
+        return
+    _warn(
+        f"vertices = a mesh {height:g} m high",
+        "in another unit",
+        f"accepted without this warning is {_MESH_HEIGHT.low:g} to {_MESH_HEIGHT.high:g} m; vertices in "
+        "millimetres are 1e-3 * vertices in m",
+        stacklevel,
+    )
+
+
+def _is_round_in_radians(angle: float) -> bool:
+    turns = round(abs(angle) / _ROUND)
+    return turns > 0 and abs(angle) <= math.pi + _NEAR and abs(abs(angle) - turns * _ROUND) < _NEAR
+
+
+def _warn(what: str, guess: str, rest: str, stacklevel: int) -> None:
+    warnings.warn(f"{what} is most likely {guess}: {rest}", UnitWarning, stacklevel=stacklevel + 1)

@@ -1,0 +1,161 @@
+"""Text with units wherever a number has a dimension, and a word about numbers in the wrong unit."""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from birm3d import Barrier, Simulation, UnitWarning, Vehicle, monte_carlo, scenes, sweep, units
+from birm3d.scene_parameters import parameter_names, quantity_of, value_of, varied
+from scipy import stats
+
+WALL = Barrier.rigid_wall()
+BLOCK = scenes.laboratory_block(20, k_initial=3e6, k_unloading=3e6)
+
+
+def at(speed: Any = 10.0, barrier: Barrier = WALL, **others: Any) -> Simulation:
+    return Simulation(BLOCK, barrier, speed, **others)
+
+
+# ---- text --------------------------------------------------------------------------------------------------
+
+
+def test_a_simulation_is_given_in_any_units() -> None:
+    text = at(
+        "50 mph",
+        impact_angle="1.5rad",
+        impact_offset="12 in",
+        standoff="50mm",
+        impact_yaw="2 deg",
+        impact_roll="1°",
+        duration="150 ms",
+    ).scene
+    assert text.impact_speed == units.mph(50)
+    assert text.impact_angle == pytest.approx(np.degrees(1.5), rel=1e-15)
+    assert text.impact_offset == 12 * 0.0254
+    assert (text.standoff, text.duration) == (0.05, 0.15)
+    assert (text.impact_yaw, text.impact_roll) == (2.0, 1.0)
+
+
+def test_barriers_are_given_in_any_units() -> None:
+    assert Barrier.pole(diameter="10 in", heading="0.5 rad").diameter == 10 * 0.0254
+    assert Barrier.rigid_wall(width="20 ft", height="1200mm", thickness="40 cm") == Barrier.rigid_wall(
+        width=20 * 0.3048, height=1.2, thickness=0.4
+    )
+    row = Barrier.bollards(
+        diameter="220 mm", height="3ft", spacing="4 ft", row_spacing="1.5 m", row_offset="60 cm", rows=2
+    )
+    expected = Barrier.bollards(
+        diameter=0.22, height=3 * 0.3048, spacing=4 * 0.3048, row_spacing=1.5, row_offset=0.6, rows=2
+    )
+    assert row == expected
+    chain = Barrier.jersey(height="42 in", length="12 m", free_standing=True, density="150 lb/ft^3")
+    assert chain.height == 42 * 0.0254
+    assert chain.free_standing is not None
+    assert chain.free_standing.density == pytest.approx(150 * 0.45359237 / 0.3048**3, rel=1e-14)
+    assert Barrier.pole(origin=("1 ft", 0.6, "0 m")).origin == (0.3048, 0.6, 0.0)
+    assert dataclasses.replace(row, spacing="2 m").spacing == 2.0  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("make", "parts"),
+    [
+        (lambda: at("30"), ["impact_speed", "m/s", "mph", "got '30'"]),
+        (lambda: at("30 kg"), ["impact_speed", "speed units", "km/h", "got '30 kg'"]),
+        (lambda: at(None), ["impact_speed", "got None"]),
+        (lambda: at(duration="3 m"), ["duration", "time units s, ms", "got '3 m'"]),
+        (lambda: at(impact_angle="90 grad"), ["impact_angle", "deg", "rad", "got '90 grad'"]),
+        (lambda: at(impact_offset="here"), ["impact_offset", "mm", "got 'here'"]),
+        (lambda: Barrier.bollards(spacing="1.2 kg"), ["spacing", "length units m, mm", "got '1.2 kg'"]),
+        (lambda: Barrier.pole(heading="1 m"), ["heading", "rad", "got '1 m'"]),
+        (lambda: Barrier.pole(origin=("a", 0.0, 0.0)), ["origin", "ft", "got 'a'"]),
+        (lambda: sweep(at(), impact_speed=["30 deg"]), ["impact_speed", "mph", "got '30 deg'"]),
+    ],
+)
+def test_text_of_another_dimension_is_refused(make: Callable[[], Any], parts: list[str]) -> None:
+    with pytest.raises(ValueError, match="must be a number in") as caught:
+        make()
+    for part in parts:
+        assert part in str(caught.value)
+
+
+def test_sweeps_take_text_and_give_numbers() -> None:
+    study = sweep(at(), impact_speed=["20 mph", 10.0], metrics=["dynamic_crush"])
+    assert study.parameters["impact_speed"].tolist() == [units.mph(20), 10.0]
+    plain = sweep(at(), impact_speed=[units.mph(20), 10.0], metrics=["dynamic_crush"])
+    assert study.state_hash == plain.state_hash
+    assert varied(at(), {"impact_offset": "30 cm"}).scene.impact_offset == 0.3
+
+
+def test_every_number_of_a_scene_that_has_a_unit_takes_text() -> None:
+    car = Simulation(Vehicle.preset("passenger_car", mesh_density=0.1), Barrier.bollards(), 10.0)
+    for name in parameter_names(car):
+        value = value_of(car, name)
+        if quantity_of(name) is None or not isinstance(value, float) or not np.isfinite(value):
+            continue
+        unit = units._QUANTITIES[quantity_of(name)][0]
+        if "scale" not in name:
+            assert value_of(varied(car, {name: f"{value!r} {unit}"}), name) == pytest.approx(value, rel=1e-12)
+        with pytest.raises(ValueError, match=rf"{name.split('[')[0]}.* must be a number in"):
+            varied(car, {name: "1 furlong"})
+
+
+# ---- numbers in the wrong unit -----------------------------------------------------------------------------
+
+
+def box(size: float) -> Any:
+    vertices = size * np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return Barrier.from_mesh(vertices, [f for a, b, c, d in quads for f in ((a, b, c), (a, c, d))])
+
+
+WRONG: dict[str, tuple[Callable[[], Any], str]] = {
+    "speed in km/h": (lambda: at(300.0), r"impact_speed = 300 m/s .* 0 to 90 m/s"),
+    "angle in rad": (lambda: at(impact_angle=1.57), r"impact_angle = 1.57 deg .* 0 or above 3.2 deg"),
+    "yaw in rad": (lambda: at(impact_yaw=1.5708), r"impact_yaw = 1.5708 deg .* in radians \(90 deg\)"),
+    "roll in rad": (lambda: at(impact_roll=-0.349), r"impact_roll .* in radians \(-20 deg\)"),
+    "heading in rad": (lambda: Barrier.pole(heading=0.7854), r"heading .* in radians \(45 deg\)"),
+    "duration in ms": (lambda: at(duration=150), r"duration = 150 s .* 0 to 100 s"),
+    "standoff in mm": (lambda: at(standoff=500), r"standoff = 500 m .* 0 to 200 m"),
+    "diameter in mm": (lambda: Barrier.pole(diameter=320), r"diameter = 320 m .* 0.01 to 5 m"),
+    "spacing in mm": (lambda: Barrier.bollards(spacing=1200), r"spacing = 1200 m .* 0.01 to 100 m"),
+    "height in mm": (lambda: Barrier.bollards(height=900), r"height = 900 m .* 0.01 to 20 m"),
+    "width in mm": (lambda: Barrier.rigid_wall(width=6000), r"width = 6000 m .* 0.05 to 1,000 m"),
+    "density in t/m^3": (
+        lambda: Barrier.jersey(length=4, free_standing=True, density=2.4),
+        r"density = 2.4 kg/m\^3 .* 100 to 20,000 kg/m\^3",
+    ),
+    "mesh in mm": (lambda: box(1000.0), r"vertices .* 1000 m high .* 0.01 to 50 m"),
+    "a list": (
+        lambda: sweep(at(), impact_speed=[10.0, 300.0], metrics=["dynamic_crush"]),
+        r"impact_speed = 300 m/s",
+    ),
+    "a distribution": (
+        lambda: monte_carlo(at(), {"impact_speed": stats.norm(300, 1)}, 1, metrics=["dynamic_crush"]),
+        r"impact_speed = 300 m/s",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_number_in_the_wrong_unit_is_warned_of(name: str) -> None:
+    make, message = WRONG[name]
+    with pytest.warns(UnitWarning, match=message) as told:
+        make()
+    assert len(told) == 1
+    assert told[0].filename == __file__  # it points at the caller
+
+
+def test_what_is_usual_or_says_its_unit_is_not_warned_of() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        at("300 km/h", impact_yaw="1.5708 deg", duration="101 s")
+        for yaw in (0.0, 1.0, 2.0, 0.5, 90.0, -30.0):
+            at(60.0, impact_angle=4.0, impact_yaw=yaw, impact_roll=-yaw)
+        at(barrier=Barrier.rigid_wall(width=6.0, thickness=4.0), impact_angle=0.0)
+        box(0.15)
+        Simulation.from_scene(at("400 km/h").scene)  # known already
