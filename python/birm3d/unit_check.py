@@ -48,12 +48,12 @@ class Usual(NamedTuple):
 
 _SIZE = Usual(0.01, 20.0, "m", "mm")
 _LONG = Usual(0.05, 1000.0, "m", "mm")
-_TURN = Usual(-math.inf, math.inf, "deg", "rad", radians=True)
+_TURN = Usual(0.0, math.inf, "deg", "rad", radians=True)
 
 USUAL: Mapping[str, Usual] = MappingProxyType(
     {
         "impact_speed": Usual(0.0, 90.0, "m/s", "km/h"),
-        "impact_angle": Usual(3.2, math.inf, "deg", "rad", zero=True),
+        "impact_angle": Usual(1.0, math.inf, "deg", "rad", zero=True, radians=True),
         "impact_yaw": _TURN,
         "impact_roll": _TURN,
         "heading": _TURN,
@@ -119,11 +119,11 @@ def warn_if_any_unusual(name: str, values: Iterable[Any], *, stacklevel: int = 2
 def _is_unusual(value: float, usual: Usual) -> bool:
     if not math.isfinite(value):
         return False
-    if usual.radians:
-        return _is_round_in_radians(value)
+    if usual.radians and _is_round_in_radians(value):
+        return True
     size = abs(value) if usual.magnitude else value
-    # What is below zero is refused by its own limit, with an error.
-    return size >= 0.0 and not (usual.low <= size <= usual.high or (usual.zero and size == 0.0))
+    # Zero is the same in every unit; what is below is refused by its own limit, with an error.
+    return size > 0.0 and not usual.low <= size <= usual.high
 
 
 def warn_if_unusual(name: str, value: float, usual: Usual, *, stacklevel: int = 2) -> None:
@@ -134,7 +134,9 @@ def warn_if_unusual(name: str, value: float, usual: Usual, *, stacklevel: int = 
     limits = f"{usual.low:,.6g} to {usual.high:,.6g}" if math.isfinite(usual.high) else f"above {usual.low:g}"
     accepted = f"{'0 or ' if usual.zero else ''}{limits} {usual.unit}"
     if usual.radians:
-        guess, accepted = f"in radians ({math.degrees(value):.4g} deg)", "what is no round angle in radians"
+        guess = f"in radians ({math.degrees(value):.4g} deg)"
+        accepted = "any angle" if usual.low == 0.0 else f"0 or {usual.low:g} to 180 deg"
+        accepted += " that is not n * 5 deg in radians"
     _warn(
         f"{name} = {value:g} {usual.unit}",
         guess,
@@ -145,7 +147,7 @@ def warn_if_unusual(name: str, value: float, usual: Usual, *, stacklevel: int = 
 
 def warn_if_mesh_unusual(height: float, *, stacklevel: int = 2) -> None:
     """Warn with :class:`UnitWarning` of vertices that are most likely in millimetres; height in m."""
-    if _MESH_HEIGHT.low <= height <= _MESH_HEIGHT.high:
+    if not _is_unusual(height, _MESH_HEIGHT):
         return
     _warn(
         f"vertices = a mesh {height:g} m high",

@@ -115,7 +115,10 @@ def box(size: float) -> Any:
 
 WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "speed in km/h": (lambda: at(300.0), r"impact_speed = 300 m/s .* 0 to 90 m/s"),
-    "angle in rad": (lambda: at(impact_angle=1.57), r"impact_angle = 1.57 deg .* 0 or above 3.2 deg"),
+    "angle in rad": (
+        lambda: at(impact_angle=1.57),
+        r"impact_angle = 1.57 deg .* in radians .* 0 or 1 to 180 deg",
+    ),
     "yaw in rad": (lambda: at(impact_yaw=1.5708), r"impact_yaw = 1.5708 deg .* in radians \(90 deg\)"),
     "roll in rad": (lambda: at(impact_roll=-0.349), r"impact_roll .* in radians \(-20 deg\)"),
     "heading in rad": (lambda: Barrier.pole(heading=0.7854), r"heading .* in radians \(45 deg\)"),
