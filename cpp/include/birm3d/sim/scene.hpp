@@ -16,11 +16,11 @@ namespace birm3d {
 // The start: the vehicle comes along a straight path at `impact_angle` to the barrier's line and stands
 // `standoff` before its first touch.
 struct Approach {
-    double speed = 0.0;     // m/s, >= 0
-    double angle = 0.0;     // rad between path and barrier line, in [0, pi]; pi/2 = head-on
-    double offset = 0.0;    // m along the barrier's line, where the path of the mass centre meets it, from the
-                            // line's point nearest to the world's origin; of a path along the line its
-                            // distance from it, away from the traffic
+    double speed = 0.0;   // m/s, >= 0
+    double angle = 0.0;   // rad between path and barrier line, in [0, pi]; pi/2 = head-on
+    double offset = 0.0;  // m along the barrier's line, where the path of the mass centre meets it, from the
+                          // line's point nearest to the world's origin; of a path along the line its
+                          // distance from it, away from the traffic
     double standoff = 0.0;  // m between the nearest node and the barrier, >= 0
     double yaw = 0.0;       // rad by which the nose points to the left of the path
     double roll = 0.0;      // rad
