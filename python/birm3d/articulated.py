@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
@@ -13,6 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .unit_check import given
+from .units import Quantity, si
 from .vehicle import Vehicle
 from .zone import Zone, positive
 
@@ -85,11 +87,19 @@ class ArticulatedVehicle(Vehicle):
 
     ``with_zone``, ``with_rate_sensitivity``, ``with_dent_reach`` and ``with_mesh_density`` go to the units
     that they concern; ``with_gvw`` loads or lightens the trailing unit; ``with_unit`` and ``with_joint``
-    change a part.
+    change a part. ``dataclasses.replace()`` changes the name only.
     """
 
     _units: tuple[Vehicle, ...] = ()
     _joint: Joint | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self._own:
+            raise ValueError(
+                f"{', '.join(self._own)} of a vehicle of two units must be changed in its units, from which "
+                f"all of it follows: by with_unit(), or another method of {self.name!r}"
+            )
 
     @property
     def units(self) -> tuple[Vehicle, ...]:
@@ -139,36 +149,46 @@ class ArticulatedVehicle(Vehicle):
             joint = dataclasses.replace(self.joint, kind=joint)
         return articulate(self._units, joint, self.name)
 
-    def with_gvw(self, gvw: float) -> ArticulatedVehicle:
+    def with_gvw(self, gvw: Quantity) -> ArticulatedVehicle:
         """Return the vehicle with another mass [kg]: the trailing unit is loaded or lightened.
 
         What :meth:`Vehicle.with_gvw` says holds for that unit. ``gvw`` must exceed the leading unit's mass.
         """
-        gvw = positive("gvw", gvw)
-        leading, trailing = self._units
+        return self._with_mass(self._mass_given("gvw", gvw))
+
+    def _with_mass(self, gvw: float) -> ArticulatedVehicle:
+        leading = self._units[0]
         if not gvw > leading.mass:
             raise ValueError(f"gvw must be above the leading unit's mass ({leading.mass:g} kg), got {gvw:g}")
-        return self._with([leading, trailing.with_gvw(gvw - leading.mass)])
+        return self._with_trailing(lambda unit: unit._with_mass(gvw - leading.mass))
+
+    def _with_trailing(self, change: Callable[[Vehicle], Vehicle]) -> ArticulatedVehicle:
+        """Return the vehicle with a change of the trailing unit; a height that was asked for stays."""
+        leading, trailing = self._units
+        if any(unit._height is None for unit in self._units):
+            return self._with([leading, change(trailing)])
+        free = [unit.with_mass_center_height(None) if unit.has_file else unit for unit in self._units]
+        return self._with([free[0], change(free[1])]).with_mass_center_height(self.mass_center_height)
 
     def with_payload(
-        self, payload: float, *, density: float | None = None, height: float | None = None
+        self, payload: Quantity, *, density: Quantity | None = None, height: Quantity | None = None
     ) -> ArticulatedVehicle:
         """Return the vehicle with another payload [kg]: :meth:`Vehicle.with_payload` of the trailing unit."""
-        leading, trailing = self._units
-        return self._with([leading, trailing.with_payload(payload, density=density, height=height)])
+        return self._with_trailing(lambda unit: unit.with_payload(payload, density=density, height=height))
 
-    def scaled_to(self, mass: float) -> ArticulatedVehicle:
+    def scaled_to(self, mass: Quantity) -> ArticulatedVehicle:
         """Return a similar vehicle of another mass [kg]: :meth:`Vehicle.scaled_to` of both units."""
-        factor = positive("mass", mass) / self.mass
+        factor = self._mass_given("mass", mass) / self.mass
         return self._with([unit.scaled_to(factor * unit.mass) for unit in self._units])
 
-    def with_rate_sensitivity(self, rate_sensitivity: float) -> ArticulatedVehicle:
+    def with_rate_sensitivity(self, rate_sensitivity: Quantity) -> ArticulatedVehicle:
         """Return the vehicle with :meth:`Vehicle.with_rate_sensitivity` of both units."""
         return self._with([unit.with_rate_sensitivity(rate_sensitivity) for unit in self._units])
 
-    def with_dent_reach(self, dent_reach: float) -> ArticulatedVehicle:
+    def with_dent_reach(self, dent_reach: Quantity) -> ArticulatedVehicle:
         """Return the vehicle with :meth:`Vehicle.with_dent_reach` of both units."""
-        return self._with([unit.with_dent_reach(dent_reach) for unit in self._units])
+        reach = si("dent_reach", dent_reach, "length") if self._draft else given("dent_reach", dent_reach)
+        return self._with([dataclasses.replace(unit, dent_reach=reach) for unit in self._units])
 
     def without_tire_contact(self) -> ArticulatedVehicle:
         """Return the vehicle with :meth:`Vehicle.without_tire_contact` of both units."""
@@ -178,11 +198,18 @@ class ArticulatedVehicle(Vehicle):
         """Return the vehicle with :meth:`Vehicle.with_mesh_density` of both units."""
         return self._with([unit.with_mesh_density(mesh_density) for unit in self._units])
 
-    def with_mass_center_height(self, height: float) -> ArticulatedVehicle:
-        """Return the vehicle with its mass centre at another height [m]: both units' move by the same."""
-        up = positive("mass_center_height", height) - self.mass_center_height
+    def with_mass_center_height(self, height: Quantity | None) -> ArticulatedVehicle:
+        """Return the vehicle with its mass centre at another height [m].
+
+        Both units' mass goes up or down by one ratio, see :meth:`Vehicle.with_mass_center_height`; a later
+        mass or payload keeps the height of the whole.
+        """
+        if height is None:
+            return self._with([unit.with_mass_center_height(None) for unit in self._units])
+        height = positive("mass_center_height", si("mass_center_height", height, "length"))
+        ratio = height / self.mass_center_height
         return self._with(
-            [unit.with_mass_center_height(unit.mass_center_height + up) for unit in self._units]
+            [unit.with_mass_center_height(ratio * unit.mass_center_height) for unit in self._units]
         )
 
     def with_zones(self, zones: Mapping[str, Zone]) -> ArticulatedVehicle:

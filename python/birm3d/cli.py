@@ -97,6 +97,11 @@ def vehicles(as_json: bool) -> None:
         facts = {
             name: {
                 "mass": v.mass,
+                "length": v.length,
+                "width": v.width,
+                "height": v.height,
+                "wheelbase": v.wheelbase,
+                "track": v.track,
                 "center_of_mass": v.center_of_mass.tolist(),
                 "inertia": v.inertia.tolist(),
                 "n_elements": v.n_elements,
@@ -107,18 +112,22 @@ def vehicles(as_json: bool) -> None:
         }
         click.echo(json.dumps(facts, indent=2))
         return
-    table = Table(
-        "vehicle",
-        *(
-            escape(name)
-            for name in ("mass [kg]", "CG height [m]", "Ixx, Iyy, Izz [kg m²]", "elements", "zones")
-        ),
-    )
+    names = ("mass", "length", "width", "height", "wheelbase", "track", "CG height")
+    table = Table("vehicle")
+    for name in names:
+        table.add_column(escape("mass [kg]" if name == "mass" else f"{name}\n[m]"), justify="right")
+    table.add_column(escape("Ixx, Iyy, Izz\n[t m²]"))
+    table.add_column("elements", justify="right")
+    for column in table.columns:
+        column.no_wrap = True
     for name, v in rows.items():
-        inertia = ", ".join(f"{value:,.0f}" for value in v.inertia.diagonal())
-        height = f"{v.mass_center_height:.3f}"
-        table.add_row(name, f"{v.mass:,.1f}", height, inertia, f"{v.n_elements:,}", ", ".join(v.zones))
+        sizes = (v.length, v.width, v.height, v.wheelbase, v.track, v.mass_center_height)
+        cells = ("none" if size is None else f"{size:.3f}" for size in sizes)
+        inertia = ", ".join(f"{1e-3 * value:.4g}" for value in v.inertia.diagonal())
+        table.add_row(name, f"{v.mass:,.1f}", *cells, inertia, f"{v.n_elements:,}")
     print_table(table)
+    for name, v in rows.items():
+        click.echo(f"zones of {name}: {', '.join(v.zones)}")
 
 
 def _as_json(result: Result) -> dict[str, Any]:

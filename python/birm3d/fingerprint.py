@@ -42,7 +42,7 @@ def _feed(digest: hashlib.blake2b, thing: Any) -> None:
     elif dataclasses.is_dataclass(thing) and not isinstance(thing, type):
         _mark(digest, type(thing).__name__, "")
         for field in dataclasses.fields(thing):
-            if field.name != "_mesh":  # follows from the vehicle's file and its density
+            if field.compare:  # a vehicle's mesh follows from its file and density
                 _feed(digest, getattr(thing, field.name))
     elif isinstance(thing, Mapping):
         _mark(digest, "mapping", str(len(thing)))

@@ -72,7 +72,8 @@ def encode(value: Any, arrays: dict[str, npt.NDArray[Any]], name: str) -> Any:
     elif kind == "ArticulatedVehicle":  # the rest of it follows from these
         fields = {"units": value.units, "joint": value.joint, "name": value.name}
     else:
-        fields = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+        stored = (field for field in dataclasses.fields(value) if field.metadata.get("stored", True))
+        fields = {field.name: getattr(value, field.name) for field in stored}
     return {f"${kind}": {key: encode(item, arrays, f"{name}/{key}") for key, item in fields.items()}}
 
 
@@ -109,6 +110,8 @@ def decode(plain: Any, arrays: Arrays) -> Any:
         from .articulated import articulate
 
         return articulate(**fields)
+    if kind.__name__ == "Vehicle" and fields.pop("_raised", 0.0) != 0.0:
+        fields["_height"] = fields["mass_center_height"]  # as files were before it had a name
     known = {field.name for field in dataclasses.fields(kind)}
     for key in fields:
         if key not in known:

@@ -121,11 +121,14 @@ def _names(scene: Scene) -> tuple[str, ...]:
         names += [f"barrier.{f.name}" for f in dataclasses.fields(scene.barrier)]
     names += [f"settings.{f.name}" for f in dataclasses.fields(Settings)]
     vehicle = scene.vehicle
-    names += [f"vehicle.{name}" for name in _VEHICLE if name != "mesh_density" or vehicle.has_file]
+    no_effect = set() if vehicle.has_file else {"mesh_density"}
+    if not vehicle.mass_center_height > 0.0:  # on the ground, as of laboratories: no ratio leads away
+        no_effect.add("mass_center_height")
+    names += [f"vehicle.{name}" for name in _VEHICLE if name not in no_effect]
     if not vehicle.zones and vehicle.joint is None:
         names += [f"truss.{name}" for name in TRUSS_LAW]
-    for zone, law in vehicle.zones.items():
-        names += [f"zone.{zone}.{number}" for number in _zone_numbers(law)]
+    for zone in vehicle.zones_met:
+        names += [f"zone.{zone}.{number}" for number in _zone_numbers(vehicle.zones[zone])]
     return tuple(names)
 
 
@@ -262,6 +265,13 @@ def _zone(zone: Zone, numbers: Mapping[str, float]) -> Zone:
 
 def _unknown(scene: Scene, name: str) -> ValueError:
     known = _names(scene)
+    group, _, rest = name.partition(".")
+    zone = rest.rpartition(".")[0]
+    if group == "zone" and zone in scene.vehicle.zones and zone not in scene.vehicle.zones_met:
+        return ValueError(
+            f"parameter must be of a zone that trusses belong to ({', '.join(scene.vehicle.zones_met)}), "
+            f"or it has no effect; got {name!r}"
+        )
     near = get_close_matches(name, known, n=5) or [
         known_ for known_ in known if not known_.startswith("zone.")
     ]

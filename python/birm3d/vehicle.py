@@ -8,14 +8,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .dimensions import Dimensions, dimensions
 from .frozen_mapping import FrozenMapping
 from .loading import check_load, solids_at, structure_mass
+from .mass_center import stretched_inertia
+from .unit_check import Usual, given, warn_if_unusual
+from .units import Quantity, si
+from .vehicle_guard import as_built, changed_by_hand, check_parts
 from .zone import KNEE, TRUSS_LAW, Zone, positive
 
 if TYPE_CHECKING:
@@ -27,6 +33,19 @@ __all__ = ["TRUSS_LAW", "Vehicle", "Zone"]
 
 Floats = npt.NDArray[np.float64]
 FloatsLike = npt.ArrayLike
+
+NOT_STORED: Mapping[str, Any] = MappingProxyType({"stored": False})
+"""Metadata of a field that no file holds."""
+
+# A mass beyond these shares of that of the file is most likely in another unit.
+_LEAST, _MOST = 0.05, 10.0
+_LAW_QUANTITIES = {
+    "k_initial": "pressure per length",
+    "knee": "length",
+    "k_hardening": "pressure per length",
+    "f_max": "pressure",
+    "k_unloading": "pressure per length",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,11 +106,14 @@ class Vehicle:
     # What made the vehicle: laws per truss (m, N, N/m), or a file with its mesh density.
     _truss_laws: Floats | None = None
     _file: VehicleFile | None = None
-    _mesh: ExteriorMesh | None = None
+    _mesh: ExteriorMesh | None = dataclasses.field(default=None, compare=False)
     _mesh_density: float = 1.0
-    _raised: float = 0.0  # of the mass centre above that of the solids [m]
+    _height: float | None = None  # of the mass centre, where one was asked for, in place of the solids' [m]
     _draft: bool = False  # between two changes: the core is not built yet, see draft()
     _load_density: float | None = None  # of the goods in the load space, where not the file's [kg/m^3]
+    # Fields as they were made, which tell what dataclasses.replace() was given; and the names of those.
+    _built: Mapping[str, Any] | None = dataclasses.field(default=None, compare=False, metadata=NOT_STORED)
+    _own: tuple[str, ...] = dataclasses.field(default=(), compare=False)
 
     def __post_init__(self) -> None:
         if len(self.wheel_of_node) == 0:
@@ -101,6 +123,11 @@ class Vehicle:
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
         object.__setattr__(self, "zones", FrozenMapping(dict(self.zones)))
+        if self._built is not None:
+            changed = changed_by_hand(self, self._built)
+            object.__setattr__(self, "_own", tuple(dict.fromkeys((*self._own, *changed))))
+        object.__setattr__(self, "_built", as_built(self))
+        check_parts(self)
         if not self._draft:
             _ = self.core  # the core checks every number
 
@@ -114,7 +141,7 @@ class Vehicle:
         return preset_names()
 
     @staticmethod
-    def preset(name: str, *, gvw: float | None = None, mesh_density: float = 1.0) -> Vehicle:
+    def preset(name: str, *, gvw: Quantity | None = None, mesh_density: float = 1.0) -> Vehicle:
         """Return a vehicle that comes with the package.
 
         Parameters
@@ -122,35 +149,26 @@ class Vehicle:
         name
             One of :meth:`presets`.
         gvw
-            Gross vehicle weight as a mass [kg]; ``None``: the file's.
+            Gross vehicle weight as a mass [kg], or text as ``"4500 lb"``; ``None``: the file's.
         mesh_density
             Number of shell elements relative to the file's choice (about 6,000).
         """
         from .vehicle_file import preset_path
 
-        return Vehicle.from_file(preset_path(name), gvw=gvw, mesh_density=mesh_density)
+        return _read(preset_path(name), gvw, mesh_density)
 
     @staticmethod
-    def from_file(path: str | Path, *, gvw: float | None = None, mesh_density: float = 1.0) -> Vehicle:
+    def from_file(path: str | Path, *, gvw: Quantity | None = None, mesh_density: float = 1.0) -> Vehicle:
         """Read a vehicle file (TOML), of one unit or of two; the presets are files of the same format.
 
         Raises
         ------
         ValueError
             Naming file, line, key, limit and value of everything that is wrong.
+        UnitWarning
+            As a warning, if ``gvw`` is most likely in another unit, as 7.5 for 7.5 t.
         """
-        from .combination_file import read_combination
-        from .vehicle_changes import vehicle_of
-        from .vehicle_file import read_vehicle_file
-
-        combination = read_combination(path)
-        if combination is None:
-            return vehicle_of(read_vehicle_file(path), gvw, mesh_density)
-        from .articulated import combine
-
-        units = [vehicle_of(unit, None, mesh_density) for unit in combination.units]
-        vehicle = combine(units, combination.file)
-        return vehicle if gvw is None else vehicle.with_gvw(gvw)
+        return _read(path, gvw, mesh_density)
 
     def save(self, path: str | Path) -> None:
         """Write the vehicle to a file (TOML) that :meth:`from_file` reads back as the same vehicle.
@@ -176,7 +194,7 @@ class Vehicle:
     @staticmethod
     def from_arrays(
         *,
-        mass: float,
+        mass: Quantity,
         inertia: FloatsLike,
         nodes: FloatsLike,
         anchors: FloatsLike,
@@ -185,7 +203,7 @@ class Vehicle:
         knee: FloatsLike = math.inf,
         k_hardening: FloatsLike = 0.0,
         f_max: FloatsLike = math.inf,
-        mass_center_height: float = 0.0,
+        mass_center_height: Quantity = 0.0,
         wheels: Sequence[Sequence[float]] = (),
         name: str = "from_arrays",
     ) -> Vehicle:
@@ -207,6 +225,7 @@ class Vehicle:
         wheels
             Shape (w, 4): centre in body axes and radius [m].
         """
+        height = si("mass_center_height", mass_center_height, "length")
         node = np.array(nodes, float)
         n = len(node)
         laws = np.empty((n, 5))
@@ -225,8 +244,8 @@ class Vehicle:
         discs = np.array(wheels, float).reshape(-1, 4) if len(wheels) == 0 else np.array(wheels, float)
         return Vehicle(
             name=name,
-            mass=float(mass),
-            center_of_mass=np.array([0.0, 0.0, float(mass_center_height)]),
+            mass=si("mass", mass, "mass"),
+            center_of_mass=np.array([0.0, 0.0, height]),
             inertia=np.array(inertia, float),
             nodes=node,
             anchors=np.array(anchors, float),
@@ -234,7 +253,7 @@ class Vehicle:
             zone_of_node=np.full(n, -1, np.int64),
             quads=np.empty((0, 4), np.int64),
             wheels=discs,
-            mass_center_height=float(mass_center_height),
+            mass_center_height=height,
             zones={},
             _truss_laws=laws,
         )
@@ -262,34 +281,63 @@ class Vehicle:
 
         return articulate(units, joint, name)
 
-    def with_gvw(self, gvw: float) -> Vehicle:
+    def with_gvw(self, gvw: Quantity) -> Vehicle:
         """Return the vehicle with another mass [kg]; every mass property follows.
 
         Payload is rescaled first: goods in a load space keep their density and stand higher, see
         :meth:`with_payload`; below the unladen mass the structure is rescaled, without payload.
-        A vehicle made from arrays keeps its mass centre and scales its inertia.
+        A height given by :meth:`with_mass_center_height` stays. A vehicle made from arrays keeps its mass
+        centre and scales its inertia.
+
+        Raises
+        ------
+        ValueError
+            If the mass is not > 0, or a change by ``dataclasses.replace()`` would be lost.
+        UnitWarning
+            As a warning, if the mass is most likely in another unit.
         """
-        gvw = positive("gvw", gvw)
+        return self._with_mass(self._mass_given("gvw", gvw))
+
+    def _with_mass(self, gvw: float) -> Vehicle:
         if self._file is None:
             return dataclasses.replace(
-                self, mass=gvw, inertia=self.inertia * (gvw / self.mass), wheels=self.wheels.copy()
+                self,
+                mass=gvw,
+                inertia=self.inertia * (gvw / self.mass),
+                wheels=self.wheels.copy(),
+                _built=None,
             )
+        return self._assembled(gvw, self._height)
+
+    def _assembled(self, mass: float, height: float | None) -> Vehicle:
+        """Return the vehicle of the same file and mesh with another mass and height of the mass centre."""
+        assert self._file is not None
         assert self._mesh is not None  # made together with _file
         return self._anew(
             _assemble(
                 self._file,
                 self._mesh,
-                gvw,
+                mass,
                 self._mesh_density,
                 self.zones,
-                self._raised,
+                height,
                 self._draft,
                 self._load_density,
             )
         )
 
+    def _mass_given(self, name: str, mass: Quantity, *, stacklevel: int = 4) -> float:
+        """Return a mass [kg] > 0, with a word if it is far from that of the vehicle's file."""
+        number = positive(name, si(name, mass, "mass"))
+        if not isinstance(mass, str) and not self._draft and self.has_file:
+            usual = sum(unit._file.gvw_kg for unit in self.units if unit._file is not None)
+            warn_if_unusual(
+                name, number, Usual(usual * _LEAST, usual * _MOST, "kg", "t"), stacklevel=stacklevel
+            )
+        return number
+
     def with_payload(
-        self, payload: float, *, density: float | None = None, height: float | None = None
+        self, payload: Quantity, *, density: Quantity | None = None, height: Quantity | None = None
     ) -> Vehicle:
         """Return the vehicle with its structure as it is and another payload [kg], 0 for none.
 
@@ -303,7 +351,8 @@ class Vehicle:
             All of it [kg], >= 0.
         density, height
             Of the goods [kg/m^3], or of their top above the floor [m], at most that of the space. Neither:
-            the density stays. A later :meth:`with_gvw` keeps the density.
+            the density stays. A later :meth:`with_gvw` keeps the density. Where
+            :meth:`with_mass_center_height` has given the height of the mass centre, that one stays.
 
         Raises
         ------
@@ -311,15 +360,18 @@ class Vehicle:
             If the vehicle has no payload, or no load space for a density or a height, or if the goods do not
             fit.
         """
+        payload = given("payload", payload)
+        density = None if density is None else si("density", density, "density")
+        height = None if height is None else si("height", height, "length")
         if not (math.isfinite(payload) and payload >= 0.0):
             raise ValueError(f"payload must be finite and >= 0, got {payload}")
         if self._file is None or (structure := structure_mass(self._file)) == 0.0:
             raise ValueError(f"payload needs a vehicle whose file names one, got {self.name!r}")
         changed = check_load(self._file, payload, density, height)
         loaded = self if changed is None else dataclasses.replace(self, _load_density=changed)
-        return loaded.with_gvw(structure + payload)
+        return loaded._with_mass(structure + payload)
 
-    def scaled_to(self, mass: float) -> Vehicle:
+    def scaled_to(self, mass: Quantity) -> Vehicle:
         """Return another vehicle of the same class: this one as its file loads it, but of another mass [kg].
 
         All solids get heavier in proportion, and so do all stresses and slopes of the zones: the same crash
@@ -327,7 +379,7 @@ class Vehicle:
         no zone was fitted to has a median error of 7 % (``tests/bench/bench_blind.py``). For a load in this
         vehicle see :meth:`with_gvw` and :meth:`with_payload`, which leave the zones alone.
         """
-        mass = positive("mass", mass)
+        mass = self._mass_given("mass", mass)
         if self._file is None:
             raise ValueError(f"scaled_to needs a vehicle that has a file, got {self.name!r} from arrays")
         factor = mass / self._file.zones_mass
@@ -341,22 +393,24 @@ class Vehicle:
                 mass,
                 self._mesh_density,
                 zones,
-                self._raised,
+                self._height,
                 self._draft,
                 density,
             )
         )
 
-    def with_rate_sensitivity(self, rate_sensitivity: float) -> Vehicle:
+    def with_rate_sensitivity(self, rate_sensitivity: Quantity) -> Vehicle:
         """Return the vehicle with loading envelopes that grow with speed; at 0 that is left out.
 
         What is crushed has inertia and rate strength, which the paper's massless trusses lack: an envelope
         grows by 1 + (rate_sensitivity * rate of deflection)^2 while it is loaded [s/m], >= 0. Finite-element
         vehicles were met with 0.05 to 0.07 s/m (``tests/bench/README.md``).
         """
-        return dataclasses.replace(self, rate_sensitivity=float(rate_sensitivity))
+        return dataclasses.replace(
+            self, rate_sensitivity=si("rate_sensitivity", rate_sensitivity, "time per length")
+        )
 
-    def with_dent_reach(self, dent_reach: float) -> Vehicle:
+    def with_dent_reach(self, dent_reach: Quantity) -> Vehicle:
         """Return the vehicle with a skin that a post draws in beside itself; at 0 that is left out.
 
         A post (bollard, pole) that has come a depth d into a front, side or rear draws in the skin to either
@@ -365,7 +419,8 @@ class Vehicle:
         of each other, and between them a narrow post passes to the rigid core. Walls and meshes make no dent.
         ``>= 0``.
         """
-        return dataclasses.replace(self, dent_reach=float(dent_reach))
+        reach = si("dent_reach", dent_reach, "length") if self._draft else given("dent_reach", dent_reach)
+        return dataclasses.replace(self, dent_reach=reach)
 
     def without_tire_contact(self) -> Vehicle:
         """Return the vehicle with tyres that meet the ground only, not barriers (:mod:`birm3d.tread`)."""
@@ -373,7 +428,9 @@ class Vehicle:
         if shell.all():
             return self
         columns = ("nodes", "anchors", "area", "zone_of_node", "wheel_of_node")
-        return dataclasses.replace(self, **{name: getattr(self, name)[shell] for name in columns})
+        return dataclasses.replace(
+            self, _built=None, **{name: getattr(self, name)[shell] for name in columns}
+        )
 
     def with_mesh_density(self, mesh_density: float) -> Vehicle:
         """Return the vehicle with another number of shell elements, relative to its file's choice."""
@@ -385,52 +442,68 @@ class Vehicle:
                 self.mass,
                 mesh_density,
                 self.zones,
-                self._raised,
+                self._height,
                 self._draft,
                 self._load_density,
             )
         )
 
-    def with_mass_center_height(self, height: float) -> Vehicle:
+    def with_mass_center_height(self, height: Quantity | None) -> Vehicle:
         """Return the vehicle with its mass centre at another height above the ground [m].
 
-        Mass and inertia about the mass centre stay. A later :meth:`with_gvw` keeps the shift.
+        All parts of the mass go up or down in proportion to their height above the ground and keep their
+        place in plan: of the solids z becomes z times the ratio of the heights. So the inertia about the mass
+        centre follows (:mod:`birm3d.mass_center`): vertical second moments grow with the square of the ratio,
+        the yaw inertia stays. Skin, core and wheels stay where they are. The height holds for every later
+        mass and payload, and for a vehicle of another mass (:meth:`scaled_to`).
+
+        Parameters
+        ----------
+        height
+            [m], > 0 and below the vehicle's top; ``None``: what the solids of its file give.
+
+        Raises
+        ------
+        ValueError
+            If the height is out of range, or the mass centre of a vehicle from arrays is on the ground, where
+            no ratio leads away from.
         """
-        height = positive("mass_center_height", height)
         if self._file is not None:
-            return self._raised_by(height - self.mass_center_height)
+            if height is not None:
+                height = positive("mass_center_height", si("mass_center_height", height, "length"))
+                if not height < self.height:
+                    raise ValueError(
+                        f"mass_center_height must be below the vehicle's top, {self.height:.4g} m; "
+                        f"got {height:g}"
+                    )
+            return self._assembled(self.mass, height)
+        if height is None:
+            raise ValueError(f"mass_center_height must be given: {self.name!r} has no file with solids")
+        height = positive("mass_center_height", si("mass_center_height", height, "length"))
+        if not self.mass_center_height > 0.0:
+            raise ValueError(
+                f"mass_center_height must be above the ground to be changed, got {self.name!r} with "
+                f"{self.mass_center_height} m; from_arrays() takes another"
+            )
         up = np.array([0.0, 0.0, height - self.mass_center_height])
         wheels = self.wheels.copy()
         wheels[:, :3] -= up
         return dataclasses.replace(
             self,
-            center_of_mass=self.center_of_mass + up,
+            center_of_mass=np.array([*self.center_of_mass[:2], height]),
+            inertia=stretched_inertia(self.inertia, height / self.mass_center_height),
             nodes=self.nodes - up,
             anchors=self.anchors - up,
             wheels=wheels,
             mass_center_height=height,
-        )
-
-    def _raised_by(self, up: float) -> Vehicle:
-        """Return a vehicle of a file with its mass centre that much higher [m], as its file would make it."""
-        assert self._file is not None
-        assert self._mesh is not None  # made together with _file
-        return self._anew(
-            _assemble(
-                self._file,
-                self._mesh,
-                self.mass,
-                self._mesh_density,
-                self.zones,
-                self._raised + up,
-                self._draft,
-                self._load_density,
-            )
+            _height=height,
+            _built=None,
         )
 
     def with_zone(self, name: str, **changes: Any) -> Vehicle:
         """Return the vehicle with other stiffness numbers in one zone (see :class:`Zone`).
 
+        Text with a unit is taken too, as ``knee="20 cm"`` or ``f_max="1.1 MPa"`` (``k_initial`` in MPa/m).
         A zone with an envelope becomes one with a knee when ``k_initial``, ``knee`` and ``k_hardening`` are
         given, and the other way round when ``envelope`` is.
         """
@@ -451,6 +524,9 @@ class Vehicle:
                     f"which needs {', '.join(KNEE[:3])} to take its place; got {', '.join(changes)}"
                 )
             changes = {"envelope": None, **changes}
+        for key, quantity in _LAW_QUANTITIES.items():
+            if isinstance(changes.get(key), str):
+                changes[key] = si(key, changes[key], quantity)
         return self.with_zones({name: dataclasses.replace(self.zones[name], **changes)})
 
     def with_zones(self, zones: Mapping[str, Zone]) -> Vehicle:
@@ -458,6 +534,11 @@ class Vehicle:
         for name in zones:
             if name not in self.zones:
                 raise ValueError(f"zone must be one of {', '.join(self.zones) or 'none'}; got {name!r}")
+            if zones[name] != self.zones[name] and name not in self.zones_met:
+                raise ValueError(
+                    f"zone must be one that trusses belong to ({', '.join(self.zones_met)}), or its change "
+                    f"has no effect; got {name!r}"
+                )
         return dataclasses.replace(self, zones={**self.zones, **zones})
 
     def with_truss_law(self, **changes: float) -> Vehicle:
@@ -482,6 +563,12 @@ class Vehicle:
 
     def _anew(self, vehicle: Vehicle) -> Vehicle:
         """Return a vehicle made anew from the file with what the file does not hold."""
+        if self._own:
+            raise ValueError(
+                f"{', '.join(self._own)} of {self.name!r} must be changed after what is made from its file, "
+                "or the change is lost: call with_gvw, with_payload, scaled_to, with_mesh_density and "
+                "with_mass_center_height first, dataclasses.replace() last"
+            )
         if not (self.wheel_of_node >= 0).any():
             vehicle = vehicle.without_tire_contact()
         return dataclasses.replace(
@@ -546,6 +633,41 @@ class Vehicle:
         return len(self.quads)
 
     @cached_property
+    def _dimensions(self) -> Dimensions:
+        return dimensions(self.nodes, self.wheels, self.mass_center_height)
+
+    @property
+    def length(self) -> float:
+        """Overall length of the uncrushed vehicle, from its mesh and its wheels [m]."""
+        return self._dimensions.length
+
+    @property
+    def width(self) -> float:
+        """Overall width, tyres included, mirrors not [m]."""
+        return self._dimensions.width
+
+    @property
+    def height(self) -> float:
+        """Of its highest point above the ground, at rest [m]."""
+        return self._dimensions.height
+
+    @property
+    def wheelbase(self) -> float | None:
+        """From the first axle to the last one [m]; ``None`` where there are not two."""
+        return self._dimensions.wheelbase
+
+    @property
+    def track(self) -> float | None:
+        """Between the middles of the first axle's outermost wheels [m]; ``None`` where it has not two."""
+        return self._dimensions.track
+
+    @cached_property
+    def zones_met(self) -> tuple[str, ...]:
+        """Names of the zones that hold trusses; a zone without any, as of tyres left out, has no effect."""
+        count = np.bincount(self.zone_of_node[self.zone_of_node >= 0], minlength=len(self.zones))
+        return tuple(name for name, n in zip(self.zones, count, strict=True) if n > 0)
+
+    @cached_property
     def skin_bounds(self) -> tuple[Floats, Floats]:
         """Lowest and highest coordinates of the skin's nodes, body axes, shape (3,) each [m]."""
         skin = self.nodes[self.wheel_of_node < 0]
@@ -597,7 +719,7 @@ class Vehicle:
         if not isinstance(other, Vehicle):
             return NotImplemented
         # The mesh follows from file and density.
-        names = (field.name for field in dataclasses.fields(Vehicle) if field.name != "_mesh")
+        names = (field.name for field in dataclasses.fields(Vehicle) if field.compare)
         return all(self._same(other, name) for name in names)
 
     def _same(self, other: Vehicle, name: str) -> bool:
@@ -609,7 +731,8 @@ class Vehicle:
     __hash__ = None  # type: ignore[assignment]
 
     def _arguments(self) -> dict[str, Any]:
-        arguments = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        stored = (field.name for field in dataclasses.fields(self) if field.metadata.get("stored", True))
+        arguments = {name: getattr(self, name) for name in stored}
         return {**arguments, "zones": dict(self.zones)}
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -626,12 +749,32 @@ def _rebuild(arguments: dict[str, Any]) -> Vehicle:
     return Vehicle(**arguments)
 
 
+def _read(path: str | Path, gvw: Quantity | None, mesh_density: float) -> Vehicle:
+    from .combination_file import read_combination
+    from .vehicle_changes import vehicle_of
+    from .vehicle_file import read_vehicle_file
+
+    mass = None if gvw is None else positive("gvw", si("gvw", gvw, "mass"))
+    combination = read_combination(path)
+    if combination is None:
+        vehicle = vehicle_of(read_vehicle_file(path), mass, mesh_density)
+    else:
+        from .articulated import combine
+
+        units = [vehicle_of(unit, None, mesh_density) for unit in combination.units]
+        vehicle = combine(units, combination.file)
+        vehicle = vehicle if mass is None else vehicle._with_mass(mass)
+    if gvw is not None:
+        vehicle._mass_given("gvw", gvw, stacklevel=5)
+    return vehicle
+
+
 def _from_file(
     file: VehicleFile,
     gvw: float | None,
     mesh_density: float,
     zones: Mapping[str, Zone] | None,
-    raised: float = 0.0,
+    height: float | None = None,
     draft: bool = False,
     load_density: float | None = None,
 ) -> Vehicle:
@@ -639,7 +782,7 @@ def _from_file(
 
     mass = file.gvw_kg if gvw is None else positive("gvw", gvw)
     mesh = build_mesh(file, mesh_density)
-    return _assemble(file, mesh, mass, mesh_density, zones, raised, draft, load_density)
+    return _assemble(file, mesh, mass, mesh_density, zones, height, draft, load_density)
 
 
 def _assemble(
@@ -648,7 +791,7 @@ def _assemble(
     mass: float,
     mesh_density: float,
     zones: Mapping[str, Zone] | None,
-    raised: float,
+    height: float | None,
     draft: bool,
     load_density: float | None,
 ) -> Vehicle:
@@ -656,7 +799,10 @@ def _assemble(
 
     properties = _core.mass_properties(*solids_at(file, mass, load_density))
     center = np.array(properties.center_of_mass)
-    center[2] += raised
+    inertia = np.array(properties.inertia)
+    if height is not None:
+        inertia = stretched_inertia(inertia, height / center[2])
+        center[2] = height
     wheels = np.array([[*wheel.center_m, wheel.radius_m] for wheel in file.wheels], float).reshape(-1, 4)
     wheels[:, :3] -= center
     tread = build_tread(file, mesh_density)
@@ -664,7 +810,7 @@ def _assemble(
         name=file.name,
         mass=mass,  # the solids' up to rounding, which would grow with every change
         center_of_mass=center,
-        inertia=np.array(properties.inertia),
+        inertia=inertia,
         nodes=np.concatenate([mesh.nodes, tread.nodes]) - center,
         anchors=np.concatenate([mesh.anchors, tread.anchors]) - center,
         area=np.concatenate([mesh.area, tread.area]),
@@ -678,7 +824,7 @@ def _assemble(
         _file=file,
         _mesh=mesh,
         _mesh_density=mesh_density,
-        _raised=raised,
+        _height=height,
         _draft=draft,
         _load_density=load_density,
     )

@@ -73,7 +73,8 @@ class Changes(Strict):
     """How a vehicle differs from the one that the other blocks of its file describe.
 
     gvw_kg: see :meth:`birm3d.Vehicle.with_gvw`; load_density_kg_per_m3: of its goods. mesh_density: number of
-    elements relative to element_size_m. mass_center_raised_m: above that of the solids. tire_contact: whether
+    elements relative to element_size_m. mass_center_height_m: in place of that of the solids, see
+    :meth:`birm3d.Vehicle.with_mass_center_height`. tire_contact: whether
     tyres meet barriers. zone: laws in place of those of the file.
     """
 
@@ -81,7 +82,7 @@ class Changes(Strict):
     gvw_kg: Positive | None = None
     load_density_kg_per_m3: Positive | None = None
     mesh_density: Positive = 1.0
-    mass_center_raised_m: float = 0.0
+    mass_center_height_m: Positive | None = None
     rate_sensitivity_s_per_m: Annotated[float, Field(ge=0.0)] = 0.0
     dent_reach_m: Annotated[float, Field(ge=0.0)] | None = None
     tire_contact: bool = True
@@ -98,7 +99,7 @@ def changes_of(vehicle: Vehicle, file: VehicleFile) -> Changes:
         gvw_kg=vehicle.mass if vehicle.mass != file.gvw_kg else None,
         load_density_kg_per_m3=vehicle._load_density,
         mesh_density=vehicle.mesh_density,
-        mass_center_raised_m=vehicle._raised,
+        mass_center_height_m=vehicle._height,
         rate_sensitivity_s_per_m=vehicle.rate_sensitivity,
         dent_reach_m=vehicle.dent_reach if vehicle.dent_reach != reach else None,
         tire_contact=not treads or bool((vehicle.wheel_of_node >= 0).any()),
@@ -130,7 +131,7 @@ def vehicle_of(file: VehicleFile, gvw: float | None, mesh_density: float) -> Veh
         changes.gvw_kg if gvw is None else gvw,
         mesh_density * changes.mesh_density,
         {**zones, **{name: law.made() for name, law in changes.zone.items()}},
-        changes.mass_center_raised_m,
+        changes.mass_center_height_m,
         load_density=changes.load_density_kg_per_m3,
     )
     if not changes.tire_contact:

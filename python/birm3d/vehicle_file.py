@@ -109,12 +109,26 @@ class VehicleFile(Strict):
         for zone in self.zones:
             check_known(f"zone.{zone.name}.blocks", zone.blocks, blocks)
             check_known(f"zone.{zone.name}.core", zone.core, boxes)
+        self._check_cores()
         for name in () if self.changes is None else self.changes.zone:
             check_known(f"changes.zone.{name}", (name,), set(self.zone_names))
         known = {source.id for source in self.sources}
         for key, block in self._blocks():
             check_known(f"{key}.source", block.source, known)
         return self
+
+    def _check_cores(self) -> None:
+        """Require a truss to start from every box: a zone lists it, or lists none."""
+        zones = [zone for zone in self.zones if "tire" not in zone.panels]
+        if any(not zone.core for zone in zones):
+            return
+        listed = {name for zone in zones for name in zone.core}
+        for i, box in enumerate(self.core):
+            if box.name not in listed:
+                reject(
+                    f"core.{i}.name",
+                    f"must be in the list 'core' of a zone, or the box has no effect; got '{box.name}'",
+                )
 
     def _blocks(self) -> Iterator[tuple[str, Block]]:
         yield "dimensions", self.dimensions

@@ -121,5 +121,5 @@ def _differences(vehicle: Vehicle, other: Vehicle) -> list[str]:
     if vehicle.joint is not None and other.joint is not None:
         found = [name for a, b in zip(vehicle.units, other.units, strict=True) for name in _differences(a, b)]
         return list(dict.fromkeys(found)) or ["joint or name"]
-    names = [field.name for field in dataclasses.fields(vehicle) if field.name != "_mesh"]
+    names = [field.name for field in dataclasses.fields(vehicle) if field.compare]
     return [name for name in names if not vehicle._same(other, name)]

@@ -147,10 +147,16 @@ def test_vehicles(monkeypatch, capsys):
     facts = json.loads(capsys.readouterr().out)
     assert facts["passenger_car"]["mass"] == pytest.approx(1814.37)
     assert "bumper" in facts["pickup"]["zones"]
+    sizes = {name: facts["passenger_car"][name] for name in ("length", "width", "height")}
+    assert sizes == pytest.approx({"length": 4.896, "width": 1.837, "height": 1.445}, abs=2e-3)
+    assert facts["semi_truck"]["wheelbase"] == pytest.approx(18.455, abs=1e-9)
     assert birm3d(monkeypatch, "vehicles") == 0
     out = capsys.readouterr().out
     assert "paper_pickup" in out
     assert "mass [kg]" in out
+    assert "wheelbase" in out
+    assert "4.266" in out  # the pickup's
+    assert "zones of pickup: bumper" in out
 
 
 @pytest.mark.parametrize(
@@ -159,6 +165,7 @@ def test_vehicles(monkeypatch, capsys):
         (["--vehicle", "pickup"], ["--speed", "missing"]),
         (["--vehicle", "pikcup", "--speed", "5m/s"], ["preset", "pickup", "'pikcup'"]),
         (["--vehicle", "pickup", "--speed", "5 knots"], ["speed", "mph", "5 knots"]),
+        (["--vehicle", "pickup", "--speed", "30"], ["speed", "m/s, mm/s, km/h, kmh, kph, mph, ft/s", "'30'"]),
         (["--vehicle", "pickup", "--speed", "-3m/s"], ["impact_speed", ">= 0", "-3"]),
         (["--vehicle", "pickup", "--speed", "5m/s", "--angle", "190"], ["impact_angle", "180", "190"]),
         (["--vehicle", "pickup", "--speed", "5m/s", "--friction", "-1"], ["friction", ">= 0", "-1"]),
@@ -324,6 +331,7 @@ def test_failed_runs_of_a_sweep_are_told(monkeypatch, capsys):
         (["--vary", "impact_sped=5"], ["--speed is missing"]),
         (["--speed", "5m/s", "--vary", "impact_sped=5"], ["impact_speed", "'impact_sped'"]),
         (["--vary", "impact_speed=5kg"], ["speed", "mph", "5kg"]),
+        (["--vary", "impact_speed=20,30"], ["impact_speed", "mph", "'20'"]),
         (["--vary", "impact_speed=5:1:1m/s"], ["impact_speed", "step", "5:1:1m/s"]),
         (["--vary", "impact_speed=1:5m/s"], ["impact_speed", "FIRST:LAST:STEP", "1:5m/s"]),
         (["--vary", "impact_speed=5m/s", "--metrics", "crush"], ["metrics", "dynamic_crush", "'crush'"]),
