@@ -17,6 +17,8 @@ from .metrics import METRIC_UNITS
 from .runs import run_study
 from .simulation import Simulation
 from .study import Study
+from .unit_check import given
+from .units import Quantity
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -94,7 +96,7 @@ class Fragility:
 
 def fragility(
     simulation: Simulation,
-    speeds: Iterable[float],
+    speeds: Iterable[Quantity],
     distributions: Mapping[str, Any],
     n: int,
     seed: int = 0,
@@ -117,7 +119,7 @@ def fragility(
     simulation
         The scene to vary.
     speeds
-        Impact speeds [m/s], two or more, > 0, increasing.
+        Impact speeds [m/s], or text as ``"30 mph"``; two or more, > 0, increasing.
     distributions
         Parameter -> frozen distribution of :mod:`scipy.stats`; not ``impact_speed``.
     n
@@ -186,8 +188,8 @@ def fragility(
     return Fragility(event, np.array(listed), events, runs, low, high, confidence, fit, no_fit, study)
 
 
-def _speeds(speeds: Iterable[float]) -> list[float]:
-    listed = [float(speed) for speed in speeds]
+def _speeds(speeds: Iterable[Quantity]) -> list[float]:
+    listed = [given("impact_speed", speed, stacklevel=5) for speed in speeds]
     if len(listed) < 2:
         raise ValueError(f"speeds must have at least two values, got {listed}")
     for before, speed in zip([0.0, *listed], listed, strict=False):

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from . import _core
 from .filters import moving_average
+from .units import Quantity, si
 
 if TYPE_CHECKING:
     from .barrier import Barrier
@@ -56,13 +57,26 @@ class FreeStanding:
     ground_friction: float = 0.5
     joint: str = "pinned"
 
+    if TYPE_CHECKING:  # what dataclass makes, and the text that __post_init__ reads
+
+        def __init__(
+            self,
+            density: Quantity | None = None,
+            mass_per_length: Quantity | None = None,
+            ground_friction: float = 0.5,
+            joint: str = "pinned",
+        ) -> None: ...
+
     def __post_init__(self) -> None:
         if self.density is not None and self.mass_per_length is not None:
             raise ValueError(
                 f"mass_per_length must be None where density is given, got {self.mass_per_length}"
             )
-        for name in ("density", "mass_per_length"):
+        for name, quantity in (("density", "density"), ("mass_per_length", "mass per length")):
             value = getattr(self, name)
+            if isinstance(value, str):
+                value = si(name, value, quantity)
+                object.__setattr__(self, name, value)
             if value is not None and not 0.0 < value < math.inf:
                 raise ValueError(f"{name} must be finite and > 0, got {value}")
         if not 0.0 <= self.ground_friction < math.inf:

@@ -14,9 +14,10 @@ import numpy.typing as npt
 
 from .distributions import check_count
 from .runs import run_study
-from .scene_parameters import unit_of, value_of
+from .scene_parameters import in_si, unit_of, value_of
 from .simulation import Simulation
 from .study import Study
+from .units import Quantity
 
 __all__ = ["CriticalImpactPoint", "critical_impact_point"]
 
@@ -71,7 +72,7 @@ class CriticalImpactPoint:
 def critical_impact_point(
     simulation: Simulation,
     metric: str,
-    ranges: Mapping[str, tuple[float, float]],
+    ranges: Mapping[str, tuple[Quantity, Quantity]],
     *,
     minimize: bool = False,
     points: int = 9,
@@ -94,7 +95,8 @@ def critical_impact_point(
     metric
         A name of :data:`birm3d.metrics.METRIC_UNITS`. Runs that lack it are never the best.
     ranges
-        Parameter -> (least, greatest), as ``{"impact_offset": (-2, 2), "impact_angle": (15, 90)}``.
+        Parameter -> (least, greatest), as ``{"impact_offset": (-2, 2), "impact_angle": (15, 90)}``; SI and
+        degrees, or text with a unit.
     minimize
         Whether the least value is wanted.
     points
@@ -170,16 +172,20 @@ def critical_impact_point(
     )
 
 
-def _bounds(simulation: Simulation, ranges: Mapping[str, tuple[float, float]]) -> tuple[Floats, Floats]:
+def _bounds(simulation: Simulation, ranges: Mapping[str, tuple[Quantity, Quantity]]) -> tuple[Floats, Floats]:
     if not ranges:
         raise ValueError("ranges must name at least one parameter, got none")
-    for name, limits in ranges.items():
+    listed = []
+    for name, given in ranges.items():
         value_of(simulation, name)
+        limits = [in_si(name, limit) for limit in given]
+        listed.append(limits)
         if len(limits) != 2 or not -math.inf < limits[0] < limits[1] < math.inf:
             raise ValueError(
-                f"ranges[{name!r}] must be (least, greatest), finite and increasing; got {limits}"
+                f"ranges[{name!r}] must be (least, greatest), finite and increasing; got {given}"
             )
-    return np.array([r[0] for r in ranges.values()], float), np.array([r[1] for r in ranges.values()], float)
+    low, high = np.array(listed, float).T
+    return low, high
 
 
 def _effects(names: tuple[str, ...], values: Floats) -> dict[str, float]:

@@ -16,6 +16,7 @@ from .laboratory import elastic_block, laboratory_block, laboratory_semi
 from .reference import NhtsaTest, nhtsa_tests
 from .settings import Settings
 from .simulation import Simulation
+from .units import Quantity
 from .vehicle import Vehicle
 
 __all__ = [
@@ -211,11 +212,11 @@ def oblique_car(
     return Simulation(vehicle, wall, units.mph(59.8), 24.0, settings=settings)
 
 
-def rolling(duration: float = 2.0, settings: Settings | None = None) -> Simulation:
+def rolling(duration: Quantity = 2.0, settings: Settings | None = None) -> Simulation:
     """Paper, case 1: a pickup that rolls at 30 mph; the tyre reactions sum to its weight."""
     return Simulation(Vehicle.preset("pickup"), None, units.mph(30.0), duration=duration, settings=settings)
 
 
-def parked(duration: float = 10.0, settings: Settings | None = None) -> Simulation:
+def parked(duration: Quantity = 10.0, settings: Settings | None = None) -> Simulation:
     """Pickup that stands still."""
     return Simulation(Vehicle.preset("pickup"), None, 0.0, duration=duration, settings=settings)

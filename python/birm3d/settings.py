@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from . import _core
+from .units import Quantity, si
 
 __all__ = ["MU_TIRE_BARRIER", "Settings"]
 
 MU_TIRE_BARRIER = 0.6
 """Friction coefficient of tyres on a barrier where none is asked for, see :class:`Settings`."""
 
+_QUANTITIES = {"time_step": "time", "output_interval": "time", "gravity": "acceleration"}
+
 
 @dataclass(frozen=True)
 class Settings:
     """How a scene is computed: SI units, immutable, checked when made.
+
+    Times and gravity are also taken as text with a unit, as ``time_step="10 us"``.
 
     Parameters
     ----------
@@ -73,7 +78,30 @@ class Settings:
     contact_model: Literal["projected", "along_truss"] = "projected"
     tire_model: Literal["slip", "skid"] = "slip"
 
+    if TYPE_CHECKING:  # what dataclass makes, and the text that __post_init__ reads
+
+        def __init__(
+            self,
+            time_step: Quantity | None = None,
+            tolerance: float = 1e-3,
+            output_interval: Quantity = 1e-4,
+            gravity: Quantity = 9.80665,
+            ground: bool = True,
+            mu_tire: float = 0.8,
+            mu_body: float = 0.4,
+            mu_tire_barrier: float | None = None,
+            braking: float = 0.0,
+            cornering_stiffness: float = 10.0,
+            restitution: float = 0.1,
+            contact_model: Literal["projected", "along_truss"] = "projected",
+            tire_model: Literal["slip", "skid"] = "slip",
+        ) -> None: ...
+
     def __post_init__(self) -> None:
+        for name, quantity in _QUANTITIES.items():
+            value: object = getattr(self, name)
+            if isinstance(value, str):
+                object.__setattr__(self, name, si(name, value, quantity))
         _ = self.core
 
     @cached_property

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterable, Mapping
-from numbers import Real
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from .units import Quantity, quantity_in, si
+from .units import Quantity, Stated, quantity_in, si
 
 __all__ = [
     "USUAL",
@@ -68,17 +67,14 @@ USUAL: Mapping[str, Usual] = MappingProxyType(
         "width": _LONG,
         "length": _LONG,
         "density": Usual(100.0, 20000.0, "kg/m^3", "t/m^3"),
-        "mass_per_length": Usual(10.0, 20000.0, "kg/m", "t/m"),
         "payload": Usual(10.0, 100_000.0, "kg", "t", zero=True),
         "dent_reach": Usual(0.0, 5.0, "m", "mm"),
-        "gravity": Usual(1.5, 30.0, "m/s^2", "g", zero=True),
-        "output_interval": Usual(0.0, 0.02, "s", "ms"),
     }
 )
 """Argument -> range that is accepted without a :class:`UnitWarning`."""
 
 # Of a mesh from its foot to its top [m]; how long it is says less.
-_MESH_HEIGHT = Usual(0.01, 50.0, "m", "mm")
+_MESH_HEIGHT = Usual(0.001, 100.0, "m", "mm")
 # Of a round angle in radians: multiples of 5 deg, within this [rad].
 _ROUND, _NEAR = math.pi / 36.0, 1e-3
 
@@ -96,7 +92,7 @@ def given(name: str, value: Quantity, *, stacklevel: int = 3) -> float:
     quantity = quantity_in(USUAL[name].unit)
     assert quantity is not None  # all units of USUAL are known
     number = si(name, value, quantity)
-    if not isinstance(value, str):
+    if not isinstance(value, (str, Stated)):
         warn_if_unusual(name, number, USUAL[name], stacklevel=stacklevel + 1)
     return number
 
@@ -107,11 +103,12 @@ def warn_if_any_unusual(name: str, values: Iterable[Any], *, stacklevel: int = 2
     ``name`` as in :mod:`birm3d.scene_parameters`; parameters without a usual range are left alone.
     """
     group, _, field = name.rpartition(".")
-    usual = USUAL.get(field) if group in ("", "barrier", "settings") else None
+    usual = USUAL.get(field) if group in ("", "barrier") else None
     if usual is None:
         return
     for value in values:
-        if isinstance(value, Real) and _is_unusual(float(value), usual):
+        plain = isinstance(value, (int, float)) and not isinstance(value, Stated)
+        if plain and _is_unusual(float(value), usual):
             warn_if_unusual(name, float(value), usual, stacklevel=stacklevel + 1)
             return
 

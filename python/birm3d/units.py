@@ -17,6 +17,7 @@ from typing import NamedTuple, TypeAlias
 __all__ = [
     "Measure",
     "Quantity",
+    "Stated",
     "Unit",
     "ft",
     "g",
@@ -144,6 +145,10 @@ _QUANTITIES = {**_MEASURED, **_GIVEN}
 _VALUE = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)", re.DOTALL)
 
 
+class Stated(float):
+    """A number whose unit was stated: nobody needs to ask whether it was meant in another."""
+
+
 def parse(text: str, quantity: str, *, plain: bool = True) -> float:
     """Read a number with a unit, such as ``"50mph"`` or ``"1719 kg"``; letter case counts.
 
@@ -159,7 +164,7 @@ def parse(text: str, quantity: str, *, plain: bool = True) -> float:
     Returns
     -------
     float
-        The value in SI; degrees for angles.
+        The value in SI; degrees for angles. A :class:`Stated` one where the text has a unit.
 
     Raises
     ------
@@ -172,7 +177,9 @@ def parse(text: str, quantity: str, *, plain: bool = True) -> float:
         raise ValueError(
             f"{quantity} must be a number with one of the units {', '.join(allowed)}; got {text!r}"
         )
-    return float(match[1]) * (float(allowed[match[2]]) if match[2] else 1.0)
+    if not match[2]:
+        return float(match[1])
+    return Stated(float(match[1]) * float(allowed[match[2]]))
 
 
 def si(name: str, value: Quantity, quantity: str) -> float:
@@ -195,7 +202,7 @@ def si(name: str, value: Quantity, quantity: str) -> float:
     """
     if isinstance(value, str):
         try:
-            return parse(value, quantity, plain=False)
+            return float(parse(value, quantity, plain=False))
         except ValueError:
             pass
     else:

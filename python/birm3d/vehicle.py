@@ -20,7 +20,7 @@ from .frozen_mapping import FrozenMapping
 from .loading import check_load, solids_at, structure_mass
 from .mass_center import stretched_inertia
 from .unit_check import Usual, given, warn_if_unusual
-from .units import Quantity, si
+from .units import Quantity, Stated, si
 from .vehicle_guard import as_built, changed_by_hand, check_parts
 from .zone import KNEE, TRUSS_LAW, Zone, positive
 
@@ -329,7 +329,7 @@ class Vehicle:
     def _mass_given(self, name: str, mass: Quantity, *, stacklevel: int = 4) -> float:
         """Return a mass [kg] > 0, with a word if it is far from that of the vehicle's file."""
         number = positive(name, si(name, mass, "mass"))
-        if not isinstance(mass, str) and not self._draft and self.has_file:
+        if not isinstance(mass, (str, Stated)) and not self._draft and self.has_file:
             usual = sum(unit._file.gvw_kg for unit in self.units if unit._file is not None)
             warn_if_unusual(
                 name, number, Usual(usual * _LEAST, usual * _MOST, "kg", "t"), stacklevel=stacklevel

@@ -291,7 +291,8 @@ def test_a_run_lets_other_threads_work() -> None:
 def test_keyboard_interrupt_stops_a_run() -> None:
     code = textwrap.dedent("""
         from birm3d import Settings, scenes
-        simulation = scenes.parked(duration=1e4, settings=Settings(time_step=1e-6, output_interval=10.0))
+        settings = Settings(time_step=1e-6, output_interval=10.0)
+        simulation = scenes.parked(duration="10000 s", settings=settings)
         print("running", flush=True)
         try:
             simulation.run()

@@ -128,7 +128,7 @@ def test_a_run_that_fails_is_a_row_with_its_reason(study: Study) -> None:
 def test_unstable_runs_and_missing_metrics_are_rows() -> None:
     study = birm3d.sweep(
         SEDAN,
-        parameters={"settings.time_step": [None, 0.2], "settings.output_interval": [1e-4, "10 s"]},
+        parameters={"settings.time_step": [None, 0.2], "settings.output_interval": [1e-4, 10.0]},
         impact_speed=[5.0],
         duration=[0.05],
     )

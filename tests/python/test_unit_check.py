@@ -9,7 +9,21 @@ from typing import Any
 
 import numpy as np
 import pytest
-from birm3d import Barrier, Simulation, UnitWarning, Vehicle, monte_carlo, scenes, sweep, units
+from birm3d import (
+    Barrier,
+    FreeStanding,
+    Settings,
+    Simulation,
+    UnitWarning,
+    Vehicle,
+    critical_impact_point,
+    fragility,
+    monte_carlo,
+    scenes,
+    sweep,
+    units,
+)
+from birm3d.calibration import Parameter
 from birm3d.scene_parameters import parameter_names, quantity_of, value_of, varied
 from scipy import stats
 
@@ -104,6 +118,27 @@ def test_every_number_of_a_scene_that_has_a_unit_takes_text() -> None:
             varied(car, {name: "1 furlong"})
 
 
+def test_settings_studies_and_calibrations_take_text() -> None:
+    settings = Settings(time_step="20 us", output_interval="0.1 ms", gravity="1 g")
+    found = (settings.time_step, settings.output_interval, settings.gravity)
+    assert found == pytest.approx((2e-5, 1e-4, 9.80665), rel=1e-15)
+    assert dataclasses.replace(Settings(), gravity="1 g").gravity == 9.80665  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"output_interval must be a number in s, or text .*got '1 m'"):
+        Settings(output_interval="1 m")
+    assert FreeStanding(mass_per_length="0.6 t/m").mass_per_length == 600.0
+    parameter = Parameter("vehicle.gvw", "3000 lb", 2500.0, start="1.8 t", prior=("1.8 t", "100 kg"))
+    assert (parameter.lower, parameter.upper, parameter.start) == (3000 * 0.45359237, 2500.0, 1800.0)
+    assert parameter.prior == (1800.0, 100.0)
+    with pytest.raises(ValueError, match=r"upper of vehicle.gvw must be a number in kg, .*got '30 mph'"):
+        Parameter("vehicle.gvw", 1000.0, "30 mph")
+    with pytest.raises(ValueError, match=r"lower of zone.a.scale must be a number, got '1 m'"):
+        Parameter("zone.a.scale", "1 m", 2.0)
+    deep = critical_impact_point(at(), "dynamic_crush", {"impact_speed": ("20 mph", 10.0)}, points=3)
+    assert deep.point == {"impact_speed": 10.0}
+    risk = fragility(at(), ["20 mph", "10 m/s"], {}, n=1, exceeds={"dynamic_crush": 0.45})
+    assert risk.speeds.tolist() == [units.mph(20), 10.0]
+
+
 # ---- numbers in the wrong unit -----------------------------------------------------------------------------
 
 
@@ -132,7 +167,7 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: Barrier.jersey(length=4, free_standing=True, density=2.4),
         r"density = 2.4 kg/m\^3 .* 100 to 20,000 kg/m\^3",
     ),
-    "mesh in mm": (lambda: box(1000.0), r"vertices .* 1000 m high .* 0.01 to 50 m"),
+    "mesh in mm": (lambda: box(1000.0), r"vertices .* 1000 m high .* 0.001 to 100 m"),
     "a list": (
         lambda: sweep(at(), impact_speed=[10.0, 300.0], metrics=["dynamic_crush"]),
         r"impact_speed = 300 m/s",
@@ -162,3 +197,4 @@ def test_what_is_usual_or_says_its_unit_is_not_warned_of() -> None:
         at(barrier=Barrier.rigid_wall(width=6.0, thickness=4.0), impact_angle=0.0)
         box(0.15)
         Simulation.from_scene(at("400 km/h").scene)  # known already
+        at(units.parse("400 km/h", "speed"))  # as the command line and scene files say it

@@ -13,6 +13,7 @@ from pydantic import Field, model_validator
 from ..scene_file import read_scene_file
 from ..test_data import read_csv_channels
 from ..toml_document import Document, DocumentError, KeyPath, Strict, frozen, reject
+from ..units import Quantity
 from .curve_target import CurveTarget
 from .parameters import Parameter
 from .problem import Target
@@ -68,11 +69,11 @@ class _Simulation(Strict):
 
 class _Parameter(Strict):
     names: tuple[str, ...]
-    lower: float
-    upper: float
-    start: float | None = None
+    lower: Quantity
+    upper: Quantity
+    start: Quantity | None = None
     log: bool = False
-    prior: tuple[float, float] | None = None
+    prior: tuple[Quantity, Quantity] | None = None
     factor: bool = False
     simulations: tuple[int, ...] | None = None
     name: str | None = None

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ..scene_parameters import value_of, varied
+from ..scene_parameters import quantity_of, value_of, varied
+from ..units import Quantity, si
 
 if TYPE_CHECKING:
     from ..simulation import Simulation
@@ -30,8 +31,9 @@ class Parameter:
         Number of the scene, or several, named as in :mod:`birm3d.scene_parameters`. All of them get the same
         value, or with ``factor`` are multiplied by it.
     lower, upper
-        Bounds, both given and finite. They also say what "wide" means: a parameter whose interval is as wide
-        as its bounds counts as not identified.
+        Bounds, both given and finite; as ``start`` and ``prior`` also text with a unit, as ``"1500 kg"``.
+        They also say what "wide" means: a parameter whose interval is as wide as its bounds counts as not
+        identified.
     start
         ``None``: the present value (of the first name in the first scene), 1 with ``factor``.
     log
@@ -66,6 +68,22 @@ class Parameter:
     apply: Callable[[Simulation, float], Simulation] | None = None
     name: str | None = None
 
+    if TYPE_CHECKING:  # what dataclass makes, and the text that __post_init__ reads
+
+        def __init__(
+            self,
+            names: str | Sequence[str] = (),
+            lower: Quantity = math.nan,
+            upper: Quantity = math.nan,
+            start: Quantity | None = None,
+            log: bool = False,
+            prior: tuple[Quantity, Quantity] | None = None,
+            factor: bool = False,
+            simulations: Sequence[int] | None = None,
+            apply: Callable[[Simulation, float], Simulation] | None = None,
+            name: str | None = None,
+        ) -> None: ...
+
     def __post_init__(self) -> None:
         names = (self.names,) if isinstance(self.names, str) else tuple(self.names)
         object.__setattr__(self, "names", names)
@@ -75,6 +93,10 @@ class Parameter:
             )
         if self.apply is not None and (self.name is None or self.start is None):
             raise ValueError(f"name and start must be given with apply, got {self.name!r} and {self.start}")
+        for key in ("lower", "upper", "start"):
+            object.__setattr__(self, key, self._in_si(key, getattr(self, key)))
+        if self.prior is not None:
+            object.__setattr__(self, "prior", tuple(self._in_si("prior", one) for one in self.prior))
         if self.simulations is not None:
             object.__setattr__(self, "simulations", tuple(int(i) for i in self.simulations))
         for bound in ("lower", "upper"):
@@ -95,6 +117,15 @@ class Parameter:
                 raise ValueError(f"prior mean of {self.label} must be {limit}, got {mean}")
             if not (math.isfinite(sigma) and sigma > 0.0):
                 raise ValueError(f"prior sigma of {self.label} must be finite and > 0, got {sigma}")
+
+    def _in_si(self, key: str, value: Quantity | None) -> float | None:
+        """Return a number that may be given as text with the unit of the first name."""
+        if not isinstance(value, str):
+            return value
+        quantity = quantity_of(self.names[0]) if self.names and not self.factor else None
+        if quantity is None:
+            raise ValueError(f"{key} of {self.label} must be a number, got {value!r}")
+        return si(f"{key} of {self.label}", value, quantity)
 
     @property
     def label(self) -> str:
