@@ -135,7 +135,8 @@ def test_settings_studies_and_calibrations_take_text() -> None:
         Parameter("zone.a.scale", "1 m", 2.0)
     deep = critical_impact_point(at(), "dynamic_crush", {"impact_speed": ("20 mph", 10.0)}, points=3)
     assert deep.point == {"impact_speed": 10.0}
-    risk = fragility(at(), ["20 mph", "10 m/s"], {}, n=1, exceeds={"dynamic_crush": 0.45})
+    friction = {"barrier.friction": stats.uniform(0.1, 0.1)}
+    risk = fragility(at(), ["20 mph", "10 m/s"], friction, n=1, exceeds={"dynamic_crush": 0.45})
     assert risk.speeds.tolist() == [units.mph(20), 10.0]
 
 
