@@ -34,7 +34,7 @@ __all__ = ["TRUSS_LAW", "Vehicle", "Zone"]
 Floats = npt.NDArray[np.float64]
 FloatsLike = npt.ArrayLike
 
-NOT_STORED: Mapping[str, Any] = MappingProxyType({"stored": False})
+NOT_STORED: Mapping[str, Any] = {"stored": False}
 """Metadata of a field that no file holds."""
 
 # A mass beyond these shares of that of the file is most likely in another unit.
