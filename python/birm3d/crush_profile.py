@@ -30,6 +30,10 @@ _SIDES: Mapping[Side, tuple[int, float, int]] = {
 # An element belongs to a side if its normal is within 60 degrees of outwards.
 _FACING = 0.5
 _POINTS = 6
+# Parts of a side that are further apart, square to it, can hide each other [m].
+_APART = 1e-3
+# Nodes with this share of the greatest crush say at which height it is.
+_ALMOST = 0.95
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +50,7 @@ class CrushMap:
     crush : ndarray, shape (n,)
         Of all nodes: how far they have moved inwards, square to the side [m].
     triangles : ndarray, shape (m, 3)
-        Of the side, indices of nodes.
+        Of the side, indices of nodes, those that no other part of the same side hides from outside.
     """
 
     side: Side
@@ -86,19 +90,29 @@ class CrushProfile:
     mean: float
 
 
-def crush_map(result: Result, side: Side = "front", *, unit: int = 0) -> CrushMap:
+def crush_map(result: Result, side: Side | None = None, *, unit: int = 0) -> CrushMap:
     """Return the residual crush of one side: uncrushed less final place, square to the side, of every node.
+
+    Parameters
+    ----------
+    side
+        ``"front"``, ``"rear"``, ``"left"`` or ``"right"``; ``None``: that with the greatest crush, the front
+        where nothing is crushed.
+    unit
+        Of the vehicle.
 
     Raises
     ------
     ValueError
         If the side is unknown or the unit has no skin there.
     """
+    if side is None:
+        return _struck(result, unit)
     if side not in _SIDES:
         raise ValueError(f"side must be one of {', '.join(_SIDES)}; got {side!r}")
     shape = unit_shapes(result.scene.vehicle)[unit]
     axis, sign, lateral = _SIDES[side]
-    triangles = _facing(shape, axis, sign, lateral)
+    triangles = _visible(shape, _facing(shape, axis, sign, lateral), axis, sign, lateral)
     if len(triangles) == 0:
         raise ValueError(f"side must be one that the vehicle has skin on, got {side!r}")
     return CrushMap(
@@ -111,14 +125,14 @@ def crush_map(result: Result, side: Side = "front", *, unit: int = 0) -> CrushMa
 
 
 def crush_profile(
-    result: Result, side: Side = "front", *, height: float | None = None, unit: int = 0
+    result: Result, side: Side | None = None, *, height: float | None = None, unit: int = 0
 ) -> CrushProfile:
     """Return the crush of one side along a level line, with the six points of a CRASH3 (NHTSA) measurement.
 
     Parameters
     ----------
     side
-        ``"front"``, ``"rear"``, ``"left"`` or ``"right"``.
+        ``"front"``, ``"rear"``, ``"left"`` or ``"right"``; ``None``: that with the greatest crush.
     height
         Of the line above the ground at rest [m]; ``None``: the middle of the zone ``bumper`` in front, else
         where the crush is greatest.
@@ -129,6 +143,7 @@ def crush_profile(
         If the side is unknown, the unit has no skin there, or none at that height.
     """
     field = crush_map(result, side, unit=unit)
+    side = field.side
     if height is None:
         height = _usual_height(unit_shapes(result.scene.vehicle)[unit], field)
     lateral, crush = _cut(field, height)
@@ -156,14 +171,29 @@ def crush_profile(
 
 def crushed_sides(result: Result, least: float = 0.01, *, unit: int = 0) -> tuple[Side, ...]:
     """Return the sides that are crushed by more than `least` [m] somewhere, greatest crush first."""
+    return tuple(field.side for field in _all_sides(result, unit) if _greatest(field) > least)
+
+
+def _all_sides(result: Result, unit: int) -> list[CrushMap]:
+    """Return the maps of all sides that have a skin, that of the greatest crush first."""
     shape = unit_shapes(result.scene.vehicle)[unit]
-    greatest: dict[Side, float] = {}
-    for side, (axis, sign, lateral) in _SIDES.items():
-        if len(_facing(shape, axis, sign, lateral)):
-            field = crush_map(result, side, unit=unit)
-            greatest[side] = float(field.crush[np.unique(field.triangles)].max())
-    order = sorted(greatest, key=lambda side: -greatest[side])
-    return tuple(side for side in order if greatest[side] > least)
+    fields = [
+        crush_map(result, side, unit=unit) for side, axes in _SIDES.items() if len(_facing(shape, *axes))
+    ]
+    return sorted(fields, key=lambda field: -_greatest(field))
+
+
+def _greatest(field: CrushMap) -> float:
+    return float(field.crush[np.unique(field.triangles)].max())
+
+
+def _struck(result: Result, unit: int) -> CrushMap:
+    fields = _all_sides(result, unit)
+    if not fields:
+        raise ValueError(f"unit must be one that has a skin on some side, got {unit}")
+    if _greatest(fields[0]) <= 0.0:
+        return next((field for field in fields if field.side == "front"), fields[0])
+    return fields[0]
 
 
 def _facing(shape: UnitShape, axis: int, sign: float, lateral: int) -> Ints:
@@ -185,13 +215,30 @@ def _facing(shape: UnitShape, axis: int, sign: float, lateral: int) -> Ints:
     return np.asarray(mine[Delaunay(plane).simplices])
 
 
+def _visible(shape: UnitShape, triangles: Ints, axis: int, sign: float, lateral: int) -> Ints:
+    """Return the triangles that others do not hide altogether, the outermost last: drawn so, they cover."""
+    import shapely
+
+    plane = shape.nodes[triangles][:, :, [lateral, 2]]
+    outwards = sign * shape.nodes[triangles, axis].mean(axis=1)
+    # A triangle is hidden if points near its three corners are.
+    corners = plane + 0.05 * (plane.mean(axis=1, keepdims=True) - plane)
+    tree = shapely.STRtree(shapely.polygons(plane))
+    inner, outer = tree.query(shapely.points(corners.reshape(-1, 2)), predicate="within")
+    hides = outwards[outer] > outwards[inner // 3] + _APART
+    hidden = np.bincount(np.unique(inner[hides]) // 3, minlength=len(triangles)) == 3
+    order = np.argsort(outwards, kind="stable")
+    return np.asarray(triangles[order[~hidden[order]]])
+
+
 def _usual_height(shape: UnitShape, field: CrushMap) -> float:
     nodes = np.unique(field.triangles)
     if field.side == "front" and "bumper" in shape.zone_names:
         bumper = nodes[shape.zone_of_node[nodes] == shape.zone_names.index("bumper")]
         if len(bumper):
             return float(0.5 * (field.height[bumper].min() + field.height[bumper].max()))
-    return float(field.height[nodes[np.argmax(field.crush[nodes])]])
+    crush = field.crush[nodes]
+    return float(field.height[nodes[crush >= _ALMOST * crush.max()]].mean())
 
 
 def _cut(field: CrushMap, height: float) -> tuple[Floats, Floats]:

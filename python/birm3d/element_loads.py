@@ -16,7 +16,14 @@ from .unit_result import read_only
 if TYPE_CHECKING:
     from .result import Result
 
-__all__ = ["LEAST_SHARE", "ElementLoad", "element_loads", "resultant_height", "touched_elements"]
+__all__ = [
+    "LEAST_SHARE",
+    "ElementLoad",
+    "element_loads",
+    "overturning",
+    "resultant_height",
+    "touched_elements",
+]
 
 Floats = npt.NDArray[np.float64]
 
@@ -72,7 +79,7 @@ class ElementLoad:
     @cached_property
     def overturning_moment(self) -> Floats:
         """Magnitude of the horizontal moment, of a wall of its part about the line, shape (n,) [N m]."""
-        return read_only(_overturning(self.moment, self.line))
+        return read_only(overturning(self.moment, self.line))
 
     @cached_property
     def touched(self) -> bool:
@@ -104,7 +111,7 @@ class ElementLoad:
     @cached_property
     def peak_overturning_moment_50ms(self) -> float:
         """Greatest overturning moment of the mean over 50 ms [N m]."""
-        return float(_overturning(self._mean[1], self.line).max())
+        return float(overturning(self._mean[1], self.line).max())
 
     @cached_property
     def _mean(self) -> tuple[Floats, Floats]:
@@ -119,7 +126,8 @@ class ElementLoad:
         return f"ElementLoad({self.name!r}, {force:.4g} N, {moment:.4g} N m)"
 
 
-def _overturning(moment: Floats, line: Floats | None) -> Floats:
+def overturning(moment: Floats, line: Floats | None = None) -> Floats:
+    """Return the magnitude of the horizontal moment, of a wall of its part about the line, shape (n,)."""
     if line is None:
         return np.asarray(np.hypot(moment[:, 0], moment[:, 1]))
     return np.abs(moment @ line)

@@ -85,6 +85,11 @@ class Fragility:
 
         return plot_fragility(self)
 
+    def _repr_html_(self) -> str:
+        from .notebook_html import text_html
+
+        return text_html(repr(self), self.plot(), "fragility curve")
+
     def __repr__(self) -> str:
         if self.fit is None:
             curve = f"no fit: {self.no_fit}"

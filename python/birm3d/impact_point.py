@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,9 @@ from .scene_parameters import in_si, unit_of, value_of
 from .simulation import Simulation
 from .study import Study
 from .units import Quantity
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["CriticalImpactPoint", "critical_impact_point"]
 
@@ -57,6 +60,17 @@ class CriticalImpactPoint:
     tolerance: float
     grid: Study
     refinement: Study
+
+    def plot(self) -> Figure:
+        """Return the metric over the ranges that were searched, with the critical point."""
+        from .study.uncertainty_plots import plot_critical_point
+
+        return plot_critical_point(self)
+
+    def _repr_html_(self) -> str:
+        from .notebook_html import text_html
+
+        return text_html(repr(self), self.plot(), "critical impact point")
 
     def __repr__(self) -> str:
         notes = {name: ", no effect" for name in self.no_effect}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from . import units
@@ -10,7 +11,7 @@ from .element_loads import touched_elements
 if TYPE_CHECKING:
     from .result import Result
 
-__all__ = ["ELEMENT_COLUMNS", "element_rows", "elements_in_si", "outcome_rows"]
+__all__ = ["ELEMENT_COLUMNS", "element_rows", "elements_in_si", "headline_rows", "outcome_rows"]
 
 ELEMENT_COLUMNS = (
     "element",
@@ -81,3 +82,9 @@ def elements_in_si(result: Result) -> list[dict[str, str | float]]:
         {"name": load.name, **{number: getattr(load, number) for number in numbers}}
         for load in touched_elements(result)
     ]
+
+
+def headline_rows(result: Result, names: Collection[str]) -> list[tuple[str, str, str]]:
+    """Return :func:`outcome_rows` without the metrics that are not among the names."""
+    others = {label for name, label, *_ in _ROWS if name not in names}
+    return [row for row in outcome_rows(result) if row[0] not in others]

@@ -52,8 +52,13 @@ def plot_plan(self: Result, times: Sequence[float] | None = None, *, exit_box: b
     return plot_plan(self, times, exit_box=exit_box)
 
 
-def plot_crush(self: Result, side: Side = "front", *, height: float | None = None, unit: int = 0) -> Figure:
-    """Return crush map and profile of one side; see :func:`birm3d.plotting.plot_crush`."""
+def plot_crush(
+    self: Result, side: Side | None = None, *, height: float | None = None, unit: int = 0
+) -> Figure:
+    """Return crush map and profile of one side, the struck one if none is given.
+
+    See :func:`birm3d.plotting.plot_crush`.
+    """
     from .plotting import plot_crush
 
     return plot_crush(self, side, height=height, unit=unit)

@@ -419,6 +419,12 @@ class Result:
 
         return (from_bytes, (to_bytes(self),))
 
+    def _repr_html_(self) -> str:
+        """Return what notebooks show: outcome, headline numbers, a small plan view."""
+        from .notebook_html import result_html
+
+        return result_html(self)
+
     def __repr__(self) -> str:
         rows, steps = len(self.time), self.statistics.steps
         return f"Result({rows} rows to {self.time[-1]:g} s, {self.end_reason}, {steps} steps)"

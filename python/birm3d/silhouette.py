@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+from typing import Any, TypeAlias
+
 import numpy as np
 import numpy.typing as npt
+import shapely
 
 from .unit_shapes import UnitShape
 
-__all__ = ["silhouette"]
+__all__ = ["Outline", "rings", "silhouette"]
 
 Floats = npt.NDArray[np.float64]
+Outline: TypeAlias = Any
+"""A polygon of shapely, or several, world x and y [m]."""
+
+# Triangles whose plan is smaller stand upright and cover nothing [m^2].
+_LEAST_AREA = 1e-12
 
 
-def silhouette(shape: UnitShape, nodes: Floats, center: Floats, turn: Floats, rays: int = 720) -> Floats:
-    """Return the outline seen from above as a polygon, shape (m, 2), world x and y [m], m <= `rays`.
+def silhouette(shape: UnitShape, nodes: Floats, center: Floats, turn: Floats) -> Outline:
+    """Return the outline seen from above: the union of the faces of the skin, projected on the ground.
 
-    Where rays from the middle of the skin leave it: exact there for an outline that each ray crosses once. A
-    unit without a skin has the convex hull of its nodes and anchors.
+    A unit without a skin has the convex hull of its nodes and anchors.
 
     Parameters
     ----------
@@ -26,50 +33,45 @@ def silhouette(shape: UnitShape, nodes: Floats, center: Floats, turn: Floats, ra
         Its shell nodes now, body axes, shape (n, 3) [m].
     center, turn
         Mass centre (3,) [m] and rotation body to world (3, 3).
-    rays
-        Their number, evenly spread.
     """
     if len(shape.quads) == 0:
-        return _hull((center + np.vstack([nodes, shape.anchors]) @ turn.T)[:, :2])
+        points = (center + np.vstack([nodes, shape.anchors]) @ turn.T)[:, :2]
+        return shapely.MultiPoint(points).convex_hull
     plan = (center + nodes @ turn.T)[:, :2]
-    used = plan[np.unique(shape.quads)]
-    middle = 0.5 * (used.min(axis=0) + used.max(axis=0))
-    pairs = np.sort(np.stack([shape.quads, np.roll(shape.quads, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
-    return np.asarray(middle + _farthest(plan[np.unique(pairs, axis=0)] - middle, rays))
+    triangles = plan[np.vstack([shape.quads[:, [0, 1, 2]], shape.quads[:, [0, 2, 3]]])]
+    zone = np.tile(shape.zone_of_node[shape.quads[:, 0]], 2)
+    u, v = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    area = 0.5 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+    sheets = [
+        _sheet(triangles[(zone == one) & (side * area > _LEAST_AREA)])
+        for one in np.unique(zone)
+        for side in (1.0, -1.0)
+    ]
+    return shapely.union_all(sheets)
 
 
-def _farthest(edges: Floats, rays: int) -> Floats:
-    """Return where rays from the origin last cross edges (k, 2, 2); rays that cross none are left out."""
-    step = 2.0 * np.pi / rays
-    a, b = edges[:, 0], edges[:, 1]
-    start = np.arctan2(a[:, 1], a[:, 0])
-    # Signed angle that the edge spans, less than half a turn.
-    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    span = np.arctan2(cross, np.einsum("ij,ij->i", a, b))
-    first = np.ceil(np.minimum(start, start + span) / step).astype(int)
-    last = np.floor(np.maximum(start, start + span) / step).astype(int)
-    crossed = np.maximum(0, last - first + 1)
-    edge = np.repeat(np.arange(len(edges)), crossed)
-    ray = np.arange(len(edge)) - np.repeat(np.cumsum(crossed) - crossed, crossed) + first[edge]
-    direction = np.stack([np.cos(ray * step), np.sin(ray * step)], axis=1)
-    along = (b - a)[edge]
-    # direction * radius = a + share * along, crossed with `along`
-    below = direction[:, 0] * along[:, 1] - direction[:, 1] * along[:, 0]
-    with np.errstate(
-        divide="ignore", invalid="ignore"
-    ):  # an edge along its ray: its ends are other edges' too
-        radius = np.where(below != 0.0, cross[edge] / below, 0.0)
-    outline = np.zeros(rays)
-    np.maximum.at(outline, ray % rays, radius)
-    hit = np.flatnonzero(outline > 0.0)
-    return np.asarray(outline[hit, None] * np.stack([np.cos(hit * step), np.sin(hit * step)], axis=1))
+def rings(outline: Outline) -> list[Floats]:
+    """Return the outer rings of an outline, shape (m, 2) each, the greatest first; holes are left out."""
+    parts = [part for part in shapely.get_parts(outline) if part.geom_type == "Polygon"]
+    if not parts:  # nothing that has an area
+        return [shapely.get_coordinates(outline)]
+    parts.sort(key=lambda part: -float(part.area))
+    return [shapely.get_coordinates(part.exterior)[:-1] for part in parts]
 
 
-def _hull(points: Floats) -> Floats:
-    from scipy.spatial import ConvexHull
+def _sheet(triangles: Floats) -> Outline:
+    """Return the union of triangles (k, 3, 2) of one part of the skin that all look up, or all down.
 
-    points = np.unique(points, axis=0)
-    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-    if len(points) < 3 or spread[1] < 1e-9 * spread[0]:
-        return points  # nothing that has an area
-    return np.asarray(points[ConvexHull(points).vertices])
+    Mostly they lie side by side. Then dropping the edges that two of them share gives their union, 20 times
+    faster than the union of any triangles. They do so if the result is valid and has the sum of their areas:
+    all turn the same way, so that no overlap can cancel another.
+    """
+    polygons = shapely.polygons(triangles)
+    total = float(shapely.area(polygons).sum())
+    try:
+        beside = shapely.coverage_union_all(polygons)
+    except shapely.GEOSException:  # its way to say that some overlap
+        return shapely.union_all(polygons)
+    if shapely.is_valid(beside) and abs(shapely.area(beside) - total) <= 1e-9 * total:
+        return beside
+    return shapely.union_all(polygons)

@@ -19,6 +19,7 @@ from .study import Study
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
 __all__ = ["SobolDesign", "SobolIndex", "SobolIndices", "sobol"]
 
@@ -132,6 +133,17 @@ class SobolIndices:
             for name in SobolIndex._fields
         }
         return pd.DataFrame(columns, index=index)
+
+    def plot(self, metrics: Sequence[str] | None = None) -> Figure:
+        """Return bars of first and total order, a panel a metric; ``None``: of the first six."""
+        from .study.uncertainty_plots import plot_sobol
+
+        return plot_sobol(self, metrics)
+
+    def _repr_html_(self) -> str:
+        from .notebook_html import text_html
+
+        return text_html(repr(self), self.plot() if self.metrics else None, "Sobol indices")
 
     def __repr__(self) -> str:
         left_out = "".join(f"; {name}: {reason}" for name, reason in self.left_out.items())

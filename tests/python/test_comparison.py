@@ -261,8 +261,10 @@ def test_summary_says_every_number_and_verdict() -> None:
 def test_plot_shows_curves_residuals_and_band() -> None:
     comparison = compare_curves(channel(SINE), channel(0.9 * SINE))
     above, below = comparison.plot().axes
-    assert above.get_lines()[0].get_ydata() == pytest.approx(comparison.measured.values)
-    assert above.get_lines()[1].get_ydata() == pytest.approx(comparison.computed.values)
+    # Forces are in N, figures show kN.
+    assert above.get_lines()[0].get_ydata() == pytest.approx(comparison.measured.values / 1e3)
+    assert above.get_lines()[1].get_ydata() == pytest.approx(comparison.computed.values / 1e3)
+    assert above.get_ylabel().endswith("[kN]")
     assert below.get_lines()[0].get_ydata() == pytest.approx(10.0 * SINE, abs=1e-9)
     mean, deviation = comparison.residuals
     low, high = below.patches[0].get_extents().transformed(below.transData.inverted()).intervaly

@@ -86,11 +86,60 @@ def test_numbers_are_those_of_the_result(page: Page, result: Result) -> None:
     force = {curve["name"]: curve["y"] for curve in panels["Barrier force"]["curves"]}
     expected = cfc(result.barrier_normal_force / 1e3, 60, 1e-4)[::step]
     assert np.abs(np.array(force["along the normal, CFC 60"]) - expected).max() < 1e-5 * expected.max()
-    energy = {curve["name"]: curve["y"] for curve in panels["Energy ledger"]["curves"]}
+    energy = {curve["name"]: curve["y"] for curve in panels["Energy balance"]["curves"]}
     assert set(energy) == {name.replace("_", " ") for name in result.energy} - {"residual"}
+    colors = [curve["color"] for curve in panels["Energy balance"]["curves"]]
+    assert len(set(colors)) == len(colors)
     assert panels["Angles"]["unit"] == "deg"
     rates = panels["Angular rates, body axes"]["curves"]
     assert [curve["name"] for curve in rates] == [f"{n} rate, CFC 180" for n in ("roll", "pitch", "yaw")]
+
+
+def test_page_names_the_barrier_and_tables_its_loads(page: Page, result: Result) -> None:
+    assert page.texts["title"] == page.texts["h1"]
+    assert page.texts["h1"][0].endswith("at 30°: rigid wall without end")
+    cells = page.texts["td"]
+    (load,) = result.element_loads
+    forces = [f"{force / 1e3:.0f}" for force in (load.peak_force, load.peak_force_50ms)]
+    assert cells[cells.index("wall") :][:4] == ["wall", *forces, f"{load.height_at_peak:.2f}"]
+    assert "overturning moment, 50-ms mean [kN m]" in page.texts["th"]
+    # What came out is told first.
+    assert page.texts["th"][0] == "outcome"
+
+
+CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome") or shutil.which("chromium-browser")
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no browser to show the page with")
+def test_page_on_a_phone(text: str, tmp_path: Path) -> None:
+    """In a real browser, 375 px wide: nothing is wider, no mode bar, every panel is drawn."""
+    (tmp_path / "page.html").write_text(text, encoding="utf-8")
+    (tmp_path / "phone.html").write_text(
+        """<!DOCTYPE html>
+        <iframe id="phone" src="page.html" style="width:375px;height:800px;border:0"></iframe>
+        <p id="seen"></p><script>
+        const phone = document.getElementById("phone");
+        phone.onload = () => setTimeout(() => {
+          const page = phone.contentDocument;
+          document.getElementById("seen").textContent = "SEEN " + JSON.stringify({
+            width: page.documentElement.scrollWidth, buttons: page.querySelectorAll(".modebar-btn").length,
+            plots: page.querySelectorAll(".main-svg").length, fonts: getComputedStyle(page.body).fontSize });
+        }, 3000);</script>""",
+        encoding="utf-8",
+    )
+    command = [
+        str(CHROMIUM), "--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files",
+        f"--user-data-dir={tmp_path / 'profile'}", "--virtual-time-budget=15000", "--dump-dom",
+        (tmp_path / "phone.html").as_uri(),
+    ]  # fmt: skip
+    shown = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
+    found = re.search(r'<p id="seen">SEEN (\{.*?\})', shown)
+    assert found, shown[-500:]
+    seen = json.loads(found.group(1))
+    assert seen["width"] <= 375
+    assert seen["buttons"] == 0
+    assert seen["plots"] > len(data_of(Page(text))["panels"])
+    assert seen["fonts"] == "15px"
 
 
 def test_plan_has_a_frame_for_each_place_of_the_slider(page: Page) -> None:
@@ -161,7 +210,8 @@ def test_names_can_not_break_the_page(tmp_path: Path) -> None:
     Simulation(block, None, 5.0, duration=0.05, settings=settings).run().write_html(tmp_path / "a.html")
     page = Page((tmp_path / "a.html").read_text(encoding="utf-8"))
     assert "b" not in page.texts
-    assert page.texts["title"][0].startswith("</script><b>&x, 5.00 m/s")
+    assert page.texts["title"][0].startswith("</script><b>&x, 1,000 kg, 5.00 m/s")
+    assert page.texts["title"][0].endswith("no barrier")
     assert "✗ no" in page.texts["td"]  # the outcome is not decided
 
 

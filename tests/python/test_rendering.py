@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Simulation, Vehicle, rendering, scenes
+from birm3d.barrier_kinds import RigidWall
 from birm3d.rendering import stage as stage_module
 from birm3d.rendering.camera import VIEWS, driver_camera, outside_camera
 from birm3d.rendering.stills import with_slider
@@ -121,8 +122,53 @@ def test_outer_cameras_see_everything(view: rendering.View, angle: float) -> Non
     assert x.max() < 1.0 - 2.0 * taken
     assert max(np.ptp(x) / (1.0 - taken), np.ptp(y)) > 1.0  # half of the picture at least
     # From the side that the wall does not hide.
-    if view in ("three_quarter", "side"):
+    if view == "side":
         assert (camera.place - camera.target) @ result.scene.barrier.core.normal > -1e-6
+
+
+@pytest.mark.parametrize(
+    ("barrier", "angle", "yaw", "seen"),
+    [
+        (Barrier.rigid_wall(), 90.0, 0.0, (1.0, 0.0)),  # the front
+        (Barrier.pole(), 90.0, 0.0, (1.0, 0.0)),
+        (Barrier.rigid_wall(), 24.0, 0.0, (0.7, -0.7)),  # the right front corner
+        (Barrier.rigid_wall(), 156.0, 0.0, (0.7, 0.7)),  # the left one
+        (Barrier.pole(), 90.0, 90.0, (0.0, -1.0)),  # the right side
+        (Barrier.pole(), 90.0, -90.0, (0.0, 1.0)),
+    ],
+)
+def test_camera_sees_the_crushed_side(
+    barrier: Barrier, angle: float, yaw: float, seen: tuple[float, float]
+) -> None:
+    """Within 50 degrees of where the crush is from the vehicle's middle, body axes forward and left."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    result = Simulation(car, barrier, 12.0, angle, impact_yaw=yaw).run()
+    with rendering.Stage(result, [result.time[-1]], size=SIZE) as stage:
+        place = np.array(stage.plotter.camera.position) - np.array(stage.plotter.camera.focal_point)
+        forward, left = stage._skins[-1][0].turn[:2, 0], stage._skins[-1][0].turn[:2, 1]
+        look = place[:2] / np.linalg.norm(place[:2])
+        assert look @ (seen[0] * forward + seen[1] * left) / np.hypot(*seen) > np.cos(np.radians(50.0))
+        # One looks through a barrier that is in the way, and not through posts.
+        opacities = [actor.prop.opacity for actor in stage.plotter.actors.values() if hasattr(actor, "prop")]
+        behind = look @ barrier.core.normal[:2] < 0.0
+        assert (min(opacities) < 0.5) == (behind and isinstance(barrier, RigidWall))
+
+
+def test_posts_are_seen_whole() -> None:
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    result = Simulation(car, Barrier.bollards(count=3, height=1.1), 10.0).run()
+    with rendering.Stage(result, [0.0, result.time[-1]], size=SIZE) as stage:
+        assert stage._posts[:, 2].max() == pytest.approx(1.1)
+        assert len(np.unique(np.round(stage._posts[:, 1], 6))) > 3
+        camera = stage.plotter.camera
+        ahead = np.array(camera.focal_point) - camera.position
+        ahead /= np.linalg.norm(ahead)
+        up = np.array(camera.up) - (camera.up @ ahead) * ahead
+        up /= np.linalg.norm(up)
+        offsets = (stage._posts - camera.position) @ np.stack([np.cross(ahead, up), up, ahead]).T
+        scale = offsets[:, 2] * np.tan(np.radians(0.5 * camera.view_angle))
+        assert np.abs(offsets[:, 1] / scale).max() < 1.0
+        assert np.abs(offsets[:, 0] / scale * SIZE[1] / SIZE[0]).max() < 1.0
 
 
 def test_driver_moves_with_the_vehicle(result: Result) -> None:

@@ -86,7 +86,9 @@ def test_the_joint_is_one_point_of_both_units(result: Result) -> None:
         assert first == pytest.approx(second, abs=1e-4)
 
 
-def test_the_plan_has_two_outlines_an_instant(result: Result) -> None:
+def test_the_plan_has_an_outline_around_both_units_and_a_line_around_each(result: Result) -> None:
     times = [0.0, 0.2, 0.4]
     axes = plot_plan(result, times).gca()
-    assert len(axes.patches) == 2 * len(times)
+    assert len(axes.patches) == len(times)
+    thin = [line for line in axes.get_lines() if line.get_linewidth() == 0.6]
+    assert len(thin) == 2 * len(times)

@@ -242,6 +242,11 @@ class CalibrationResult:
             )
         return self._problem
 
+    def _repr_html_(self) -> str:
+        from ..notebook_html import text_html
+
+        return text_html(self.summary(), self.plot_fit(), "measured and computed")
+
     def __repr__(self) -> str:
         told = ", ".join(f"{label}={value:.4g}" for label, value in self.values.items())
         return f"CalibrationResult({told}; {len(self.identified)} of {len(self.parameters)} identified)"

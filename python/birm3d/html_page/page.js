@@ -1,8 +1,11 @@
 "use strict";
 const data = JSON.parse(document.getElementById("data").textContent);
-const colors = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#7F7F7F"];
+const colors = ["#0072B2", "#E69F00", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000", "#7F7F7F"];
 const dashes = ["solid", "dash", "dashdot", "dot", "solid", "dash", "solid", "dash"];
-const config = { responsive: true, displaylogo: false };
+// Earlier curves are wider: where a later one lies on them, they show.
+const widths = [3, 2, 1.6, 1.8, 1.4, 1.4, 1.2, 1.2];
+const config = { responsive: true, displayModeBar: false };
+const narrow = globalThis.innerWidth < 600;
 const font = { family: "system-ui, sans-serif", size: 12 };
 const axis = { gridcolor: "#e6e6e6", zerolinecolor: "#bbbbbb" };
 
@@ -21,12 +24,16 @@ data.panels.forEach((panel, n) => {
     name: curve.name,
     mode: "lines",
     visible: curve.name.endsWith("unfiltered") ? "legendonly" : true,
-    line: { color: colors[i % colors.length], dash: dashes[i % dashes.length], width: 1.6 },
+    line: {
+      color: curve.color ?? colors[i % colors.length],
+      dash: curve.dash ?? dashes[i % dashes.length],
+      width: widths[i % widths.length],
+    },
   }));
   Plotly.newPlot(div, curves, {
     title: { text: panel.title, font: { size: 14 } },
     font,
-    margin: { l: 62, r: 12, t: 36, b: 76 },
+    margin: narrow ? { l: 50, r: 6, t: 32, b: 84 } : { l: 62, r: 12, t: 36, b: 76 },
     hovermode: "x unified",
     showlegend: true,
     legend: { orientation: "h", y: -0.26, font: { size: 11 } },
@@ -73,7 +80,7 @@ const centers = plan.paths.map((path, unit) => ({
 const still = shapes.length + paths.length + first.length;
 Plotly.newPlot(plot, [...shapes, ...paths, ...first, ...outlines, ...centers], {
   font,
-  margin: { l: 62, r: 12, t: 12, b: 80 },
+  margin: narrow ? { l: 50, r: 6, t: 8, b: 96 } : { l: 62, r: 12, t: 12, b: 80 },
   legend: { orientation: "h", y: -0.16 },
   xaxis: { ...axis, title: { text: plan.labels[0], standoff: 4 }, range: plan.range[0] },
   yaxis: { ...axis, title: { text: plan.labels[1] }, range: plan.range[1], scaleanchor: "x" },

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import dataclasses
-import io
 import json
 from collections.abc import Sequence
 from html import escape
@@ -13,10 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .. import units
+from ..barrier_text import barrier_text
 from ..crush_profile import Side, crushed_sides
 from ..metrics import METRIC_UNITS
-from ..outcome import outcome_rows
+from ..notebook_html import figure_html
+from ..outcome import ELEMENT_COLUMNS, element_rows, outcome_rows
 from ..report import END_REASONS
+from ..scene_text import scene_text
 from ..whole_file import whole_file
 from .page_data import page_data
 
@@ -58,15 +58,15 @@ def write_html(result: Result, path: str | Path, *, frames: int = 61) -> None:
     data = json.dumps(content, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
     here = files(__package__)
     page = here.joinpath("page.html").read_text(encoding="utf-8")
-    scene = result.scene
     parts = {
-        "TITLE": escape(f"{scene.vehicle.name}, {scene.impact_speed:.2f} m/s at {scene.impact_angle:g}°"),
+        "TITLE": escape(scene_text(result.scene)),
         "VERSION": escape(result.version),
         "SCENE": _table(("scene", ""), _scene_rows(result)),
         "OUTCOME": _table(("outcome", "value", "unit"), outcome_rows(result)),
         "CHECKS": _table(("check", "", "limit", "value"), _check_rows(result)),
+        "ELEMENTS": _element_table(result),
         "METRICS": _table(("metric", "value", "unit"), _metric_rows(result)),
-        "CRUSH": "".join(_crush_picture(result, side) for side in crushed_sides(result)) or "<p>None.</p>",
+        "CRUSH": _crush_pictures(result) or "<p>None.</p>",
         "REPORT": escape(result.report()),
         "ROWS": "" if content["every"] == 1 else f"One row in {content['every']} is shown.",
         "SCRIPT": here.joinpath("page.js").read_text(encoding="utf-8"),
@@ -91,6 +91,13 @@ def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
     return f"<table><thead>{line(head, 'th')}</thead><tbody>{body}</tbody></table>"
 
 
+def _element_table(result: Result) -> str:
+    rows = element_rows(result)
+    if not rows:
+        return "<p>None was touched.</p>"
+    return f'<div class="wide">{_table(ELEMENT_COLUMNS, rows)}</div>'
+
+
 def _scene_rows(result: Result) -> list[tuple[str, ...]]:
     scene, settings = result.scene, result.scene.settings
     vehicle = scene.vehicle
@@ -113,14 +120,14 @@ def _scene_rows(result: Result) -> list[tuple[str, ...]]:
 
 
 def _barrier(barrier: Barrier | None) -> str:
-    """Return the numbers of the barrier that are not the usual ones, and its friction."""
+    """Return what the barrier is, its friction, and where it stands if that is not the usual place."""
     if barrier is None:
         return "none"
-    given = [f"friction {barrier.friction:g}"]
-    for field in dataclasses.fields(barrier):
-        value = getattr(barrier, field.name)
-        if field.name != "friction" and value != field.default:
-            given.append(f"{field.name} {value}")
+    given = [barrier_text(barrier), f"friction {barrier.friction:g}"]
+    if any(barrier.origin):
+        given.append("origin " + ", ".join(f"{x:g}" for x in barrier.origin) + " m")
+    if barrier.heading:
+        given.append(f"heading {barrier.heading:g}°")
     return ", ".join(given)
 
 
@@ -142,8 +149,12 @@ def _metric_rows(result: Result) -> list[tuple[str, ...]]:
     return [(name, f"{value:.6g}", METRIC_UNITS.get(name, "")) for name, value in result.metrics.items()]
 
 
-def _crush_picture(result: Result, side: Side) -> str:
-    stream = io.BytesIO()
-    result.plot_crush(side).savefig(stream, format="png", dpi=90)
-    image = base64.b64encode(stream.getvalue()).decode("ascii")
-    return f'<img alt="residual crush of the {side}" src="data:image/png;base64,{image}">'
+def _crush_pictures(result: Result) -> str:
+    units = range(len(result.scene.vehicle.units))
+    return "".join(
+        _crush_picture(result, side, unit) for unit in units for side in crushed_sides(result, unit=unit)
+    )
+
+
+def _crush_picture(result: Result, side: Side, unit: int) -> str:
+    return figure_html(result.plot_crush(side, unit=unit), f"residual crush of the {side}", dpi=90.0)

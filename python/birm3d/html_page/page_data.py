@@ -11,8 +11,9 @@ from .. import units
 from ..element_loads import touched_elements
 from ..filters import moving_average
 from ..plan_axes import PlanAxes
-from ..plotting.style import filtered
-from ..silhouette import silhouette
+from ..plotting.energies import energy_look
+from ..plotting.style import DASH_DOT, DASHED, DOTTED, SOLID, filtered
+from ..silhouette import rings, silhouette
 from ..skin import skins_at
 from ..unit_shapes import unit_shapes
 
@@ -24,15 +25,17 @@ __all__ = ["page_data"]
 Floats = npt.NDArray[np.float64]
 
 _ROWS = 3000  # more than a screen has pixels across
-_RAYS = 240
+_ACCURACY = 1e-3  # of outlines, m
 _DIGITS = 6
+_ENERGIES = "Energy balance"
+_DASHES = {SOLID: "solid", DASHED: "dash", DASH_DOT: "dashdot", DOTTED: "dot"}
 
 
 def page_data(result: Result, frames: int) -> dict[str, Any]:
     """Return what the page's script draws; of long runs every so many rows."""
     every = -(-len(result.time) // _ROWS)
     ms = result.time[::every] * 1e3
-    panels = [
+    panels: list[dict[str, Any]] = [
         {
             "title": name,
             "unit": unit,
@@ -40,6 +43,10 @@ def page_data(result: Result, frames: int) -> dict[str, Any]:
         }
         for name, unit, curves in _panels(result)
     ]
+    looks = energy_look(list(result.energy))
+    for curve in next(panel for panel in panels if panel["title"] == _ENERGIES)["curves"]:
+        color, style, _ = looks[curve["name"].replace(" ", "_")]
+        curve.update(color=color, dash=_DASHES[style])
     return {
         "time": _short(ms),
         "every": every,
@@ -96,7 +103,7 @@ def _panels(result: Result) -> list[tuple[str, str, list[tuple[str, Floats]]]]:
     energy = [
         (name.replace("_", " "), values / 1e3) for name, values in result.energy.items() if name != "residual"
     ]
-    panels.append(("Energy ledger", "kJ", energy))
+    panels.append((_ENERGIES, "kJ", energy))
     panels.append(("Energy residual", "J", [("residual", result.energy["residual"])]))
     return panels
 
@@ -110,24 +117,39 @@ def _plan(result: Result, frames: int) -> dict[str, Any]:
     skins = skins_at(result, times)
     outlines = [
         [
-            axes.plan(silhouette(shape, skin.nodes, skin.center, skin.turn, _RAYS))
+            [
+                axes.plan(ring)
+                for ring in rings(silhouette(shape, skin.nodes, skin.center, skin.turn).simplify(_ACCURACY))
+            ]
             for shape, skin in zip(shapes, one, strict=True)
         ]
         for one in skins
     ]
     paths = [axes.plan(result.pose(times, unit)[0]) for unit in range(len(shapes))]
     world = np.vstack([skin.world for one in (skins[0], skins[-1]) for skin in one])
-    drawn = np.vstack([polygon for one in outlines for polygon in one])
+    drawn = np.vstack([ring for one in outlines for unit in one for ring in unit])
     parts = axes.barrier(world, drawn)
     shown = np.vstack([drawn, *(vertices for vertices, _ in parts)])
     return {
         "labels": axes.labels,
         "time": _short(times * 1e3),
-        "outlines": [[_short(np.vstack([p, p[:1]]).T) for p in one] for one in outlines],
+        "outlines": [[_joined(unit) for unit in one] for one in outlines],
         "paths": [_short(path.T) for path in paths],
         "barrier": [[_short(v[[*face, face[0]]].T) for face in _from_above(v, faces)] for v, faces in parts],
         "range": _short(np.stack([shown.min(axis=0), shown.max(axis=0)]).T),
     }
+
+
+def _joined(parts: list[Floats]) -> list[list[float | None]]:
+    """Return x and y of closed rings, ``None`` between them."""
+    x: list[float | None] = []
+    y: list[float | None] = []
+    for ring in parts:
+        gap: list[None] = [None] if x else []
+        closed = np.vstack([ring, ring[:1]])
+        x += [*gap, *_short(closed[:, 0])]
+        y += [*gap, *_short(closed[:, 1])]
+    return [x, y]
 
 
 def _from_above(plan: Floats, faces: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:

@@ -12,6 +12,7 @@ from .elements import plot_elements
 from .histories import plot_histories
 from .overview import plot_result
 from .plan import plot_plan
+from .thumbnail import plot_thumbnail
 
 __all__ = [
     "plot_comparison",
@@ -21,4 +22,5 @@ __all__ = [
     "plot_histories",
     "plot_plan",
     "plot_result",
+    "plot_thumbnail",
 ]

@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import BLUE, RED, legend, prepare
+from .figure import new_figure
+from .style import BLUE, DASHED, RED, legend, prepare, shown_unit
 
 if TYPE_CHECKING:
     from ..comparison import CurveComparison
@@ -19,7 +20,7 @@ __all__ = ["plot_comparison", "plot_comparisons"]
 
 def plot_comparison(comparison: CurveComparison) -> Figure:
     """Return both curves above, and below the residuals over the measured peak with mean ± deviation."""
-    figure = Figure(figsize=(9.0, 6.0), layout="constrained")
+    figure = new_figure(9.0, 6.4)
     curves, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
     prepare(curves, below)
     _curves(curves, comparison)
@@ -51,13 +52,13 @@ def plot_comparisons(comparisons: Sequence[CurveComparison], columns: int = 2) -
         raise ValueError(f"columns must be at least 1, got {columns}")
     columns = min(columns, len(comparisons))
     rows = -(-len(comparisons) // columns)
-    figure = Figure(figsize=(5.8 * columns, 3.6 * rows), layout="constrained")
+    figure = new_figure(5.8 * columns, 3.9 * rows)
     panels = list(figure.subplots(rows, columns, squeeze=False).flat)
     for axes, comparison in zip(panels, comparisons, strict=False):
         prepare(axes)
+        axes.set_title(_rating(comparison).replace("; residuals", "\nresiduals"), fontsize="small")
         _curves(axes, comparison)
         axes.set_xlabel("time [ms]")
-        axes.set_title(_rating(comparison).replace("; residuals", "\nresiduals"), fontsize="small")
     for unused in panels[len(comparisons) :]:
         unused.set_visible(False)
     return figure
@@ -66,10 +67,11 @@ def plot_comparisons(comparisons: Sequence[CurveComparison], columns: int = 2) -
 def _curves(axes: Axes, comparison: CurveComparison) -> None:
     measured, computed = comparison.measured, comparison.computed
     ms = measured.time * 1e3
-    axes.plot(ms, measured.values, color="0.2", ls="-", label=f"measured: {measured.name}")
-    axes.plot(ms, computed.values, color=BLUE, ls="--", label=f"computed: {computed.name}")
+    scale, unit = shown_unit(measured.unit)
+    axes.plot(ms, measured.values / scale, color="0.2", ls="-", lw=2.2, label=f"measured: {measured.name}")
+    axes.plot(ms, computed.values / scale, color=BLUE, ls=DASHED, lw=1.6, label=f"computed: {computed.name}")
     class_ = f", CFC {measured.cfc:g}" if measured.cfc is not None else ""
-    axes.set_ylabel(f"{measured.quantity} [{measured.unit}]{class_}")
+    axes.set_ylabel(f"{measured.quantity} [{unit}]{class_}")
     legend([axes])
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ..crush_profile import Side, crush_map, crush_profile
+from .figure import new_figure
 from .style import BLUE, prepare, title
 
 if TYPE_CHECKING:
@@ -22,10 +23,13 @@ _LATERAL = {
     "right": "r, forward of the mass centre [m]  (seen from the vehicle's right)",
 }
 _PANEL_WIDTH, _PROFILE_HEIGHT = 8.0, 2.4  # inches
+_UNITS = ("Leading unit", "Trailing unit")
 _LEAST_SCALE = 0.01  # m: the colours of an uncrushed vehicle
 
 
-def plot_crush(result: Result, side: Side = "front", *, height: float | None = None, unit: int = 0) -> Figure:
+def plot_crush(
+    result: Result, side: Side | None = None, *, height: float | None = None, unit: int = 0
+) -> Figure:
     """Return a map of the residual crush of one side, and below it the crush profile with C1 to C6.
 
     Crush is counted square to the side. The six points are evenly spaced over the width of the side at one
@@ -34,7 +38,7 @@ def plot_crush(result: Result, side: Side = "front", *, height: float | None = N
     Parameters
     ----------
     side
-        ``"front"``, ``"rear"``, ``"left"`` or ``"right"``.
+        ``"front"``, ``"rear"``, ``"left"`` or ``"right"``; ``None``: that with the greatest crush.
     height
         Of the profile above the ground at rest [m]; ``None``: the middle of the bumper in front, else where
         the crush is greatest.
@@ -47,6 +51,7 @@ def plot_crush(result: Result, side: Side = "front", *, height: float | None = N
         If the side is unknown, the unit has no skin there, or none at that height.
     """
     field = crush_map(result, side, unit=unit)
+    side = field.side
     profile = crush_profile(result, side, height=height, unit=unit)
     nodes = np.unique(field.triangles)
     low, high = float(field.lateral[nodes].min()), float(field.lateral[nodes].max())
@@ -54,7 +59,7 @@ def plot_crush(result: Result, side: Side = "front", *, height: float | None = N
     # Both panels are as wide and show the same range, so that the points stand below each other.
     shape = (float(np.ptp(field.height[nodes])) + 2.0 * margin) / (high - low + 2.0 * margin)
     map_height = max(1.2, _PANEL_WIDTH * shape)
-    figure = Figure(figsize=(_PANEL_WIDTH + 2.0, map_height + _PROFILE_HEIGHT + 1.8), layout="constrained")
+    figure = new_figure(_PANEL_WIDTH + 2.0, map_height + _PROFILE_HEIGHT + 2.0)
     above, below = figure.subplots(2, 1, height_ratios=(map_height, _PROFILE_HEIGHT))
     prepare(below)
 
@@ -82,7 +87,8 @@ def plot_crush(result: Result, side: Side = "front", *, height: float | None = N
     above.plot(profile.stations, np.full(6, profile.height), "o", color=BLUE, mec="w", ms=7.0)
     above.set_ylabel("height above the ground [m]")
     above.set_aspect("equal")
-    above.set_title(f"Residual crush of the {side}, greatest {float(shown[nodes].max()):.3f} m")
+    part = "" if len(result.scene.vehicle.units) == 1 else f"{_UNITS[unit]}: "
+    above.set_title(f"{part}Residual crush of the {side}, greatest {float(shown[nodes].max()):.3f} m")
     bar = figure.colorbar(colors, ax=[above, below], label="residual crush [m]", pad=0.02)
     if lines is not None:
         bar.add_lines(lines)

@@ -2,25 +2,46 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..element_loads import LEAST_SHARE, resultant_height, touched_elements
-from .style import CYCLE, STYLES, filtered, legend, prepare, title
+from ..element_loads import overturning, resultant_height, touched_elements
+from .figure import new_figure
+from .style import CYCLE, STYLES, WIDTHS, filtered, legend, prepare, title
 
 if TYPE_CHECKING:
     from ..result import Result
 
 __all__ = ["plot_elements"]
 
+Floats = npt.NDArray[np.float64]
+
+# A height is drawn where the force is above this share of the element's peak: below, it is noise.
+_HEIGHT_SHARE = 0.05
+# The figure ends where all forces stay below this share of the greatest, and some room after it.
+_LOAD_SHARE, _ROOM = 0.01, 1.08
+# Peaks nearer to each other than these shares of the panel are marked once.
+_SAME_TIME, _SAME_VALUE = 0.02, 0.02
+
+
+class _Peak(NamedTuple):
+    time: float
+    value: float
+    name: str
+
 
 def plot_elements(result: Result) -> Figure:
     """Return force, height of the resultant and overturning moment of each element that was touched.
 
-    Forces and moments after CFC 60 (SAE J211-1), before magnitudes are taken; heights follow from them and
-    are not drawn where the horizontal force is below 1 % of its peak.
+    Forces and moments after CFC 60 (SAE J211-1), before magnitudes are taken; their peaks are marked with
+    their values. Of walls the moment is that about their line, as in :class:`birm3d.ElementLoad`.
+    Heights follow from both. They are not drawn where the horizontal force is below 5 % of its peak. The
+    figure ends where the load does.
 
     Raises
     ------
@@ -30,29 +51,97 @@ def plot_elements(result: Result) -> Figure:
     loads = touched_elements(result)
     if not loads:
         raise ValueError("elements must have been touched to be drawn, got none that was")
-    figure = Figure(figsize=(10.0, 9.0), layout="constrained")
+    figure = new_figure(10.0, 9.6)
     panels = figure.subplots(3, 1, sharex=True)
     force_panel, height_panel, moment_panel = panels
     prepare(*panels)
     ms = result.time * 1e3
-    name = ""
+    class_ = ""
+    forces, moments, top = [], [], 0.0
     for i, load in enumerate(loads):
-        look = {"color": CYCLE[i % len(CYCLE)], "ls": STYLES[i % len(STYLES)], "lw": 1.5}
-        force, name = filtered(load.force, 60, load.interval)
+        look = {
+            "color": CYCLE[i % len(CYCLE)],
+            "ls": STYLES[i % len(STYLES)],
+            "lw": WIDTHS[i % len(WIDTHS)],
+        }
+        force, class_ = filtered(load.force, 60, load.interval)
         moment, _ = filtered(load.moment, 60, load.interval)
-        level = np.hypot(force[:, 0], force[:, 1])
-        height = np.where(level > LEAST_SHARE * level.max(), resultant_height(force, moment), np.nan)
-        force_panel.plot(ms, np.linalg.norm(force, axis=1) / 1e3, label=load.name, **look)
+        level = _level(force, load.line)
+        height = resultant_height(force, moment, load.line)
+        height = np.where(level > _HEIGHT_SHARE * level.max(), height, np.nan)
+        top = max(top, float(height.max(initial=0.1, where=np.isfinite(height))))
+        forces.append(np.linalg.norm(force, axis=1) / 1e3)
+        moments.append(overturning(moment, load.line) / 1e3)
+        force_panel.plot(ms, forces[-1], label=load.name, **look)
         height_panel.plot(ms, height, label=load.name, **look)
-        moment_panel.plot(ms, np.hypot(moment[:, 0], moment[:, 1]) / 1e3, label=load.name, **look)
-    force_panel.set_title(f"Force on the element, {name}")
+        moment_panel.plot(ms, moments[-1], label=load.name, **look)
+    names = [load.name for load in loads]
+    end = _end_of_load(ms, forces)
+    _mark_peaks(force_panel, ms, forces, names, end, "kN")
+    _mark_peaks(moment_panel, ms, moments, names, end, "kN m")
+    force_panel.set_title(f"Force on the element, {class_}")
     force_panel.set_ylabel("force [kN]")
     height_panel.set_title("Height of the horizontal resultant above the foot")
     height_panel.set_ylabel("height [m]")
-    moment_panel.set_title(f"Overturning moment about the foot, {name}")
+    height_panel.set_ylim(0.0, 1.1 * top)
+    moment_panel.set_title(f"Overturning moment about the foot, {class_}")
     moment_panel.set_ylabel("moment [kN m]")
     moment_panel.set_xlabel("time [ms]")
-    moment_panel.set_xlim(0.0, float(ms[-1]))
-    legend([force_panel], columns=1 if len(loads) < 6 else 2)
+    moment_panel.set_xlim(0.0, end)
+    legend([force_panel])
     figure.suptitle(title(result))
     return figure
+
+
+def _level(force: Floats, line: Floats | None) -> Floats:
+    """Return the size of the horizontal force that overturns: of a wall, across its line."""
+    across = force[:, :2] if line is None else force[:, :2] @ np.array([[line[1]], [-line[0]]])
+    return np.asarray(np.linalg.norm(across, axis=1))
+
+
+def _end_of_load(ms: Floats, forces: Sequence[Floats]) -> float:
+    """Return where the figure ends [ms]."""
+    greatest = np.max(forces, axis=0)
+    last = int(np.flatnonzero(greatest >= _LOAD_SHARE * greatest.max())[-1])
+    return float(min(ms[-1], max(_ROOM * ms[last], ms[min(1, len(ms) - 1)])))
+
+
+def _mark_peaks(
+    axes: Axes, ms: Floats, curves: Sequence[Floats], names: Sequence[str], end: float, unit: str
+) -> None:
+    """Mark the greatest value of each curve and write it above the curves, one below the other."""
+    top = max(float(curve.max()) for curve in curves)
+    if top <= 0.0:
+        return
+    peaks: list[_Peak] = []
+    for curve, name in zip(curves, names, strict=True):
+        at = int(np.argmax(curve))
+        time, value = float(ms[at]), float(curve[at])
+        axes.scatter([time], [value], s=16.0, color="k", zorder=6.0)
+        same = [
+            i
+            for i, peak in enumerate(peaks)
+            if abs(peak.time - time) < _SAME_TIME * end and abs(peak.value - value) < _SAME_VALUE * top
+        ]
+        if same:
+            peaks[same[0]] = peaks[same[0]]._replace(name=f"{peaks[same[0]].name} and {name}")
+        else:
+            peaks.append(_Peak(time, value, name))
+    peaks.sort()
+    several = len(names) > 1
+    rows = min(len(peaks), 3)
+    for k, peak in enumerate(peaks):
+        text = f"{peak.name}: {peak.value:,.0f} {unit}" if several else f"{peak.value:,.0f} {unit}"
+        height = top * (1.10 + 0.13 * (k % rows))
+        late = peak.time > 0.6 * end
+        axes.annotate(
+            text,
+            (peak.time, peak.value),
+            (peak.time + (-0.01 if late else 0.01) * end, height),
+            fontsize="small",
+            va="center",
+            ha="right" if late else "left",
+            arrowprops={"arrowstyle": "-", "lw": 0.6, "color": "0.4"},
+            zorder=7.0,
+        )
+    axes.set_ylim(0.0, top * (1.12 + 0.13 * rows))

@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 
 from .. import units
 from ..filters import moving_average
-from .style import BLUE, GREEN, RED, fit, legend, plot_filtered, prepare, title
+from .figure import new_figure
+from .style import BLUE, DASHED, DOTTED, ORANGE, RED, fit, legend, plot_filtered, prepare, title
 
 if TYPE_CHECKING:
     from ..result import Result
@@ -19,7 +20,7 @@ __all__ = ["plot_histories"]
 
 # SAE J211-1: vehicle structure and barrier forces, and what is integrated to an angle.
 _STRUCTURE, _INTEGRATED = 60, 180
-_AXES = (("r", BLUE, "-"), ("s", RED, "--"), ("t", GREEN, "-."))
+_AXES = (("r", BLUE), ("s", ORANGE), ("t", RED))
 
 
 def plot_histories(result: Result) -> Figure:
@@ -29,7 +30,7 @@ def plot_histories(result: Result) -> Figure:
     (integration), SAE J211-1; unfiltered interval means are thin lines behind. Velocities and angles are
     states: they are not filtered.
     """
-    figure = Figure(figsize=(12.0, 9.5), layout="constrained")
+    figure = new_figure(12.0, 10.5)
     panels = figure.subplots(3, 2, sharex=True)
     (force, acceleration), (velocity, rates), (tires, angles) = panels
     prepare(*panels.flat)
@@ -40,34 +41,34 @@ def plot_histories(result: Result) -> Figure:
         normal = result.barrier_normal_force / 1e3
         plot_filtered(force, result, normal, _STRUCTURE, "along the normal", BLUE)
         mean = moving_average(normal, 0.05, interval)
-        force.plot(ms, mean, color=RED, ls="--", label="50-ms mean")
-        legend([force])
-    force.set_title("Barrier force on the vehicle")
+        force.plot(ms, mean, color=RED, ls=DASHED, lw=1.8, label="50-ms mean")
+    force.set_title("Barrier force on the vehicle, along the barrier's normal")
     force.set_ylabel("force [kN]")
+    legend([force])
 
-    for i, (axis, color, style) in enumerate(_AXES):
+    for i, (axis, color) in enumerate(_AXES):
         channel = result.acceleration[:, i] / units.g
-        plot_filtered(acceleration, result, channel, _STRUCTURE, axis, color, style)
+        plot_filtered(acceleration, result, channel, _STRUCTURE, axis, color, i)
     acceleration.set_title("Acceleration of the mass centre, body axes")
     acceleration.set_ylabel("acceleration [g]")
     legend([acceleration])
 
     ahead = _heading(result)
     left = np.array([-ahead[1], ahead[0], 0.0])
-    for name, direction, color, style in (
-        ("along the path", ahead, BLUE, "-"),
-        ("to its left", left, RED, "--"),
-        ("up", np.array([0.0, 0.0, 1.0]), GREEN, "-."),
+    for name, direction in (
+        ("along the path", ahead),
+        ("to its left", left),
+        ("up", np.array([0.0, 0.0, 1.0])),
     ):
-        velocity.plot(ms, result.velocity @ direction, color=color, ls=style, label=name)
+        velocity.plot(ms, result.velocity @ direction, label=name)
     velocity.set_title("Velocity of the mass centre from the initial path")
     velocity.set_ylabel("velocity [m/s]")
     legend([velocity])
 
-    for i, (name, (_, color, style)) in enumerate(zip(("roll", "pitch", "yaw"), _AXES, strict=True)):
+    for i, (name, (_, color)) in enumerate(zip(("roll", "pitch", "yaw"), _AXES, strict=True)):
         channel = result.angular_velocity[:, i]
-        plot_filtered(rates, result, channel, _INTEGRATED, f"{name} rate", color, style)
-        angles.plot(ms, getattr(result, name), color=color, ls=style, label=name)
+        plot_filtered(rates, result, channel, _INTEGRATED, f"{name} rate", color, i)
+        angles.plot(ms, getattr(result, name), label=name)
     rates.set_title("Angular rates, body axes")
     rates.set_ylabel("angular rate [deg/s]")
     legend([rates])
@@ -79,10 +80,10 @@ def plot_histories(result: Result) -> Figure:
         total = result.tire_reaction.sum(axis=1) / 1e3
         plot_filtered(tires, result, total, _STRUCTURE, "all wheels", BLUE)
         weight = result.scene.vehicle.mass * result.scene.settings.gravity / 1e3
-        tires.axhline(weight, color="0.4", ls=":", label="weight")
-        legend([tires])
+        tires.axhline(weight, color="0.4", ls=DOTTED, lw=1.4, label="weight")
     tires.set_title("Tyre reaction")
     tires.set_ylabel("force [kN]")
+    legend([tires])
 
     for axes in (force, acceleration, rates, tires):
         fit(axes)

@@ -8,7 +8,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import units
-from .style import BLUE, GREEN, RED, fit, legend, plot_filtered, prepare, title
+from .energies import plot_energies
+from .figure import new_figure
+from .style import BLUE, DASHED, GREEN, RED, SOLID, fit, legend, plot_filtered, prepare, title
 
 if TYPE_CHECKING:
     from ..result import Result
@@ -21,7 +23,7 @@ def plot_result(result: Result) -> Figure:
 
     Forces and decelerations are shown as interval means (thin) and after CFC 60 (SAE J211-1).
     """
-    figure = Figure(figsize=(11.5, 7.5), layout="constrained")
+    figure = new_figure(11.5, 8.2)
     panels = figure.subplots(2, 2, sharex=True)
     (force, motion), (angles, energies) = panels
     prepare(*panels.flat)
@@ -30,25 +32,27 @@ def plot_result(result: Result) -> Figure:
 
     right = force.twinx()
     if result.scene.barrier is not None:
-        plot_filtered(force, result, result.barrier_normal_force / 1e3, 60, "along the normal", BLUE)
-    plot_filtered(right, result, deceleration, 60, "deceleration along r", RED, "--")
+        plot_filtered(
+            force, result, result.barrier_normal_force / 1e3, 60, "barrier force along the normal", BLUE
+        )
+    plot_filtered(right, result, deceleration, 60, "deceleration along r", RED, 1)
     force.set_ylabel("barrier force [kN]")
-    right.set_ylabel("deceleration of the mass centre [g]")
-    force.set_title("Force and deceleration")
+    right.set_ylabel("deceleration [g]")
+    force.set_title("Barrier force, and deceleration of the mass centre")
     for axes in (force, right):
         fit(axes)
     legend([force, right])
 
     speed = np.linalg.norm(result.velocity, axis=1)
     heading = result.velocity[0] / speed[0] if speed[0] > 0.0 else np.array([1.0, 0.0, 0.0])
-    motion.plot(ms, result.velocity @ heading, color=BLUE, ls="-", label="velocity along the path")
+    motion.plot(ms, result.velocity @ heading, color=BLUE, ls=SOLID, lw=2.2, label="velocity along the path")
     right = motion.twinx()
     way = (result.position - result.position[0]) @ heading
-    right.plot(ms, way, color=GREEN, ls="--", label="displacement along the path")
+    right.plot(ms, way, color=GREEN, ls=DASHED, lw=1.6, label="displacement along the path")
     motion.set_ylabel("velocity [m/s]")
     right.set_ylabel("displacement [m]")
     motion.set_title("Motion of the mass centre")
-    legend([motion, right], loc="center right")
+    legend([motion, right])
 
     for name in ("roll", "pitch", "yaw"):
         angles.plot(ms, getattr(result, name), label=name)
@@ -56,13 +60,7 @@ def plot_result(result: Result) -> Figure:
     angles.set_title("Angles")
     legend([angles])
 
-    for name, values in result.energy.items():
-        if name != "residual" and np.abs(values).max() > 1e-3 * np.abs(result.energy["total"]).max():
-            thick = 2.2 if name == "total" else 1.3
-            energies.plot(ms, values / 1e3, label=name.replace("_", " "), lw=thick)
-    energies.set_ylabel("energy [kJ]")
-    energies.set_title("Energy ledger")
-    legend([energies], columns=2)
+    plot_energies(energies, result)
 
     for axes in panels[-1]:
         axes.set_xlabel("time [ms]")

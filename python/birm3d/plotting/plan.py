@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
 import numpy.typing as npt
+import shapely
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
@@ -16,15 +17,16 @@ from matplotlib.patches import Polygon
 from ..barrier_kinds import Jersey, RigidWall
 from ..free_standing import base_corners
 from ..plan_axes import PlanAxes, is_oblique
-from ..silhouette import silhouette
-from ..skin import skins_at
-from ..unit_shapes import unit_shapes
-from .style import RED, prepare, title
+from ..silhouette import rings, silhouette
+from ..skin import Skin, skins_at
+from ..unit_shapes import UnitShape, unit_shapes
+from .figure import new_figure
+from .style import BLUE, RED, prepare, title
 
 if TYPE_CHECKING:
     from ..result import Result
 
-__all__ = ["plot_plan"]
+__all__ = ["Instant", "draw_barrier", "draw_vehicle", "fit_to", "plot_plan"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -36,18 +38,31 @@ _HEIGHTS = (4.5, 9.0)
 _CAR = 3500.0
 
 
+class Instant(NamedTuple):
+    """When an outline is drawn, what it is called, and how it looks."""
+
+    time: float
+    name: str
+    color: Any
+    style: str
+    width: float
+    fill: float
+
+
 def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box: bool = True) -> Figure:
     """Return the plan view: outlines at some instants, path of the mass centre, barrier, exit box.
 
     Seen from above, in m from the barrier's origin. An oblique impact has the barrier's line level and its
     traffic side above; in one above 45 degrees the vehicle comes from the left. Endless walls are drawn as
     wide as the scene; the depth of a wall is only drawn. Free-standing segments are drawn where they ended,
-    dashed where they stood.
+    dashed where they stood. The outline of a vehicle of two units is drawn around both, with a thin line
+    where one hides the other.
 
     Parameters
     ----------
     times
-        Of the outlines [s]; ``None``: five, evenly spread over the run.
+        Of the outlines [s]; ``None``: five, evenly spread over the run. Where the vehicle comes back the way
+        it came, so that these would lie on each other: start, greatest travel and end.
     exit_box
         Whether the exit box of EN 1317-2 and MASH is drawn where a vehicle leaves a wall that it met at less
         than 45 degrees: from the last contact over its length, wheel tracks should stay inside its depth.
@@ -58,41 +73,97 @@ def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box:
         If an instant is outside the run.
     """
     scene = result.scene
-    instants = np.linspace(0.0, result.time[-1], _INSTANTS) if times is None else np.asarray(times, float)
+    instants = _usual_instants(result) if times is None else _spread(np.asarray(times, float))
     view = PlanAxes(result)
-    plan = view.plan
-    figure = Figure(layout="constrained")
+    figure = new_figure(_WIDTH, _HEIGHTS[0])
     axes = figure.subplots()
     prepare(axes)
     shapes = unit_shapes(scene.vehicle)
-    skins = skins_at(result, instants)
-    drawn = []
-    colors = mpl.colormaps["viridis"](np.linspace(0.0, 0.85, len(instants)))
-    for time, color, units in zip(instants, colors, skins, strict=True):
-        for unit, (shape, skin) in enumerate(zip(shapes, units, strict=True)):
-            polygon = plan(silhouette(shape, skin.nodes, skin.center, skin.turn))
-            label = "_" if unit else f"{time * 1e3:.0f} ms"
-            axes.add_patch(Polygon(polygon, fc=(*color[:3], 0.08), ec=color, lw=1.5, label=label, zorder=3.0))
-            axes.plot(*plan(skin.center), "o", color=color, mec="k", mew=0.6, ms=5.0, label="_", zorder=5.0)
-            drawn.append(polygon)
+    skins = skins_at(result, [instant.time for instant in instants])
+    drawn: list[Floats] = []
+    for order, (instant, units) in enumerate(zip(instants, skins, strict=True)):
+        drawn += draw_vehicle(axes, view.plan, shapes, units, instant, 3.0 + 0.1 * order)
     for unit in range(len(shapes)):
         label = "_" if unit else "path of the mass centre"
-        path = plan(result.pose(result.time, unit)[0])
+        path = view.plan(result.pose(result.time, unit)[0])
         axes.plot(*path.T, color="k", ls="-", lw=1.0, label=label, zorder=4.0)
         drawn.append(path)
     around = np.vstack([skin.world for units in skins for skin in units])
     if exit_box and _redirected(result):
-        drawn.append(_exit_box(axes, result, plan))
-    _draw_barrier(axes, view, around, drawn, result)
+        drawn.append(_exit_box(axes, result, view.plan))
+    draw_barrier(axes, view, around, drawn, result)
     axes.set_xlabel(view.labels[0])
     axes.set_ylabel(view.labels[1])
-    _fit(figure, axes, np.vstack(drawn))
-    axes.set_title(f"{title(result)}\n{_outcome(result)}", fontsize="medium")
-    figure.legend(loc="outside lower center", ncols=6, frameon=False, fontsize="small")
+    fit_to(figure, axes, np.vstack(drawn), _WIDTH, _HEIGHTS, room=2.1)
+    figure.suptitle(f"{title(result)}\n{_outcome(result)}", fontsize="medium")
+    figure.legend(loc="outside lower center", ncols=4, frameon=False, fontsize="small")
     return figure
 
 
-def _draw_barrier(axes: Axes, view: PlanAxes, world: Floats, drawn: list[Floats], result: Result) -> None:
+def _spread(times: Floats) -> list[Instant]:
+    colors = mpl.colormaps["viridis"](np.linspace(0.0, 0.85, len(times)))
+    return [
+        Instant(float(time), f"{time * 1e3:.0f} ms", tuple(color[:3]), "-", 1.5, 0.08)
+        for time, color in zip(times, colors, strict=True)
+    ]
+
+
+def _usual_instants(result: Result) -> list[Instant]:
+    """Return five instants evenly spread; of a vehicle that comes back start, greatest travel and end."""
+    way = result.position[:, :2] - result.position[0, :2]
+    path = result.velocity[0, :2]
+    travel = way @ path
+    farthest, end = int(np.argmax(travel)), len(travel) - 1
+    aside = np.abs(way @ np.array([-path[1], path[0]])).max()
+    if farthest == end or aside > 0.25 * travel[farthest]:
+        return _spread(np.linspace(0.0, result.time[-1], _INSTANTS))
+
+    def instant(row: int, name: str, color: Any, style: str, width: float, fill: float) -> Instant:
+        time = float(result.time[row])
+        return Instant(time, f"{name}, {time * 1e3:.0f} ms", color, style, width, fill)
+
+    return [
+        instant(0, "start", "0.45", "--", 1.4, 0.0),
+        instant(farthest, "greatest travel", BLUE, "-", 2.0, 0.12),
+        instant(end, "end", RED, "-.", 1.6, 0.0),
+    ]
+
+
+def draw_vehicle(
+    axes: Axes,
+    plan: Callable[[Floats], Floats],
+    shapes: Sequence[UnitShape],
+    units: Sequence[Skin],
+    instant: Instant,
+    order: float,
+) -> list[Floats]:
+    """Draw the outline around all units at an instant, and thin that of each; returns the points."""
+    outlines = [
+        silhouette(shape, skin.nodes, skin.center, skin.turn)
+        for shape, skin in zip(shapes, units, strict=True)
+    ]
+    color = mpl.colors.to_rgb(instant.color)
+    drawn = []
+    for k, ring in enumerate(rings(shapely.union_all(outlines))):
+        polygon = plan(ring)
+        look: dict[str, Any] = {
+            "fc": (*color, instant.fill),
+            "ec": color,
+            "lw": instant.width,
+            "ls": instant.style,
+        }
+        axes.add_patch(Polygon(polygon, label="_" if k else instant.name, zorder=order, **look))
+        drawn.append(polygon)
+    for outline, skin in zip(outlines, units, strict=True):
+        if len(units) > 1:
+            for ring in rings(outline):
+                axes.plot(*plan(np.vstack([ring, ring[:1]])).T, color=color, ls="-", lw=0.6, label="_")
+        axes.plot(*plan(skin.center), "o", color=color, mec="k", mew=0.6, ms=5.0, label="_", zorder=5.0)
+    return drawn
+
+
+def draw_barrier(axes: Axes, view: PlanAxes, world: Floats, drawn: list[Floats], result: Result) -> None:
+    """Draw the barrier, endless ones past the points of the picture; its points are added to `drawn`."""
     if result.segment_yaw.shape[1]:
         corners = view.plan(base_corners(result)[[0, -1]])
         looks: tuple[dict[str, Any], ...] = (
@@ -149,12 +220,17 @@ def _outcome(result: Result) -> str:
     )
 
 
-def _fit(figure: Figure, axes: Axes, points: Floats) -> None:
-    """Limits with a margin, equal scales, and a figure as high as they ask for."""
+def fit_to(
+    figure: Figure, axes: Axes, points: Floats, width: float, heights: tuple[float, float], room: float
+) -> None:
+    """Limits with a margin, equal scales, and a figure as high as they ask for.
+
+    ``width`` and least and greatest height of the figure, and ``room`` for texts, are in inches.
+    """
     low, high = points.min(axis=0), points.max(axis=0)
     margin = 0.04 * float((high - low).max())
     axes.set_xlim(low[0] - margin, high[0] + margin)
     axes.set_ylim(low[1] - margin, high[1] + margin)
     axes.set_aspect("equal")
     ratio = (high[1] - low[1] + 2.0 * margin) / (high[0] - low[0] + 2.0 * margin)
-    figure.set_size_inches(_WIDTH, float(np.clip(0.9 * _WIDTH * ratio + 1.6, *_HEIGHTS)))
+    figure.set_size_inches(width, float(np.clip(0.9 * width * ratio + room, *heights)))

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 from cycler import cycler
 from matplotlib.axes import Axes
 
-from .. import units
 from ..filters import cfc
+from ..scene_text import scene_text
 
 if TYPE_CHECKING:
     from ..result import Result
@@ -19,15 +19,22 @@ if TYPE_CHECKING:
 __all__ = [
     "BLUE",
     "CYCLE",
+    "DASHED",
+    "DASH_DOT",
+    "DOTTED",
     "GREEN",
     "ORANGE",
     "RED",
+    "SOLID",
     "STYLES",
+    "WIDTHS",
+    "Style",
     "filtered",
     "fit",
     "legend",
     "plot_filtered",
     "prepare",
+    "shown_unit",
     "title",
 ]
 
@@ -35,25 +42,37 @@ Floats = npt.NDArray[np.float64]
 
 # Okabe and Ito's palette, told apart by colour-blind readers; yellow is left out: too faint on white.
 BLUE, ORANGE, GREEN, RED = "#0072B2", "#E69F00", "#009E73", "#D55E00"
-CYCLE = (BLUE, RED, GREEN, "#CC79A7", ORANGE, "#56B4E9", "#000000", "#7F7F7F")
+CYCLE = (BLUE, ORANGE, RED, GREEN, "#CC79A7", "#56B4E9", "#000000", "#7F7F7F")
 _UNFILTERED = "_unfiltered"
-STYLES = ("-", "--", "-.", ":", "-", "--", "-", "--")
+Style: TypeAlias = str | tuple[float, tuple[float, ...]]
+# Dashes with wide gaps, in line widths: a line below shows in them.
+SOLID: Style = "-"
+DASHED: Style = (0.0, (5.0, 3.5))
+DASH_DOT: Style = (0.0, (8.0, 3.0, 1.5, 3.0))
+DOTTED: Style = (0.0, (1.2, 2.0))
+STYLES = (SOLID, DASHED, DASH_DOT, DOTTED, SOLID, DASHED, SOLID, DASHED)
+# Earlier lines are wider: where a later one lies on them, they show on both sides and in its gaps.
+WIDTHS = (3.2, 2.0, 1.5, 1.8, 1.2, 1.2, 1.0, 1.0)
+_SHOWN_UNITS = {"N": (1e3, "kN"), "N m": (1e3, "kN m"), "J": (1e3, "kJ"), "N s": (1e3, "kN s")}
+# Of a legend's text: mean width of a letter, of a line sample with its gaps, and height of a row, points.
+_LETTER, _SAMPLE, _ROW = 4.7, 42.0, 13.5
 
 
 def prepare(*panels: Axes) -> None:
     """Give panels the grid and the colours."""
     for axes in panels:
         axes.grid(alpha=0.3, lw=0.6)
-        axes.set_prop_cycle(cycler(color=CYCLE) + cycler(linestyle=STYLES))
+        axes.set_prop_cycle(cycler(color=CYCLE) + cycler(linestyle=STYLES) + cycler(linewidth=WIDTHS))
+
+
+def shown_unit(unit: str) -> tuple[float, str]:
+    """Return by what numbers in an SI unit are divided for a picture, and the unit they have then."""
+    return _SHOWN_UNITS.get(unit, (1.0, unit))
 
 
 def title(result: Result) -> str:
-    """Return vehicle, mass, speed, angle and barrier in one line."""
-    scene = result.scene
-    speed = f"{scene.impact_speed:.2f} m/s ({scene.impact_speed / units.mph:.1f} mph)"
-    if scene.barrier is None:
-        return f"{scene.vehicle.name}, {scene.vehicle.mass:,.0f} kg, {speed}, no barrier"
-    return f"{scene.vehicle.name}, {scene.vehicle.mass:,.0f} kg, {speed} at {scene.impact_angle:g}°"
+    """Return vehicle, mass, speed and angle, and in a second line the barrier: kind, count and sizes."""
+    return scene_text(result.scene, separator="\n")
 
 
 def filtered(signal: Floats, channel_class: float, interval: float) -> tuple[Floats, str]:
@@ -67,13 +86,16 @@ def filtered(signal: Floats, channel_class: float, interval: float) -> tuple[Flo
 
 
 def plot_filtered(
-    axes: Axes, result: Result, signal: Floats, channel_class: float, label: str, color: str, style: str = "-"
+    axes: Axes, result: Result, signal: Floats, channel_class: float, label: str, color: str, order: int = 0
 ) -> None:
-    """Draw a channel of a result filtered, and unfiltered as a thin line behind."""
+    """Draw a channel of a result filtered, and unfiltered as a thin line behind.
+
+    ``order`` is that of the channel in its panel: it chooses style and width.
+    """
     ms = result.time * 1e3
     values, name = filtered(signal, channel_class, result.scene.settings.output_interval)
-    axes.plot(ms, signal, color=color, ls="-", lw=0.6, alpha=0.45, zorder=1.5, label=_UNFILTERED)
-    axes.plot(ms, values, color=color, ls=style, lw=1.5, label=f"{label}, {name}" if label else name)
+    axes.plot(ms, signal, color=color, ls="-", lw=0.6, alpha=0.35, zorder=1.5, label=_UNFILTERED)
+    axes.plot(ms, values, color=color, ls=STYLES[order], lw=WIDTHS[order], label=f"{label}, {name}")
 
 
 def fit(axes: Axes) -> None:
@@ -99,20 +121,42 @@ def fit(axes: Axes) -> None:
         axes.set_ylim(low - margin, high + margin)
 
 
-def legend(
-    axes: Sequence[Axes],
-    loc: Literal["best", "center right", "upper right", "lower right"] = "best",
-    columns: int = 1,
-) -> None:
-    """One legend for all axes that share a panel, on the last of them: it is drawn on top."""
-    lines = [line for one in axes for line in one.get_lines()]
-    shown = [line for line in lines if not str(line.get_label()).startswith("_")]
+def legend(axes: Sequence[Axes]) -> None:
+    """One legend for all axes that share a panel, between the panel and its title, off the curves.
+
+    It is on the last of the axes, which is drawn on top. The title must have been set on the first.
+    """
+    found = [one.get_legend_handles_labels() for one in axes]
+    shown = [handle for handles, _ in found for handle in handles]
+    labels = [label for _, names in found for label in names]
+    if not labels:
+        return
+    columns = _columns(axes[0], labels)
     axes[-1].legend(
         shown,
-        [str(line.get_label()) for line in shown],
-        loc=loc,
+        labels,
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
         ncols=columns,
         fontsize="small",
-        framealpha=0.8,
-        edgecolor="none",
+        frameon=False,
+        borderaxespad=0.1,
+        borderpad=0.2,
+        columnspacing=1.2,
+        handlelength=3.2,
     )
+    rows = -(-len(labels) // columns)
+    axes[0].set_title(axes[0].get_title(), pad=6.0 + _ROW * rows, fontsize=axes[0].title.get_fontsize())
+
+
+def _columns(axes: Axes, labels: Sequence[str]) -> int:
+    """Return how many columns of labels are as wide as the panel at the most."""
+    place = axes.get_subplotspec()
+    panels = 1 if place is None else place.get_gridspec().ncols
+    room = 72.0 * (axes.figure.bbox.width / axes.figure.dpi / panels - 1.2)
+    for columns in range(len(labels), 1, -1):
+        rows = -(-len(labels) // columns)
+        widest = [max(len(label) for label in labels[i : i + rows]) for i in range(0, len(labels), rows)]
+        if sum(_SAMPLE + _LETTER * letters for letters in widest) <= room:
+            return columns
+    return 1

@@ -13,14 +13,16 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import units
-from ..barrier_surfaces import barrier_surfaces
+from ..barrier_kinds import Bollards, Pole
+from ..barrier_surfaces import Surface, barrier_axes, barrier_surfaces
 from ..plotting.style import title
-from ..skin import skins_at
+from ..skin import Skin, skins_at
 from ..unit_shapes import unit_shapes
-from .camera import Camera, View, check_view, driver_camera, outside_camera
+from .camera import Camera, View, check_view, crushed_direction, driver_camera, outside_camera
 from .unit_on_stage import Color, UnitOnStage, polygons
 
 if TYPE_CHECKING:
+    from ..barrier import Barrier
     from ..result import Result
 
 __all__ = ["Color", "Stage"]
@@ -36,6 +38,8 @@ _NO_DRAWING = (
 _LEAST_SCALE = 0.05  # m, of the colours of crush
 _BAR = 0.12  # share of the picture's width that the bar of colours or the names of zones take
 _AROUND = 3.0  # ground past what is shown, m
+_NEAR = 1.5  # posts as near to the vehicle as this are shown whole, m
+_SEEN_THROUGH = 0.22  # opacity of a barrier that the camera stands behind
 
 
 class Stage:
@@ -91,6 +95,7 @@ class Stage:
         self._skins = skins_at(result, self.times)
         self._size = size
         self._camera: Camera | None = None
+        self._crushed = crushed_direction(result, self._skins[-1])
         with _quiet():
             self.plotter = self._pv.Plotter(off_screen=off_screen, window_size=list(size))
             self.plotter.set_background("white", top="#DCE6EF")
@@ -102,9 +107,13 @@ class Stage:
         plotter, pv = self.plotter, self._pv
         world = [skin.world for units in self._skins for skin in units]
         around = np.vstack(world)
-        for vertices, faces in barrier_surfaces(self._result.scene.barrier, around):
+        surfaces = barrier_surfaces(self._result.scene.barrier, around)
+        self._posts = _posts_near(self._result.scene.barrier, surfaces, around)
+        opacity = _SEEN_THROUGH if self._is_behind() else 1.0
+        for vertices, faces in surfaces:
             surface = pv.PolyData(vertices, polygons(faces))
-            plotter.add_mesh(surface, color=_BARRIER, show_edges=False, smooth_shading=False, ambient=0.3)
+            look = {"show_edges": False, "smooth_shading": False, "ambient": 0.3, "opacity": opacity}
+            plotter.add_mesh(surface, color=_BARRIER, **look)
         low, high = np.floor(around.min(axis=0) - _AROUND), np.ceil(around.max(axis=0) + _AROUND)
         if self._result.scene.settings.ground:
             plotter.add_mesh(_ground(pv, low, high, -0.01), color=_GROUND, lighting=False)
@@ -119,13 +128,21 @@ class Stage:
         greatest = max(_LEAST_SCALE, *crushed)
         font = max(6, round(self._size[1] / 60.0))
         text = {"viewport": True, "color": "black"}
-        plotter.add_text(title(self._result), position=(0.02, 0.935), font_size=round(0.85 * font), **text)
+        plotter.add_text(title(self._result), position=(0.02, 0.90), font_size=round(0.85 * font), **text)
         self._stamp = plotter.add_text(" ", position=(0.02, 0.03), font_size=font, **text)
         driver = self._view == "driver"
         self._parts = [
             UnitOnStage(pv, plotter, shape, self._color, greatest, font, first=unit == 0, from_inside=driver)
             for unit, shape in enumerate(unit_shapes(self._result.scene.vehicle))
         ]
+
+    def _is_behind(self) -> bool:
+        """Whether the barrier is between the camera and the vehicle, and hides more than a post would."""
+        barrier = self._result.scene.barrier
+        if barrier is None or self._view == "driver" or isinstance(barrier, (Bollards, Pole)):
+            return False
+        camera = self._outside(self._skins)
+        return float((camera.place - camera.target) @ barrier_axes(barrier)[1]) < -1e-6
 
     def move_to(self, k: int) -> None:
         """Show the instant ``times[k]``."""
@@ -142,13 +159,15 @@ class Stage:
         if self._view == "driver":
             self._put(driver_camera(self._result, self._skins[k]))
         elif self._follow or self._camera is None:
-            chosen = [self._skins[k]] if self._follow else self._skins
-            points = np.vstack([skin.world for units in chosen for skin in units])
-            aspect = self._size[0] / self._size[1]
-            taken = 0.0 if self._color == "plain" else _BAR
-            self._camera = outside_camera(self._result, self._view, points, aspect, taken)
+            self._camera = self._outside([self._skins[k]] if self._follow else self._skins)
             self._put(self._camera)
         self.plotter.reset_camera_clipping_range()
+
+    def _outside(self, skins: Sequence[tuple[Skin, ...]]) -> Camera:
+        points = np.vstack([*(skin.world for units in skins for skin in units), self._posts])
+        aspect = self._size[0] / self._size[1]
+        taken = 0.0 if self._color == "plain" else _BAR
+        return outside_camera(self._result, self._view, points, aspect, taken, self._crushed)
 
     def _put(self, camera: Camera) -> None:
         self.plotter.camera.position = tuple(camera.place)
@@ -228,6 +247,17 @@ def _quiet() -> Iterator[None]:
         yield
     finally:
         vtkLogger.SetStderrVerbosity(before)
+
+
+def _posts_near(barrier: Barrier | None, surfaces: Sequence[Surface], around: Floats) -> Floats:
+    """Return the corners (k, 3) of the posts beside what is shown: they are to be seen whole."""
+    near = [np.empty((0, 3))]
+    if isinstance(barrier, (Bollards, Pole)):
+        low, high = around.min(axis=0)[:2] - _NEAR, around.max(axis=0)[:2] + _NEAR
+        axes = [(v.min(axis=0) + v.max(axis=0))[:2] / 2.0 for v, _ in surfaces]
+        inside = [((low <= axis) & (axis <= high)).all() for axis in axes]
+        near += [v for (v, _), seen in zip(surfaces, inside, strict=True) if seen]
+    return np.vstack(near)
 
 
 def _ground(pv: Any, low: Floats, high: Floats, z: float) -> Any:

@@ -20,6 +20,8 @@ _ZONES = (
     "#56B4E9", "#E69F00", "#7CC9A9", "#F0E442", "#6FA0CE",
     "#E59A6B", "#DDA9C9", "#BBBBBB", "#888888", "#DDDDDD",
 )  # fmt: skip
+# Of crush: grey where there is none, so that little of it shows too.
+_CRUSH = ("#DCE2E8", "#FFE08A", "#FDAE4B", "#E8502E", "#B0101A", "#5E0008")
 _WHEEL_WIDTH = 0.6  # of the radius; drawn, not modelled
 
 
@@ -77,7 +79,7 @@ class UnitOnStage:
         look: dict[str, Any] = {"color": _PLAIN}
         if color == "crush":
             self._mesh.point_data["crush"] = np.zeros(len(shape.nodes))
-            look = {"scalars": "crush", "cmap": "YlOrRd", "clim": (0.0, greatest)}
+            look = {"scalars": "crush", "cmap": _crush_colors(), "clim": (0.0, greatest)}
             look |= {"show_scalar_bar": first, "scalar_bar_args": _bar(font)}
         elif color == "zone" and len(shape.zone_names):
             n = len(shape.zone_names)
@@ -114,6 +116,12 @@ class UnitOnStage:
         if "crush" in self._mesh.point_data:
             self._mesh.point_data["crush"][:] = skin.crush
             self._mesh.Modified()
+
+
+def _crush_colors() -> Any:
+    from matplotlib.colors import LinearSegmentedColormap
+
+    return LinearSegmentedColormap.from_list("crush", _CRUSH)
 
 
 def polygons(corners: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:

@@ -9,6 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
+from ..plotting.figure import new_figure
+from ..plotting.style import legend
 from .precision_result import AS_GIVEN
 
 if TYPE_CHECKING:
@@ -26,7 +28,7 @@ def plot_work_precision(study: WorkPrecision, metrics: Collection[str] | None = 
 
     The shade is what the converged value is not known to: no error below it means anything.
     """
-    figure = Figure(figsize=(11.0, 4.6), layout="constrained")
+    figure = new_figure(11.0, 4.6)
     left, right = figure.subplots(1, 2, sharey=True)
     lines = dict.fromkeys((row.variant, row.kind) for row in study.rows if row.kind != "reference")
     for i, (variant, kind) in enumerate(lines):
@@ -53,14 +55,14 @@ def plot_work_precision(study: WorkPrecision, metrics: Collection[str] | None = 
     left.set_xlabel("run time, stepping only [ms]")
     right.set_xlabel("force evaluations of nodes")
     left.set_ylabel("greatest relative error of any metric")
-    left.legend(frameon=False, fontsize="small")
+    legend([left])
     figure.suptitle(study.title, fontsize="medium")
     return figure
 
 
 def plot_requested_vs_achieved(study: WorkPrecision, metrics: Collection[str] | None = None) -> Figure:
     """Return a figure of the error of each metric against the tolerance asked for; log-log."""
-    figure = Figure(figsize=(8.5, 5.2), layout="constrained")
+    figure = new_figure(8.5, 5.2)
     axes = figure.subplots()
     rows = [row for row in study.of(AS_GIVEN, "tolerance") if row.errors]
     asked = np.array([row.value for row in rows])

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
+from ..plotting.figure import new_figure
+from ..plotting.style import legend
 from .stability_result import FAULT, HELD, REFUSED, WARNED
 
 if TYPE_CHECKING:
@@ -20,7 +22,7 @@ _STYLES = {HELD: ("o", "C2"), REFUSED: ("x", "C7"), WARNED: ("^", "C1"), FAULT: 
 def plot_stability(study: Stability) -> Figure:
     """Return a figure of the energy residual of every row; refused ones at the bottom."""
     axes_names = list(dict.fromkeys(row.axis for row in study.rows))
-    figure = Figure(figsize=(10.0, 5.0), layout="constrained")
+    figure = new_figure(10.0, 5.0)
     axes = figure.subplots()
     for verdict, (marker, color) in _STYLES.items():
         x, y = [], []
@@ -37,5 +39,5 @@ def plot_stability(study: Stability) -> Figure:
     axes.set_ylabel("energy residual / initial kinetic energy")
     axes.set_xticks(range(len(axes_names)), axes_names, rotation=30, ha="right")
     axes.grid(alpha=0.3, axis="y")
-    axes.legend(frameon=False, fontsize="small")
+    legend([axes])
     return figure

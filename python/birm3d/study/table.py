@@ -318,6 +318,12 @@ class Study:
 
         return plot_study(self, x, y, by)
 
+    def _repr_html_(self) -> str:
+        """Return what notebooks show: outcomes, parameters, the spread of the metrics, a scatter."""
+        from ..notebook_html import study_html
+
+        return study_html(self)
+
     def __repr__(self) -> str:
         failed = len(self.failed)
         return (
