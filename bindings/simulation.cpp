@@ -82,7 +82,12 @@ void register_simulation(py::module_& m) {
         .def_readonly("wheels_on_ground", &StepStatistics::wheels_on_ground,
                       "wheels that carried load, summed over the steps")
         .def_readonly("deepest_point", &StepStatistics::deepest_point,
-                      "m, of the rigid body inside a barrier")
+                      "m, of the anchors of closed trusses inside a barrier")
+        .def_readonly("greatest_overlap", &StepStatistics::greatest_overlap,
+                      "m, by which the rigid body's boxes and an element of the barrier overlapped")
+        .def_readonly("greatest_overlap_time", &StepStatistics::greatest_overlap_time, "s")
+        .def_readonly("greatest_overlap_element", &StepStatistics::greatest_overlap_element,
+                      "of the barrier, with which")
         .def_readonly("least_critical_step", &StepStatistics::least_critical_step,
                       "s, sqrt(3)/omega of the trusses in contact");
 

@@ -18,7 +18,8 @@ void register_vehicle(py::module_& m) {
                          const InputArray& anchors, const std::vector<TrussCurve>& curves,
                          const std::vector<std::size_t>& curve_of, const InputArray& scale,
                          const InputArray& wheels, double mass_center_height, double rate_sensitivity,
-                         double dent_reach, const InputArray& offset, const std::vector<int>& wheel_of) {
+                         double dent_reach, const InputArray& offset, const std::vector<int>& wheel_of,
+                         const InputArray& core) {
                  TrussInput trusses{points(nodes, "nodes"), points(anchors, "anchors"), curves, curve_of,
                                     numbers(scale, "scale")};
                  trusses.rate_sensitivity = rate_sensitivity;
@@ -29,20 +30,27 @@ void register_vehicle(py::module_& m) {
                  std::vector<Wheel> discs;
                  for (py::ssize_t i = 0; i < wheels.shape(0); ++i)
                      discs.push_back({{wheels.at(i, 0), wheels.at(i, 1), wheels.at(i, 2)}, wheels.at(i, 3)});
+                 if (core.ndim() != 2 || core.shape(1) != 6) refuse("core shape", "(k, 6)", shape_text(core));
+                 std::vector<Box> boxes;
+                 for (py::ssize_t i = 0; i < core.shape(0); ++i)
+                     boxes.push_back({{core.at(i, 0), core.at(i, 1), core.at(i, 2)},
+                                      {core.at(i, 3), core.at(i, 4), core.at(i, 5)}});
                  const RigidBody body(mass, matrix(inertia, "inertia"));
-                 return Unit(body, trusses, std::move(discs), mass_center_height, vector(offset, "offset"));
+                 return Unit(body, trusses, std::move(discs), mass_center_height, vector(offset, "offset"),
+                             std::move(boxes));
              }),
              py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("nodes"), py::arg("anchors"),
              py::arg("curves"), py::arg("curve_of"), py::arg("scale"), py::arg("wheels"),
              py::arg("mass_center_height"), py::arg("rate_sensitivity"), py::arg("dent_reach"),
-             py::arg("offset"), py::arg("wheel_of"),
+             py::arg("offset"), py::arg("wheel_of"), py::arg("core"),
              "mass kg; inertia (3, 3) kg m^2; nodes, anchors (n, 3) m; curves for the trusses with curve_of "
              "(n,) and scale (n,);\n"
              "wheels (w, 4): centre and radius, m; mass_center_height m above the ground;\n"
              "rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; offset (3,) m of the "
              "mass centre from the vehicle's reference point along "
              "the ground; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; "
-             "empty: all skin.")
+             "empty: all skin;\n"
+             "core (k, 6): middles and half edges of the boxes that the rigid body fills, m.")
         .def_property_readonly("n_trusses", [](const Unit& unit) { return unit.trusses.count; })
         .def_property_readonly(
             "input_index", [](const Unit& unit) { return unit.trusses.input_index; },

@@ -23,6 +23,7 @@ from .free_standing import FreeStanding
 from .impact_point import critical_impact_point
 from .ledger import LedgerWarning
 from .monte_carlo import monte_carlo
+from .overlap import OverlapWarning
 from .result import Result
 from .result_file import load
 from .runs import StudyInterrupted, StudyStoppedError
@@ -46,6 +47,7 @@ __all__ = [
     "FreeStanding",
     "Joint",
     "LedgerWarning",
+    "OverlapWarning",
     "Result",
     "Scene",
     "Settings",

@@ -117,8 +117,8 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     ``dynamic_crush``, ``residual_crush`` (greatest truss shortening, also of tyres, during the run and at its
     end) [m],
     ``max_displacement`` (of the mass centre towards the barrier since t = 0 less the standoff; on a path
-    along the barrier's line, towards its end) [m], ``contact_overlap`` (of the rigid body inside the barrier,
-    what the steps leave) [m], ``impact_severity`` (1/2 m (v sin angle)^2) [J], ``delta_v`` (greatest change
+    along the barrier's line, towards its end) [m], ``contact_overlap`` (by which the rigid body and the barrier
+    overlapped, see :class:`birm3d.OverlapWarning`) [m], ``impact_severity`` (1/2 m (v sin angle)^2) [J], ``delta_v`` (greatest change
     of velocity) [m/s]; where the motion towards the barrier ends: ``time_of_zero_velocity`` (since the first
     touch) [s], ``restitution`` (normal separation over approach speed); where the vehicle has left:
     ``exit_angle`` (of its path from the barrier's line) [deg].
@@ -354,6 +354,11 @@ def _exit_angle(run: _Run) -> float | None:
     return math.degrees(math.atan2(away, along))
 
 
+def _contact_overlap(run: _Run) -> float:
+    statistics = run.outcome.statistics
+    return max(statistics.deepest_point, statistics.greatest_overlap)
+
+
 def _max_overturning_ratio(run: _Run) -> float | None:
     return float(run.result.overturning_ratio.max()) if run.scene.settings.gravity > 0.0 else None
 
@@ -438,7 +443,7 @@ def _all_metrics() -> dict[str, _Metric]:
         "residual_crush": end(_of_barrier(lambda run: max(0.0, run.outcome.deflection))),
         "max_displacement": motion(_of_barrier(lambda run: run.motion.way - run.scene.standoff)),
         "vehicle_penetration": histories(_vehicle_penetration),
-        "contact_overlap": end(_of_barrier(lambda run: run.outcome.statistics.deepest_point)),
+        "contact_overlap": end(_of_barrier(_contact_overlap)),
         "barrier_deflection": histories(_of_segments(lambda run: float(run.movement.max()))),
         "residual_barrier_deflection": histories(_of_segments(lambda run: float(run.movement[-1]))),
         "max_overturning_ratio": histories(_of_segments(_max_overturning_ratio)),

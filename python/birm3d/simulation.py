@@ -12,6 +12,7 @@ from ._version import __version__
 from .barrier import Barrier
 from .coarse_skin import warn_if_coarse
 from .ledger import warn_if_open
+from .overlap import warn_if_overlapping
 from .result import Result
 from .settings import MU_TIRE_BARRIER, Settings
 from .unit_check import given
@@ -207,6 +208,8 @@ class Simulation:
             If a fixed time step is beyond what the scene allows; the message names one that would do.
         BusyError
             If another thread uses the simulation.
+        OverlapWarning
+            As a warning, if the rigid body got into the barrier.
         LedgerWarning
             As a warning, if a fixed time step is stable and the energy ledger does not close with it.
         ValueError
@@ -221,6 +224,7 @@ class Simulation:
             finally:
                 self._run_time += time.perf_counter() - start
             result = self._result()
+        warn_if_overlapping(result.scene, result.statistics)
         if self._scene.settings.time_step is not None:
             warn_if_open(result.scene, result._energy_extremes)
         return result if frames is None else result.with_frames(frames)

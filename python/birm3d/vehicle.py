@@ -713,7 +713,15 @@ class Vehicle:
             dent_reach=self.dent_reach,
             offset=offset,
             wheel_of=self.wheel_of_node.tolist(),
+            core=self._core_boxes(),
         )
+
+    def _core_boxes(self) -> Floats:
+        """Return middles and half edges of the rigid body's boxes, body axes, shape (k, 6) [m]."""
+        boxes = () if self._file is None else self._file.core
+        ranges = np.array([(box.x_m, (-box.half_width_m, box.half_width_m), box.z_m) for box in boxes])
+        ranges = ranges.reshape(-1, 3, 2) - self.center_of_mass[:, None]
+        return np.hstack([ranges.mean(axis=2), 0.5 * np.ptp(ranges, axis=2)])
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Vehicle):

@@ -37,12 +37,17 @@ RigidBody::RigidBody(double mass_, const Mat3& inertia_)
       inverse_inertia(inertia.inverse()) {}
 
 Unit::Unit(const RigidBody& body_, const TrussInput& trusses_, std::vector<Wheel> wheels_,
-           double mass_center_height_, const Vec3& offset_)
+           double mass_center_height_, const Vec3& offset_, std::vector<Box> core_)
     : body(body_),
       trusses(trusses_, wheels_),
       wheels(std::move(wheels_)),
       mass_center_height(require_finite("mass_center_height", mass_center_height_)),
-      offset(offset_) {
+      offset(offset_),
+      core(std::move(core_)) {
+    for (std::size_t i = 0; i < core.size(); ++i)
+        if (!core[i].center.allFinite() || !core[i].half.allFinite() || !(core[i].half.minCoeff() > 0.0))
+            refuse("core[" + std::to_string(i) + "]", "finite, with a size > 0 m along each axis",
+                   "one that is not");
     if (!offset.allFinite()) refuse("offset", "finite", "a coordinate that is not");
     if (offset.z() != 0.0) refuse("offset height", "0 m (the height is mass_center_height)", offset.z());
     for (std::size_t i = 0; i < wheels.size(); ++i) {

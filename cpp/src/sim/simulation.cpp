@@ -9,6 +9,7 @@
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/sim/bodies.hpp"
+#include "birm3d/sim/barrier_overlap.hpp"
 #include "birm3d/sim/obstacles.hpp"
 #include "birm3d/sim/outcome.hpp"
 #include "birm3d/sim/step_control.hpp"
@@ -101,6 +102,7 @@ void Simulation::take(Trial& trial) {
                                  " s, step " + to_text(trial.dt) + " s");
     failed_ = true;  // unless all of what follows is done
     accept(scene_, trial, state_);
+    note_overlap(scene_, about_, state_);
     recorder_.add(scene_, trial);
     if (open && state_.touched && is_decided(scene_, state_)) {
         state_.decided = true;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "birm3d/base/types.hpp"
+#include "birm3d/geometry/box.hpp"
 #include "birm3d/model/joint.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 #include "birm3d/model/wheel.hpp"
@@ -23,7 +24,7 @@ struct RigidBody {
 
 struct Unit {
     Unit(const RigidBody& body, const TrussInput& trusses, std::vector<Wheel> wheels,
-         double mass_center_height, const Vec3& offset = Vec3::Zero());
+         double mass_center_height, const Vec3& offset = Vec3::Zero(), std::vector<Box> core = {});
 
     RigidBody body;
     TrussMesh trusses;
@@ -32,6 +33,9 @@ struct Unit {
     // Of the mass centre from the vehicle's reference point, forward and to the left in the position of rest; no
     // height (m).
     Vec3 offset;
+    // Boxes that the rigid body behind the trusses fills, body axes: how deep it is inside a barrier is measured on
+    // them. None of a vehicle that is only known by its trusses.
+    std::vector<Box> core;
 
     // Of the mass centre above the vehicle's reference point on the ground, position of rest (m).
     Vec3 place() const { return offset + mass_center_height * Vec3::UnitZ(); }

@@ -79,6 +79,7 @@ class Simulation {
     Scene scene_;
     State state_;
     Trial trial_;
+    std::vector<std::size_t> about_;  // obstacles about a unit; only memory
     std::vector<BodyState> before_;  // the step at hand; only memory
     Recorder recorder_;
     bool failed_ = false;
