@@ -691,7 +691,7 @@ class StepStatistics:
     @property
     def deepest_point(self) -> float:
         """
-        m, of the rigid body inside a barrier
+        m, of the anchors of closed trusses inside a barrier
         """
     @property
     def free_steps(self) -> int:
@@ -702,6 +702,21 @@ class StepStatistics:
     def free_time(self) -> float:
         """
         s, of these steps
+        """
+    @property
+    def greatest_overlap(self) -> float:
+        """
+        m, by which the rigid body's boxes and an element of the barrier overlapped
+        """
+    @property
+    def greatest_overlap_element(self) -> int:
+        """
+        of the barrier, with which
+        """
+    @property
+    def greatest_overlap_time(self) -> float:
+        """
+        s
         """
     @property
     def least_critical_step(self) -> float:
@@ -821,11 +836,12 @@ class Unit:
     """
     A rigid body with its crushable skin and wheels; body axes r, s, t, origin at the mass centre.
     """
-    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex, dent_reach: typing.SupportsFloat | typing.SupportsIndex, offset: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheel_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]) -> None:
+    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex, dent_reach: typing.SupportsFloat | typing.SupportsIndex, offset: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheel_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], core: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
         """
         mass kg; inertia (3, 3) kg m^2; nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,);
         wheels (w, 4): centre and radius, m; mass_center_height m above the ground;
-        rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; offset (3,) m of the mass centre from the vehicle's reference point along the ground; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; empty: all skin.
+        rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; offset (3,) m of the mass centre from the vehicle's reference point along the ground; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; empty: all skin;
+        core (k, 6): middles and half edges of the boxes that the rigid body fills, m.
         """
     @property
     def input_index(self) -> list[int]:

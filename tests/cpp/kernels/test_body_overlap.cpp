@@ -32,8 +32,8 @@ TEST("a corner of the box is the deepest in a half-space") {
 TEST("a post beside the box reaches into its flat side, where no corner is near") {
     const Shape post = Post(0.16);
     for (const double depth : {0.003, 0.05, 0.15})
-        CHECK_CLOSE(overlap_of_box(post, standing({-0.4, -0.5 - 0.16 + depth, 0.0}), box), depth, found * depth,
-                    "depth of the flat side in the post");
+        CHECK_CLOSE(overlap_of_box(post, standing({-0.4, -0.5 - 0.16 + depth, 0.0}), box), depth,
+                    found * depth, "depth of the flat side in the post");
     CHECK(overlap_of_box(post, standing({-0.4, -0.6601, 0.0}), box) == 0.0);
 }
 
