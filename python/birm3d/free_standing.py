@@ -142,12 +142,16 @@ def overturning_ratio(result: Result) -> Floats:
     gravity, interval = scene.settings.gravity, scene.settings.output_interval
     if not gravity > 0.0:
         raise ValueError(f"gravity must be > 0 m/s^2 for a restoring moment, got {gravity}")
-    ratio = np.zeros(result.segment_yaw.shape)
+    yaw, velocity = result.segment_yaw, result.segment_velocity
+    ratio = np.zeros(yaw.shape)
+    speed = np.abs(velocity).max(axis=(0, 2), initial=0.0)
     for i, (load, segment) in enumerate(zip(result.element_loads, scene.barrier.core.segments, strict=True)):
+        if speed[i] == 0.0 and not load.touched:
+            continue
         force, moment = (moving_average(mean, _WINDOW, interval) for mean in (load.force, load.moment))
-        change = np.diff(result.segment_velocity[:, i], axis=0, prepend=result.segment_velocity[:1, i])
+        change = np.diff(velocity[:, i], axis=0, prepend=velocity[:1, i])
         acceleration = moving_average(change / interval, _WINDOW, interval)
-        angle = np.radians(scene.barrier.heading + result.segment_yaw[:, i])
+        angle = np.radians(scene.barrier.heading + yaw[:, i])
         across, along = (
             np.stack([np.cos(angle), np.sin(angle)], 1),
             np.stack([-np.sin(angle), np.cos(angle)], 1),

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
+import signal
+import threading
+import time
 from pathlib import Path
 
 import birm3d
@@ -212,6 +216,55 @@ def test_checkpoints_and_files_hold_the_segments(
     assert (loaded.segment_position == pinned.segment_position).all()
     assert (loaded.energy["barrier_ground_friction"] == pinned.energy["barrier_ground_friction"]).all()
     assert loaded.metrics == pinned.metrics
+
+
+def hit(car: Vehicle, segments: int, joint: str = "pinned") -> birm3d.Result:
+    """15 m/s and 25 degrees at the middle of segments of 3 m."""
+    free = FreeStanding(joint=joint)
+    barrier = Barrier.jersey(length=3.0 * segments, segments=segments, free_standing=free)
+    settings = Settings(output_interval=1e-3)
+    return Simulation(car, barrier, 15.0, 25.0, duration=0.5, settings=settings).run()
+
+
+def test_loose_segments_far_away_change_nothing(car: Vehicle) -> None:
+    some, many = hit(car, 61, "loose"), hit(car, 161, "loose")
+    # Places differ by rounding: the row begins elsewhere.
+    assert np.abs(many.segment_position[:, 50:-50] - some.segment_position).max() < 1e-9
+    assert np.abs(many.velocity - some.velocity).max() < 1e-7
+    assert (many.segment_velocity[:, :50] == 0.0).all()
+
+
+def test_a_long_chain_costs_little_more_than_a_short_one(car: Vehicle) -> None:
+    """In proportion to the segments at the most; with their square it would be 100 times."""
+
+    def seconds(segments: int) -> float:
+        start = time.process_time()
+        hit(car, segments)
+        return time.process_time() - start
+
+    short, long = (min(seconds(n) for _ in range(2)) for n in (20, 200))
+    assert long < 15.0 * short
+
+
+def test_control_c_stops_a_run_at_once() -> None:
+    """Steps of a fine vehicle take long: between looks for signals there is time, not a number of steps."""
+    vehicle = scenes.laboratory_block(200_000, k_initial=1e4, k_unloading=1e4)
+    simulation = Simulation(vehicle, slab(0.5), SPEED, duration=3.0, settings=Settings(time_step=1e-5))
+    taken = []
+
+    def interrupt() -> None:
+        time.sleep(0.5)
+        taken.append(time.process_time())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    thread = threading.Thread(target=interrupt)
+    thread.start()
+    with pytest.raises(KeyboardInterrupt):
+        simulation.run()
+    taken.append(time.process_time())
+    thread.join()
+    assert simulation.time < 3.0
+    assert taken[1] - taken[0] < 0.2
 
 
 def test_report_and_plan_view_show_what_moved(pinned: birm3d.Result) -> None:

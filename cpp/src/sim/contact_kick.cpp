@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/kernels/ground_slide.hpp"
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/kernels/joints.hpp"
 #include "birm3d/kernels/member_friction.hpp"
 #include "birm3d/kernels/tires.hpp"
 #include "birm3d/sim/bodies.hpp"
 #include "birm3d/sim/obstacles.hpp"
+#include "sim/segment_kick.hpp"
 
 namespace birm3d {
 
@@ -60,84 +60,58 @@ bool stayed(const std::vector<Wrench>& on_base, std::vector<Wrench>& last) {
     return change <= settled * sum;
 }
 
-// Greatest friction impulse of the ground on each segment (N s).
-Column friction_limits(const Scene& scene, const Column& pressed, const ContactKick& kicked) {
-    Column limits = pressed;
-    for (const RigidContact& contact : kicked.contacts)
-        if (contact.source == ContactSource::member && contact.other >= 0)
-            limits[contact.obstacle] += contact.impulse * contact.normal.z() + contact.rubbing.z();
-    for (double& limit : limits)
-        limit = scene.barrier->free_standing->ground_friction * std::max(0.0, limit);
-    return limits;
-}
-
-// What friction holds is at rest but for rounding, and for what pins and friction leave to each other; then it is at
-// rest. Share of the speed that friction can take from a segment which it may have left.
-void bring_to_rest(const Scene& scene, const Column& limits, State& state) {
-    constexpr double left_over = 1e-4;
-    for (std::size_t i = 0; i < limits.size(); ++i) {
-        const Segment& segment = scene.barrier->segments[i];
-        BodyState& body = state.segments[i];
-        if (fastest_point(segment, body) <= left_over * segment.body.inverse_mass * limits[i])
-            body.velocity = body.angular_momentum = Vec3::Zero();
-    }
-}
-
-// Friction of the ground on each segment, on top of what else moves it; pins are found with it.
-void rub_on_ground(const Scene& scene, const std::vector<ContactBody>& bodies, const Column& pressed,
-                   ContactKick& kicked, State& state) {
-    const std::size_t units = state.units.size();
-    std::vector<PinnedSlab> slabs;
-    std::vector<SlabPin> pins;
-    const Column limits = friction_limits(scene, pressed, kicked);
-    bool any = false;  // does anything move?
-    const bool guessed = std::any_of(kicked.on_base.begin(), kicked.on_base.end(),
-                                     [](const Wrench& friction) { return !friction.force.isZero(0.0); });
-    for (std::size_t i = 0; i < limits.size(); ++i) {
-        const Segment& segment = scene.barrier->segments[i];
-        PinnedSlab slab{
-            &segment.body, {}, limits[i], twist(segment.body, state.segments[i]), bodies[units + i].motion};
-        slab.motion.velocity -= segment.body.inverse_mass * kicked.on_base[i].force;
-        slab.motion.angular_velocity -= segment.body.inverse_inertia * kicked.on_base[i].torque;
-        for (std::size_t c = 0; c < slab.arm.size(); ++c)
-            slab.arm[c] = state.segments[i].orientation * segment.corner[c];
-        slabs.push_back(slab);
-    }
-    for (const RigidContact& contact : kicked.contacts) {
-        const bool is_pin = contact.body >= units;
-        if (is_pin) {
-            const auto on = [&](const Vec3& arm, double sign) {
-                const Wrench unit = unit_wrench(contact, arm);
-                return Vec3(sign * unit.force.x(), sign * unit.force.y(), sign * unit.torque.z());
-            };
-            pins.push_back({contact.body - units, static_cast<std::size_t>(contact.other) - units,
-                            on(contact.arm, 1.0), on(contact.other_arm, -1.0), contact.target});
-        } else if (contact.source == ContactSource::member && contact.other >= 0) {
-            const Wrench push = wrench_on_other(contact);
-            PinnedSlab& slab = slabs[contact.obstacle];
-            slab.motion.velocity += slab.body->inverse_mass * Vec3(push.force.x(), push.force.y(), 0.0);
-            slab.motion.angular_velocity.z() += slab.body->inverse_inertia(2, 2) * push.torque.z();
-        }
-    }
-    for (const PinnedSlab& slab : slabs)
-        any = any || !slab.motion.velocity.isZero(0.0) || !slab.motion.angular_velocity.isZero(0.0);
-    std::vector<Wrench> next(slabs.size());
-    if (any && !pins.empty()) next = slide_friction(slabs, pins, guessed);
-    if (any && pins.empty())
-        for (std::size_t i = 0; i < slabs.size(); ++i)
-            next[i] = slide_friction(*slabs[i].body, slabs[i].arm, slabs[i].limit, slabs[i].motion);
-    for (std::size_t i = 0; i < next.size(); ++i) {
-        kick_body(scene, units + i, difference(next[i], kicked.on_base[i]), state);
-        kicked.on_base[i] = next[i];
-    }
-}
-
 // Normal impulses of the tyres by wheel.
 void tire_impulses(const Scene& scene, const std::vector<RigidContact>& contacts, std::vector<Column>& tire) {
     for (std::size_t u = 0; u < tire.size(); ++u)
         tire[u].assign(scene.vehicle->units[u].wheels.size(), 0.0);
     for (const RigidContact& contact : contacts)
         if (contact.source == ContactSource::tire) tire[contact.body][contact.index] += contact.impulse;
+}
+
+// Friction of both sides of closed trusses and of tyres, by the present impulses; kicks the units by what has changed.
+void rub_units(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
+    ContactKick& kicked = memory.kick;
+    const std::size_t units = state.units.size();
+    const std::vector<Twist>& motion = memory.pushed;
+    std::vector<Wrench>& on_members = memory.on_members;
+    on_members.assign(memory.bodies.size(), {});
+    for (std::size_t u = 0; u < units; ++u) {
+        const Unit& unit = scene.vehicle->units[u];
+        BodyState& body = state.units[u].body;
+        const Wrench on_ground =
+            tire_friction(unit, scene.settings, body, {motion[u], by.at_end[u]}, memory.tire[u]);
+        on_members[u] =
+            member_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u]);
+        kick(unit.body, difference(on_ground, kicked.on_ground[u]), body);
+        kick(unit.body, difference(on_members[u], kicked.on_members[u]), body);
+        kicked.on_ground[u] = on_ground;
+    }
+    for (const RigidContact& contact : kicked.contacts)
+        if (contact.source == ContactSource::member && contact.other >= 0)
+            on_members[static_cast<std::size_t>(contact.other)] +=
+                {-contact.rubbing, -contact.other_arm.cross(contact.rubbing)};
+    kicked.on_members = on_members;
+}
+
+// Motions of the bodies without normal impulses and pins.
+void set_rubbed_motions(const State& state, const ContactKick& kicked, std::vector<ContactBody>& bodies) {
+    set_motions(state, bodies);
+    const std::size_t units = state.units.size();
+    for (std::size_t i = 0; i < kicked.on_base.size(); ++i) {
+        ContactBody& body = bodies[units + i];
+        Wrench push = kicked.on_base[i];
+        push += kicked.on_members[units + i];
+        body.motion.velocity += body.inverse_mass * Vec3(push.force.x(), push.force.y(), 0.0);
+        body.motion.angular_velocity.z() += body.inverse_inertia(2, 2) * push.torque.z();
+    }
+}
+
+// Where the rigid body meets segments, the pins between these are rows of the solver, too.
+void prepare_solver(const Scene& scene, const State& state, KickMemory& memory) {
+    std::erase_if(memory.kick.contacts,
+                  [&](const RigidContact& row) { return row.body >= state.units.size(); });
+    add_pin_rows(scene, state, memory, memory.kick.contacts);
+    memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
 }
 
 // The motions at which they slide are those at hand; `memory.solver` is prepared.
@@ -148,22 +122,19 @@ void settle_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory,
     kicked.on_ground.assign(units, {});
     kicked.on_members.assign(bodies.size(), {});
     list_motions(state, bodies, memory.pushed);
-    const std::vector<Twist>& motion = memory.pushed;
-    // What a round before this one has found is where the search begins.
-    kicked.on_base.resize(state.segments.size());
-    for (std::size_t i = 0; i < kicked.on_base.size(); ++i)
-        kick_body(scene, units + i, kicked.on_base[i], state);
     for (RigidContact& contact : kicked.contacts) {
         if (contact.source != ContactSource::member || contact.other < 0) continue;
-        const Twist& other = motion[static_cast<std::size_t>(contact.other)];
+        const Twist& other = memory.pushed[static_cast<std::size_t>(contact.other)];
         contact.sliding_surface = other.velocity + other.angular_velocity.cross(contact.other_arm);
     }
-    std::vector<Column>& tire = memory.tire;
-    tire.resize(units);
+    memory.tire.resize(units);
+    const bool meets = meets_segments(kicked.contacts);
+    if (meets) rub_on_ground(scene, by, state, memory);
     const auto solve = [&] {
-        set_motions(state, bodies);
+        if (meets) prepare_solver(scene, state, memory);
+        set_rubbed_motions(state, kicked, bodies);
         memory.solver.solve(kicked.contacts, bodies);
-        tire_impulses(scene, kicked.contacts, tire);
+        tire_impulses(scene, kicked.contacts, memory.tire);
     };
     solve();
     // Friction follows from the normal impulses and tips the body, which changes them: to and fro, until they stay.
@@ -172,39 +143,24 @@ void settle_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory,
     memory.on_base.clear();
     for (int round = 0; round < most_rounds; ++round) {
         const bool pushes_stay = stayed(kicked.contacts, memory.last);
-        const bool frictions_stay = round > 0 && stayed(kicked.on_base, memory.on_base);
-        if (pushes_stay && (frictions_stay || state.segments.empty())) break;
-        // Of both sides of closed trusses.
-        std::vector<Wrench>& on_members = memory.on_members;
-        on_members.assign(bodies.size(), {});
-        for (std::size_t u = 0; u < units; ++u) {
-            const Unit& unit = scene.vehicle->units[u];
-            BodyState& body = state.units[u].body;
-            const Wrench on_ground =
-                tire_friction(unit, scene.settings, body, {motion[u], by.at_end[u]}, tire[u]);
-            on_members[u] =
-                member_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u]);
-            kick(unit.body, difference(on_ground, kicked.on_ground[u]), body);
-            kick(unit.body, difference(on_members[u], kicked.on_members[u]), body);
-            kicked.on_ground[u] = on_ground;
-        }
-        for (const RigidContact& contact : kicked.contacts)
-            if (contact.source == ContactSource::member && contact.other >= 0)
-                on_members[static_cast<std::size_t>(contact.other)] +=
-                    {-contact.rubbing, -contact.other_arm.cross(contact.rubbing)};
-        for (std::size_t b = units; b < bodies.size(); ++b)
-            kick_body(scene, b, difference(on_members[b], kicked.on_members[b]), state);
-        kicked.on_members = on_members;
-        rub_on_ground(scene, bodies, by.pressed, kicked, state);
-        if (state.segments.empty() && !slides(kicked)) break;
+        const bool frictions_stay = !meets || (round > 0 && stayed(kicked.on_base, memory.on_base));
+        if (pushes_stay && frictions_stay) break;
+        rub_units(scene, by, memory, state);
+        if (meets) rub_on_ground(scene, by, state, memory);
+        if (!meets && !slides(kicked)) break;
         solve();
     }
+    std::erase_if(kicked.contacts, [&](const RigidContact& row) { return row.body >= units; });
     for (const RigidContact& contact : kicked.contacts) {
         kick_body(scene, contact.body, wrench_on_body(contact), state);
-        if (contact.other >= 0)
+        const bool on_unit = contact.other >= 0 && contact.other < static_cast<int>(units);
+        if (on_unit)
             kick_body(scene, static_cast<std::size_t>(contact.other), wrench_on_other(contact), state);
     }
-    bring_to_rest(scene, friction_limits(scene, by.pressed, kicked), state);
+    // An impact that meets no segment is none to them.
+    if (state.segments.empty() || (by.is_impact && !meets)) return;
+    rub_on_ground(scene, by, state, memory);
+    move_segments(scene, memory, state);
 }
 
 // `impulse` on the unit, friction included.
@@ -283,22 +239,22 @@ Twist relative_motion(const Scene& scene, const State& state, std::size_t u, std
 }
 
 void kick_by_contacts(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
+    memory.kick.on_base.clear();
+    memory.kick.on_pins.clear();
     if (memory.kick.contacts.empty() && by.pressed.empty()) {
         memory.kick.on_ground.clear();
         memory.kick.on_members.clear();
-        memory.kick.on_base.clear();
         return;
     }
     memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
-    memory.kick.on_base.clear();
     settle_impulses(scene, by, memory, state);
 }
 
-void kick_towards_closed_joints(const Scene& scene, double dt, const KickedBy& by, KickMemory& memory,
-                                State& state) {
-    if (scene.joints.empty()) return kick_by_contacts(scene, by, memory, state);
+void kick_towards_closed_joints(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
+    if (scene.vehicle->joints.empty()) return kick_by_contacts(scene, by, memory, state);
     memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
     memory.kick.on_base.clear();
+    memory.kick.on_pins.clear();
     std::vector<BodyState> start;
     list_body_states(state, start);
     // Each round leaves about omega dt of the gap.
@@ -308,7 +264,7 @@ void kick_towards_closed_joints(const Scene& scene, double dt, const KickedBy& b
         for (std::size_t b = 0; b < start.size(); ++b)
             body_state(state, b) = start[b];
         settle_impulses(scene, by, memory, state);
-        const double gap = correct_targets(scene, state, dt, memory.kick.contacts);
+        const double gap = correct_targets(scene, state, by.drift, memory.kick.contacts);
         if (gap <= tolerance::joint_gap || gap >= last) break;
         last = gap;
     }
@@ -320,7 +276,6 @@ void add_impulses(const Scene& scene, const State& state, const ContactKick& kic
     for (std::size_t u = 0; u < sums.size(); ++u)
         sums[u].tire_friction += kicked.on_ground[u].force;
     for (const RigidContact& contact : kicked.contacts) {
-        if (contact.body >= sums.size()) continue;  // a pin between segments
         const Vec3 impulse = contact.impulse * contact.normal;
         ContactImpulses& sum = sums[contact.body];
         switch (contact.source) {
@@ -350,6 +305,8 @@ void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vec
     const auto motion = [&](std::size_t u) { return mean(before[u], after[u]); };
     for (std::size_t i = 0; i < kicked.on_base.size(); ++i)
         state.energies.segment_friction -= power(kicked.on_base[i], motion(state.units.size() + i));
+    for (std::size_t i = 0; i < kicked.on_pins.size(); ++i)
+        state.energies.joints -= power(kicked.on_pins[i], motion(state.units.size() + i));
     for (std::size_t u = 0; u < kicked.on_ground.size(); ++u)
         state.energies.tire_friction -= power(kicked.on_ground[u], motion(u));
     for (const RigidContact& contact : kicked.contacts) {

@@ -60,7 +60,7 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
                                     body_state(state, static_cast<std::size_t>(contact.other)).position;
         }
     }
-    const std::vector<Joint>& joints = scene.joints;
+    const std::vector<Joint>& joints = scene.vehicle->joints;
     for (std::size_t j = 0; j < joints.size(); ++j)
         find_joint_rows(joints[j], j, body_state(state, joints[j].leading),
                         body_state(state, joints[j].trailing), contacts);
@@ -199,7 +199,10 @@ void impact_at_once(const Scene& scene, Stage stage, double reach, const std::ve
     const bool start = stage == Stage::before_drift;
     Impact& impact = start ? trial.at_start : trial.at_end;
     if (!start) keep(scene, state, impact);
-    kick_by_contacts(scene, {Column(state.segments.size()), before}, memory, state);
+    kick_by_contacts(
+        scene,
+        {.pressed = Column(state.segments.size()), .at_end = before, .from = before, .is_impact = true},
+        memory, state);
     add_impulses(scene, state, memory.kick, impact.impulses, impact.joint_impulses);
     list_motions(state, memory.bodies, after);
     book_contacts(scene, memory.kick, before, after, state);
@@ -275,10 +278,13 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     // Tyres roll as the body moves at the ends of the step: at the later one as contacts will have made it, taken to do
     // what they did before the drift.
     if (start) {
-        kick_towards_closed_joints(scene, trial.dt, {pressed, memory.before}, memory, state);
+        kick_towards_closed_joints(
+            scene, {.pressed = pressed, .at_end = memory.before, .from = memory.before, .drift = trial.dt},
+            memory, state);
     } else {
         combine(memory.pushed, 1.0, trial.by_contacts, memory.rolling);
-        kick_by_contacts(scene, {pressed, memory.rolling}, memory, state);
+        kick_by_contacts(scene, {.pressed = pressed, .at_end = memory.rolling, .from = memory.before}, memory,
+                         state);
     }
     add_impulses(scene, state, memory.kick, trial.impulses, trial.joint_impulses);
     list_motions(state, bodies, memory.after);

@@ -1,6 +1,7 @@
 #include "birm3d/sim/simulation.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -172,9 +173,15 @@ bool Simulation::step() {
 }
 
 void Simulation::run(const std::function<void()>& poll) {
-    constexpr int steps_between_polls = 256;
-    for (int i = 1; step(); ++i)
-        if (i % steps_between_polls == 0) poll();
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::milliseconds between_polls(20);
+    Clock::time_point last = Clock::now();
+    while (step()) {
+        const Clock::time_point now = Clock::now();
+        if (now - last < between_polls) continue;
+        poll();
+        last = now;
+    }
 }
 
 }  // namespace birm3d

@@ -9,8 +9,6 @@
 #pragma once
 
 #include <array>
-#include <span>
-#include <vector>
 
 #include "birm3d/model/vehicle.hpp"
 
@@ -21,24 +19,5 @@ namespace birm3d {
 // `limit`: friction coefficient times normal impulse of all corners (N s).
 Wrench slide_friction(const RigidBody& body, const std::array<Vec3, 4>& arm, double limit,
                       const Twist& motion);
-
-// Slabs that pins hold together share one minimum, with what the pins hold as conditions: how far a chain is dragged
-// along and where it is held hangs on all of it.
-struct PinnedSlab {
-    const RigidBody* body;
-    std::array<Vec3, 4> arm;  // as above
-    double limit;             // N s
-    Twist motion;             // without friction and pins
-    Twist guess;              // of the motion with both
-};
-struct SlabPin {
-    std::size_t body, other;
-    Vec3 on_body, on_other;  // what a unit impulse does: force along x and y, torque about the vertical
-    double target;           // velocity wanted along the row (m/s)
-};
-
-// Friction of the ground on each slab. `guessed`: are the guesses worth a try?
-std::vector<Wrench> slide_friction(std::span<const PinnedSlab> slabs, std::span<const SlabPin> pins,
-                                   bool guessed);
 
 }  // namespace birm3d

@@ -7,6 +7,7 @@
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/kernels/detect_members.hpp"
 #include "birm3d/kernels/impulse.hpp"
+#include "birm3d/kernels/slab_chain.hpp"
 #include "birm3d/sim/obstacles.hpp"
 #include "birm3d/sim/skin_memory.hpp"
 #include "birm3d/state/state.hpp"
@@ -48,6 +49,7 @@ struct ContactKick {
     std::vector<Wrench> on_ground;   // (units) friction impulses of tyres
     std::vector<Wrench> on_members;  // (bodies) of closed trusses
     std::vector<Wrench> on_base;     // (segments) of the ground
+    std::vector<Wrench> on_pins;     // (segments) of the pins to their neighbours
 };
 
 // Memory of half kicks, which find it and leave it with nothing of meaning: so that a step allocates nothing.
@@ -63,6 +65,12 @@ struct KickMemory {
     std::vector<Column> tire;
     Column last;
     std::vector<Wrench> on_members, on_base;
+    // Of free-standing segments.
+    std::vector<PinnedSlab> slabs;
+    std::vector<SlabPin> pins;
+    SlabChain chain;
+    Column limits;                      // of friction on the ground (N s)
+    std::vector<Vec3> segment_motions;  // along the ground and about the vertical
 };
 
 // Some of the blocks of a mesh.
