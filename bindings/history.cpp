@@ -162,7 +162,8 @@ void register_history(py::module_& m) {
         .def_property_readonly("energy", [](const Extremes& found) { return found.energy.value(); });
 
     py::class_<History> history(m, "History", "Evenly spaced output of a run; read-only views.");
-    history.def("extremes", &extremes_of, py::arg("wanted"), py::call_guard<py::gil_scoped_release>());
+    history.def("extremes", &extremes_of, py::arg("wanted"), py::arg("event"),
+                py::call_guard<py::gil_scoped_release>());
     add_view(history, "time", &History::time, "(n,) s");
     add_view(history, "kinetic", &History::kinetic, "(n,) J");
     add_view(history, "potential", &History::potential, "(n,) J");

@@ -84,6 +84,7 @@ void register_runner(py::module_& m) {
             "m/s, of unit 0, world")
         .def_readonly("deflection", &Outcome::deflection, "m, greatest of all trusses, at the end")
         .def_readonly("peak_deflection", &Outcome::peak_deflection, "m, and during the run")
+        .def_readonly("event", &Outcome::event, "what became of the vehicle at the barrier")
         .def_readonly("extremes", &Outcome::extremes);
 
     py::class_<Run>(m, "Run", "A run that is over.")

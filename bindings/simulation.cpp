@@ -61,6 +61,7 @@ void register_simulation(py::module_& m) {
         .value("duration", EndReason::duration)
         .value("separated", EndReason::separated)
         .value("stopped", EndReason::stopped)
+        .value("sliding", EndReason::sliding)
         .value("longest", EndReason::longest);
 
     py::class_<StepStatistics>(m, "StepStatistics")
@@ -135,6 +136,8 @@ void register_simulation(py::module_& m) {
         .def_property_readonly("state_hash", alone(+[](Simulation& s) { return s.state().hash(); }))
         .def_property_readonly("time", alone(+[](Simulation& s) { return s.state().time; }), "s")
         .def_property_readonly("end_reason", alone(+[](Simulation& s) { return s.end_reason(); }))
+        .def_property_readonly("event", alone(+[](Simulation& s) { return s.event(); }),
+                               "What became of the vehicle at the barrier, so far.")
         .def_property_readonly("failed", alone(+[](Simulation& s) { return s.failed(); }),
                                "Did the last step fail half way? Then only reset and restore are of use.")
         .def_property_readonly("replays", alone(+[](Simulation& s) { return s.replays(); }),

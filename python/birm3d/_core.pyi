@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Approach', 'Barrier', 'BusyError', 'ContactModel', 'Element', 'EndReason', 'ExtremeAttitude', 'ExtremeEnergy', 'ExtremeGroups', 'ExtremeMotion', 'ExtremeNormalForce', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'along_line', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
+__all__: list[str] = ['Approach', 'Barrier', 'BusyError', 'ContactModel', 'Element', 'EndReason', 'Event', 'ExtremeAttitude', 'ExtremeEnergy', 'ExtremeGroups', 'ExtremeMotion', 'ExtremeNormalForce', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'along_line', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
 class Approach:
     """
     How the vehicle comes (SI, rad). Immutable.
@@ -106,13 +106,16 @@ class EndReason:
     
       stopped
     
+      sliding
+    
       longest
     """
-    __members__: typing.ClassVar[dict[str, EndReason]]  # value = {'running': <EndReason.running: 0>, 'duration': <EndReason.duration: 1>, 'separated': <EndReason.separated: 2>, 'stopped': <EndReason.stopped: 3>, 'longest': <EndReason.longest: 4>}
+    __members__: typing.ClassVar[dict[str, EndReason]]  # value = {'running': <EndReason.running: 0>, 'duration': <EndReason.duration: 1>, 'separated': <EndReason.separated: 2>, 'stopped': <EndReason.stopped: 3>, 'sliding': <EndReason.sliding: 4>, 'longest': <EndReason.longest: 5>}
     duration: typing.ClassVar[EndReason]  # value = <EndReason.duration: 1>
-    longest: typing.ClassVar[EndReason]  # value = <EndReason.longest: 4>
+    longest: typing.ClassVar[EndReason]  # value = <EndReason.longest: 5>
     running: typing.ClassVar[EndReason]  # value = <EndReason.running: 0>
     separated: typing.ClassVar[EndReason]  # value = <EndReason.separated: 2>
+    sliding: typing.ClassVar[EndReason]  # value = <EndReason.sliding: 4>
     stopped: typing.ClassVar[EndReason]  # value = <EndReason.stopped: 3>
     def __eq__(self, other: typing.Any) -> bool:
         ...
@@ -140,6 +143,50 @@ class EndReason:
     @property
     def value(self) -> int:
         ...
+class Event:
+    """
+    What became of the vehicle at the barrier. Immutable.
+    """
+    @property
+    def exit_deflection(self) -> float | None:
+        """
+        m, greatest of all trusses when it had left
+        """
+    @property
+    def exit_velocity(self) -> tuple[float, float, float] | None:
+        """
+        m/s, then, of unit 0, world
+        """
+    @property
+    def later_contacts(self) -> int:
+        """
+        contacts with the barrier that began after it had left
+        """
+    @property
+    def manner(self) -> str:
+        """
+        how it came to that
+        """
+    @property
+    def outcome(self) -> str:
+        """
+        undecided, stopped, redirected, passed, overridden or rolled_over
+        """
+    @property
+    def rolled_over(self) -> bool:
+        """
+        was an up axis beyond the horizontal, of a vehicle that stood upright?
+        """
+    @property
+    def time_of_separation(self) -> float | None:
+        """
+        s: the last loss of contact before the vehicle had left for good; None where it had not
+        """
+    @property
+    def touching(self) -> bool:
+        """
+        the barrier, at the end
+        """
 class ExtremeAttitude:
     """
     Greatest magnitudes, rad; yaw from the start.
@@ -253,7 +300,7 @@ class History:
     """
     Evenly spaced output of a run; read-only views.
     """
-    def extremes(self, wanted: ExtremeGroups) -> Extremes:
+    def extremes(self, wanted: ExtremeGroups, event: Event) -> Extremes:
         ...
     def joint(self, index: typing.SupportsInt | typing.SupportsIndex) -> JointHistory:
         """
@@ -463,6 +510,11 @@ class Outcome:
     def end_reason(self) -> EndReason:
         ...
     @property
+    def event(self) -> Event:
+        """
+        what became of the vehicle at the barrier
+        """
+    @property
     def extremes(self) -> Extremes:
         ...
     @property
@@ -647,6 +699,11 @@ class Simulation:
     @property
     def end_reason(self) -> EndReason:
         ...
+    @property
+    def event(self) -> Event:
+        """
+        What became of the vehicle at the barrier, so far.
+        """
     @property
     def failed(self) -> bool:
         """

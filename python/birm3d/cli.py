@@ -137,6 +137,8 @@ def _as_json(result: Result) -> dict[str, Any]:
         "mass": scene.vehicle.mass,
         "impact_speed": scene.impact_speed,
         "impact_angle": scene.impact_angle,
+        "outcome": result.outcome,
+        "outcome_detail": result.outcome_detail,
         "end_reason": result.end_reason,
         "state_hash": f"{result.state_hash:016x}",
         "metrics": dict(result.metrics),

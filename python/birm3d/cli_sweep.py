@@ -223,7 +223,7 @@ def _as_json(study: Study) -> dict[str, Any]:
 def _print_runs(study: Study, metrics: Sequence[str]) -> None:
     from rich.table import Table
 
-    shown = [*study.parameters, *(name for name in metrics if name in study.metrics)]
+    shown = [*study.parameters, "outcome", *(name for name in metrics if name in study.metrics)]
     table = Table(*(_heading(study, name) for name in shown), title=f"{study.vehicle}, {len(study)} runs")
     for i in range(len(study)):
         cells = [_cell(study[name][i]) for name in shown]
@@ -245,10 +245,14 @@ def _print_summary(study: Study) -> None:
         numbers = (_cell(value) for value in (row.p05, row.median, row.p95))
         table.add_row(_heading(study, name), str(row.n), _cell(row.mean), deviation, *numbers)
     print_table(table)
+    counts = Table("outcome", "runs")
+    for outcome, n in study.outcomes.items():
+        counts.add_row(outcome, str(n))
+    print_table(counts)
 
 
 def _heading(study: Study, name: str) -> str:
-    unit, words = study.units[name], name.replace("_", " ")
+    unit, words = study.units.get(name, ""), name.replace("_", " ")
     return f"{words} \\[{unit}]" if unit else words  # rich takes [m] for a style
 
 

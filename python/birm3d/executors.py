@@ -228,7 +228,7 @@ def _with_histories(
                 made = Simulation.from_scene(made.scene)
             result = made.run()
             values = _values(compute_metrics(result, metrics), metrics)
-            outcome = Outcome(values, result.end_reason, f"{result.state_hash:016x}")
+            outcome = Outcome(values, result.end_reason, result.outcome, f"{result.state_hash:016x}")
         except Exception as error:
             outcome = _failed(error, metrics)
         finished.append((run, outcome))
@@ -262,7 +262,8 @@ def _without_histories(
             if scene.settings.time_step is not None:
                 warn_if_open(scene, end.extremes.energy)
             values = _values(metrics_of_outcome(scene, end, metrics), metrics)
-            outcome = Outcome(values, _END_REASONS[int(end.end_reason)], f"{end.state_hash:016x}")
+            reason = _END_REASONS[int(end.end_reason)]
+            outcome = Outcome(values, reason, end.event.outcome, f"{end.state_hash:016x}")
         except Exception as error:
             outcome = _failed(error, metrics)
         finished.append((run, outcome))

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .distributions import check_count, check_distributions, check_seed, sample
+from .event import DECIDED
 from .lognormal_fit import Draws, LognormalFit, fit_lognormal
 from .metrics import METRIC_UNITS
 from .runs import run_study
@@ -116,7 +117,7 @@ def fragility(
 
     A run *stops* if the vehicle's motion towards the barrier has come to an end (the velocity of its mass
     centre along the inward normal of the face has passed zero: the run has ``time_of_zero_velocity``) and the
-    outcome is decided (``end_reason`` is ``separated`` or ``stopped``, not ``duration`` or ``longest``). Give
+    outcome is decided (``end_reason`` is among :data:`birm3d.event.DECIDED`). Give
     a limit to ``vehicle_penetration`` to ask how far it got.
 
     Parameters
@@ -214,7 +215,7 @@ def _limits(exceeds: Mapping[str, float] | None) -> Sequence[str]:
 
 
 def _stopped(study: Study) -> npt.NDArray[np.bool_]:
-    decided = np.isin(study.end_reason, ("separated", "stopped"))
+    decided = np.isin(study.end_reason, DECIDED)
     return np.asarray(decided & np.isfinite(study.metrics["time_of_zero_velocity"]))
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from . import _core
 from .barrier_kinds import Bollards, MeshBarrier, Pole
+from .event import DECIDED
 from .metrics import METRIC_UNITS
 
 if TYPE_CHECKING:
@@ -173,7 +174,7 @@ def _output(result: Result) -> Iterator[str]:
 
 def _end(result: Result) -> Iterator[str]:
     end = f"all that comes after {result.time[-1]:.4f} s"
-    if result.end_reason in ("separated", "stopped"):
+    if result.end_reason in DECIDED:
         tail = _core.tail_duration
         yield f"{end} (the outcome was known {tail:g} s before: a tail in which filters settle)"
     elif result.end_reason == "duration":

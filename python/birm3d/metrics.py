@@ -5,7 +5,7 @@ it needs them the histories. So a run of which no histories are kept has the sam
 
 Forces and accelerations are taken from the interval means of the result. Filtered values use the channel
 frequency class in their name (SAE J211-1). A scalar that a scene does not have (a crush without a barrier, an
-exit angle of a vehicle that stands) is absent, never NaN.
+exit angle of a vehicle that rests) is absent, never NaN.
 """
 
 from __future__ import annotations
@@ -61,6 +61,7 @@ METRIC_UNITS: Mapping[str, str] = MappingProxyType(
         "residual_barrier_deflection": "m",
         "max_overturning_ratio": "",
         "time_of_zero_velocity": "s",
+        "time_of_separation": "s",
         "restitution": "",
         "delta_v": "m/s",
         "impact_severity": "J",
@@ -69,6 +70,7 @@ METRIC_UNITS: Mapping[str, str] = MappingProxyType(
         "max_roll": "deg",
         "max_pitch": "deg",
         "max_yaw": "deg",
+        "later_contacts": "",
         "wheel_climb": "m",
         "max_articulation_angle": "deg",
         "peak_joint_force": "N",
@@ -103,7 +105,7 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     """Return the scalars of a run, SI units and degrees: all that it has, or those among `names`.
 
     Always: ``peak_deceleration`` (along r, unfiltered) [m/s^2], ``max_roll``, ``max_pitch``, ``max_yaw``
-    (greatest magnitudes) [deg], ``exit_speed`` (of the mass centre along the ground, at the end) [m/s],
+    (greatest magnitudes, of yaw until separation) [deg],
     ``energy_residual`` (greatest magnitude relative to the initial kinetic energy), ``momentum_residual``,
     ``steps``, ``run_time`` [s], ``end_time`` [s].
 
@@ -114,14 +116,22 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     :attr:`birm3d.Result.barrier_normal_force`); greatest magnitude of the force vector on any element:
     ``peak_element_force``, ``peak_element_force_50ms`` [N], ``peak_overturning_moment`` and
     ``peak_overturning_moment_50ms`` [N m] (see :class:`birm3d.element_loads.ElementLoad`);
-    ``dynamic_crush``, ``residual_crush`` (greatest truss shortening, also of tyres, during the run and at its
-    end) [m],
+    ``dynamic_crush``, ``residual_crush`` (greatest truss shortening, also of tyres, during the run, and when
+    the vehicle had left or else at the end) [m],
     ``max_displacement`` (of the mass centre towards the barrier since t = 0 less the standoff; on a path
-    along the barrier's line, towards its end) [m], ``contact_overlap`` (by which the rigid body and the barrier
-    overlapped, see :class:`birm3d.OverlapWarning`) [m], ``impact_severity`` (1/2 m (v sin angle)^2) [J], ``delta_v`` (greatest change
-    of velocity) [m/s]; where the motion towards the barrier ends: ``time_of_zero_velocity`` (since the first
-    touch) [s], ``restitution`` (normal separation over approach speed); where the vehicle has left:
-    ``exit_angle`` (of its path from the barrier's line) [deg].
+    along the barrier's line, towards its end) [m], ``contact_overlap`` (by which the rigid body and the
+    barrier overlapped, see :class:`birm3d.OverlapWarning`) [m], ``impact_severity`` (1/2 m (v sin angle)^2)
+    [J], ``delta_v`` (greatest change of velocity, until separation) [m/s], ``later_contacts`` (number of
+    contacts that began after the vehicle had left for good: a second event, which changes none of the values
+    at separation); where the motion towards the barrier ends: ``time_of_zero_velocity`` (since the first
+    touch) [s], and ``restitution`` (normal separation over approach speed; 0 of a vehicle that rests at the
+    barrier).
+
+    Where the vehicle leaves for good: ``time_of_separation`` (since t = 0), the last loss of contact before
+    that, so a blow of the rear belongs to the event [s]; at that instant ``exit_speed`` (of the mass centre
+    along the ground) [m/s], and of a vehicle that is contained ``exit_angle`` (of its path from the barrier's
+    line, positive away from it) [deg]. These do not depend on the duration, once it is long enough.
+    ``max_roll`` and ``max_pitch`` count over the whole run: a vehicle may roll over after it has left.
 
     With a barrier that is not met along its line (angles 0 and 180): ``vehicle_penetration`` [m], how far
     the rigid body got past the barrier's line: the greatest distance of any anchor behind the line over the
@@ -154,7 +164,8 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
         saved = result.metrics
         return {name: saved[name] for name in saved if names is None or name in names}
     groups = {_METRICS[name].needs for name in (_METRICS if names is None else names)}
-    extremes = history.extremes(_groups(groups))
+    assert isinstance(result._event, _core.Event)
+    extremes = history.extremes(_groups(groups), result._event)
     return _found(_Run(result.scene, _ResultOutcome(result, extremes), result), names)
 
 
@@ -197,6 +208,8 @@ class _ResultOutcome:
         self.extremes = extremes
         x, y, z = result.final_velocity.tolist()
         self.final_velocity: _Vector = (x, y, z)
+        assert isinstance(result._event, _core.Event)
+        self.event: _core.Event = result._event
         self.statistics: _core.StepStatistics | Stored = result.statistics
         self.run_time = result.run_time
         self._result = result
@@ -287,6 +300,16 @@ class _Run:
         began = self.dynamic_crush > 0.0 and self.motion.approach_speed > 0.0
         return self.motion.turn_time if began else None
 
+    @property
+    def event(self) -> _core.Event:
+        return self.outcome.event
+
+    @property
+    def residual_crush(self) -> float:
+        """When the vehicle had left; of one that has not, at the end."""
+        left = self.event.exit_deflection
+        return max(0.0, self.outcome.deflection if left is None else left)
+
     @cached_property
     def movement(self) -> Floats:
         return lateral_movement(self.result)
@@ -341,15 +364,23 @@ def _time_of_zero_velocity(run: _Run) -> float | None:
 def _restitution(run: _Run) -> float | None:
     if run.turn_time is None:
         return None
-    return max(0.0, -_dot(run.outcome.final_velocity, run.motion.towards)) / run.motion.approach_speed
+    velocity = run.event.exit_velocity
+    if velocity is None:
+        return 0.0 if run.event.manner == "rests" else None
+    return max(0.0, -_dot(velocity, run.motion.towards)) / run.motion.approach_speed
+
+
+def _exit_speed(run: _Run) -> float | None:
+    velocity = run.event.exit_velocity
+    return None if velocity is None else math.hypot(*velocity[:2])
 
 
 def _exit_angle(run: _Run) -> float | None:
-    velocity, past = run.outcome.final_velocity, run.past.tolist()
-    speed, away = math.hypot(*velocity[:2]), -_dot(velocity, past)
-    left = speed > _SLOWEST and away > 0.0 and run.normal_force.last == 0.0
-    if not left or not run.dynamic_crush > 0.0:
+    velocity, past = run.event.exit_velocity, run.past.tolist()
+    contained = run.event.manner in ("rebounds", "leaves", "slides_to_end", "slides_on")
+    if velocity is None or not contained or math.hypot(*velocity[:2]) < _SLOWEST:
         return None
+    away = -_dot(velocity, past)
     along = math.hypot(velocity[0] + away * past[0], velocity[1] + away * past[1])
     return math.degrees(math.atan2(away, along))
 
@@ -440,7 +471,7 @@ def _all_metrics() -> dict[str, _Metric]:
             lambda run: run.greatest_load("peak_overturning_moment_50ms")
         ),
         "dynamic_crush": end(_of_barrier(lambda run: run.dynamic_crush)),
-        "residual_crush": end(_of_barrier(lambda run: max(0.0, run.outcome.deflection))),
+        "residual_crush": end(_of_barrier(lambda run: run.residual_crush)),
         "max_displacement": motion(_of_barrier(lambda run: run.motion.way - run.scene.standoff)),
         "vehicle_penetration": histories(_vehicle_penetration),
         "contact_overlap": end(_of_barrier(_contact_overlap)),
@@ -448,14 +479,16 @@ def _all_metrics() -> dict[str, _Metric]:
         "residual_barrier_deflection": histories(_of_segments(lambda run: float(run.movement[-1]))),
         "max_overturning_ratio": histories(_of_segments(_max_overturning_ratio)),
         "time_of_zero_velocity": motion(_of_barrier(_time_of_zero_velocity)),
+        "time_of_separation": end(_of_barrier(lambda run: run.event.time_of_separation)),
         "restitution": motion(_of_barrier(_restitution)),
         "delta_v": motion(_of_barrier(lambda run: run.motion.velocity_change)),
         "impact_severity": end(_of_barrier(_impact_severity)),
-        "exit_speed": end(lambda run: math.hypot(*run.outcome.final_velocity[:2])),
-        "exit_angle": normal_force(_of_barrier(_exit_angle)),
+        "exit_speed": end(_of_barrier(_exit_speed)),
+        "exit_angle": end(_of_barrier(_exit_angle)),
         "max_roll": attitude(lambda run: math.degrees(run.attitude.roll)),
         "max_pitch": attitude(lambda run: math.degrees(run.attitude.pitch)),
         "max_yaw": attitude(lambda run: math.degrees(run.attitude.yaw)),
+        "later_contacts": end(_of_barrier(lambda run: float(run.event.later_contacts))),
         "wheel_climb": histories(_wheel_climb),
         "max_articulation_angle": histories(
             _of_joint(lambda run: float(np.abs(run.result.articulation_angle).max()))

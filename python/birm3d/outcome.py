@@ -37,24 +37,30 @@ _ROWS = (
     ("peak_overturning_moment_50ms", "peak 50-ms overturning moment of one element", "kN m", 1e3, ".0f"),
     ("peak_deceleration_cfc60", "peak deceleration along r, CFC 60", "g", units.g, ".1f"),
     ("delta_v", "change of velocity", "m/s", 1.0, ".2f"),
+    ("time_of_separation", "time of separation", "ms", 1e-3, ".1f"),
     ("restitution", "restitution along the normal", "", 1.0, ".2f"),
     ("exit_speed", "exit speed", "m/s", 1.0, ".2f"),
     ("exit_angle", "exit angle from the barrier's line", "deg", 1.0, ".1f"),
     ("max_roll", "greatest roll", "deg", 1.0, ".1f"),
     ("max_pitch", "greatest pitch", "deg", 1.0, ".1f"),
     ("max_yaw", "greatest yaw", "deg", 1.0, ".1f"),
+    ("later_contacts", "later contacts, which count for nothing above", "", 1.0, ".0f"),
     ("energy_residual", "energy residual / initial kinetic energy", "", 1.0, ".1e"),
     ("momentum_residual", "momentum residual / greatest force", "", 1.0, ".1e"),
 )
 
 
 def outcome_rows(result: Result) -> list[tuple[str, str, str]]:
-    """Return label, value and unit of the scalars that a run has."""
+    """Return label, value and unit: the outcome, then the scalars that a run has."""
     metrics = result.metrics
     return [
-        (label, format(metrics[name] / size, form), unit)
-        for name, label, unit, size, form in _ROWS
-        if name in metrics
+        ("outcome", result.outcome, ""),
+        ("", result.outcome_detail, ""),
+        *(
+            (label, format(metrics[name] / size, form), unit)
+            for name, label, unit, size, form in _ROWS
+            if name in metrics
+        ),
     ]
 
 

@@ -17,6 +17,7 @@ __all__ = ["END_REASONS", "report"]
 END_REASONS = {
     "separated": "the vehicle has left the barrier and can not come back",
     "stopped": "the vehicle stands still at the barrier",
+    "sliding": "the vehicle slides along the barrier, where nothing can change any more",
     "duration": "the duration asked for is over",
     "longest": "the longest event without a duration is over; the outcome is not decided",
     "running": "the run is not over yet",
@@ -29,6 +30,7 @@ def report(result: Result) -> str:
     scene, settings, statistics = result.scene, result.scene.settings, result.statistics
     vehicle, metrics = scene.vehicle, result.metrics
     lines = [
+        f"{result.outcome}: {result.outcome_detail}",
         f"{vehicle.name}, {vehicle.mass:.1f} kg, {vehicle.n_nodes} shell nodes, {len(vehicle.wheels)} wheels",
         f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph) "
         f"at {scene.impact_angle:g} deg "

@@ -15,10 +15,10 @@ import numpy.typing as npt
 from . import _core, pictures, result_table
 from ._version import __version__
 from .element_loads import ElementLoad, element_loads
+from .event import Metrics, metrics_of, outcome_detail
 from .frames import Frames, capture, pose
 from .free_standing import is_pinned, overturning_ratio
 from .frozen_mapping import FrozenMapping
-from .metrics import compute_metrics
 from .report import report
 from .unit_result import UnitResult, read_only
 
@@ -55,7 +55,7 @@ class Result:
     statistics : StepStatistics
         Steps taken, node evaluations, shortest and longest step.
     end_reason : str
-        ``"separated"``, ``"stopped"``, ``"duration"``, ``"longest"`` or ``"running"``.
+        ``"separated"``, ``"stopped"``, ``"sliding"``, ``"duration"``, ``"longest"`` or ``"running"``.
     state_hash : int
         Of the final state.
     run_time : float
@@ -92,6 +92,7 @@ class Result:
         state_hash: int,
         run_time: float,
         units: tuple[UnitResult, ...],
+        event: _core.Event | Stored | None,
         frames: Frames | None = None,
         version: str = __version__,
     ) -> None:
@@ -108,6 +109,7 @@ class Result:
         self.version = version
         self._history = history
         self._units = units
+        self._event = event  # None of a file of version 0.1.0
 
     @classmethod
     def _of(cls, scene: Scene, simulation: _core.Simulation, run_time: float) -> Result:
@@ -130,7 +132,19 @@ class Result:
             state_hash=simulation.state_hash,
             run_time=run_time,
             units=units,
+            event=simulation.event,
         )
+
+    @property
+    def outcome(self) -> str:
+        """What became of the vehicle: one of :data:`birm3d.event.OUTCOMES`, see :mod:`birm3d.event`."""
+        outcome: str = "undecided" if self._event is None else self._event.outcome
+        return outcome
+
+    @property
+    def outcome_detail(self) -> str:
+        """How the outcome came about: one sentence."""
+        return outcome_detail(self)
 
     @property
     def time(self) -> Floats:
@@ -253,6 +267,8 @@ class Result:
         Above 1 it would begin to tip, which the model leaves out; see
         :func:`birm3d.free_standing.overturning_ratio`.
         """
+        if self._segments == 0:
+            return read_only(np.zeros((len(self.time), 0)))
         return read_only(overturning_ratio(self))
 
     def _of_segments(self, name: str, more: tuple[int, ...]) -> Floats:
@@ -351,15 +367,19 @@ class Result:
         return self._history.momentum_residual
 
     @cached_property
-    def metrics(self) -> Mapping[str, float]:
-        """Scalars in SI, angles in degrees; see :mod:`birm3d.metrics`. Only those that the scene has."""
-        return MappingProxyType(compute_metrics(self))
+    def metrics(self) -> Metrics:
+        """Scalars in SI, angles in degrees; see :mod:`birm3d.metrics`. Only those that the run has.
+
+        A name that is absent raises a KeyError that says why.
+        """
+        return metrics_of(self)
 
     @property
     def _energy_extremes(self) -> _core.ExtremeEnergy:
         """Extremes of the energy ledger, of a result that was not read from a file [J]."""
         assert isinstance(self._history, _core.History)
-        return self._history.extremes(_core.ExtremeGroups(energy=True)).energy
+        assert isinstance(self._event, _core.Event)
+        return self._history.extremes(_core.ExtremeGroups(energy=True), self._event).energy
 
     def report(self) -> str:
         """Return what was computed, what was left out, and how the ledgers close, as text."""
@@ -427,4 +447,4 @@ class Result:
 
     def __repr__(self) -> str:
         rows, steps = len(self.time), self.statistics.steps
-        return f"Result({rows} rows to {self.time[-1]:g} s, {self.end_reason}, {steps} steps)"
+        return f"Result({self.outcome}, {rows} rows to {self.time[-1]:g} s, {self.end_reason}, {steps} steps)"

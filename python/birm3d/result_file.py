@@ -17,13 +17,13 @@ import zipfile
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .event import Metrics
 from .frames import Frames
 from .metrics import ALONG_LINE
 from .scene_codec import decode, encode
@@ -125,6 +125,7 @@ def write(result: Result, stream: IO[bytes]) -> None:
         "joints": joints,
         "elements": elements,
         "statistics": _parts(result.statistics, _core.StepStatistics, arrays, "statistics"),
+        "event": None if result._event is None else _parts(result._event, _core.Event, arrays, "event"),
         "end_reason": result.end_reason,
         "state_hash": f"{result.state_hash:016x}",
         "run_time": result.run_time,
@@ -196,6 +197,7 @@ def _result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -
     if "frames/time" in arrays:
         moved = tuple(arrays[f"frames/{i}/displacement"] for i in range(len(units)))
         frames = Frames(arrays["frames/time"], moved)
+    event = header.get("event")  # files of 0.1.0 have none
     result = Result(
         scene=scene,
         history=StoredHistory(_values(header["history"], arrays), units, joints, elements),
@@ -207,12 +209,13 @@ def _result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -
             UnitResult(unit, **{name: arrays[f"final/{i}/{name}"] for name in _FINAL})
             for i, unit in enumerate(units)
         ),
+        event=None if event is None else Stored(_values(event, arrays)),
         frames=frames,
         version=header["made_with"]["birm3d"],
     )
     if header["metrics"] is not None:
         # As they were then: a later version may compute them in another way.
-        result.__dict__["metrics"] = MappingProxyType(header["metrics"])
+        result.__dict__["metrics"] = Metrics(result, header["metrics"])
         result.__dict__["_report"] = header["report"]
     return result
 

@@ -1,7 +1,8 @@
 """Finished runs on disk: an SQLite file that survives an interruption at any moment.
 
 Table ``study``: key, value (format, fingerprint, package version, units as JSON). Table ``runs``: one row a
-finished run with its number, its parameters, its metrics (NULL: the run does not have it), ``end_reason``,
+finished run with its number, its parameters, its metrics (NULL: the run does not have it), ``outcome``,
+``end_reason``,
 ``state_hash``, ``error``. Any SQLite tool reads it: ``sqlite3 study.db 'select * from runs'``.
 """
 
@@ -18,7 +19,7 @@ from .fingerprint import fingerprint
 
 __all__ = ["Outcome", "RunStore"]
 
-_FORMAT = "birm3d runs 1"
+_FORMAT = "birm3d runs 2"
 
 
 class Outcome(NamedTuple):
@@ -26,6 +27,7 @@ class Outcome(NamedTuple):
 
     metrics: tuple[float, ...]
     end_reason: str = ""
+    outcome: str = ""
     state_hash: str = ""
     error: str = ""
 
@@ -69,7 +71,7 @@ class RunStore:
             "run INTEGER PRIMARY KEY",
             *(_quoted(name) for name in names),
             *(f"{_quoted(name)} REAL" for name in units),
-            *(f"{text} TEXT" for text in ("inputs", "end_reason", "state_hash", "error")),
+            *(f"{text} TEXT" for text in ("inputs", "end_reason", "outcome", "state_hash", "error")),
         )
         self._insert = f"INSERT OR REPLACE INTO runs VALUES ({', '.join('?' * len(columns))})"
         facts = {"format": _FORMAT, "study": study, "version": version, "units": json.dumps(dict(units))}
@@ -125,10 +127,12 @@ class RunStore:
 
     def finished(self) -> dict[int, Outcome]:
         """Return the outcomes so far, number of the run -> outcome; only runs that the study has."""
-        names = ", ".join(_quoted(name) for name in (*self._metrics, "end_reason", "state_hash", "error"))
+        names = ", ".join(
+            _quoted(name) for name in (*self._metrics, "end_reason", "outcome", "state_hash", "error")
+        )
         query = f"SELECT run, {names} FROM runs WHERE run < ? ORDER BY run"
         return {
-            run: Outcome(tuple(math.nan if value is None else value for value in rest[:-3]), *rest[-3:])
+            run: Outcome(tuple(math.nan if value is None else value for value in rest[:-4]), *rest[-4:])
             for run, *rest in self._connection.execute(query, (len(self._rows),))
         }
 

@@ -1,29 +1,8 @@
 #include "birm3d/ensemble/runner.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <limits>
 
 namespace birm3d {
-
-namespace {
-
-void find_greatest_deflections(const Simulation& simulation, Outcome& outcome) {
-    outcome.deflection = outcome.peak_deflection = -std::numeric_limits<double>::infinity();
-    const State& state = simulation.state();
-    for (std::size_t u = 0; u < state.units.size(); ++u) {
-        const TrussMesh& mesh = simulation.scene().vehicle->units[u].trusses;
-        for (std::size_t b = 0; b < mesh.blocks; ++b) {
-            const TrussBlockState& block = state.units[u].trusses.block[b];
-            for (std::size_t i = 0; i < mesh.nodes_in(b); ++i) {
-                outcome.deflection = std::max(outcome.deflection, block.deflection[i]);
-                outcome.peak_deflection = std::max(outcome.peak_deflection, block.peak_deflection[i]);
-            }
-        }
-    }
-}
-
-}  // namespace
 
 void Runner::set_scene(const Scene& scene) {
     at_start_ = false;
@@ -50,9 +29,12 @@ Outcome Runner::run(const Approach& approach, const ExtremeGroups& wanted,
     outcome.state_hash = state.hash();
     outcome.statistics = state.statistics;
     outcome.final_velocity = state.units.front().body.velocity;
-    find_greatest_deflections(*simulation_, outcome);
+    const Deflections deflections = greatest_deflections(*simulation_->scene().vehicle, state);
+    outcome.deflection = deflections.now;
+    outcome.peak_deflection = deflections.peak;
+    outcome.event = simulation_->event();
     simulation_->recorder().resample(simulation_->scene(), wanted.channels(), history_);
-    outcome.extremes = extremes_of(history_, wanted);
+    outcome.extremes = extremes_of(history_, wanted, outcome.event);
     return outcome;
 }
 

@@ -24,7 +24,13 @@ Extremes::NormalForce normal_force(const History& history) {
     return found;
 }
 
-Extremes::Motion motion(const History& history) {
+// The last instant that counts where the separation does.
+double end_of(const Event& event) {
+    return event.separated ? event.released_at : infinity;
+}
+
+Extremes::Motion motion(const History& history, const Event& event) {
+    const double end = end_of(event);
     const UnitHistory& unit = history.units.front();
     Extremes::Motion found{history.towards, unit.velocity[0].dot(history.towards), {}, -infinity, 0.0,
                            -infinity};
@@ -38,9 +44,14 @@ Extremes::Motion motion(const History& history) {
         }
         before = speed;
         found.way = std::max(found.way, (unit.position[k] - unit.position[0]).dot(history.towards));
-        found.velocity_change = std::max(found.velocity_change, (unit.velocity[k] - unit.velocity[0]).norm());
+        if (history.time[k] <= end)
+            found.velocity_change =
+                std::max(found.velocity_change, (unit.velocity[k] - unit.velocity[0]).norm());
         found.deceleration = std::max(found.deceleration, -unit.acceleration[k].x());
     }
+    if (event.separated)
+        found.velocity_change =
+            std::max(found.velocity_change, (event.released_velocity - unit.velocity[0]).norm());
     return found;
 }
 
@@ -60,13 +71,15 @@ class Turning {
     double zero_, last_, turns_ = 0.0, greatest_ = 0.0;
 };
 
-Extremes::Attitude attitude(const History& history) {
+Extremes::Attitude attitude(const History& history, const Event& event) {
+    const double end = end_of(event);
     const std::vector<Quat>& orientation = history.units.front().orientation;
     const Angles first = roll_pitch_yaw(orientation[0]);
     Turning roll(first.roll, 0.0), pitch(first.pitch, 0.0), yaw(first.yaw, first.yaw);
-    for (const Quat& q : orientation) {
-        const Angles angles = roll_pitch_yaw(q);
-        roll.add(angles.roll), pitch.add(angles.pitch), yaw.add(angles.yaw);
+    for (std::size_t k = 0; k < orientation.size(); ++k) {
+        const Angles angles = roll_pitch_yaw(orientation[k]);
+        roll.add(angles.roll), pitch.add(angles.pitch);
+        if (history.time[k] <= end) yaw.add(angles.yaw);
     }
     return {roll.greatest(), pitch.greatest(), yaw.greatest()};
 }
@@ -89,13 +102,13 @@ Extremes::Energy energy(const History& history) {
 
 }  // namespace
 
-Extremes extremes_of(const History& history, const ExtremeGroups& wanted) {
+Extremes extremes_of(const History& history, const ExtremeGroups& wanted, const Event& event) {
     Extremes found;
     found.rows = history.time.size();
     found.end_time = history.time.back();
     if (wanted.normal_force) found.normal_force = normal_force(history);
-    if (wanted.motion) found.motion = motion(history);
-    if (wanted.attitude) found.attitude = attitude(history);
+    if (wanted.motion) found.motion = motion(history, event);
+    if (wanted.attitude) found.attitude = attitude(history, event);
     if (wanted.energy) found.energy = energy(history);
     return found;
 }

@@ -64,18 +64,6 @@ bool segments_rest(const Scene& scene, const State& state) {
     return fastest_segment(scene, state) == 0.0;
 }
 
-bool at_rest(const Scene& scene, const State& state) {
-    double start = 0.0;
-    for (const Unit& unit : scene.vehicle->units)
-        start += 0.5 * unit.body.mass * scene.approach.speed * scene.approach.speed;
-    return state.energies.kinetic + state.energies.stored < 1e-6 * start;
-}
-
-// Has the vehicle left for good?
-bool is_over(const Scene& scene, const State& state) {
-    return has_left(scene, state) && !tips(scene, state) && segments_rest(scene, state);
-}
-
 BodyState between(const BodyState& a, const BodyState& b, double share) {
     BodyState body;
     body.position = a.position + share * (b.position - a.position);
@@ -92,10 +80,17 @@ bool touches(const State& state) {
                        [](const UnitState& unit) { return unit.skin.normal_force > 0.0; });
 }
 
-bool has_left(const Scene& scene, const State& state) {
+namespace {
+
+// Does the vehicle move away from every element? What `must_clear` says must be out of its reach too, else faster than any
+// turning will do.
+enum class Clear { forward_only, always };
+bool moves_away(const Scene& scene, const State& state, Clear must_clear) {
+    const Vec3 towards = scene.towards();
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Unit& unit = scene.vehicle->units[u];
         const BodyState& body = state.units[u].body;
+        const bool clear = must_clear == Clear::always || body.velocity.dot(towards) > 0.0;
         const double turning = angular_velocity(unit.body, body).norm() * unit.trusses.reach;
         for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
             const Obstacle& element = scene.obstacles[i];
@@ -112,14 +107,36 @@ bool has_left(const Scene& scene, const State& state) {
                 away -= std::max(0.0, segment.dot(direction)) +
                         fastest_point(scene.barrier->segments[i], state.segments[i]) - segment.norm();
             }
-            if (!(away > 0.0 && (away >= turning || distance > unit.trusses.reach))) return false;
+            const bool outruns = !clear && away >= turning;
+            if (!(away > 0.0 && (outruns || distance > unit.trusses.reach))) return false;
         }
     }
     return true;
 }
 
-bool is_decided(const Scene& scene, const State& state) {
-    return (!touches(state) && is_over(scene, state)) || at_rest(scene, state);
+}  // namespace
+
+bool has_left(const Scene& scene, const State& state) {
+    return moves_away(scene, state, Clear::forward_only);
+}
+
+bool is_out_of_reach(const Scene& scene, const State& state) {
+    return moves_away(scene, state, Clear::always);
+}
+
+double rest_energy(const Scene& scene) {
+    double start = 0.0;
+    for (const Unit& unit : scene.vehicle->units)
+        start += 0.5 * unit.body.mass * scene.approach.speed * scene.approach.speed;
+    return 1e-6 * start;
+}
+
+bool at_rest(const Scene& scene, const State& state) {
+    return state.energies.kinetic + state.energies.stored < rest_energy(scene);
+}
+
+bool is_over(const Scene& scene, const State& state) {
+    return has_left(scene, state) && !tips(scene, state) && segments_rest(scene, state);
 }
 
 double time_of_decision(const Scene& scene, std::span<const BodyState> before, double released, double dt,

@@ -22,7 +22,8 @@ Simulation::Simulation(Scene scene)
     : scene_(std::move(scene)),
       state_(scene_.initial_state()),
       trial_(*scene_.vehicle),
-      recorder_(scene_, state_) {}
+      recorder_(scene_, state_),
+      event_(begin_event(scene_, state_)) {}
 
 void Simulation::start(const Scene& scene) {
     if (scene.vehicle != scene_.vehicle) {
@@ -42,13 +43,20 @@ void Simulation::reset() {
     scene_.start(state_);
     trial_.restart(*scene_.vehicle, state_);
     recorder_.restart(scene_, state_);
+    event_ = begin_event(scene_, state_);
     failed_ = false;
     replays_ = true;
 }
 
 Simulation::Snapshot Simulation::snapshot() const {
-    return {
-        scene_.fingerprint(), scene_.approach, scene_.settings, scene_.duration, replays_, state_, recorder_};
+    return {scene_.fingerprint(),
+            scene_.approach,
+            scene_.settings,
+            scene_.duration,
+            replays_,
+            state_,
+            recorder_,
+            event_};
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
@@ -65,6 +73,7 @@ void Simulation::restore(const Snapshot& snapshot) {
     state_ = snapshot.state;
     trial_.restart(*scene_.vehicle, state_);
     recorder_ = snapshot.recorder;
+    event_ = snapshot.event;
     failed_ = false;
     replays_ = snapshot.replays && snapshot.duration == scene_.duration;
 }
@@ -73,6 +82,7 @@ EndReason Simulation::end_reason() const {
     if (remaining() > 0.0) return EndReason::running;
     if (scene_.duration) return EndReason::duration;
     if (!state_.decided) return EndReason::longest;
+    if (event_.manner == Manner::slides_on) return EndReason::sliding;
     return has_left(scene_, state_) ? EndReason::separated : EndReason::stopped;
 }
 
@@ -97,7 +107,9 @@ double Simulation::remaining() const {
 void Simulation::take(Trial& trial) {
     const bool open = scene_.barrier && !state_.decided;
     if (open) list_body_states(state_, before_);
-    const double released = open ? std::min(time_to_release(scene_, state_), trial.dt) : 0.0;
+    const double released =
+        open || event_.touching ? std::min(time_to_release(scene_, state_), trial.dt) : 0.0;
+    const double begin = state_.time;
     if (!std::isfinite(trial.state.energies.total()))
         throw std::runtime_error("the state is no longer finite at t = " + to_text(trial.state.time) +
                                  " s, step " + to_text(trial.dt) + " s");
@@ -105,7 +117,8 @@ void Simulation::take(Trial& trial) {
     accept(scene_, trial, state_);
     note_overlap(scene_, about_, state_);
     recorder_.add(scene_, trial);
-    if (open && state_.touched && is_decided(scene_, state_)) {
+    follow_event(scene_, state_, {begin, released, trial.body_held_by_barrier()}, event_);
+    if (open && is_decided(scene_, state_, event_)) {
         state_.decided = true;
         state_.decided_at = time_of_decision(scene_, before_, released, trial.dt, trial.state);
     }

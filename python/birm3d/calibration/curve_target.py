@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import units
+from ..event import DECIDED
 from ..filters import cfc
 from .quantities import QUANTITIES, computed_curve, touch_time
 from .scalar_target import check_positive
@@ -235,7 +236,7 @@ class CurveTarget:
         notes = []
         if self.against == "time":
             end = float(result.time[-1]) - touch_time(result)
-            by_itself = result.end_reason in ("separated", "stopped")
+            by_itself = result.end_reason in DECIDED
             if self._x[0] >= end or (not by_itself and self._x[-1] > end + 1e-9):
                 raise ValueError(
                     f"{self.label}: x must lie within the computed run, which ends at {end:g} s after the "

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from .. import units
 from ..barrier_text import barrier_text
 from ..crush_profile import Side, crushed_sides
+from ..event import DECIDED
 from ..metrics import METRIC_UNITS
 from ..notebook_html import figure_html
 from ..outcome import ELEMENT_COLUMNS, element_rows, outcome_rows
@@ -140,7 +141,7 @@ def _check_rows(result: Result) -> list[tuple[str, ...]]:
     ):
         good = metrics[name] <= limit
         rows.append((label, "✓ yes" if good else "✗ no", f"{limit:g}", f"{metrics[name]:.1e}"))
-    decided = result.end_reason in ("separated", "stopped")
+    decided = result.end_reason in DECIDED
     rows.append(("the outcome is decided", "✓ yes" if decided else "✗ no", "", result.end_reason))
     return rows
 

@@ -213,7 +213,7 @@ def _exit_box(axes: Axes, result: Result, plan: Callable[[Floats], Floats]) -> F
 def _outcome(result: Result) -> str:
     metrics = result.metrics
     if "exit_angle" not in metrics:
-        return f"{result.end_reason} after {result.time[-1] * 1e3:.0f} ms at {metrics['exit_speed']:.1f} m/s"
+        return f"{result.outcome}: {result.outcome_detail}"
     return (
         f"leaves at {metrics['exit_speed']:.1f} m/s, {metrics['exit_angle']:.1f}° from the barrier's line; "
         f"turned by {round(result.yaw[-1], 1) + 0.0:.1f}° after {result.time[-1] * 1e3:.0f} ms"

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._version import __version__
+from ..event import OUTCOMES
 from ..frozen_mapping import FrozenMapping
 from ..scene_parameters import unit_of
 
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["Study", "Summary"]
 
 _FORMAT = "birm3d study 1"
-_TEXTS = ("end_reason", "state_hash", "error")
+_TEXTS = ("outcome", "end_reason", "state_hash", "error")
 _WORDS = {"None": None, "True": True, "False": False}  # values of parameters as a file shows them
 
 
@@ -57,8 +58,9 @@ class Study:
     metrics : mapping of str to ndarray, shape (n,)
         SI and degrees. NaN: the run failed (then ``error`` says why) or does not have this metric, as an exit
         angle of a vehicle that stands.
-    end_reason, state_hash, error : tuple of str
-        ``error`` is empty for a run that did not fail, else the type and message of the exception.
+    outcome, end_reason, state_hash, error : tuple of str
+        ``outcome`` is a word of :data:`birm3d.event.OUTCOMES`, empty for a run that failed. ``error`` is
+        empty for a run that did not fail, else the type and message of the exception.
     units : mapping of str to str
         Of parameters and metrics; ``""`` for pure numbers.
     grid : mapping of str to tuple, or None
@@ -79,6 +81,7 @@ class Study:
         end_reason: Sequence[str],
         state_hash: Sequence[str],
         error: Sequence[str],
+        outcome: Sequence[str] | None = None,
         units: Mapping[str, str],
         grid: Mapping[str, Sequence[Any]] | None = None,
         version: str = __version__,
@@ -89,6 +92,7 @@ class Study:
         self.run = _read_only(run, np.int64)
         self.parameters = FrozenMapping({name: _read_only(v) for name, v in parameters.items()})
         self.metrics = FrozenMapping({name: _read_only(v, float) for name, v in metrics.items()})
+        self.outcome = ("",) * len(self.run) if outcome is None else tuple(outcome)
         self.end_reason = tuple(end_reason)
         self.state_hash = tuple(state_hash)
         self.error = tuple(error)
@@ -117,6 +121,7 @@ class Study:
             run=runs,
             parameters=values,
             metrics=dict(zip(metric_units, table.T, strict=True)),
+            outcome=[outcomes[run].outcome for run in runs],
             end_reason=[outcomes[run].end_reason for run in runs],
             state_hash=[outcomes[run].state_hash for run in runs],
             error=[outcomes[run].error for run in runs],
@@ -139,6 +144,7 @@ class Study:
             run=np.arange(sum(len(study) for study in studies)),
             parameters={name: column(name) for name in first.parameters},
             metrics={name: column(name) for name in first.metrics},
+            outcome=[text for study in studies for text in study.outcome],
             end_reason=[text for study in studies for text in study.end_reason],
             state_hash=[text for study in studies for text in study.state_hash],
             error=[text for study in studies for text in study.error],
@@ -156,11 +162,20 @@ class Study:
         return len(self.run)
 
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
-        """Return a column: a parameter or a metric, shape (n,)."""
+        """Return a column: a parameter, a metric, or ``outcome`` as text, shape (n,)."""
+        if name == "outcome":
+            return _read_only(self.outcome, object)
         for columns in (self.parameters, self.metrics):
             if name in columns:
                 return columns[name]
-        raise KeyError(f"column must be one of {', '.join((*self.parameters, *self.metrics))}; got {name!r}")
+        raise KeyError(
+            f"column must be one of {', '.join((*self.parameters, *self.metrics, 'outcome'))}; got {name!r}"
+        )
+
+    @property
+    def outcomes(self) -> Mapping[str, int]:
+        """Each outcome that runs have -> how many have it, in the order of ``birm3d.event.OUTCOMES``."""
+        return {word: n for word in OUTCOMES if (n := self.outcome.count(word))}
 
     def simulation(self, row: int, base: Simulation | None = None) -> Simulation:
         """Return the simulation of a row, at t = 0: its run ends in the row's ``state_hash``.
@@ -222,7 +237,7 @@ class Study:
         return {name: _summary(values) for name, values in rows.items() if len(values)}
 
     def columns(self) -> dict[str, npt.NDArray[Any]]:
-        """Return all columns: parameters, metrics, end_reason, state_hash, error."""
+        """Return all columns: parameters, metrics, outcome, end_reason, state_hash, error."""
         texts = {name: np.array(getattr(self, name), dtype=object) for name in _TEXTS}
         return {**self.parameters, **self.metrics, **texts}
 
@@ -304,6 +319,7 @@ class Study:
                 name: np.array(cells[name], float if kind == "f" else object) for name, kind in kinds.items()
             },
             metrics={name: [float(cell) if cell else math.nan for cell in cells[name]] for name in metrics},
+            outcome=cells.get("outcome"),  # files of 0.1.0 have none
             end_reason=cells["end_reason"],
             state_hash=cells["state_hash"],
             error=cells["error"],

@@ -18,6 +18,7 @@ struct Outcome {
     Vec3 final_velocity = Vec3::Zero();  // of unit 0, world (m/s)
     double deflection = 0.0;             // greatest of all trusses of all units, at the end (m)
     double peak_deflection = 0.0;        // and during the run (m)
+    Event event;
     Extremes extremes;
 };
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "birm3d/sim/event.hpp"
 #include "birm3d/sim/recorder.hpp"
 
 namespace birm3d {
@@ -34,10 +35,10 @@ struct Extremes {
         double approach_speed;            // along History::towards, at the start (m/s)
         std::optional<double> turn_time;  // when that speed has come down to zero (s)
         double way;                       // greatest along History::towards (m)
-        double velocity_change;           // greatest from the start (m/s)
+        double velocity_change;           // greatest from the start, until separation (m/s)
         double deceleration;              // greatest along r, interval means (m/s^2)
     };
-    // Greatest magnitudes, counted on beyond half a turn; yaw from the start (rad).
+    // Greatest magnitudes, counted on beyond half a turn; yaw from the start, until separation (rad).
     struct Attitude {
         double roll, pitch, yaw;
     };
@@ -51,7 +52,8 @@ struct Extremes {
     std::optional<Energy> energy;
 };
 
-// `history` has all its columns, or those of wanted.channels().
-Extremes extremes_of(const History& history, const ExtremeGroups& wanted);
+// `history` has all its columns, or those of wanted.channels(). The change of velocity and the yaw count until the vehicle
+// separated from the barrier, if it did.
+Extremes extremes_of(const History& history, const ExtremeGroups& wanted, const Event& event);
 
 }  // namespace birm3d

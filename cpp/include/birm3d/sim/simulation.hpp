@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "birm3d/sim/event.hpp"
 #include "birm3d/sim/recorder.hpp"
 #include "birm3d/sim/scene.hpp"
 #include "birm3d/sim/step.hpp"
@@ -16,6 +17,7 @@ enum class EndReason {
     duration,   // the time asked for is over
     separated,  // the vehicle has left the barrier and can not come back
     stopped,    // it stands still at the barrier
+    sliding,    // it slides along a straight barrier, where nothing can change any more
     longest,    // tolerance::longest_event
 };
 
@@ -44,6 +46,7 @@ class Simulation {
     const Scene& scene() const { return scene_; }
     const State& state() const { return state_; }
     const Recorder& recorder() const { return recorder_; }
+    const Event& event() const { return event_; }
     EndReason end_reason() const;
 
     // How deep the deepest shell node and the deepest anchor are inside the barrier now (m); zero where none is.
@@ -58,6 +61,7 @@ class Simulation {
         bool replays;
         State state;
         Recorder recorder;
+        Event event;
     };
     Snapshot snapshot() const;
 
@@ -82,6 +86,7 @@ class Simulation {
     std::vector<std::size_t> about_;  // obstacles about a unit; only memory
     std::vector<BodyState> before_;  // the step at hand; only memory
     Recorder recorder_;
+    Event event_;
     bool failed_ = false;
     bool replays_ = true;
 };

@@ -1,0 +1,64 @@
+#include "birm3d/sim/event.hpp"
+
+#include <pybind11/stl.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <tuple>
+
+#include "arrays.hpp"
+#include "register.hpp"
+
+namespace birm3d::bindings {
+
+namespace {
+
+// Text rather than an enumeration: it goes into files and tables as it is.
+std::string verdict(const Event& event) {
+    constexpr std::array names = {"undecided", "stopped",    "redirected",
+                                  "passed",    "overridden", "rolled_over"};
+    return names.at(static_cast<std::size_t>(event.outcome()));
+}
+
+std::string manner(const Event& event) {
+    constexpr std::array names = {"no_barrier", "moving", "rests_untouched", "rests",
+                                  "rebounds",   "leaves", "slides_to_end",   "slides_on",
+                                  "between",    "beside", "rests_beyond",    "over"};
+    return names.at(static_cast<std::size_t>(event.manner));
+}
+
+}  // namespace
+
+void register_event(py::module_& m) {
+    py::class_<Event>(m, "Event", "What became of the vehicle at the barrier. Immutable.")
+        .def_property_readonly("outcome", &verdict,
+                               "undecided, stopped, redirected, passed, overridden or rolled_over")
+        .def_property_readonly("manner", &manner, "how it came to that")
+        .def_property_readonly("rolled_over", &Event::rolled_over,
+                               "was an up axis beyond the horizontal, of a vehicle that stood upright?")
+        .def_readonly("touching", &Event::touching, "the barrier, at the end")
+        .def_property_readonly(
+            "time_of_separation",
+            [](const Event& event) {
+                return event.separated ? std::optional(event.released_at) : std::nullopt;
+            },
+            "s: the last loss of contact before the vehicle had left for good; None where it had not")
+        .def_property_readonly(
+            "exit_velocity",
+            [](const Event& event) {
+                const Vec3& v = event.released_velocity;
+                return event.separated ? std::optional(std::tuple(v.x(), v.y(), v.z())) : std::nullopt;
+            },
+            "m/s, then, of unit 0, world")
+        .def_property_readonly(
+            "exit_deflection",
+            [](const Event& event) {
+                return event.separated ? std::optional(event.deflection) : std::nullopt;
+            },
+            "m, greatest of all trusses when it had left")
+        .def_readonly("later_contacts", &Event::later_contacts,
+                      "contacts with the barrier that began after it had left");
+}
+
+}  // namespace birm3d::bindings

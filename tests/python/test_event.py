@@ -1,0 +1,200 @@
+"""What became of the vehicle, and the instant to which exit speeds and angles belong."""
+
+from __future__ import annotations
+
+import math
+import pickle
+from functools import cache
+from pathlib import Path
+
+import birm3d
+import numpy as np
+import pytest
+from birm3d import Barrier, Result, Settings, Simulation, Vehicle
+from birm3d.event import OUTCOMES
+
+OLD = Path(__file__).parents[1] / "data" / "results" / "bollards_0_1_0.npz"
+AT_SEPARATION = (
+    *(
+        "time_of_separation",
+        "exit_speed",
+        "exit_angle",
+        "restitution",
+        "delta_v",
+        "max_yaw",
+        "residual_crush",
+    ),
+)
+
+
+@cache
+def car(gvw: float = 900.0) -> Vehicle:
+    return Vehicle.preset("passenger_car", gvw=gvw, mesh_density=0.3)
+
+
+def scene(name: str, duration: float | None = None) -> Simulation:
+    barrier, speed, angle, offset = {
+        "wall": (Barrier.rigid_wall(), 22.0, 20.0, 0.0),
+        "bollards": (Barrier.bollards(count=5, spacing=1.2), 13.0, 70.0, 0.3),
+        "jersey": (Barrier.jersey(length=40.0), 25.0, 25.0, 0.0),
+        "head_on": (Barrier.rigid_wall(), 15.0, 90.0, 0.0),
+        "gap": (Barrier.bollards(count=2, spacing=3.0), 15.0, 90.0, 0.0),
+        "end": (Barrier.rigid_wall(width=4.0, height=1.2, thickness=0.4), 15.0, 30.0, 4.5),
+        "curb": (Barrier.rigid_wall(width=8.0, height=0.12, thickness=0.2), 20.0, 90.0, 0.0),
+    }[name]
+    return Simulation(car(), barrier, speed, angle, offset, duration=duration)
+
+
+@cache
+def run(name: str, duration: float | None = None) -> Result:
+    return scene(name, duration).run()
+
+
+@pytest.mark.parametrize("name", ["wall", "bollards", "jersey", "head_on"])
+def test_values_at_separation_do_not_depend_on_the_duration(name: str) -> None:
+    ended = run(name)
+    found = {metric: ended.metrics[metric] for metric in AT_SEPARATION if metric in ended.metrics}
+    assert {"time_of_separation", "exit_speed", "restitution"} <= set(found)
+    for longer in (0.1, 0.5):
+        other = run(name, round(ended.time[-1] + longer, 3))
+        assert {metric: other.metrics[metric] for metric in found} == found
+        assert (other.outcome, other.outcome_detail) == (ended.outcome, ended.outcome_detail)
+
+
+@pytest.mark.parametrize("name", ["wall", "bollards", "jersey", "head_on"])
+def test_the_instant_is_the_last_loss_of_contact(name: str) -> None:
+    result = run(name)
+    separation = result.metrics["time_of_separation"]
+    interval = result.scene.settings.output_interval
+    last = result.time[np.flatnonzero(result.sum_of_contact_forces)[-1]]
+    # A row is the mean of the interval that ends there; the last load goes straight to its end.
+    assert last - 5.0 * interval <= separation <= last + interval
+    row = int(separation / interval)
+    speed = math.hypot(*result.velocity[row, :2])
+    assert result.metrics["exit_speed"] == pytest.approx(speed, rel=1e-3)
+    assert result.metrics["later_contacts"] == 0.0
+    change = np.linalg.norm(result.velocity[: row + 1] - result.velocity[0], axis=1).max()
+    assert result.metrics["delta_v"] == pytest.approx(change, rel=1e-3)
+    assert result.metrics["max_yaw"] == pytest.approx(np.abs(result.yaw[: row + 1]).max(), abs=1e-9)
+    assert np.abs(result.yaw).max() >= result.metrics["max_yaw"]
+
+
+@pytest.mark.parametrize(
+    ("name", "outcome", "detail"),
+    [
+        ("wall", "redirected", "along the barrier"),
+        ("jersey", "redirected", "along the barrier"),
+        ("head_on", "stopped", "rebounded"),
+        ("gap", "passed", "between two elements of the barrier, untouched"),
+        ("end", "passed", "the barrier's end"),
+        ("curb", "overridden", "over the top"),
+    ],
+)
+def test_outcomes(name: str, outcome: str, detail: str) -> None:
+    result = run(name)
+    assert (result.outcome, result.end_reason) == (outcome, "separated")
+    assert detail in result.outcome_detail
+    assert result.metrics["outcome"] == outcome
+    assert "outcome" not in dict(result.metrics)
+    assert result.time[-1] < 2.0  # it ends when nothing can change any more
+    assert result.report().startswith(f"{outcome}: ")
+    assert repr(result).startswith(f"Result({outcome}, ")
+
+
+def test_a_car_between_two_posts_ends_when_it_has_passed() -> None:
+    result = run("gap")
+    assert result.metrics["dynamic_crush"] == 0.0
+    assert result.position[-1, 0] < 5.0
+    assert "time_of_separation" not in result.metrics
+    with pytest.raises(KeyError, match=r"exit_speed: the vehicle did not separate .* untouched"):
+        result.metrics["exit_speed"]
+
+
+def test_a_run_that_ends_before_is_undecided() -> None:
+    result = run("head_on", 0.03)
+    assert result.outcome == "undecided"
+    assert "still moving when the run ended, in contact with the barrier" in result.outcome_detail
+    with pytest.raises(KeyError, match=r"exit_angle: the vehicle did not separate"):
+        result.metrics["exit_angle"]
+    with pytest.raises(KeyError, match=r"metric must be one of .*; got 'exit_agle'"):
+        result.metrics["exit_agle"]
+    assert result.metrics.get("exit_angle") is None
+    assert "exit_angle" not in result.metrics
+
+
+def test_no_angle_of_what_passed_and_none_without_a_barrier() -> None:
+    with pytest.raises(KeyError, match=r"does not leave on the traffic side|did not separate"):
+        run("end").metrics["exit_angle"]
+    alone = Simulation(car(), None, 10.0, duration=0.05).run()
+    assert (alone.outcome, alone.outcome_detail) == ("undecided", "there is no barrier")
+    with pytest.raises(KeyError, match=r"exit_speed: there is no barrier"):
+        alone.metrics["exit_speed"]
+
+
+def test_rolling_over() -> None:
+    """A body on its own in the air, without gravity, turns over."""
+    lab = Vehicle.from_arrays(
+        mass=1000.0,
+        inertia=1000.0 * np.eye(3),
+        nodes=[[1.0, 0.0, 0.5]],
+        anchors=[[0.0, 0.0, 0.5]],
+        k_initial=1e6,
+        k_unloading=1e6,
+        mass_center_height=2.0,
+    )
+    free = Settings(gravity=0.0, ground=False)
+    result = Simulation(lab, Barrier.rigid_wall(), 10.0, settings=free, duration=1.0).run()
+    assert result.pose(result.time)[1][:, 2, 2].min() < 0.0  # its up axis looks down
+    assert result.outcome == "rolled_over"
+    assert "rolled over" in result.outcome_detail
+    short = Simulation(lab, Barrier.rigid_wall(), 10.0, settings=free, duration=0.1).run()
+    assert short.pose(short.time)[1][:, 2, 2].min() > 0.0
+    assert short.outcome != "rolled_over"
+
+
+@pytest.mark.parametrize("name", ["wall", "gap", "bollards"])
+def test_a_study_has_the_outcome_without_histories(name: str) -> None:
+    result = run(name)
+    metrics = ["exit_speed", "exit_angle", "time_of_separation", "later_contacts", "residual_crush"]
+    study = birm3d.ensemble([scene(name)] * 2, metrics=metrics, progress=False)
+    assert list(study.outcome) == [result.outcome] * 2 == list(study["outcome"])
+    assert study.outcomes == {result.outcome: 2}
+    for metric in metrics:
+        value = result.metrics.get(metric, math.nan)
+        assert study[metric][0] == value or (math.isnan(value) and math.isnan(study[metric][0]))
+    assert "outcome" not in study.summary()
+    assert list(study.columns()["outcome"]) == list(study.outcome)
+
+
+def test_studies_keep_it_in_files(tmp_path: Path) -> None:
+    sim = scene("head_on")
+    study = birm3d.sweep(sim, impact_speed=[10.0, 15.0], metrics=["exit_speed"], store=tmp_path / "s.db")
+    assert study.outcome == ("stopped", "stopped")
+    study.save(tmp_path / "study.csv")
+    assert birm3d.study.Study.load(tmp_path / "study.csv").outcome == study.outcome
+    again = birm3d.sweep(sim, impact_speed=[10.0, 15.0], metrics=["exit_speed"], store=tmp_path / "s.db")
+    assert again.outcome == study.outcome
+
+
+def test_snapshots_pickles_and_files_keep_the_event(tmp_path: Path) -> None:
+    result = run("wall")
+    simulation = scene("wall")
+    while simulation.time < result.metrics["time_of_separation"] - 0.01:
+        simulation.step()
+    snapshot = simulation.snapshot()
+    other = scene("wall")
+    other.restore(snapshot)
+    restored = other.run()
+    result.save(tmp_path / "crash.npz")
+    for twin in (restored, birm3d.load(tmp_path / "crash.npz"), pickle.loads(pickle.dumps(result))):
+        assert (twin.outcome, twin.outcome_detail) == (result.outcome, result.outcome_detail)
+        for metric in AT_SEPARATION:
+            assert twin.metrics[metric] == result.metrics[metric]
+        assert twin.metrics["outcome"] == result.outcome
+
+
+def test_a_file_of_version_0_1_0_says_that_it_has_none() -> None:
+    loaded = birm3d.load(OLD)
+    assert loaded.outcome == "undecided"
+    assert "did not find the outcome: run its scene again" in loaded.outcome_detail
+    assert Simulation.from_scene(loaded.scene).run().outcome in OUTCOMES
