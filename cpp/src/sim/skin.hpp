@@ -8,6 +8,7 @@
 
 #include "birm3d/kernels/detect.hpp"
 #include "birm3d/sim/trial.hpp"
+#include "sim/corner.hpp"
 
 namespace birm3d {
 
@@ -30,6 +31,7 @@ class Skin {
     const TrussBlockState& from(std::size_t b) const {
         return sprung_back_ ? sprung_ : before_.trusses.block[b];
     }
+    const Shape& near_shape(std::size_t near) const { return scene_.obstacles[near_[near].index].shape; }
     void find_dents();
     Dented dents_of(std::size_t near);
     bool was_before(std::size_t near, std::size_t panel);
@@ -48,14 +50,27 @@ class Skin {
     PlaneSums& sums_of_plane(std::size_t near, const HalfSpace& plane);
     void press_plane(PlaneSums& plane, std::size_t b);
     void press_shapes(std::size_t b);
+    void press_shapes_again(std::size_t b, double work);
+    bool crush_shapes(std::size_t b, std::size_t at);
+    void rub_shapes(std::size_t at, std::size_t b);
     std::size_t where_met(const Lanes& force) const;
-    std::optional<double> let_go_into_another(std::size_t b);
+    TrussBlockState& altered(std::size_t b);
+    std::optional<double> stop_released(std::size_t b, const FlatContact* plane);
+    std::optional<Vec3> stop_on_way(std::size_t b, std::size_t i, const Vec3& start, const Vec3& end) const;
+    bool is_solid_to(std::size_t b, std::size_t i, std::size_t near) const;
     void look(std::size_t b);
-    void look_at_surfaces(std::size_t b, const TrussBlockState& block);
+    bool look_at_surfaces(std::size_t b, const TrussBlockState& block);
     void look_at(std::size_t b, const TrussBlockState& block);
     bool stay_on_planes(const TrussBlockState& block) const;
     void turn_flat_faces();
-    void settle_in_corners(const TrussBlockState& block);
+    void settle_in_corners(std::size_t b);
+    void settle(std::size_t b, std::size_t i);
+    CornerFace own_face(std::size_t i) const;
+    CornerFace face_at(std::size_t k, const Vec3& place, const Vec3& node) const;
+    bool was_on(const CornerFace& face, const Vec3& node) const;
+    void add_driving(std::size_t b, const Vec3& node, Corner& corner) const;
+    void place(std::size_t b, const Corner& corner, const Vec3& to);
+    void share_out_corners(std::size_t b, const TrussBlockState& next);
     bool find_entered_faces(const TrussBlockState& block);
     void share_out(std::size_t b, const TrussBlockState& next);
     void rub(std::size_t near, std::size_t b, const TrussBlockState& next, const Places& places,
@@ -93,8 +108,10 @@ class Skin {
     std::vector<std::size_t>&group_near_, &group_dents_, &seen_;
     std::vector<BlockDent>& block_dents_;
 
-    TrussBlockState sprung_;  // the block at hand, if some of its nodes have sprung back
+    TrussBlockState sprung_;  // the block at hand, if some of its nodes have sprung back or stand in corners
     bool sprung_back_ = false;
+    std::vector<Corner> corners_;  // of the block at hand
+    alignas(64) Lanes second_gap_;              // of each node, to the second nearest of several obstacles (m)
     NodeFaces faces_;
     BlockContact contact_;
     std::optional<Vec3> plane_normal_;        // of all nodes in contact_, where they saw one plane

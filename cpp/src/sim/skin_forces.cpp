@@ -260,9 +260,16 @@ void Skin::press_plane(PlaneSums& plane, std::size_t b) {
     if (!plane_normal_ || *plane_normal_ != plane.surface.face.normal)
         contact_.set_normal(plane_normal_.emplace(plane.surface.face.normal));
     const Places places{next.x, next.y, next.z};
+    std::optional<CrushSums> before;
+    if (from(b).touching) before = plane.sums;
+    bool ceased = false;
     crush_with_rate(plane.near, next, places, plane.sums, [&](const Lanes* factor, CrushSums& sums) {
-        crush(plane.surface, mesh_, b, factor, from(b), next, contact_, sums);
+        ceased = crush(plane.surface, mesh_, b, factor, from(b), next, contact_, sums);
     });
+    if (const auto work = ceased ? stop_released(b, &plane.surface) : std::nullopt) {
+        plane.sums = *before;
+        return press_shapes_again(b, *work);
+    }
     if (next.touching) rub(plane.near, b, next, places, contact_);
 }
 
@@ -279,64 +286,52 @@ std::size_t Skin::where_met(const Lanes& force) const {
 }
 
 void Skin::press_shapes(std::size_t b) {
-    TrussBlockState& next = now_.trusses.block[b];
     const bool may_go_into_another = std::any_of(seen_.begin(), seen_.end(), [&](std::size_t k) {
         return std::holds_alternative<Prism>(scene_.obstacles[near_[k].index].shape);
     });
     // A node that does may find itself at another obstacle, too.
-    const bool fixed = seen_.size() == 1 || !may_go_into_another;
+    const bool fixed = corners_.empty() && (seen_.size() == 1 || !may_go_into_another);
     const std::size_t at = fixed ? where_met(from(b).force) : several;
     CrushSums& to = at != several ? obstacles_[at].sums : shared_;
     std::optional<CrushSums> before;
-    if (may_go_into_another) before = to;
+    if (from(b).touching) before = to;
+    if (crush_shapes(b, at))
+        if (const auto work = stop_released(b, nullptr)) {
+            to = *before;
+            return press_shapes_again(b, *work);
+        }
+    rub_shapes(at, b);
+}
+
+// Returns whether any node ceased to push. `at`: the obstacle that they all meet, or `several`.
+bool Skin::crush_shapes(std::size_t b, std::size_t at) {
+    TrussBlockState& next = now_.trusses.block[b];
     bool ceased = false;
-    const auto crush_block = [&] {
-        crush_with_rate(at, next, contact_.places(), to, [&](const Lanes* factor, CrushSums& sums) {
-            ceased = crush(faces_, unit_.body, mesh_, b, factor, from(b), next, contact_, sums);
-        });
-    };
-    crush_block();
-    if (const auto work = ceased && before ? let_go_into_another(b) : std::nullopt) {
-        to = *before;
-        to.released_work += *work;
-        look(b);
-        crush_block();
-    }
+    crush_with_rate(at, next, contact_.places(), at != several ? obstacles_[at].sums : shared_,
+                    [&](const Lanes* factor, CrushSums& sums) {
+                        ceased =
+                            crush(faces_, unit_.body, mesh_, b, factor, from(b), next, contact_, sums);
+                    });
+    return ceased;
+}
+
+// Once nodes that were let go have been stopped by other surfaces: `work` was done on their trusses up to there (J).
+void Skin::press_shapes_again(std::size_t b, double work) {
+    shared_.released_work += work;
+    for (const std::size_t k : seen_)
+        obstacles_[k].seen = true;
+    look(b);
+    crush_shapes(b, several);
+    rub_shapes(several, b);
+}
+
+void Skin::rub_shapes(std::size_t at, std::size_t b) {
+    const TrussBlockState& next = now_.trusses.block[b];
     if (!next.touching) return;
     if (at != several)
         rub(at, b, next, contact_.places(), contact_);
     else
         share_out(b, next);
-}
-
-// A node that one face lets go may spring into another, in the corner between two slopes: it arrives there within the
-// step, its truss unloaded. Returns the work done on such trusses up to there (J).
-std::optional<double> Skin::let_go_into_another(std::size_t b) {
-    const TrussBlock& truss = mesh_.block[b];
-    const TrussBlockState& next = now_.trusses.block[b];
-    std::optional<double> work;
-    for (std::size_t i = 0; i < lanes; ++i) {
-        const double force = from(b).force[i];
-        if (!(force > 0.0 && next.force[i] == 0.0)) continue;
-        const Vec3 place(next.x[i], next.y[i], next.z[i]);
-        const bool inside = std::any_of(seen_.begin(), seen_.end(), [&](std::size_t k) {
-            const Shape& shape = scene_.obstacles[near_[k].index].shape;
-            return std::holds_alternative<Prism>(shape) &&
-                   nearest(shape, near_[k].now.to_own(place)).gap < -tolerance::touching_gap;
-        });
-        if (!inside) continue;
-        if (!sprung_back_) sprung_ = before_.trusses.block[b];
-        sprung_back_ = true;
-        // The face held it to the end of the step, but where it moved off by itself: see release() in crush_rows.cpp.
-        const Vec3 held(contact_.px[i], contact_.py[i], contact_.pz[i]);
-        const double length = (held - Vec3(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i])).norm();
-        const double let_go = faces_.gap[i] > 0.0 ? next.deflection[i] : truss.length[i] - length;
-        work = work.value_or(0.0) + 0.5 * force * (let_go - sprung_.deflection[i]);
-        sprung_.x[i] = place.x(), sprung_.y[i] = place.y(), sprung_.z[i] = place.z();
-        sprung_.force[i] = 0.0;
-        sprung_.deflection[i] = next.deflection[i];
-    }
-    return work;
 }
 
 void skin_forces(const Scene& scene, std::size_t u, const State& from, Trial& trial) {

@@ -46,6 +46,7 @@ BIRM3D_LANE_LOOP Part take_part(const std::array<std::size_t, lanes>& nearest, s
 
 // Nodes of one block that push on several obstacles: to each its own.
 void Skin::share_out(std::size_t b, const TrussBlockState& next) {
+    if (!corners_.empty()) share_out_corners(b, next);
     BlockContact part = contact_;
     for (std::size_t k = 0; k < seen_.size(); ++k) {
         const Part of = take_part(nearest_, k, contact_, part.pressure);

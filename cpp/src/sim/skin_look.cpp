@@ -43,6 +43,15 @@ BIRM3D_LANE_LOOP void take_nearer(const NearestLanes& found, std::size_t k, Node
     }
 }
 
+// The second nearest of several: before the k-th is taken. Of nodes outside without force the gap need not be known.
+BIRM3D_LANE_LOOP void take_second(const NearestLanes& found, const NodeFaces& faces, Lanes& second) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const double farther = found.gap[i] < faces.gap[i] ? faces.gap[i] : found.gap[i];
+        second[i] = farther < second[i] ? farther : second[i];
+    }
+}
+
 // Does any of the nodes push on what it sees, or is it inside?
 BIRM3D_LANE_LOOP bool any_meets(const Lanes& force, const Lanes& gap) {
     alignas(64) Lanes meets;
@@ -106,28 +115,33 @@ void Skin::look(std::size_t b) {
     const TrussBlockState& block = from(b);
     see_nothing(faces_, contact_, nearest_);
     plane_normal_.reset();
+    corners_.clear();
     const bool only_dents = std::all_of(
         seen_.begin(), seen_.end(), [&](std::size_t k) { return is_left_to_dents(mesh_.panels_of[b], k); });
-    if (!only_dents) look_at_surfaces(b, block);
+    const bool changed = !only_dents && look_at_surfaces(b, block);
     draw_in(b, block);
+    // Of one obstacle the nearest place lies in no corner.
+    if (changed || seen_.size() > 1) settle_in_corners(b);
 }
 
-void Skin::look_at_surfaces(std::size_t b, const TrussBlockState& block) {
+// Has any node gone in by another face than the nearest?
+bool Skin::look_at_surfaces(std::size_t b, const TrussBlockState& block) {
     look_at(b, block);
     const bool changed = find_entered_faces(block);
     if (block.touching) turn_flat_faces();
-    // Of one obstacle the nearest place lies in no corner.
-    if (changed || seen_.size() > 1) settle_in_corners(block);
+    return changed;
 }
 
 void Skin::look_at(std::size_t b, const TrussBlockState& block) {
     alignas(64) NearestLanes found;
+    second_gap_.fill(infinity);
     for (std::size_t k = 0; k < seen_.size(); ++k) {
         if (is_left_to_dents(mesh_.panels_of[b], seen_[k])) continue;
         const NearObstacle& obstacle = near_[seen_[k]];
         const Shape& shape = scene_.obstacles[obstacle.index].shape;
         nearest_of(shape, obstacle.now, obstacle.before, block.x, block.y, block.z, found, &block.force);
         leave_to_dents(b, seen_[k], found);
+        if (k > 0) take_second(found, faces_, second_gap_);
         take_nearer(found, k, faces_, contact_, nearest_);
     }
     faces_.bx = contact_.nx, faces_.by = contact_.ny, faces_.bz = contact_.nz;
@@ -159,46 +173,6 @@ bool Skin::stay_on_planes(const TrussBlockState& block) const {
         if (!(off <= tolerance::touching_gap)) return false;
     }
     return true;
-}
-
-// Where a node that leaves one surface would get into another, in the corner between a barrier and the ground or of two
-// slopes, it goes onto both: the corner pushes it straight there.
-void Skin::settle_in_corners(const TrussBlockState& block) {
-    const auto shape = [&](std::size_t k) -> const Shape& { return scene_.obstacles[near_[k].index].shape; };
-    if (seen_.size() == 1 && !std::holds_alternative<Prism>(shape(seen_[0]))) return;
-    const auto is_post = [&](std::size_t k) { return std::holds_alternative<Post>(shape(k)); };
-    if (std::all_of(seen_.begin(), seen_.end(), is_post)) return;  // they stand apart
-    const auto inside = [&](std::size_t i) { return faces_.gap[i] < -tolerance::touching_gap; };
-    alignas(64) Lanes x = block.x, y = block.y, z = block.z;
-    bool any = false;
-    for (std::size_t i = 0; i < lanes; ++i) {
-        if (!inside(i)) continue;
-        any = true;
-        x[i] -= faces_.gap[i] * contact_.nx[i];
-        y[i] -= faces_.gap[i] * contact_.ny[i];
-        z[i] -= faces_.gap[i] * contact_.nz[i];
-    }
-    if (!any) return;
-    constexpr double parallel = 0.01;  // square of the sine below which two faces make no corner
-    alignas(64) NearestLanes found;
-    for (const std::size_t k : seen_) {
-        const NearObstacle& obstacle = near_[k];
-        nearest_of(shape(k), obstacle.now, obstacle.now, x, y, z, found);
-        for (std::size_t i = 0; i < lanes; ++i) {
-            if (!inside(i) || !(found.gap[i] < -tolerance::touching_gap)) continue;
-            const Vec3 first = contact_.normal(i), second(found.nx[i], found.ny[i], found.nz[i]);
-            const Vec3 along = second - second.dot(first) * first;
-            const double square = along.squaredNorm();
-            if (square < parallel) continue;
-            const Vec3 way = -faces_.gap[i] * first - found.gap[i] / square * along;
-            const double length = way.norm();
-            const Vec3 n = way / length;
-            faces_.gap[i] = -length;
-            contact_.nx[i] = faces_.bx[i] = n.x();
-            contact_.ny[i] = faces_.by[i] = n.y();
-            contact_.nz[i] = faces_.bz[i] = n.z();
-        }
-    }
 }
 
 namespace {
