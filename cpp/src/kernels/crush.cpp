@@ -54,6 +54,23 @@ double finish(double nodes, TrussBlockState& now) {
 
 }  // namespace
 
+CrushSums& CrushSums::operator-=(const CrushSums& part) {
+    const auto take = [](double* from, const double* what) {
+        for (std::size_t i = 0; i < 8; ++i)
+            from[i] -= what[i];
+    };
+    NodeSums& a = nodes;
+    const NodeSums& b = part.nodes;
+    take(a.force, b.force);
+    take(a.moment_x, b.moment_x), take(a.moment_y, b.moment_y), take(a.moment_z, b.moment_z);
+    take(a.push_x, b.push_x), take(a.push_y, b.push_y), take(a.push_z, b.push_z);
+    take(a.stiffness, b.stiffness);
+    take(a.twice_work, b.twice_work), take(a.twice_stored, b.twice_stored);
+    released_work -= part.released_work;
+    flat_stiffness -= part.flat_stiffness;
+    return *this;
+}
+
 InverseMass::InverseMass(const RigidBody& body, const Vec3& n) : constant(body.inverse_mass) {
     Mat3 cross;
     cross << 0.0, n.z(), -n.y(), -n.z(), 0.0, n.x(), n.y(), -n.x(), 0.0;

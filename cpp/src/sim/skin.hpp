@@ -12,12 +12,24 @@
 
 namespace birm3d {
 
+// A node that was let go and stopped on its way.
+struct Stopped {
+    std::size_t lane;
+    Vec3 place;
+    double deflection, residual, peak_deflection, force;  // of its truss there
+    double work;                                          // on it, up to the release (J)
+};
+
 // One unit's skin within one step; body axes.
 class Skin {
   public:
-    Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial);
+    Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial, bool far = false);
 
     void press_blocks();
+    // Has a node sprung to an obstacle that was not taken for near? Then all is to be found anew, by a skin that looks
+    // `far`.
+    bool overlooks() const { return overlooks_; }
+
     void hand_over();  // sums and touches, to the trial
 
   private:
@@ -50,12 +62,15 @@ class Skin {
     PlaneSums& sums_of_plane(std::size_t near, const HalfSpace& plane);
     void press_plane(PlaneSums& plane, std::size_t b);
     void press_shapes(std::size_t b);
-    void press_shapes_again(std::size_t b, double work);
-    bool crush_shapes(std::size_t b, std::size_t at);
+    void press_again(std::size_t b);
+    bool crush_plane(const PlaneSums& plane, std::size_t b, CrushSums& sums);
+    bool crush_shapes(std::size_t b, std::size_t at, CrushSums& sums);
     void rub_shapes(std::size_t at, std::size_t b);
     std::size_t where_met(const Lanes& force) const;
     TrussBlockState& altered(std::size_t b);
-    std::optional<double> stop_released(std::size_t b, const FlatContact* plane);
+    bool find_stopped(std::size_t b, const FlatContact* plane);
+    void stop(std::size_t b);
+    void look_further();
     std::optional<Vec3> stop_on_way(std::size_t b, std::size_t i, const Vec3& start, const Vec3& end) const;
     bool is_solid_to(std::size_t b, std::size_t i, std::size_t near) const;
     void look(std::size_t b);
@@ -111,7 +126,10 @@ class Skin {
     TrussBlockState sprung_;  // the block at hand, if some of its nodes have sprung back or stand in corners
     bool sprung_back_ = false;
     std::vector<Corner> corners_;  // of the block at hand
-    alignas(64) Lanes second_gap_;              // of each node, to the second nearest of several obstacles (m)
+    std::vector<NearObstacle> further_;
+    bool looked_further_ = false, overlooks_ = false;
+    std::vector<Stopped> stopped_;  // the same
+    alignas(64) Lanes second_gap_;  // of each node, to the second nearest of several obstacles (m)
     NodeFaces faces_;
     BlockContact contact_;
     std::optional<Vec3> plane_normal_;        // of all nodes in contact_, where they saw one plane

@@ -35,9 +35,8 @@ BIRM3D_LANE_LOOP void move_out(const NodeFaces& faces, const BlockContact& conta
 BIRM3D_LANE_LOOP double note_inside(const NodeFaces& faces, const Lanes& gap, Lanes& cornered) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i)
-        cornered[i] = faces.gap[i] < -tolerance::touching_gap && gap[i] < -tolerance::touching_gap
-                          ? 1.0
-                          : cornered[i];
+        cornered[i] =
+            faces.gap[i] < -tolerance::touching_gap && gap[i] < -tolerance::touching_gap ? 1.0 : cornered[i];
     alignas(64) Lanes sum = cornered;
     return lane_sum(sum);
 }
@@ -53,7 +52,7 @@ BIRM3D_LANE_LOOP void note_pushing(const Lanes& force, const Lanes& second, doub
 
 void Skin::settle_in_corners(std::size_t b) {
     const auto is_post = [&](std::size_t k) { return std::holds_alternative<Post>(near_shape(k)); };
-    if (block_dents_.empty() && std::all_of(seen_.begin(), seen_.end(), is_post)) return;  // they stand apart
+    if (std::all_of(seen_.begin(), seen_.end(), is_post)) return;  // they stand apart
     alignas(64) Lanes cornered;
     cornered.fill(0.0);
     const TrussBlockState& block = from(b);
@@ -163,8 +162,7 @@ void Skin::place(std::size_t b, const Corner& corner, const Vec3& to) {
     const double deflection = truss.length[i] - (anchor - to).norm();
     const double free = truss.length[i] - (anchor - (to - corner.pushed_way())).norm();
     if (block.force[i] > 0.0 && free < block.deflection[i]) {
-        block.force[i] =
-            std::max(0.0, block.force[i] + truss.k_unloading[i] * (free - block.deflection[i]));
+        block.force[i] = std::max(0.0, block.force[i] + truss.k_unloading[i] * (free - block.deflection[i]));
         block.deflection[i] = free;
     }
     block.x[i] = to.x(), block.y[i] = to.y(), block.z[i] = to.z();
@@ -174,9 +172,9 @@ void Skin::place(std::size_t b, const Corner& corner, const Vec3& to) {
     contact_.ny[i] = faces_.by[i] = b_.y();
     contact_.nz[i] = faces_.bz[i] = b_.z();
     faces_.per_force[i] = 0.0;
-    const auto most = std::max_element(
-        corner.face.begin(), corner.face.begin() + static_cast<std::ptrdiff_t>(corner.count),
-        [](const CornerFace& a, const CornerFace& c) { return a.share < c.share; });
+    const auto most =
+        std::max_element(corner.face.begin(), corner.face.begin() + static_cast<std::ptrdiff_t>(corner.count),
+                         [](const CornerFace& a, const CornerFace& c) { return a.share < c.share; });
     nearest_[i] = most->seen;
     corners_.push_back(corner);
 }

@@ -30,7 +30,7 @@ void add_touched(const Scene& scene, std::size_t u, const State& before, const S
 
 }  // namespace
 
-Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
+Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial, bool far)
     : scene_(scene),
       unit_(scene.vehicle->units[u]),
       mesh_(unit_.trusses),
@@ -54,7 +54,8 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial)
       group_dents_(trial.skin.group_dents),
       seen_(trial.skin.seen),
       block_dents_(trial.skin.block_dents) {
-    find_near(scene, u, from, trial.state, before_.touches.empty() ? 0.0 : margin_, trial.skin.about, near_);
+    const double margin = before_.touches.empty() ? 0.0 : margin_;
+    find_near(scene, u, from, trial.state, far ? 2.0 * mesh_.reach : margin, trial.skin.about, near_);
     add_touched(scene, u, from, trial.state, near_);
     const bool rubs = std::any_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
         return scene.obstacles[obstacle.index].friction > 0.0;
@@ -256,21 +257,27 @@ void Skin::find_rate_factor(std::size_t near, const TrussBlockState& next, const
 }
 
 void Skin::press_plane(PlaneSums& plane, std::size_t b) {
-    TrussBlockState& next = now_.trusses.block[b];
+    const TrussBlockState& next = now_.trusses.block[b];
     if (!plane_normal_ || *plane_normal_ != plane.surface.face.normal)
         contact_.set_normal(plane_normal_.emplace(plane.surface.face.normal));
-    const Places places{next.x, next.y, next.z};
-    std::optional<CrushSums> before;
-    if (from(b).touching) before = plane.sums;
-    bool ceased = false;
-    crush_with_rate(plane.near, next, places, plane.sums, [&](const Lanes* factor, CrushSums& sums) {
-        ceased = crush(plane.surface, mesh_, b, factor, from(b), next, contact_, sums);
-    });
-    if (const auto work = ceased ? stop_released(b, &plane.surface) : std::nullopt) {
-        plane.sums = *before;
-        return press_shapes_again(b, *work);
+    if (crush_plane(plane, b, plane.sums) && find_stopped(b, &plane.surface)) {
+        CrushSums undone;
+        crush_plane(plane, b, undone);
+        plane.sums -= undone;
+        return press_again(b);
     }
-    if (next.touching) rub(plane.near, b, next, places, contact_);
+    if (next.touching) rub(plane.near, b, next, {next.x, next.y, next.z}, contact_);
+}
+
+// Returns whether any node ceased to push.
+bool Skin::crush_plane(const PlaneSums& plane, std::size_t b, CrushSums& to) {
+    TrussBlockState& next = now_.trusses.block[b];
+    bool ceased = false;
+    crush_with_rate(plane.near, next, {next.x, next.y, next.z}, to,
+                    [&](const Lanes* factor, CrushSums& sums) {
+                        ceased = crush(plane.surface, mesh_, b, factor, from(b), next, contact_, sums);
+                    });
+    return ceased;
 }
 
 // The one obstacle that all nodes of the block push on which push, or are inside of; or `several`.
@@ -293,35 +300,30 @@ void Skin::press_shapes(std::size_t b) {
     const bool fixed = corners_.empty() && (seen_.size() == 1 || !may_go_into_another);
     const std::size_t at = fixed ? where_met(from(b).force) : several;
     CrushSums& to = at != several ? obstacles_[at].sums : shared_;
-    std::optional<CrushSums> before;
-    if (from(b).touching) before = to;
-    if (crush_shapes(b, at))
-        if (const auto work = stop_released(b, nullptr)) {
-            to = *before;
-            return press_shapes_again(b, *work);
-        }
+    if (crush_shapes(b, at, to) && find_stopped(b, nullptr)) {
+        CrushSums undone;
+        crush_shapes(b, at, undone);
+        to -= undone;
+        return press_again(b);
+    }
     rub_shapes(at, b);
 }
 
 // Returns whether any node ceased to push. `at`: the obstacle that they all meet, or `several`.
-bool Skin::crush_shapes(std::size_t b, std::size_t at) {
+bool Skin::crush_shapes(std::size_t b, std::size_t at, CrushSums& to) {
     TrussBlockState& next = now_.trusses.block[b];
     bool ceased = false;
-    crush_with_rate(at, next, contact_.places(), at != several ? obstacles_[at].sums : shared_,
-                    [&](const Lanes* factor, CrushSums& sums) {
-                        ceased =
-                            crush(faces_, unit_.body, mesh_, b, factor, from(b), next, contact_, sums);
-                    });
+    crush_with_rate(at, next, contact_.places(), to, [&](const Lanes* factor, CrushSums& sums) {
+        ceased = crush(faces_, unit_.body, mesh_, b, factor, from(b), next, contact_, sums);
+    });
     return ceased;
 }
 
-// Once nodes that were let go have been stopped by other surfaces: `work` was done on their trusses up to there (J).
-void Skin::press_shapes_again(std::size_t b, double work) {
-    shared_.released_work += work;
-    for (const std::size_t k : seen_)
-        obstacles_[k].seen = true;
+// Once nodes that were let go have been stopped by other surfaces.
+void Skin::press_again(std::size_t b) {
+    stop(b);
     look(b);
-    crush_shapes(b, several);
+    crush_shapes(b, several, shared_);
     rub_shapes(several, b);
 }
 
@@ -337,7 +339,10 @@ void Skin::rub_shapes(std::size_t at, std::size_t b) {
 void skin_forces(const Scene& scene, std::size_t u, const State& from, Trial& trial) {
     Skin skin(scene, u, from, trial);
     skin.press_blocks();
-    skin.hand_over();
+    if (!skin.overlooks()) return skin.hand_over();
+    Skin further(scene, u, from, trial, true);
+    further.press_blocks();
+    further.hand_over();
 }
 
 }  // namespace birm3d

@@ -31,6 +31,20 @@ bool Skin::is_solid_to(std::size_t b, std::size_t i, std::size_t near) const {
     });
 }
 
+// Obstacles that a node may spring to, though nothing of the vehicle is near to them yet.
+void Skin::look_further() {
+    if (looked_further_) return;
+    looked_further_ = true;
+    std::vector<std::size_t> about;
+    scene_.map.find(now_.body.position, 2.0 * mesh_.reach, about);
+    for (const std::size_t i : about) {
+        if (i == scene_.ground && !scene_.skin_meets_ground[u_]) continue;
+        const bool known = std::any_of(near_.begin(), near_.end(),
+                                       [i](const NearObstacle& near) { return near.index == i; });
+        if (!known) further_.push_back({i, placement(pose_of(scene_, i, trial_.state), now_.body), {}});
+    }
+}
+
 // Where the first surface on the way of a node stops it; none where the way is free.
 std::optional<Vec3> Skin::stop_on_way(std::size_t b, std::size_t i, const Vec3& start,
                                       const Vec3& end) const {
@@ -39,11 +53,13 @@ std::optional<Vec3> Skin::stop_on_way(std::size_t b, std::size_t i, const Vec3& 
     const auto gap_at = [&](double share, double enough) {
         const Vec3 place = start + share * way;
         double least = enough;
+        for (const NearObstacle& other : further_)
+            if (other.index != scene_.ground || b < mesh_.skin_blocks)
+                least = std::min(least,
+                                 nearest(scene_.obstacles[other.index].shape, other.now.to_own(place)).gap);
         for (std::size_t k = 0; k < near_.size(); ++k)
             if (is_solid_to(b, i, k))
-                least = std::min(least, nearest(scene_.obstacles[near_[k].index].shape,
-                                                near_[k].now.to_own(place))
-                                            .gap);
+                least = std::min(least, nearest(near_shape(k), near_[k].now.to_own(place)).gap);
         return least;
     };
     double outside = 0.0, gap = gap_at(0.0, length);
@@ -67,44 +83,62 @@ std::optional<Vec3> Skin::stop_on_way(std::size_t b, std::size_t i, const Vec3& 
     return start + outside * way;
 }
 
-// Nodes that `plane`, or where it is null the faces at hand, let go, and that other surfaces stop on their way: the block
-// is altered so that they stand there. Returns the work done on their trusses up to the release (J); none where no node
-// was stopped.
-std::optional<double> Skin::stop_released(std::size_t b, const FlatContact* plane) {
+// Nodes that `plane`, or where it is null the faces at hand, let go, and that other surfaces stop on their way. Are there
+// any?
+bool Skin::find_stopped(std::size_t b, const FlatContact* plane) {
+    stopped_.clear();
     const TrussBlock& truss = mesh_.block[b];
-    const TrussBlockState& next = now_.trusses.block[b];
-    std::optional<double> work;
+    const TrussBlockState &last = from(b), &next = now_.trusses.block[b];
     for (std::size_t i = 0; i < lanes; ++i) {
-        const double force = from(b).force[i];
-        if (!(force > 0.0 && next.force[i] == 0.0)) continue;
+        if (!(last.force[i] > 0.0 && next.force[i] == 0.0)) continue;
         const Vec3 anchor(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
-        const Vec3 to(next.x[i], next.y[i], next.z[i]), was(from(b).x[i], from(b).y[i], from(b).z[i]);
+        const Vec3 to(next.x[i], next.y[i], next.z[i]), was(last.x[i], last.y[i], last.z[i]);
         // The face held it to the end of the step, but where it moved off by itself: see release() in crush_rows.cpp.
-        const Vec3 held = plane != nullptr ? Vec3(was - (plane->face.normal.dot(was) - plane->face.offset) *
-                                                            plane->holding)
-                                           : Vec3(contact_.px[i], contact_.py[i], contact_.pz[i]);
+        const Vec3 held =
+            plane != nullptr ? Vec3(was - (plane->face.normal.dot(was) - plane->face.offset) * plane->holding)
+                             : Vec3(contact_.px[i], contact_.py[i], contact_.pz[i]);
         const Vec3 n = plane != nullptr ? plane->face.normal : contact_.normal(i);
         if ((anchor - held).dot(n) > 0.0 || (to - held).norm() <= tolerance::touching_gap) continue;
+        look_further();
         const auto stop = stop_on_way(b, i, held, to);
         if (!stop) continue;
-        const double residual = next.residual[i];
-        const double let_go = truss.length[i] - (held - anchor).norm();
+        overlooks_ =
+            overlooks_ || std::any_of(further_.begin(), further_.end(), [&](const NearObstacle& other) {
+                return nearest(scene_.obstacles[other.index].shape, other.now.to_own(*stop)).gap <
+                       least_stride;
+            });
         const double deflection = truss.length[i] - (*stop - anchor).norm();
-        TrussBlockState& block = altered(b);
-        work = work.value_or(0.0) + 0.5 * force * (let_go - block.deflection[i]);
-        block.x[i] = stop->x(), block.y[i] = stop->y(), block.z[i] = stop->z();
-        block.deflection[i] = deflection;
-        block.residual[i] = residual;
-        block.peak_deflection[i] = next.peak_deflection[i];
-        block.force[i] = std::max(0.0, truss.k_unloading[i] * (deflection - residual));
-        for (std::size_t k = 0; k < near_.size(); ++k)
-            if (meets(b, k) && std::find(seen_.begin(), seen_.end(), k) == seen_.end() &&
-                nearest(scene_.obstacles[near_[k].index].shape, near_[k].now.to_own(*stop)).gap <
-                    least_stride)
-                seen_.insert(std::lower_bound(seen_.begin(), seen_.end(), k), k);
+        const double let_go = truss.length[i] - (held - anchor).norm();
+        stopped_.push_back({i, *stop, deflection, next.residual[i], next.peak_deflection[i],
+                            std::max(0.0, truss.k_unloading[i] * (deflection - next.residual[i])),
+                            0.5 * last.force[i] * (let_go - last.deflection[i])});
     }
-    if (work) altered(b).touching = true;
-    return work;
+    return !stopped_.empty() && !overlooks_;
+}
+
+// Alters the block so that nodes stand where they were stopped; what is there is seen. The work on their trusses up to
+// their release was done all the same.
+void Skin::stop(std::size_t b) {
+    TrussBlockState& block = altered(b);
+    block.touching = true;
+    for (const Stopped& node : stopped_) {
+        block.x[node.lane] = node.place.x();
+        block.y[node.lane] = node.place.y();
+        block.z[node.lane] = node.place.z();
+        block.deflection[node.lane] = node.deflection;
+        block.residual[node.lane] = node.residual;
+        block.peak_deflection[node.lane] = node.peak_deflection;
+        block.force[node.lane] = node.force;
+        shared_.released_work += node.work;
+        for (std::size_t k = 0; k < near_.size(); ++k) {
+            const auto place = std::lower_bound(seen_.begin(), seen_.end(), k);
+            if ((place == seen_.end() || *place != k) && meets(b, k) &&
+                nearest(near_shape(k), near_[k].now.to_own(node.place)).gap < least_stride)
+                seen_.insert(place, k);
+        }
+    }
+    for (const std::size_t k : seen_)
+        obstacles_[k].seen = true;
 }
 
 }  // namespace birm3d

@@ -59,6 +59,9 @@ struct CrushSums {
     double stored() const { return 0.5 * row_sum(nodes.twice_stored); }              // J
     double stiffness() const { return flat_stiffness + row_sum(nodes.stiffness); }   // 1/s^2
     double normal_force() const { return row_sum(nodes.force); }                     // N
+
+    // Takes a block's part out again.
+    CrushSums& operator-=(const CrushSums& part);
 };
 
 // Takes block `b` from `before` to `now`, fills in the pressures of `contact` and adds to the sums; the normals of
