@@ -68,18 +68,25 @@ void tire_impulses(const Scene& scene, const std::vector<RigidContact>& contacts
         if (contact.source == ContactSource::tire) tire[contact.body][contact.index] += contact.impulse;
 }
 
+// Motions of the bodies at which contacts slide.
+const std::vector<Twist>& motions_that_rub(const KickMemory& memory) {
+    return memory.sliding.empty() ? memory.pushed : memory.sliding;
+}
+
 // Friction of both sides of closed trusses and of tyres, by the present impulses; kicks the units by what has changed.
 void rub_units(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
     ContactKick& kicked = memory.kick;
     const std::size_t units = state.units.size();
-    const std::vector<Twist>& motion = memory.pushed;
+    const std::vector<Twist>& motion = motions_that_rub(memory);
     std::vector<Wrench>& on_members = memory.on_members;
     on_members.assign(memory.bodies.size(), {});
     for (std::size_t u = 0; u < units; ++u) {
         const Unit& unit = scene.vehicle->units[u];
         BodyState& body = state.units[u].body;
-        const Wrench on_ground =
-            tire_friction(unit, scene.settings, body, {motion[u], by.at_end[u]}, memory.tire[u]);
+        const bool rolls_freely = !kicked.rolls_freely.empty() && kicked.rolls_freely[u] != 0;
+        const Wrench on_ground = rolls_freely ? Wrench{}
+                                              : tire_friction(unit, scene.settings, body,
+                                                              {motion[u], by.at_end[u]}, memory.tire[u]);
         on_members[u] =
             member_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u]);
         kick(unit.body, difference(on_ground, kicked.on_ground[u]), body);
@@ -124,7 +131,7 @@ void settle_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory,
     list_motions(state, bodies, memory.pushed);
     for (RigidContact& contact : kicked.contacts) {
         if (contact.source != ContactSource::member || contact.other < 0) continue;
-        const Twist& other = memory.pushed[static_cast<std::size_t>(contact.other)];
+        const Twist& other = motions_that_rub(memory)[static_cast<std::size_t>(contact.other)];
         contact.sliding_surface = other.velocity + other.angular_velocity.cross(contact.other_arm);
     }
     memory.tire.resize(units);
@@ -300,6 +307,14 @@ void add_impulses(const Scene& scene, const State& state, const ContactKick& kic
     }
 }
 
+double loss_of(const RigidContact& contact, std::span<const Twist> before, std::span<const Twist> after) {
+    const auto motion = [&](std::size_t body) { return mean(before[body], after[body]); };
+    double work = power(wrench_on_body(contact), motion(contact.body));
+    if (contact.other >= 0)
+        work += power(wrench_on_other(contact), motion(static_cast<std::size_t>(contact.other)));
+    return -work;
+}
+
 void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vector<Twist>& before,
                    const std::vector<Twist>& after, State& state) {
     const auto motion = [&](std::size_t u) { return mean(before[u], after[u]); };
@@ -310,10 +325,7 @@ void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vec
     for (std::size_t u = 0; u < kicked.on_ground.size(); ++u)
         state.energies.tire_friction -= power(kicked.on_ground[u], motion(u));
     for (const RigidContact& contact : kicked.contacts) {
-        double work = power(wrench_on_body(contact), motion(contact.body));
-        if (contact.other >= 0)
-            work += power(wrench_on_other(contact), motion(static_cast<std::size_t>(contact.other)));
-        (contact.held ? state.energies.joints : state.energies.impacts) -= work;
+        (contact.held ? state.energies.joints : state.energies.impacts) += loss_of(contact, before, after);
         if (contact.source == ContactSource::member)
             friction_of(scene, contact.obstacle, state.energies) -=
                 power({contact.rubbing, contact.arm.cross(contact.rubbing)},

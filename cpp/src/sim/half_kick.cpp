@@ -14,6 +14,7 @@
 #include "birm3d/kernels/tires.hpp"
 #include "birm3d/sim/bodies.hpp"
 #include "birm3d/sim/contact_kick.hpp"
+#include "birm3d/sim/impact.hpp"
 #include "birm3d/sim/obstacles.hpp"
 
 namespace birm3d {
@@ -66,10 +67,6 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
                         body_state(state, joints[j].trailing), contacts);
 }
 
-bool approaches_hard(const RigidContact& contact, std::span<const ContactBody> bodies) {
-    return !contact.held && separation_velocity(contact, bodies) < -tolerance::restitution_speed;
-}
-
 // Contacts that last: before the drift they let the body come to its surface and no further, after it they
 // end its approach. What joints hold comes together in the drift, and after it moves together.
 void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpulses>& before_drift,
@@ -92,39 +89,6 @@ void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpuls
             return contact.comes_hard;
         return contact.gap > tolerance::touching_gap || approaches_hard(contact, bodies);
     });
-}
-
-// Speed of the hardest impact within `reach` (s), zero without any (m/s).
-double hardest_impact(double reach, std::span<const ContactBody> bodies,
-                      const std::vector<RigidContact>& contacts) {
-    double fastest = 0.0;
-    for (const RigidContact& contact : contacts) {
-        const double v = separation_velocity(contact, bodies);
-        if (approaches_hard(contact, bodies) && contact.gap <= std::max(tolerance::touching_gap, -reach * v))
-            fastest = std::max(fastest, -v);
-    }
-    return fastest;
-}
-
-// Impacts, Eq. 1: leaves the contacts that take part. Points that arrive together by all but a hair share one impact, or
-// their order would be chance: the later one comes, the faster it may still approach afterwards, up to any speed a hair
-// away. So the outcome is a continuous function of the gaps.
-void set_impact_targets(double restitution, double reach, double fastest, std::span<const ContactBody> bodies,
-                        std::vector<RigidContact>& contacts) {
-    // Of its gap, what the coming `reach` leaves.
-    const auto late = [&](const RigidContact& contact) {
-        return std::max(0.0, contact.gap + reach * std::min(0.0, separation_velocity(contact, bodies)));
-    };
-    std::erase_if(contacts, [&](const RigidContact& contact) {
-        return !contact.held && late(contact) >= tolerance::joint_impact_gap;
-    });
-    for (RigidContact& contact : contacts) {
-        const double v = separation_velocity(contact, bodies);
-        contact.target = approaches_hard(contact, bodies) ? -restitution * v : 0.0;
-        if (contact.held) continue;
-        const double by = late(contact);
-        contact.target -= fastest * by / (tolerance::joint_impact_gap - by);
-    }
 }
 
 // Time until the first contact that approaches hard reaches its surface (s). What the forces of the step alone press there
@@ -171,42 +135,6 @@ void book_forces(const Scene& scene, const std::vector<Twist>& before, const std
         for (const Touch& touch : state.units[u].touches)
             friction_of(scene, touch.obstacle, state.energies) -=
                 half * power(touch.friction, relative_motion(scene, state, u, touch.obstacle, before, after));
-}
-
-// State and energies beside an impact.
-void keep(const Scene& scene, const State& state, Impact& impact) {
-    impact.happened = true;
-    impact.bodies.clear();
-    impact.segments = state.segments;
-    impact.energies = state.energies;
-    impact.energies.kinetic = 0.0;
-    for (const UnitState& unit : state.units)
-        impact.bodies.push_back(unit.body);
-    for (std::size_t body = 0; body < body_count(state); ++body)
-        impact.energies.kinetic += kinetic_energy(rigid_body(scene, body), body_state(state, body));
-}
-
-// An impact takes no time: it stands apart from the forces of the step, in the ledger and in the record. `before`: the
-// motions at hand; `after`: those that it leaves, if it happens.
-void impact_at_once(const Scene& scene, Stage stage, double reach, const std::vector<Twist>& before,
-                    std::vector<Twist>& after, Trial& trial) {
-    State& state = trial.state;
-    KickMemory& memory = trial.memory;
-    const double fastest = hardest_impact(reach, memory.bodies, memory.contacts);
-    if (fastest == 0.0) return;
-    memory.kick.contacts = memory.contacts;
-    set_impact_targets(scene.settings.restitution, reach, fastest, memory.bodies, memory.kick.contacts);
-    const bool start = stage == Stage::before_drift;
-    Impact& impact = start ? trial.at_start : trial.at_end;
-    if (!start) keep(scene, state, impact);
-    kick_by_contacts(
-        scene,
-        {.pressed = Column(state.segments.size()), .at_end = before, .from = before, .is_impact = true},
-        memory, state);
-    add_impulses(scene, state, memory.kick, impact.impulses, impact.joint_impulses);
-    list_motions(state, memory.bodies, after);
-    book_contacts(scene, memory.kick, before, after, state);
-    if (start) keep(scene, state, impact);
 }
 
 // a + share b

@@ -44,6 +44,9 @@ void kick_towards_closed_joints(const Scene& scene, const KickedBy& by, KickMemo
 void add_impulses(const Scene& scene, const State& state, const ContactKick& kicked,
                   std::vector<ContactImpulses>& sums, std::vector<Wrench>& joints);
 
+// What the normal impulse of a contact takes from the bodies, or what holds it (J).
+double loss_of(const RigidContact& contact, std::span<const Twist> before, std::span<const Twist> after);
+
 // With the mean of the motions before and after, which makes the change of kinetic energy exact. What is held
 // takes no energy but by the error of the steps, and has a term of its own in which that shows.
 void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vector<Twist>& before,

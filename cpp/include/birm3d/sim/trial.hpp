@@ -50,6 +50,7 @@ struct ContactKick {
     std::vector<Wrench> on_members;  // (bodies) of closed trusses
     std::vector<Wrench> on_base;     // (segments) of the ground
     std::vector<Wrench> on_pins;     // (segments) of the pins to their neighbours
+    std::vector<char> rolls_freely;  // (units) is the friction of its tyres left out? May be empty: of none
 };
 
 // Memory of half kicks, which find it and leave it with nothing of meaning: so that a step allocates nothing.
@@ -59,6 +60,8 @@ struct KickMemory {
     std::vector<std::size_t> about;
     std::vector<ContactBody> bodies;
     std::vector<Twist> before, pushed, rolling, after;  // motions of the bodies
+    std::vector<Twist>
+        sliding;  // motions that the friction of an impact acts against; empty: those before it
     ContactKick kick;
     // Of the search for its impulses.
     ImpulseSolver solver;
