@@ -37,7 +37,7 @@ def laboratory(tolerance: float) -> Result:
 
 @pytest.mark.filterwarnings("ignore::birm3d.CoarseSkinWarning")
 def test_what_the_wall_lets_go_is_stopped_by_the_ground() -> None:
-    """Once such nodes sprang below the ground, and were lifted out of it for nothing: 0.63 to 3.3 of the energy."""
+    """Once such nodes sprang below the ground and were lifted out for nothing: 0.63 to 3.3 of the energy."""
     runs = {tolerance: laboratory(tolerance) for tolerance in (1e-2, 1e-4, 1e-6)}
     residual = {tolerance: run.metrics["energy_residual"] for tolerance, run in runs.items()}
     assert residual[1e-2] < 4e-3  # measured: 2.4e-3, 5.7e-4, 1.7e-4

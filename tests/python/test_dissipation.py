@@ -20,7 +20,7 @@ def greatest_fall(run: Result) -> dict[str, float]:
     }
 
 
-# Each made 6 to 11 % of energy behind a closed ledger: the blow turned tyres round, whose friction drove them on.
+# Each made 6 to 11 % of energy behind a closed ledger: the blow turned tyres round, and friction drove them.
 @pytest.mark.parametrize(
     ("name", "width", "offset", "speed", "yaw", "friction"),
     [
