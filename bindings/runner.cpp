@@ -74,6 +74,7 @@ void register_runner(py::module_& m) {
         .def_readonly("end_reason", &Outcome::end_reason)
         .def_readonly("state_hash", &Outcome::state_hash)
         .def_readonly("statistics", &Outcome::statistics)
+        .def_readonly("ledger", &Outcome::ledger)
         .def_readonly("run_time", &Outcome::run_time, "s, wall time of the stepping")
         .def_property_readonly(
             "final_velocity",

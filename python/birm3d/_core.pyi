@@ -70,6 +70,25 @@ class ContactModel:
     @property
     def value(self) -> int:
         ...
+class Departure:
+    """
+    The greatest so far, when and where.
+    """
+    @property
+    def place(self) -> tuple[float, float, float]:
+        """
+        m, of the mass centre of unit 0, world
+        """
+    @property
+    def size(self) -> float:
+        """
+        J, or N s
+        """
+    @property
+    def time(self) -> float:
+        """
+        s
+        """
 class Element:
     """
     A piece of a barrier: own axes at position, turned by heading (rad).
@@ -459,6 +478,40 @@ class JointKind:
     @property
     def value(self) -> int:
         ...
+class Ledger:
+    """
+    How well a run keeps its own accounts, from step to step.
+    """
+    @property
+    def at_disposal(self) -> float:
+        """
+        J, kinetic at the start and the most that the weight has done
+        """
+    @property
+    def energy(self) -> Departure:
+        """
+        of the sum of all terms from that at the start
+        """
+    @property
+    def falls(self) -> dict[str, Departure]:
+        """
+        of each dissipated term from its highest so far
+        """
+    @property
+    def kinetic(self) -> float:
+        """
+        J, at the start
+        """
+    @property
+    def largest_momentum(self) -> float:
+        """
+        N s, of a unit, or an impulse in a step
+        """
+    @property
+    def momentum(self) -> Departure:
+        """
+        of a unit's change in a step from the sum of all impulses on it
+        """
 class MassProperties:
     """
     Mass, mass centre and inertia about it (paper Eq. 2-7).
@@ -522,6 +575,9 @@ class Outcome:
         """
         m/s, of unit 0, world
         """
+    @property
+    def ledger(self) -> Ledger:
+        ...
     @property
     def peak_deflection(self) -> float:
         """
@@ -709,6 +765,9 @@ class Simulation:
         """
         Did the last step fail half way? Then only reset and restore are of use.
         """
+    @property
+    def ledger(self) -> Ledger:
+        ...
     @property
     def replays(self) -> bool:
         """

@@ -252,15 +252,13 @@ def _without_histories(
             numbers.append((run, scene))
         except Exception as error:
             finished.append((run, _failed(error, metrics)))
-    fixed = any(scene.settings.time_step is not None for _, scene in numbers)
-    extremes = extremes_for(metrics, energy=fixed)
+    extremes = extremes_for(metrics)
     assert extremes is not None
     # Those that were stopped are missing at the end.
     for (run, scene), done in zip(numbers, _core.Runner().run(jobs, extremes, stop), strict=False):
         try:
             end = done.outcome()
-            if scene.settings.time_step is not None:
-                warn_if_open(scene, end.extremes.energy)
+            warn_if_open(scene, end.ledger)
             values = _values(metrics_of_outcome(scene, end, metrics), metrics)
             reason = _END_REASONS[int(end.end_reason)]
             outcome = Outcome(values, reason, end.event.outcome, f"{end.state_hash:016x}")

@@ -322,7 +322,12 @@ class _Run:
 
 def energy_residual(scene: Scene, energy: _core.ExtremeEnergy) -> float:
     """Greatest residual of the energy ledger, relative to the initial kinetic energy."""
-    return energy.residual / max(energy.start, 0.5 * scene.vehicle.mass * _STANDSTILL**2)
+    return relative_to_start(scene, energy.residual, energy.start)
+
+
+def relative_to_start(scene: Scene, energy: float, start: float) -> float:
+    """Return an energy relative to that at the start, which counts as no less than that of a standstill."""
+    return energy / max(start, 0.5 * scene.vehicle.mass * _STANDSTILL**2)
 
 
 def _cfc60(run: _Run, values: Floats) -> float | None:

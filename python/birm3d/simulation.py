@@ -211,7 +211,8 @@ class Simulation:
         OverlapWarning
             As a warning, if the rigid body got into the barrier.
         LedgerWarning
-            As a warning, if a fixed time step is stable and the energy ledger does not close with it.
+            As a warning, if a ledger of the run does not close (:func:`birm3d.ledger.warn_if_open`): energy,
+            momentum, or dissipation that falls.
         ValueError
             If the frames are more than the result's rows or outside the run.
         """
@@ -224,9 +225,9 @@ class Simulation:
             finally:
                 self._run_time += time.perf_counter() - start
             result = self._result()
+            ledger = self._core.ledger
         warn_if_overlapping(result.scene, result.statistics)
-        if self._scene.settings.time_step is not None:
-            warn_if_open(result.scene, result._energy_extremes)
+        warn_if_open(result.scene, ledger)
         return result if frames is None else result.with_frames(frames)
 
     def step(self) -> bool:

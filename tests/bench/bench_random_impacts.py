@@ -2,6 +2,7 @@
 
     python tests/bench/bench_random_impacts.py [--count 10000] [--threads 2] [--save] [--csv FILE]
     python tests/bench/bench_random_impacts.py --quick
+    python tests/bench/bench_random_impacts.py --any-pose [--count 100000] [--first 0] [--limit 60]
 
 Coarse presets and a laboratory block at 1 to 60 m/s and 5 to 90 deg against posts of 0.1 to 0.5 m, sloped
 profiles, walls without end, finite and in segments, and meshes of walls and posts; every fifth group
@@ -12,6 +13,9 @@ with skins that posts do not dent. Watched step by step (birm3d.study.watched):
   to the greatest normal force, limit 1e-9): a whole wall has none, no more may one in segments or triangles;
 - through: a node or an anchor ends a step inside, or the mass centre gets behind a high wall;
 - ledgers: energy within 0.5 %, momentum within 1e-9.
+
+With --any-pose the scenes are those of random_scenes.py, on two processes: a row each in the table, and
+faults with the seeds that replay them. A table that is there already is gone on with.
 
 Ends with 1 if anything was found. The case of a seed is the same on every machine.
 """
@@ -34,7 +38,9 @@ import numpy.typing as npt
 from birm3d import Barrier, CoarseSkinWarning, Settings, Simulation, Vehicle, scenes
 from birm3d.progress import progress_bar
 from birm3d.study.watched import Watched, text, watch
+from random_scenes import run_many
 
+ANY_POSE = Path(__file__).parent / "results/robustness/random_scenes.csv"
 RESULTS = Path(__file__).parent / "results/robustness/random_impacts.csv"
 Floats = npt.NDArray[np.float64]
 GHOST = 1e-9
@@ -296,7 +302,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--quick", action="store_true", help="48 impacts")
     parser.add_argument("--csv", type=Path, help="also write the summary there")
     parser.add_argument("--save", action="store_true", help="also write tests/bench/results/robustness")
+    parser.add_argument("--any-pose", action="store_true", help="scenes in any pose, see random_scenes.py")
+    parser.add_argument("--limit", type=float, default=60.0, help="s, of the run of a scene in any pose")
     asked = parser.parse_args(arguments)
+    if asked.any_pose:
+        table = asked.csv or ANY_POSE
+        return run_many(table, 48 if asked.quick else asked.count, asked.first, asked.threads, asked.limit)
     # Coarse skins are what is tried here: what passes between nodes must still meet the rigid body.
     warnings.simplefilter("ignore", CoarseSkinWarning)
     seeds = range(asked.first, asked.first + (48 if asked.quick else asked.count))

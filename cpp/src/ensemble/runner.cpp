@@ -28,6 +28,7 @@ Outcome Runner::run(const Approach& approach, const ExtremeGroups& wanted,
     outcome.end_reason = simulation_->end_reason();
     outcome.state_hash = state.hash();
     outcome.statistics = state.statistics;
+    outcome.ledger = state.ledger;
     outcome.final_velocity = state.units.front().body.velocity;
     const Deflections deflections = greatest_deflections(*simulation_->scene().vehicle, state);
     outcome.deflection = deflections.now;

@@ -11,6 +11,7 @@
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/sim/bodies.hpp"
 #include "birm3d/sim/barrier_overlap.hpp"
+#include "birm3d/sim/ledger_check.hpp"
 #include "birm3d/sim/obstacles.hpp"
 #include "birm3d/sim/outcome.hpp"
 #include "birm3d/sim/step_control.hpp"
@@ -114,6 +115,7 @@ void Simulation::take(Trial& trial) {
         throw std::runtime_error("the state is no longer finite at t = " + to_text(trial.state.time) +
                                  " s, step " + to_text(trial.dt) + " s");
     failed_ = true;  // unless all of what follows is done
+    check_ledger(scene_, state_, trial, state_.ledger);
     accept(scene_, trial, state_);
     note_overlap(scene_, about_, state_);
     recorder_.add(scene_, trial);

@@ -120,8 +120,7 @@ def _judged(case: Case, limits: Limits) -> StabilityRow:
     if faults == ["energy"] and simulation.scene.settings.time_step is not None:
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always")
-            result = simulation.result()
-            warn_if_open(result.scene, result._energy_extremes)
+            warn_if_open(simulation.scene, simulation._core.ledger)
         if told:
             return replace(row, verdict=WARNED, reason=str(told[0].message))
     return replace(row, verdict=FAULT if faults else HELD, reason="; ".join(faults))

@@ -14,6 +14,7 @@ struct Outcome {
     EndReason end_reason = EndReason::running;
     std::uint64_t state_hash = 0;
     StepStatistics statistics;
+    Ledger ledger;
     double run_time = 0.0;               // wall time of the stepping (s)
     Vec3 final_velocity = Vec3::Zero();  // of unit 0, world (m/s)
     double deflection = 0.0;             // greatest of all trusses of all units, at the end (m)

@@ -9,6 +9,7 @@
 #include "birm3d/model/vehicle.hpp"
 #include "birm3d/state/body_state.hpp"
 #include "birm3d/state/contacts.hpp"
+#include "birm3d/state/ledger.hpp"
 #include "birm3d/state/truss_state.hpp"
 
 namespace birm3d {
@@ -107,11 +108,13 @@ struct State : Progress {
         for (std::size_t u = 0; u < units.size(); ++u)
             units[u].reset(vehicle.units[u]);
         segments.clear();
+        ledger = {};
     }
 
     std::vector<UnitState> units;
     std::vector<BodyState> segments;  // of the barrier, where they are free-standing; else none
     std::vector<char> was_near;       // (elements of the barrier) in any step? Statistics only
+    Ledger ledger;                    // the same
 
     std::uint64_t hash() const {
         Hash hash;

@@ -1,0 +1,276 @@
+"""Random scenes in any pose: what one is drawn from, how it is judged, and the table of many.
+
+Presets, some of them laden, at 0.01 to 120 m/s, in any direction, on their wheels, side or roof, on the
+ground, with tolerances of 1 to 1e-7, against low, thin and endless walls, Jersey barriers, bollards, thin
+posts, poles and meshes. Called by bench_random_impacts.py; the scene of a seed is the same on every machine.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import time
+import warnings
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import asdict, dataclass, fields
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from birm3d import Barrier, LedgerWarning, Settings, Simulation, Vehicle
+from birm3d.ledger import ENERGY_LIMIT, FALL_LIMIT, warn_if_open
+from birm3d.metrics import relative_to_start
+from birm3d.progress import progress_bar
+
+KINDS = ("low wall", "thin wall", "jersey", "bollards", "thin posts", "pole", "mesh", "wall")
+PRESETS = ("passenger_car", "minivan", "pickup", "cargo_truck", "semi_truck", "paper_pickup")
+OFTEN = (0.25, 0.15, 0.25, 0.15, 0.05, 0.15)
+DEEP = 0.05  # m, of the rigid body inside a barrier
+CHUNK = 20
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What a seed stands for; SI, degrees."""
+
+    seed: int
+    kind: str
+    vehicle: str
+    density: float
+    load: float  # share of the gross mass that is added
+    speed: float
+    angle: float
+    offset: float
+    yaw: float
+    roll: float
+    friction: float
+    tolerance: float
+    restitution: float
+    braking: float
+
+
+@dataclass(frozen=True)
+class Row(Drawn):
+    """How its run went; energies relative, see birm3d.ledger."""
+
+    steps: int = 0
+    seconds: float = 0.0
+    energy: float = math.nan
+    fall: float = math.nan
+    falls: str = ""
+    depth: float = math.nan
+    warned: bool = False
+    finished: bool = False
+    fault: str = ""
+
+
+@cache
+def vehicle(name: str, density: float) -> Vehicle:
+    return Vehicle.preset(name, mesh_density=density)
+
+
+def _box(random: np.random.Generator, friction: float) -> Barrier:
+    x, y, z = random.uniform(0.1, 0.6), random.uniform(0.3, 4.0), random.uniform(0.2, 1.5)
+    slope = random.uniform(0.0, 0.3) * x
+    vertices = [
+        [(0.0 if i == 0 else x) + (0.0 if up == 0 else slope if i == 0 else -slope), side, (-1.0, z)[up]]
+        for up in (0, 1)
+        for side in (-y, y)
+        for i in (0, 1)
+    ]
+    faces = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 4, 2), (2, 4, 6)]
+    faces += [(1, 3, 5), (3, 7, 5), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7)]
+    return Barrier.from_mesh(vertices, faces, friction=friction)
+
+
+def _barrier(kind: str, random: np.random.Generator, friction: float) -> Barrier:
+    def uniform(low: float, high: float) -> float:
+        return float(random.uniform(low, high))
+
+    if kind == "low wall":
+        return Barrier.rigid_wall(
+            width=uniform(0.5, 8.0),
+            height=uniform(0.1, 0.6),
+            thickness=uniform(0.05, 1.0),
+            segments=int(random.integers(1, 4)),
+            friction=friction,
+        )
+    if kind == "thin wall":
+        thickness = 10.0 ** uniform(-2.5, -1.0)
+        return Barrier.rigid_wall(
+            width=uniform(0.5, 8.0), height=uniform(0.2, 2.0), thickness=thickness, friction=friction
+        )
+    if kind == "jersey":
+        return Barrier.jersey(
+            length=uniform(4.0, 30.0), segments=int(random.integers(1, 5)), friction=friction
+        )
+    if kind in ("bollards", "thin posts"):
+        thin = kind == "thin posts"
+        diameter = uniform(0.02, 0.1) if thin else uniform(0.1, 0.5)
+        clear = uniform(0.1, 0.6) if thin else uniform(0.2, 1.5)
+        return Barrier.bollards(
+            count=int(random.integers(2, 15 if thin else 7)),
+            diameter=diameter,
+            height=uniform(0.2, 1.2),
+            spacing=diameter + clear,
+            friction=friction,
+        )
+    if kind == "pole":
+        return Barrier.pole(diameter=uniform(0.1, 0.6), friction=friction)
+    if kind == "mesh":
+        return _box(random, friction)
+    return Barrier.rigid_wall(friction=friction)
+
+
+def draw(seed: int) -> tuple[Drawn, Simulation]:
+    """Return the scene of a seed, and what runs it."""
+    random = np.random.default_rng([seed, 18])
+    kind = KINDS[seed % len(KINDS)]
+    name = str(random.choice(PRESETS, p=OFTEN))
+    density = float(random.choice([0.1, 0.2, 0.3]))
+    load = float(random.choice([0.0, random.uniform(0.0, 0.4)]))
+    friction = float(random.choice([0.0, random.uniform(0.0, 0.6)]))
+    barrier = _barrier(kind, random, friction)
+    wide = random.random() < 0.3
+    speed = math.exp(random.uniform(math.log(0.01), math.log(120.0))) if wide else random.uniform(3.0, 40.0)
+    drawn = Drawn(
+        seed,
+        kind,
+        name,
+        density,
+        load,
+        float(speed),
+        angle=float(random.choice([90.0, random.uniform(5.0, 90.0)])),
+        offset=float(random.uniform(-1.5, 1.5)),
+        yaw=float(random.choice([0.0, 90.0, random.uniform(-180.0, 180.0)], p=[0.5, 0.1, 0.4])),
+        roll=float(
+            random.choice([0.0, 90.0, -90.0, 180.0, random.uniform(-180, 180)], p=[0.3, 0.2, 0.1, 0.15, 0.25])
+        ),
+        friction=friction,
+        tolerance=1e-3 if random.random() < 0.4 else float(10.0 ** random.uniform(-7.0, 0.0)),
+        restitution=float(random.choice([0.1, random.uniform(0.0, 1.0)])),
+        braking=float(random.choice([0.0, 1.0])),
+    )
+    car = vehicle(name, density)
+    settings = Settings(tolerance=drawn.tolerance, restitution=drawn.restitution, braking=drawn.braking)
+    simulation = Simulation(
+        car.with_gvw((1.0 + load) * car.mass) if load > 0.0 else car,
+        barrier,
+        drawn.speed,
+        drawn.angle,
+        drawn.offset,
+        impact_yaw=drawn.yaw,
+        impact_roll=drawn.roll,
+        duration=min(max(6.0 / drawn.speed, 0.2), 1.0),
+        settings=settings,
+    )
+    return drawn, simulation
+
+
+def examine(seed: int, limit: float = 60.0) -> Row:
+    """Run the scene of a seed for `limit` seconds at the most, and judge it."""
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        drawn, simulation = draw(seed)
+        start = time.perf_counter()
+        fault, finished = "", False
+        try:
+            while time.perf_counter() - start < limit:
+                if not simulation.step():
+                    finished = True
+                    break
+        except Exception as error:
+            fault = f"{type(error).__name__}: {error}"
+        ledger, scene = simulation._core.ledger, simulation.scene
+        warn_if_open(scene, ledger)
+    energy = relative_to_start(scene, ledger.energy.size, ledger.kinetic)
+    term, fall = max(
+        ((name, relative_to_start(scene, f.size, ledger.at_disposal)) for name, f in ledger.falls.items()),
+        key=lambda pair: pair[1],
+    )
+    warned = any(issubclass(one.category, LedgerWarning) for one in told)
+    depth = simulation._core.statistics.deepest_point
+    place, _ = simulation._core.pose(0)
+    faults = [fault] if fault else []
+    if energy > ENERGY_LIMIT and not warned:
+        faults.append("energy in silence")
+    if fall > FALL_LIMIT:
+        faults.append(f"{term} falls")
+    if depth > DEEP or (drawn.kind == "wall" and place[0] > 0.0):
+        faults.append("through")
+    return Row(
+        **asdict(drawn),
+        steps=simulation._core.statistics.steps,
+        seconds=round(time.perf_counter() - start, 3),
+        energy=energy,
+        fall=fall,
+        falls=term,
+        depth=depth,
+        warned=warned,
+        finished=finished,
+        fault="; ".join(faults),
+    )
+
+
+def _examine_all(seeds: Sequence[int], limit: float) -> list[Row]:
+    return [examine(seed, limit) for seed in seeds]
+
+
+def _read(path: Path) -> list[dict[str, str]]:
+    if not path.exists():
+        return []
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def _chunks(seeds: Sequence[int]) -> Iterator[Sequence[int]]:
+    for first in range(0, len(seeds), CHUNK):
+        yield seeds[first : first + CHUNK]
+
+
+def run_many(path: Path, count: int, first: int, processes: int, limit: float) -> int:
+    """Append the scenes that `path` lacks, and print what was found. Return 1 if there was any fault."""
+    known = {int(row["seed"]) for row in _read(path)}
+    seeds = [seed for seed in range(first, first + count) if seed not in known]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    names = [field.name for field in fields(Row)]
+    with (
+        path.open("a", encoding="utf-8", newline="") as file,
+        progress_bar(None, "scenes", len(seeds)) as advance,
+        ProcessPoolExecutor(processes) as pool,
+    ):
+        writer = csv.DictWriter(file, names, lineterminator="\n")
+        if not known:
+            writer.writeheader()
+        jobs = [pool.submit(_examine_all, chunk, limit) for chunk in _chunks(seeds)]
+        try:
+            for job in as_completed(jobs):
+                rows = job.result()
+                writer.writerows(asdict(row) for row in rows)
+                file.flush()
+                advance(len(rows))
+        except KeyboardInterrupt:
+            pool.shutdown(cancel_futures=True)
+            print(f"stopped; the same command goes on from {path}")
+            return 130
+    return print_faults(_read(path))
+
+
+def print_faults(rows: Sequence[dict[str, str]]) -> int:
+    print(f"{'kind':12s}{'scenes':>8s}{'warned':>8s}{'unfinished':>12s}{'faults':>8s}{'worst silent':>14s}")
+    for kind in KINDS:
+        of = [row for row in rows if row["kind"] == kind]
+        silent = [float(row["energy"]) for row in of if row["warned"] == "False"]
+        print(
+            f"{kind:12s}{len(of):8d}{sum(r['warned'] == 'True' for r in of):8d}"
+            f"{sum(r['finished'] == 'False' for r in of):12d}{sum(bool(r['fault']) for r in of):8d}"
+            f"{max(silent, default=0.0):14.2g}"
+        )
+    bad = [row for row in rows if row["fault"]]
+    for fault, number in Counter(row["fault"] for row in bad).most_common():
+        seeds = [row["seed"] for row in bad if row["fault"] == fault][:8]
+        print(f"FAULT {fault}: {number}, seeds {', '.join(seeds)}")
+    print(f"{len(rows)} scenes, {len(bad)} with a fault; --any-pose --count 1 --first SEED replays one")
+    return 1 if bad else 0

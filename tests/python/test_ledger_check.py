@@ -1,0 +1,117 @@
+"""Every run checks its own accounts, and says what does not close, how much, when and where."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from birm3d import Barrier, LedgerWarning, Settings, Simulation, Vehicle, ensemble, scenes
+from birm3d.ledger import warn_if_open
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoarseSkinWarning")
+
+PLACE = r" at t = [0-9.e+-]+ s, mass centre at \(.+, .+, .+\) m: "
+
+
+def along_truss() -> Simulation:
+    return scenes.oblique(45.0, settings=Settings(contact_model="along_truss"))
+
+
+def test_an_adaptive_run_that_makes_energy_says_so() -> None:
+    with pytest.warns(LedgerWarning, match=r"^energy_residual must be at most 0\.005, got .*" + PLACE):
+        run = along_truss().run()
+    assert run.metrics["energy_residual"] > 5e-3
+
+
+def test_so_does_a_study() -> None:
+    with pytest.warns(LedgerWarning, match=r"^energy_residual must be .*" + PLACE):
+        ensemble([along_truss()], metrics=["exit_speed"])
+
+
+def test_the_check_of_the_steps_is_that_of_the_history() -> None:
+    simulation = scenes.oblique_car(mesh_density=0.3)
+    run = simulation.run()
+    ledger = simulation._core.ledger
+    residual = np.abs(run.energy["residual"]).max()
+    assert residual <= ledger.energy.size <= 2.0 * residual
+    assert ledger.kinetic == pytest.approx(run.energy["kinetic"][0], rel=1e-12)
+    assert 0.0 < ledger.energy.time <= run.time[-1] + run.scene.settings.output_interval
+    assert ledger.momentum.size < 1e-9 * ledger.largest_momentum
+    assert set(ledger.falls) <= set(run.energy) | {"barrier_ground_friction"}
+
+
+def test_a_fall_is_told_by_its_name() -> None:
+    worst = SimpleNamespace(size=3e5, time=0.125, place=(1.0, 2.0, 0.5))
+    nothing = SimpleNamespace(size=0.0, time=0.0, place=(0.0, 0.0, 0.0))
+    ledger = SimpleNamespace(
+        kinetic=1e7,
+        at_disposal=1e7,
+        largest_momentum=1.0,
+        energy=nothing,
+        momentum=nothing,
+        falls={"crushed": nothing, "tire_friction": worst},
+    )
+    told = (
+        "the fall of tire_friction must be at most 0.005, got 0.03 at t = 0.125 s, mass centre at (1, 2, 0.5)"
+    )
+    with pytest.warns(LedgerWarning, match=re.escape(told)):
+        warn_if_open(scenes.w2(4).scene, ledger)  # type: ignore[arg-type]
+
+
+CARS = [Vehicle.preset(name, mesh_density=0.1) for name in ("passenger_car", "pickup", "paper_pickup")]
+BARRIERS = [
+    Barrier.rigid_wall(width=2.0, height=0.27),
+    Barrier.rigid_wall(width=3.0, height=0.6, thickness=0.01),
+    Barrier.rigid_wall(),
+    Barrier.jersey(length=10.0),
+    Barrier.bollards(count=5, diameter=0.3, height=0.6, spacing=0.9),
+    Barrier.bollards(count=9, diameter=0.05, height=0.4, spacing=0.3),
+    Barrier.pole(),
+]
+
+
+@settings(
+    max_examples=30, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck), database=None
+)
+@given(
+    car=st.sampled_from(CARS),
+    barrier=st.sampled_from(BARRIERS),
+    speed=st.floats(3.0, 60.0),
+    angle=st.floats(5.0, 90.0),
+    yaw=st.sampled_from([0.0, 90.0, 180.0]) | st.floats(-180.0, 180.0),
+    roll=st.sampled_from([0.0, 90.0, -90.0, 180.0]) | st.floats(-180.0, 180.0),
+    power=st.floats(-5.0, -2.0),
+    restitution=st.floats(0.0, 1.0),
+)
+def test_accounts_close_in_any_pose_at_any_barrier(
+    car: Vehicle,
+    barrier: Barrier,
+    speed: float,
+    angle: float,
+    yaw: float,
+    roll: float,
+    power: float,
+    restitution: float,
+) -> None:
+    simulation = Simulation(
+        car,
+        barrier,
+        speed,
+        angle,
+        impact_yaw=yaw,
+        impact_roll=roll,
+        duration=0.2,
+        settings=Settings(tolerance=10.0**power, restitution=restitution),
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LedgerWarning)
+        run = simulation.run()
+    ledger = simulation._core.ledger
+    assert ledger.energy.size < 1e-2 * ledger.at_disposal
+    assert max(fall.size for fall in ledger.falls.values()) < 2e-3 * ledger.at_disposal
+    assert run.metrics["momentum_residual"] < 1e-6
