@@ -1,6 +1,6 @@
 #include <pybind11/stl.h>
 
-#include <tuple>
+#include <memory>
 
 #include "arrays.hpp"
 #include "birm3d/base/rotation.hpp"
@@ -118,52 +118,15 @@ void register_history(py::module_& m) {
         },
         "(n, 3) rad, of the trailing unit from the leading one");
 
-    py::class_<ExtremeGroups>(m, "ExtremeGroups", "Which groups of extremes are wanted.")
-        .def(py::init([](bool normal_force, bool motion, bool attitude, bool energy) {
-                 return ExtremeGroups{normal_force, motion, attitude, energy};
-             }),
-             py::kw_only(), py::arg("normal_force") = false, py::arg("motion") = false,
-             py::arg("attitude") = false, py::arg("energy") = false);
-    py::class_<Extremes::NormalForce>(m, "ExtremeNormalForce")
-        .def_readonly("peak", &Extremes::NormalForce::peak,
-                      "N, component of the force on all units along the normal")
-        .def_readonly("last", &Extremes::NormalForce::last, "N, in the last interval");
-    py::class_<Extremes::Motion>(m, "ExtremeMotion", "Of unit 0.")
-        .def_property_readonly(
-            "towards",
-            [](const Extremes::Motion& self) {
-                return std::tuple(self.towards.x(), self.towards.y(), self.towards.z());
-            },
-            "unit vector towards the barrier, world; of a path along its line that of the path")
-        .def_readonly("approach_speed", &Extremes::Motion::approach_speed,
-                      "m/s, towards the barrier, at the start")
-        .def_readonly("turn_time", &Extremes::Motion::turn_time,
-                      "s, when that speed has come down to zero; None where it never has")
-        .def_readonly("way", &Extremes::Motion::way, "m, greatest towards the barrier")
-        .def_readonly("velocity_change", &Extremes::Motion::velocity_change, "m/s, greatest from the start")
-        .def_readonly("deceleration", &Extremes::Motion::deceleration,
-                      "m/s^2, greatest along r, interval means");
-    py::class_<Extremes::Attitude>(m, "ExtremeAttitude", "Greatest magnitudes, rad; yaw from the start.")
-        .def_readonly("roll", &Extremes::Attitude::roll)
-        .def_readonly("pitch", &Extremes::Attitude::pitch)
-        .def_readonly("yaw", &Extremes::Attitude::yaw);
-    py::class_<Extremes::Energy>(m, "ExtremeEnergy")
-        .def_readonly("start", &Extremes::Energy::start, "J, kinetic")
-        .def_readonly("residual", &Extremes::Energy::residual,
-                      "J, greatest departure of the sum of all terms");
-    py::class_<Extremes> extremes(
-        m, "Extremes", "Of a history, over its output instants; a group that was not wanted raises.");
-    extremes.def_readonly("rows", &Extremes::rows, "output instants")
-        .def_readonly("end_time", &Extremes::end_time, "s, the last of them")
-        .def_property_readonly("normal_force",
-                               [](const Extremes& found) { return found.normal_force.value(); })
-        .def_property_readonly("motion", [](const Extremes& found) { return found.motion.value(); })
-        .def_property_readonly("attitude", [](const Extremes& found) { return found.attitude.value(); })
-        .def_property_readonly("energy", [](const Extremes& found) { return found.energy.value(); });
-
     py::class_<History> history(m, "History", "Evenly spaced output of a run; read-only views.");
-    history.def("extremes", &extremes_of, py::arg("wanted"), py::arg("event"),
-                py::call_guard<py::gil_scoped_release>());
+    history.def(
+        "extremes",
+        [](const History& self, const ExtremeGroups& wanted, const Event& event, const Vehicle& vehicle,
+           const std::vector<std::shared_ptr<Barrier>>& barriers) {
+            return extremes_of(self, vehicle, barriers.empty() ? nullptr : barriers.front().get(), wanted, event);
+        },
+        py::arg("wanted"), py::arg("event"), py::arg("vehicle"), py::arg("barriers"),
+        py::call_guard<py::gil_scoped_release>(), "Of a run of this vehicle into this barrier, or into none.");
     add_view(history, "time", &History::time, "(n,) s");
     add_view(history, "kinetic", &History::kinetic, "(n,) J");
     add_view(history, "potential", &History::potential, "(n,) J");

@@ -10,6 +10,7 @@ PYBIND11_MODULE(_core, m) {
     register_barrier(m);
     register_settings(m);
     register_event(m);
+    register_extremes(m);
     register_history(m);
     register_simulation(m);
     register_runner(m);

@@ -12,6 +12,7 @@ void register_vehicle(pybind11::module_& m);
 void register_barrier(pybind11::module_& m);
 void register_settings(pybind11::module_& m);
 void register_event(pybind11::module_& m);
+void register_extremes(pybind11::module_& m);
 void register_history(pybind11::module_& m);
 void register_simulation(pybind11::module_& m);
 void register_runner(pybind11::module_& m);

@@ -219,6 +219,30 @@ class ExtremeAttitude:
     @property
     def yaw(self) -> float:
         ...
+class ExtremeElementLoads:
+    """
+    Greatest of all elements of the barrier; moments about their feet, of walls about their lines.
+    """
+    @property
+    def force(self) -> float:
+        """
+        N
+        """
+    @property
+    def force_50ms(self) -> float:
+        """
+        N, of means over 50 ms
+        """
+    @property
+    def moment(self) -> float:
+        """
+        N m
+        """
+    @property
+    def moment_50ms(self) -> float:
+        """
+        N m, of means over 50 ms
+        """
 class ExtremeEnergy:
     @property
     def residual(self) -> float:
@@ -230,12 +254,40 @@ class ExtremeEnergy:
         """
         J, kinetic
         """
+class ExtremeFilteredForce:
+    """
+    Of the same component.
+    """
+    @property
+    def cfc60(self) -> float | None:
+        """
+        N; None where the rows are too far apart for the filter
+        """
+    @property
+    def mean_50ms(self) -> float:
+        """
+        N, greatest mean over 50 ms
+        """
 class ExtremeGroups:
     """
     Which groups of extremes are wanted.
     """
-    def __init__(self, *, normal_force: bool = False, motion: bool = False, attitude: bool = False, energy: bool = False) -> None:
+    def __init__(self, *, normal_force: bool = False, motion: bool = False, attitude: bool = False, energy: bool = False, filtered_force: bool = False, filtered_deceleration: bool = False, penetration: bool = False, wheel_climb: bool = False, element_loads: bool = False, momentum: bool = False, joint: bool = False, segments: bool = False) -> None:
         ...
+class ExtremeJointLoads:
+    """
+    Of the first joint.
+    """
+    @property
+    def angle(self) -> float:
+        """
+        rad, greatest magnitude of the articulation
+        """
+    @property
+    def force(self) -> float:
+        """
+        N
+        """
 class ExtremeMotion:
     """
     Of unit 0.
@@ -281,12 +333,34 @@ class ExtremeNormalForce:
         """
         N, component of the force on all units along the normal
         """
+class ExtremeSegments:
+    """
+    Of a free-standing barrier.
+    """
+    @property
+    def deflection(self) -> float:
+        """
+        m, of the furthest corner of any base, square to the line, away from the traffic
+        """
+    @property
+    def overturning(self) -> float:
+        """
+        m/s^2, overturning moment over mass and half the base, 50-ms means
+        """
+    @property
+    def residual_deflection(self) -> float:
+        """
+        m, the same at the end
+        """
 class Extremes:
     """
     Of a history, over its output instants; a group that was not wanted raises.
     """
     @property
     def attitude(self) -> ExtremeAttitude:
+        ...
+    @property
+    def element_loads(self) -> ExtremeElementLoads:
         ...
     @property
     def end_time(self) -> float:
@@ -297,15 +371,44 @@ class Extremes:
     def energy(self) -> ExtremeEnergy:
         ...
     @property
+    def filtered_deceleration(self) -> float | None:
+        """
+        m/s^2, along r, CFC 60; None where the rows are too far apart for the filter
+        """
+    @property
+    def filtered_force(self) -> ExtremeFilteredForce:
+        ...
+    @property
+    def joint(self) -> ExtremeJointLoads:
+        ...
+    @property
+    def momentum_residual(self) -> float:
+        """
+        max |m a - sum of forces| / max |force|
+        """
+    @property
     def motion(self) -> ExtremeMotion:
         ...
     @property
     def normal_force(self) -> ExtremeNormalForce:
         ...
     @property
+    def penetration(self) -> float:
+        """
+        m, greatest distance of an anchor past the barrier's line, at least 0
+        """
+    @property
     def rows(self) -> int:
         """
         output instants
+        """
+    @property
+    def segments(self) -> ExtremeSegments:
+        ...
+    @property
+    def wheel_climb(self) -> float:
+        """
+        m, greatest height of any wheel's lowest point, at least 0
         """
 class FreeStanding:
     """

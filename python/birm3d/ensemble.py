@@ -31,9 +31,9 @@ def ensemble(
     Memory does not grow with the number of runs, but for a row of numbers each, if the scenes are made one by
     one, as a generator makes them.
 
-    Where no metric needs histories (see :func:`birm3d.metrics.extremes_for`), none are made, and a chunk of
-    runs is one call of the core; the numbers are the same bits. Scenes that differ in how the vehicle comes
-    only are faster as a :func:`birm3d.sweep` with ``mode="list"``, which makes nothing anew but the numbers.
+    No histories are made: a chunk of runs is one call of the core, which finds what the metrics are made of;
+    the numbers are the same bits. Scenes that differ in how the vehicle comes only are faster as a
+    :func:`birm3d.sweep` with ``mode="list"``, which makes nothing anew but the numbers.
 
     Parameters
     ----------
@@ -41,8 +41,7 @@ def ensemble(
         The scenes; each is run from its start and not changed. A scene can also be a function without
         arguments that makes it: what it raises is the error of that run.
     metrics
-        Names of the metrics wanted; ``None``: all but ``run_time``, which is not the same twice. Those that
-        need no histories are many times faster for small scenes.
+        Names of the metrics wanted; ``None``: all but ``run_time``, which is not the same twice.
     executor
         Any :class:`concurrent.futures.Executor`, or a ``dask.distributed.Client``; ``None``: a thread for
         each core of the machine.

@@ -3,8 +3,8 @@
 A run depends on its scene alone, so results are the same bits for every executor, number of threads, chunk
 and order. Other processes get the base scene once a chunk of runs, as bytes that they unpack once.
 
-Where no metric needs histories, a chunk is one call of the core, which runs scene after scene in the same
-memory without the interpreter's lock.
+A chunk is one call of the core, which runs scene after scene in the same memory without the interpreter's
+lock. No histories are kept: metrics are made of the extremes that the core finds.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ from typing import Any
 
 from . import _core
 from .ledger import warn_if_open
-from .metrics import compute_metrics, extremes_for, metrics_of_outcome
+from .metrics import extremes_for, metrics_of_outcome
+from .overlap import warn_if_overlapping
 from .run_store import Outcome
 from .scene_parameters import varied
 from .simulation import APPROACH, Scene, Simulation
@@ -206,42 +207,6 @@ def _run_chunk(
 ) -> Timed:
     start = time.perf_counter()
     stop = stop or _core.Stop()
-    run_them = _with_histories if extremes_for(metrics) is None else _without_histories
-    finished = run_them(simulation, names, metrics, chunk, stop)
-    return finished, time.perf_counter() - start
-
-
-def _with_histories(
-    simulation: Simulation | None,
-    names: tuple[str, ...],
-    metrics: tuple[str, ...],
-    chunk: Chunk,
-    stop: _core.Stop,
-) -> Finished:
-    finished: Finished = []
-    for run, row in chunk:
-        if stop.is_set():
-            break
-        try:
-            made = _scene(simulation, names, row)
-            if simulation is None:  # what is given is not changed
-                made = Simulation.from_scene(made.scene)
-            result = made.run()
-            values = _values(compute_metrics(result, metrics), metrics)
-            outcome = Outcome(values, result.end_reason, result.outcome, f"{result.state_hash:016x}")
-        except Exception as error:
-            outcome = _failed(error, metrics)
-        finished.append((run, outcome))
-    return finished
-
-
-def _without_histories(
-    simulation: Simulation | None,
-    names: tuple[str, ...],
-    metrics: tuple[str, ...],
-    chunk: Chunk,
-    stop: _core.Stop,
-) -> Finished:
     finished: Finished = []
     jobs: list[tuple[_core.Simulation, _core.Approach]] = []
     numbers: list[tuple[int, Scene]] = []
@@ -253,19 +218,19 @@ def _without_histories(
         except Exception as error:
             finished.append((run, _failed(error, metrics)))
     extremes = extremes_for(metrics)
-    assert extremes is not None
     # Those that were stopped are missing at the end.
     for (run, scene), done in zip(numbers, _core.Runner().run(jobs, extremes, stop), strict=False):
         try:
             end = done.outcome()
             warn_if_open(scene, end.ledger)
+            warn_if_overlapping(scene, end.statistics)
             values = _values(metrics_of_outcome(scene, end, metrics), metrics)
             reason = _END_REASONS[int(end.end_reason)]
             outcome = Outcome(values, reason, end.event.outcome, f"{end.state_hash:016x}")
         except Exception as error:
             outcome = _failed(error, metrics)
         finished.append((run, outcome))
-    return finished
+    return finished, time.perf_counter() - start
 
 
 def _start(

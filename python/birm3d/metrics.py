@@ -1,7 +1,7 @@
 """Scalars of a run.
 
-Each is made in one place, of what is at hand: the end of the run, the extremes that the core finds, and where
-it needs them the histories. So a run of which no histories are kept has the same scalars, bit for bit.
+Each is made in one place, of the end of the run and of the extremes that the core finds in its histories.
+So a run of which no histories are kept has the same scalars, bit for bit.
 
 Forces and accelerations are taken from the interval means of the result. Filtered values use the channel
 frequency class in their name (SAE J211-1). A scalar that a scene does not have (a crush without a barrier, an
@@ -14,15 +14,12 @@ import math
 from collections.abc import Callable, Collection, Mapping
 from functools import cached_property, partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from .element_loads import ElementLoad, touched_elements
-from .filters import cfc, moving_average
-from .free_standing import lateral_movement
 
 if TYPE_CHECKING:
     from .barrier import Barrier
@@ -158,15 +155,12 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     ValueError
         If the run is shorter than the output interval.
     """
-    history = result._history
     _require_rows(result.scene, len(result.time))
-    if not isinstance(history, _core.History):
+    if not isinstance(result._history, _core.History):
         saved = result.metrics
         return {name: saved[name] for name in saved if names is None or name in names}
-    groups = {_METRICS[name].needs for name in (_METRICS if names is None else names)}
-    assert isinstance(result._event, _core.Event)
-    extremes = history.extremes(_groups(groups), result._event)
-    return _found(_Run(result.scene, _ResultOutcome(result, extremes), result), names)
+    wanted = tuple(_METRICS) if names is None else names
+    return _found(_Run(result.scene, _ResultOutcome(result, result._extremes(extremes_for(wanted)))), wanted)
 
 
 def metrics_of_outcome(scene: Scene, outcome: _core.Outcome, names: Collection[str]) -> dict[str, float]:
@@ -175,19 +169,10 @@ def metrics_of_outcome(scene: Scene, outcome: _core.Outcome, names: Collection[s
     return _found(_Run(scene, outcome), names)
 
 
-def extremes_for(names: Collection[str], *, energy: bool = False) -> _core.ExtremeGroups | None:
-    """Return the extremes that metrics are made of; ``None`` if there is one that needs histories."""
-    needs = {_METRICS[name].needs for name in names}
-    return None if "histories" in needs else _groups(needs | {"energy"} if energy else needs)
-
-
-def _groups(needs: Collection[str]) -> _core.ExtremeGroups:
-    return _core.ExtremeGroups(
-        normal_force="normal_force" in needs,
-        motion="motion" in needs,
-        attitude="attitude" in needs,
-        energy="energy" in needs,
-    )
+def extremes_for(names: Collection[str]) -> _core.ExtremeGroups:
+    """Return the extremes that metrics are made of, with those of the energy if so asked."""
+    needs = {_METRICS[name].needs for name in names} - {"end"}
+    return _core.ExtremeGroups(**dict.fromkeys(needs, True))
 
 
 def _require_rows(scene: Scene, rows: int) -> None:
@@ -196,8 +181,8 @@ def _require_rows(scene: Scene, rows: int) -> None:
         raise ValueError(f"output_interval must be shorter than the run for metrics, got {interval} s")
 
 
-def _found(run: _Run, names: Collection[str] | None) -> dict[str, float]:
-    found = {name: _METRICS[name].of(run) for name in (_METRICS if names is None else names)}
+def _found(run: _Run, names: Collection[str]) -> dict[str, float]:
+    found = {name: _METRICS[name].of(run) for name in names}
     return {name: value for name, value in found.items() if value is not None}
 
 
@@ -226,18 +211,10 @@ class _ResultOutcome:
 class _Run:
     """What several metrics of a run share, each computed when it is first asked for."""
 
-    def __init__(
-        self, scene: Scene, outcome: _core.Outcome | _ResultOutcome, result: Result | None = None
-    ) -> None:
+    def __init__(self, scene: Scene, outcome: _core.Outcome | _ResultOutcome) -> None:
         self.scene = scene
         self.outcome = outcome
         self.extremes = outcome.extremes
-        self._result = result
-
-    @property
-    def result(self) -> Result:
-        assert self._result is not None  # else a metric does not say what it needs
-        return self._result
 
     @cached_property
     def normal_force(self) -> _core.ExtremeNormalForce:
@@ -255,9 +232,9 @@ class _Run:
     def energy(self) -> _core.ExtremeEnergy:
         return self.extremes.energy
 
-    @property
-    def interval(self) -> float:
-        return self.scene.settings.output_interval
+    @cached_property
+    def loads(self) -> _core.ExtremeElementLoads:
+        return self.extremes.element_loads
 
     @property
     def barrier(self) -> Barrier | None:
@@ -276,19 +253,10 @@ class _Run:
         return abs(math.sin(math.radians(self.scene.impact_angle))) < ALONG_LINE
 
     @property
-    def deceleration(self) -> Floats:
-        """Along r [m/s^2]."""
-        return -self.result.acceleration[:, 0]
-
-    @property
     def past(self) -> Floats:
         """Square to the barrier's line, into it."""
         assert self.barrier is not None
         return -np.asarray(self.barrier.core.normal)
-
-    @cached_property
-    def loads(self) -> list[ElementLoad]:
-        return list(touched_elements(self.result))
 
     @property
     def dynamic_crush(self) -> float:
@@ -310,15 +278,6 @@ class _Run:
         left = self.event.exit_deflection
         return max(0.0, self.outcome.deflection if left is None else left)
 
-    @cached_property
-    def movement(self) -> Floats:
-        return lateral_movement(self.result)
-
-    def greatest_load(self, name: str) -> float | None:
-        if self.barrier is None:
-            return None
-        return max((getattr(load, name) for load in self.loads), default=0.0)
-
 
 def energy_residual(scene: Scene, energy: _core.ExtremeEnergy) -> float:
     """Greatest residual of the energy ledger, relative to the initial kinetic energy."""
@@ -328,15 +287,6 @@ def energy_residual(scene: Scene, energy: _core.ExtremeEnergy) -> float:
 def relative_to_start(scene: Scene, energy: float, start: float) -> float:
     """Return an energy relative to that at the start, which counts as no less than that of a standstill."""
     return energy / max(start, 0.5 * scene.vehicle.mass * _STANDSTILL**2)
-
-
-def _cfc60(run: _Run, values: Floats) -> float | None:
-    return float(cfc(values, 60, run.interval).max()) if run.interval * 60.0 <= 0.1 else None
-
-
-def _of_force(metric: Callable[[_Run, Floats], float | None]) -> _Function:
-    """Of the history of the force along the barrier's normal."""
-    return lambda run: None if run.barrier is None else metric(run, run.result.barrier_normal_force)
 
 
 def _of_barrier(metric: _Function) -> _Function:
@@ -396,53 +346,20 @@ def _contact_overlap(run: _Run) -> float:
 
 
 def _max_overturning_ratio(run: _Run) -> float | None:
-    return float(run.result.overturning_ratio.max()) if run.scene.settings.gravity > 0.0 else None
+    gravity = run.scene.settings.gravity
+    return run.extremes.segments.overturning / gravity if gravity > 0.0 else None
 
 
 def _wheel_climb(run: _Run) -> float | None:
     """Greatest height of any wheel's lowest point above the ground at the output instants [m]."""
     if not run.scene.settings.ground or not len(run.scene.vehicle.wheels):
         return None
-    greatest = 0.0
-    for u, unit in enumerate(run.scene.vehicle.units):
-        rows = run.result._history.unit(u)
-        roll, pitch, _ = rows.roll_pitch_yaw.T
-        # World up in body axes, the last row of R = Rz(yaw) Ry(pitch) Rx(roll).
-        up = np.stack([-np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)])
-        upright = np.sqrt(1.0 - up[1] ** 2)  # of the radius, as the axle turns out of the level
-        for x, y, z, radius in unit.wheels:
-            height = rows.position[:, 2] + np.array([x, y, z]) @ up - radius * upright
-            greatest = max(greatest, float(height.max()))
-    return greatest
+    return run.extremes.wheel_climb
 
 
 def _vehicle_penetration(run: _Run) -> float | None:
     """Greatest distance of an anchor past the barrier's line [m], see compute_metrics()."""
-    if run.barrier is None or run.along:
-        return None
-    result, past, origin = run.result, run.past, np.asarray(run.barrier.origin)
-    greatest = 0.0
-    for u, unit in enumerate(run.scene.vehicle.units):
-        rows = result._history.unit(u)
-        anchors = unit.anchors[unit.wheel_of_node < 0]
-        center = (rows.position - origin) @ past
-        # No anchor is further past the line than this.
-        near = np.flatnonzero(center + np.linalg.norm(anchors, axis=1).max() > greatest)
-        roll, pitch, yaw = rows.roll_pitch_yaw[near].T
-        # The direction in body axes: R^T past, with R = Rz(yaw) Ry(pitch) Rx(roll) and past level.
-        ahead = np.cos(yaw) * past[0] + np.sin(yaw) * past[1]
-        left = np.cos(yaw) * past[1] - np.sin(yaw) * past[0]
-        up = np.sin(pitch) * ahead
-        direction = np.stack(
-            [
-                np.cos(pitch) * ahead,
-                np.cos(roll) * left + np.sin(roll) * up,
-                np.cos(roll) * up - np.sin(roll) * left,
-            ]
-        )
-        reach = center[near] + (anchors @ direction).max(axis=0)
-        greatest = max(greatest, float(reach.max(initial=0.0)))
-    return greatest
+    return None if run.along else run.extremes.penetration
 
 
 def _greatest(result: Result, name: str) -> float:
@@ -452,37 +369,42 @@ def _greatest(result: Result, name: str) -> float:
 
 
 class _Metric(NamedTuple):
-    needs: Literal["end", "normal_force", "motion", "attitude", "energy", "histories"]
+    needs: str  # the group of extremes that it is made of; "end": none
     of: _Function
 
 
 def _all_metrics() -> dict[str, _Metric]:
-    end, normal_force, motion, attitude, energy, histories = (
+    end, normal_force, motion, attitude, energy, filtered_force, filtered_deceleration = (
         partial(_Metric, needs)
-        for needs in ("end", "normal_force", "motion", "attitude", "energy", "histories")
+        for needs in (
+            *("end", "normal_force", "motion", "attitude", "energy"),
+            *("filtered_force", "filtered_deceleration"),
+        )
+    )
+    penetration, wheel_climb, element_loads, momentum, joint, segments = (
+        partial(_Metric, needs)
+        for needs in ("penetration", "wheel_climb", "element_loads", "momentum", "joint", "segments")
     )
     return {
         "peak_deceleration": motion(lambda run: run.motion.deceleration),
-        "peak_deceleration_cfc60": histories(lambda run: _cfc60(run, run.deceleration)),
+        "peak_deceleration_cfc60": filtered_deceleration(lambda run: run.extremes.filtered_deceleration),
         "peak_normal_force": normal_force(_of_barrier(lambda run: run.normal_force.peak)),
-        "peak_normal_force_cfc60": histories(_of_force(_cfc60)),
-        "peak_force_50ms": histories(
-            _of_force(lambda run, force: float(moving_average(force, 0.05, run.interval).max()))
-        ),
-        "peak_element_force": histories(lambda run: run.greatest_load("peak_force")),
-        "peak_element_force_50ms": histories(lambda run: run.greatest_load("peak_force_50ms")),
-        "peak_overturning_moment": histories(lambda run: run.greatest_load("peak_overturning_moment")),
-        "peak_overturning_moment_50ms": histories(
-            lambda run: run.greatest_load("peak_overturning_moment_50ms")
-        ),
+        "peak_normal_force_cfc60": filtered_force(_of_barrier(lambda run: run.extremes.filtered_force.cfc60)),
+        "peak_force_50ms": filtered_force(_of_barrier(lambda run: run.extremes.filtered_force.mean_50ms)),
+        "peak_element_force": element_loads(_of_barrier(lambda run: run.loads.force)),
+        "peak_element_force_50ms": element_loads(_of_barrier(lambda run: run.loads.force_50ms)),
+        "peak_overturning_moment": element_loads(_of_barrier(lambda run: run.loads.moment)),
+        "peak_overturning_moment_50ms": element_loads(_of_barrier(lambda run: run.loads.moment_50ms)),
         "dynamic_crush": end(_of_barrier(lambda run: run.dynamic_crush)),
         "residual_crush": end(_of_barrier(lambda run: run.residual_crush)),
         "max_displacement": motion(_of_barrier(lambda run: run.motion.way - run.scene.standoff)),
-        "vehicle_penetration": histories(_vehicle_penetration),
+        "vehicle_penetration": penetration(_of_barrier(_vehicle_penetration)),
         "contact_overlap": end(_of_barrier(_contact_overlap)),
-        "barrier_deflection": histories(_of_segments(lambda run: float(run.movement.max()))),
-        "residual_barrier_deflection": histories(_of_segments(lambda run: float(run.movement[-1]))),
-        "max_overturning_ratio": histories(_of_segments(_max_overturning_ratio)),
+        "barrier_deflection": segments(_of_segments(lambda run: run.extremes.segments.deflection)),
+        "residual_barrier_deflection": segments(
+            _of_segments(lambda run: run.extremes.segments.residual_deflection)
+        ),
+        "max_overturning_ratio": segments(_of_segments(_max_overturning_ratio)),
         "time_of_zero_velocity": motion(_of_barrier(_time_of_zero_velocity)),
         "time_of_separation": end(_of_barrier(lambda run: run.event.time_of_separation)),
         "restitution": motion(_of_barrier(_restitution)),
@@ -494,15 +416,11 @@ def _all_metrics() -> dict[str, _Metric]:
         "max_pitch": attitude(lambda run: math.degrees(run.attitude.pitch)),
         "max_yaw": attitude(lambda run: math.degrees(run.attitude.yaw)),
         "later_contacts": end(_of_barrier(lambda run: float(run.event.later_contacts))),
-        "wheel_climb": histories(_wheel_climb),
-        "max_articulation_angle": histories(
-            _of_joint(lambda run: float(np.abs(run.result.articulation_angle).max()))
-        ),
-        "peak_joint_force": histories(
-            _of_joint(lambda run: float(np.linalg.norm(run.result.joint_force, axis=1).max()))
-        ),
+        "wheel_climb": wheel_climb(_wheel_climb),
+        "max_articulation_angle": joint(_of_joint(lambda run: math.degrees(run.extremes.joint.angle))),
+        "peak_joint_force": joint(_of_joint(lambda run: run.extremes.joint.force)),
         "energy_residual": energy(lambda run: energy_residual(run.scene, run.energy)),
-        "momentum_residual": histories(lambda run: run.result.momentum_residual),
+        "momentum_residual": momentum(lambda run: run.extremes.momentum_residual),
         "steps": end(lambda run: float(run.outcome.statistics.steps)),
         "run_time": end(lambda run: run.outcome.run_time),
         "end_time": end(lambda run: run.extremes.end_time),

@@ -377,9 +377,16 @@ class Result:
     @property
     def _energy_extremes(self) -> _core.ExtremeEnergy:
         """Extremes of the energy ledger, of a result that was not read from a file [J]."""
+        return self._extremes(_core.ExtremeGroups(energy=True)).energy
+
+    def _extremes(self, groups: _core.ExtremeGroups) -> _core.Extremes:
+        """Extremes of the histories, of a result that was not read from a file."""
         assert isinstance(self._history, _core.History)
         assert isinstance(self._event, _core.Event)
-        return self._history.extremes(_core.ExtremeGroups(energy=True), self._event).energy
+        barrier = self.scene.barrier
+        return self._history.extremes(
+            groups, self._event, self.scene.vehicle.core, [] if barrier is None else [barrier.core]
+        )
 
     def report(self) -> str:
         """Return what was computed, what was left out, and how the ledgers close, as text."""

@@ -30,12 +30,14 @@ Outcome Runner::run(const Approach& approach, const ExtremeGroups& wanted,
     outcome.statistics = state.statistics;
     outcome.ledger = state.ledger;
     outcome.final_velocity = state.units.front().body.velocity;
-    const Deflections deflections = greatest_deflections(*simulation_->scene().vehicle, state);
+    const Scene& scene = simulation_->scene();
+    const Deflections deflections = greatest_deflections(*scene.vehicle, state);
     outcome.deflection = deflections.now;
     outcome.peak_deflection = deflections.peak;
     outcome.event = simulation_->event();
-    simulation_->recorder().resample(simulation_->scene(), wanted.channels(), history_);
-    outcome.extremes = extremes_of(history_, wanted, outcome.event);
+    simulation_->recorder().resample(scene, wanted.channels(), history_);
+    outcome.extremes =
+        extremes_of(history_, *scene.vehicle, scene.barrier.get(), wanted, outcome.event);
     return outcome;
 }
 

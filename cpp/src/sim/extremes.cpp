@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "birm3d/base/channel_filter.hpp"
 #include "birm3d/base/rotation.hpp"
 
 namespace birm3d {
@@ -100,9 +101,49 @@ Extremes::Energy energy(const History& history) {
     return found;
 }
 
+// The first two rows are the interval.
+double interval_of(const History& history) {
+    return history.time.size() > 1 ? history.time[1] - history.time[0] : infinity;
+}
+
+// Scratch columns stay with their thread: a run's metrics take no memory of their own.
+Column& scratch() {
+    thread_local Column values;
+    return values;
+}
+
+Extremes::FilteredForce filtered_force(const History& history) {
+    Column& sum = scratch();
+    sum.assign(history.time.size(), 0.0);
+    for (const UnitHistory& unit : history.units)
+        for (std::size_t k = 0; k < sum.size(); ++k)
+            sum[k] += unit.barrier_normal_force[k];
+    const double interval = interval_of(history);
+    return {peak_of_filtered(sum, cfc60, interval), peak_of_means(sum, window_50ms, interval)};
+}
+
+std::optional<double> filtered_deceleration(const History& history) {
+    Column& deceleration = scratch();
+    deceleration.clear();
+    for (const Vec3& acceleration : history.units.front().acceleration)
+        deceleration.push_back(-acceleration.x());
+    return peak_of_filtered(deceleration, cfc60, interval_of(history));
+}
+
+Extremes::JointLoads joint_loads(const JointHistory& joint) {
+    Turning angle(joint.angles.front().yaw, 0.0);
+    double force = 0.0;
+    for (const JointAngles& angles : joint.angles)
+        angle.add(angles.yaw);
+    for (const Vec3& row : joint.force)
+        force = std::max(force, row.norm());
+    return {angle.greatest(), force};
+}
+
 }  // namespace
 
-Extremes extremes_of(const History& history, const ExtremeGroups& wanted, const Event& event) {
+Extremes extremes_of(const History& history, const Vehicle& vehicle, const Barrier* barrier,
+                     const ExtremeGroups& wanted, const Event& event) {
     Extremes found;
     found.rows = history.time.size();
     found.end_time = history.time.back();
@@ -110,6 +151,15 @@ Extremes extremes_of(const History& history, const ExtremeGroups& wanted, const 
     if (wanted.motion) found.motion = motion(history, event);
     if (wanted.attitude) found.attitude = attitude(history, event);
     if (wanted.energy) found.energy = energy(history);
+    if (wanted.filtered_force) found.filtered_force = filtered_force(history);
+    if (wanted.filtered_deceleration) found.filtered_deceleration = filtered_deceleration(history);
+    if (wanted.wheel_climb) found.wheel_climb = greatest_wheel_climb(history, vehicle);
+    if (wanted.momentum) found.momentum_residual = history.momentum_residual;
+    if (wanted.joint && !history.joints.empty()) found.joint = joint_loads(history.joints.front());
+    if (!barrier) return found;
+    if (wanted.penetration) found.penetration = greatest_penetration(history, vehicle, *barrier);
+    if (wanted.segments && !history.segments.empty()) found.segments = greatest_movement(history, *barrier);
+    if (wanted.element_loads) found.element_loads = greatest_element_loads(history, *barrier);
     return found;
 }
 

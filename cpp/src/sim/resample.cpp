@@ -72,21 +72,19 @@ void Recorder::resample(const Scene& scene, const Channels& wanted, History& his
         if (wanted.normal_force) resample_normal_force(step_of, offset, history.time, history.towards, unit);
         if (wanted.motion)
             resample_motion(step_of, offset, history.time, model, scene.settings.gravity, unit);
-        if (wanted.forces) {
-            resample_contact_forces(step_of, offset, history.time, unit);
+        if (wanted.contact_forces) resample_contact_forces(step_of, offset, history.time, unit);
+        if (wanted.forces)
             largest = std::max(largest, resample_forces(step_of, offset, history.time, model,
                                                         scene.settings.gravity, unit, worst));
-        }
         offset += unit_width(model);
     }
     history.momentum_residual = largest > 0.0 ? worst / largest : 0.0;
-    if (!wanted.forces) return;
     history.obstacles.clear();
     history.joints.clear();
     history.segments.clear();
-    resample_obstacles(step_of, history);
-    resample_joints(scene, step_of, history);
-    resample_segments(scene, step_of, history);
+    if (wanted.elements) resample_obstacles(step_of, history);
+    if (wanted.joints) resample_joints(scene, step_of, history);
+    if (wanted.segments) resample_segments(scene, step_of, history);
 }
 
 void Recorder::resample_energies(const std::vector<std::size_t>& step_of, History& history) const {

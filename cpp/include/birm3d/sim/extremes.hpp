@@ -13,10 +13,20 @@ namespace birm3d {
 // Which groups of extremes are wanted.
 struct ExtremeGroups {
     bool normal_force = true, motion = true, attitude = true, energy = true;
+    bool filtered_force = true, filtered_deceleration = true;
+    bool penetration = true, wheel_climb = true, element_loads = true, momentum = true, joint = true,
+         segments = true;
 
     Channels channels() const {
-        return {
-            .energies = energy, .normal_force = normal_force, .motion = motion || attitude, .forces = false};
+        return {.energies = energy,
+                .normal_force = normal_force || filtered_force,
+                .motion = motion || attitude || filtered_deceleration || penetration || wheel_climb ||
+                          momentum || joint,
+                .forces = momentum,
+                .contact_forces = false,
+                .elements = element_loads || segments,
+                .joints = joint,
+                .segments = segments};
     }
 };
 
@@ -46,14 +56,52 @@ struct Extremes {
         double start;     // kinetic (J)
         double residual;  // greatest departure of the sum of all terms from that at the start (J)
     };
+    // Of the same component (N).
+    struct FilteredForce {
+        std::optional<double> cfc60;  // absent where the rows are too far apart for the filter
+        double mean_50ms;             // greatest mean over 50 ms
+    };
+    // Greatest of all elements of the barrier; moments about their feet, of walls about their lines.
+    struct ElementLoads {
+        double force = 0.0, force_50ms = 0.0;    // N
+        double moment = 0.0, moment_50ms = 0.0;  // N m
+    };
+    // Of a free-standing barrier.
+    struct Segments {
+        // How far the furthest corner of any base moved square to the line, away from the traffic (m).
+        double deflection = 0.0, residual_deflection = 0.0;
+        // Greatest of (|M| + F_z b) / (m b), b half the base: in means over 50 ms F_z is the vertical force on the
+        // segment and M the moment on it about its long axis, less that of its own inertia (m/s^2).
+        double overturning = 0.0;
+    };
+    struct JointLoads {
+        double angle;  // greatest magnitude of the articulation (rad)
+        double force;  // N
+    };
     std::optional<NormalForce> normal_force;
     std::optional<Motion> motion;
     std::optional<Attitude> attitude;
     std::optional<Energy> energy;
+    std::optional<FilteredForce> filtered_force;
+    std::optional<double> filtered_deceleration;  // along r, CFC 60 (m/s^2); also absent as cfc60 is
+    std::optional<double>
+        penetration;  // greatest distance of an anchor of any unit past the barrier's line (m)
+    std::optional<double> wheel_climb;  // greatest height of any wheel's lowest point (m)
+    std::optional<ElementLoads> element_loads;
+    std::optional<double> momentum_residual;  // History::momentum_residual
+    std::optional<JointLoads> joint;          // of the first joint
+    std::optional<Segments> segments;
 };
 
-// `history` has all its columns, or those of wanted.channels(). The change of velocity and the yaw count until the vehicle
-// separated from the barrier, if it did.
-Extremes extremes_of(const History& history, const ExtremeGroups& wanted, const Event& event);
+// `history` has all its columns, or those of wanted.channels(). Groups of a barrier or of a joint that is not there are
+// absent. The change of velocity and the yaw count until the vehicle separated from the barrier, if it did.
+Extremes extremes_of(const History& history, const Vehicle& vehicle, const Barrier* barrier,
+                     const ExtremeGroups& wanted, const Event& event);
+
+// Parts of the above.
+double greatest_penetration(const History& history, const Vehicle& vehicle, const Barrier& barrier);
+double greatest_wheel_climb(const History& history, const Vehicle& vehicle);
+Extremes::ElementLoads greatest_element_loads(const History& history, const Barrier& barrier);
+Extremes::Segments greatest_movement(const History& history, const Barrier& barrier);
 
 }  // namespace birm3d

@@ -71,7 +71,11 @@ struct Channels {
     bool energies = true;
     bool normal_force = true;
     bool motion = true;
-    bool forces = true;  // all other forces, and what elements, joints and segments do; only with the motion
+    bool forces = true;          // all other forces on the units; only with the motion
+    bool contact_forces = true;  // UnitHistory::sum_of_contact_forces
+    bool elements = true;        // loads on the elements of the barrier
+    bool joints = true;          // only with the motion
+    bool segments = true;
 };
 
 class Recorder {

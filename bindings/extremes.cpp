@@ -1,0 +1,112 @@
+#include "birm3d/sim/extremes.hpp"
+
+#include <pybind11/stl.h>
+
+#include <tuple>
+
+#include "register.hpp"
+
+namespace birm3d::bindings {
+
+namespace py = pybind11;
+
+void register_extremes(py::module_& m) {
+    py::class_<ExtremeGroups>(m, "ExtremeGroups", "Which groups of extremes are wanted.")
+        .def(py::init([](bool normal_force, bool motion, bool attitude, bool energy, bool filtered_force,
+                         bool filtered_deceleration, bool penetration, bool wheel_climb, bool element_loads,
+                         bool momentum, bool joint, bool segments) {
+                 return ExtremeGroups{.normal_force = normal_force,
+                                      .motion = motion,
+                                      .attitude = attitude,
+                                      .energy = energy,
+                                      .filtered_force = filtered_force,
+                                      .filtered_deceleration = filtered_deceleration,
+                                      .penetration = penetration,
+                                      .wheel_climb = wheel_climb,
+                                      .element_loads = element_loads,
+                                      .momentum = momentum,
+                                      .joint = joint,
+                                      .segments = segments};
+             }),
+             py::kw_only(), py::arg("normal_force") = false, py::arg("motion") = false,
+             py::arg("attitude") = false, py::arg("energy") = false, py::arg("filtered_force") = false,
+             py::arg("filtered_deceleration") = false, py::arg("penetration") = false,
+             py::arg("wheel_climb") = false, py::arg("element_loads") = false, py::arg("momentum") = false,
+             py::arg("joint") = false, py::arg("segments") = false);
+    py::class_<Extremes::NormalForce>(m, "ExtremeNormalForce")
+        .def_readonly("peak", &Extremes::NormalForce::peak,
+                      "N, component of the force on all units along the normal")
+        .def_readonly("last", &Extremes::NormalForce::last, "N, in the last interval");
+    py::class_<Extremes::Motion>(m, "ExtremeMotion", "Of unit 0.")
+        .def_property_readonly(
+            "towards",
+            [](const Extremes::Motion& self) {
+                return std::tuple(self.towards.x(), self.towards.y(), self.towards.z());
+            },
+            "unit vector towards the barrier, world; of a path along its line that of the path")
+        .def_readonly("approach_speed", &Extremes::Motion::approach_speed,
+                      "m/s, towards the barrier, at the start")
+        .def_readonly("turn_time", &Extremes::Motion::turn_time,
+                      "s, when that speed has come down to zero; None where it never has")
+        .def_readonly("way", &Extremes::Motion::way, "m, greatest towards the barrier")
+        .def_readonly("velocity_change", &Extremes::Motion::velocity_change, "m/s, greatest from the start")
+        .def_readonly("deceleration", &Extremes::Motion::deceleration,
+                      "m/s^2, greatest along r, interval means");
+    py::class_<Extremes::Attitude>(m, "ExtremeAttitude", "Greatest magnitudes, rad; yaw from the start.")
+        .def_readonly("roll", &Extremes::Attitude::roll)
+        .def_readonly("pitch", &Extremes::Attitude::pitch)
+        .def_readonly("yaw", &Extremes::Attitude::yaw);
+    py::class_<Extremes::Energy>(m, "ExtremeEnergy")
+        .def_readonly("start", &Extremes::Energy::start, "J, kinetic")
+        .def_readonly("residual", &Extremes::Energy::residual,
+                      "J, greatest departure of the sum of all terms");
+    py::class_<Extremes::FilteredForce>(m, "ExtremeFilteredForce", "Of the same component.")
+        .def_readonly("cfc60", &Extremes::FilteredForce::cfc60,
+                      "N; None where the rows are too far apart for the filter")
+        .def_readonly("mean_50ms", &Extremes::FilteredForce::mean_50ms, "N, greatest mean over 50 ms");
+    py::class_<Extremes::ElementLoads>(
+        m, "ExtremeElementLoads",
+        "Greatest of all elements of the barrier; moments about their feet, of walls about their lines.")
+        .def_readonly("force", &Extremes::ElementLoads::force, "N")
+        .def_readonly("force_50ms", &Extremes::ElementLoads::force_50ms, "N, of means over 50 ms")
+        .def_readonly("moment", &Extremes::ElementLoads::moment, "N m")
+        .def_readonly("moment_50ms", &Extremes::ElementLoads::moment_50ms, "N m, of means over 50 ms");
+    py::class_<Extremes::Segments>(m, "ExtremeSegments", "Of a free-standing barrier.")
+        .def_readonly("deflection", &Extremes::Segments::deflection,
+                      "m, of the furthest corner of any base, square to the line, away from the traffic")
+        .def_readonly("residual_deflection", &Extremes::Segments::residual_deflection,
+                      "m, the same at the end")
+        .def_readonly("overturning", &Extremes::Segments::overturning,
+                      "m/s^2, overturning moment over mass and half the base, 50-ms means");
+    py::class_<Extremes::JointLoads>(m, "ExtremeJointLoads", "Of the first joint.")
+        .def_readonly("angle", &Extremes::JointLoads::angle, "rad, greatest magnitude of the articulation")
+        .def_readonly("force", &Extremes::JointLoads::force, "N");
+    py::class_<Extremes> extremes(
+        m, "Extremes", "Of a history, over its output instants; a group that was not wanted raises.");
+    extremes.def_readonly("rows", &Extremes::rows, "output instants")
+        .def_readonly("end_time", &Extremes::end_time, "s, the last of them")
+        .def_property_readonly("normal_force",
+                               [](const Extremes& found) { return found.normal_force.value(); })
+        .def_property_readonly("motion", [](const Extremes& found) { return found.motion.value(); })
+        .def_property_readonly("attitude", [](const Extremes& found) { return found.attitude.value(); })
+        .def_property_readonly("energy", [](const Extremes& found) { return found.energy.value(); })
+        .def_property_readonly("filtered_force",
+                               [](const Extremes& found) { return found.filtered_force.value(); })
+        .def_readonly("filtered_deceleration", &Extremes::filtered_deceleration,
+                      "m/s^2, along r, CFC 60; None where the rows are too far apart for the filter")
+        .def_property_readonly(
+            "penetration", [](const Extremes& found) { return found.penetration.value(); },
+            "m, greatest distance of an anchor past the barrier's line, at least 0")
+        .def_property_readonly(
+            "wheel_climb", [](const Extremes& found) { return found.wheel_climb.value(); },
+            "m, greatest height of any wheel's lowest point, at least 0")
+        .def_property_readonly("element_loads",
+                               [](const Extremes& found) { return found.element_loads.value(); })
+        .def_property_readonly(
+            "momentum_residual", [](const Extremes& found) { return found.momentum_residual.value(); },
+            "max |m a - sum of forces| / max |force|")
+        .def_property_readonly("joint", [](const Extremes& found) { return found.joint.value(); })
+        .def_property_readonly("segments", [](const Extremes& found) { return found.segments.value(); });
+}
+
+}  // namespace birm3d::bindings

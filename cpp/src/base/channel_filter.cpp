@@ -1,0 +1,83 @@
+#include "birm3d/base/channel_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+namespace birm3d {
+
+namespace {
+
+// Two poles in the transposed direct form II, and its state.
+struct Biquad {
+    double b0, b1, b2, a1, a2;
+    double z1 = 0.0, z2 = 0.0;
+
+    // As after an endless signal of this value.
+    void settle(double value) {
+        const double out = (b0 + b1 + b2) / (1.0 + a1 + a2) * value;
+        z2 = b2 * value - a2 * out;
+        z1 = b1 * value - a1 * out + z2;
+    }
+    double next(double value) {
+        const double out = b0 * value + z1;
+        z1 = b1 * value - a1 * out + z2;
+        z2 = b2 * value - a2 * out;
+        return out;
+    }
+};
+
+Biquad low_pass(double channel_class, double interval) {
+    const double wa = std::tan(std::numbers::pi * channel_class * 2.0775 * interval);
+    const double norm = 1.0 + std::numbers::sqrt2 * wa + wa * wa;
+    const double gain = wa * wa / norm;
+    return {gain, 2.0 * gain, gain, 2.0 * (wa * wa - 1.0) / norm,
+            (1.0 - std::numbers::sqrt2 * wa + wa * wa) / norm};
+}
+
+}  // namespace
+
+std::size_t rows_in(double width, double interval) {
+    return static_cast<std::size_t>(std::max(1.0, std::nearbyint(width / interval)));
+}
+
+std::optional<double> peak_of_filtered(std::span<const double> signal, double channel_class,
+                                       double interval) {
+    if (signal.empty() || !(interval * channel_class <= 0.1)) return std::nullopt;
+    Biquad filter = low_pass(channel_class, interval);
+    const std::size_t n = signal.size();
+    // Before the start the filter is settled; after the end it runs on for this long.
+    const auto padding =
+        std::min(n - 1, static_cast<std::size_t>(std::ceil(2.0 / (channel_class * interval))));
+    thread_local std::vector<double> once;
+    once.resize(n + padding);
+    filter.settle(signal.front());
+    for (std::size_t k = 0; k < n; ++k)
+        once[k] = filter.next(signal[k]);
+    for (std::size_t k = n; k < n + padding; ++k)
+        once[k] = filter.next(signal.back());
+    double peak = -std::numeric_limits<double>::infinity();
+    filter.settle(once.back());
+    for (std::size_t k = n + padding; k-- > n;)
+        filter.next(once[k]);
+    for (std::size_t k = n; k-- > 0;)
+        peak = std::max(peak, filter.next(once[k]));
+    return peak;
+}
+
+double peak_of_means(std::span<const double> signal, double width, double interval) {
+    const std::size_t n = rows_in(width, interval);
+    const double rows = static_cast<double>(n);
+    double peak = -std::numeric_limits<double>::infinity();
+    double now = 0.0, before = 0.0;  // sums up to a row, and up to the one that leaves the window
+    for (std::size_t k = 0; k < signal.size(); ++k) {
+        now += signal[k];
+        if (k >= n) before += signal[k - n];
+        peak = std::max(peak, (now - before) / rows);
+    }
+    return peak;
+}
+
+}  // namespace birm3d
