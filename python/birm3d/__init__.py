@@ -18,6 +18,7 @@ from .coarse_skin import CoarseSkinWarning
 from .comparison import CurveComparison, compare_curves
 from .element_loads import ElementLoad
 from .ensemble import ensemble
+from .file_format import FileFormatError
 from .fragility import fragility
 from .free_standing import FreeStanding
 from .impact_point import critical_impact_point
@@ -44,6 +45,7 @@ __all__ = [
     "CoarseSkinWarning",
     "CurveComparison",
     "ElementLoad",
+    "FileFormatError",
     "FreeStanding",
     "Joint",
     "LedgerWarning",

@@ -26,6 +26,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from .file_format import reads
 from .toml_document import KeyPath, Strict, frozen, reject
 from .vehicle_blocks import Block, Point, Positive, Source, Text, check_known
 from .vehicle_file import VehicleFile, VehicleFileError, ZonesInOrder, read_vehicle_file
@@ -86,6 +87,7 @@ class Combination(Strict):
     units: tuple[VehicleFile, VehicleFile]
 
 
+@reads("must be a file of two units", VehicleFileError)
 def read_combination(path: str | Path) -> Combination | None:
     """Read and check a file of two units and theirs; ``None`` for a file that names no units.
 
@@ -108,11 +110,11 @@ def read_combination(path: str | Path) -> Combination | None:
     total = leading.gvw_kg + trailing.gvw_kg
     if abs(total - file.gvw_kg) > _MASS * file.gvw_kg:
         limit = f"within {_MASS:.0%} of the units' masses, {total:.2f}"
-        raise VehicleFileError(f"{document.place(('gvw_kg',))}: gvw_kg: must be {limit}, got {file.gvw_kg}")
+        raise document.fault(("gvw_kg",), f"gvw_kg: must be {limit}, got {file.gvw_kg}")
     for zone in trailing.zone_names:
         if zone in leading.zone_names:
             message = f"names of zones must differ between the units, got '{zone}' in both"
-            raise VehicleFileError(f"{document.place(('unit',))}: unit: {message}")
+            raise document.fault(("unit",), f"unit: {message}")
     return Combination(file=file, units=(leading, trailing))
 
 

@@ -13,8 +13,8 @@ from typing import Any, ParamSpec, TypeVar
 from typing_extensions import Self
 
 __all__ = [
-    "MOST_BYTES", "MOST_DEPTH", "FileFormatError", "checksum", "depth", "read_bytes", "reading", "reads",
-    "received",
+    "MOST_BYTES", "MOST_DEPTH", "FileFormatError", "check_sum", "checksum", "depth", "read_bytes",
+    "read_json", "reading", "reads", "received",
 ]  # fmt: skip
 
 P = ParamSpec("P")
@@ -135,6 +135,39 @@ def checksum(document: Any) -> str:
     """Return 32 hexadecimal digits (BLAKE2b) of a document of JSON, however it is laid out."""
     text = json.dumps(document, sort_keys=True, separators=(",", ":"))
     return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()
+
+
+def check_sum(path: Path, found: Any, document: Any) -> None:
+    """Refuse a document that is not the one of which the checksum was taken."""
+    expected = checksum(document)
+    if found != expected:
+        reason = (
+            f"checksum must be {expected}, got {received(found)}: the file was changed after it was written"
+        )
+        raise FileFormatError.at(path, None, reason)
+
+
+def read_json(path: Path, content: bytes | str) -> Any:
+    """Return a document of JSON.
+
+    Raises
+    ------
+    FileFormatError
+        With the line, if it is none, has numbers that JSON does not have, or is nested too deeply.
+    """
+    try:
+        document = json.loads(content, parse_constant=_refuse_constant)
+    except json.JSONDecodeError as error:
+        raise FileFormatError.at(path, error.lineno, f"must be JSON: {error}") from error
+    except (ValueError, RecursionError) as error:
+        raise FileFormatError.at(path, None, f"must be JSON: {error}") from error
+    if depth(document) > MOST_DEPTH:
+        raise FileFormatError.at(path, None, f"must not be nested deeper than {MOST_DEPTH} levels")
+    return document
+
+
+def _refuse_constant(text: str) -> None:
+    raise ValueError(f"a number must be finite, got {text}")
 
 
 def received(value: Any) -> str:

@@ -363,7 +363,11 @@ class Result:
 
     @property
     def momentum_residual(self) -> float:
-        """Greatest |m a - sum of forces| over the greatest force, of all rows."""
+        """Greatest |m a - sum of forces| over the greatest force, of all rows.
+
+        The greatest force is at least the weight, and that which stops the vehicle from its speed at the
+        start (at least 0.1 m/s) within 1 s: where nothing pushes, rounding is not measured by itself.
+        """
         return self._history.momentum_residual
 
     @cached_property

@@ -13,8 +13,6 @@ import io
 import json
 import math
 import platform
-import zipfile
-import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
@@ -24,8 +22,11 @@ import numpy.typing as npt
 
 from . import _core
 from .event import Metrics
+from .file_format import FileFormatError, checksum, read_json, reading, reads, received
+from .fingerprint import fingerprint
 from .frames import Frames
 from .metrics import ALONG_LINE
+from .npz_arrays import read_arrays
 from .scene_codec import decode, encode
 from .unit_result import UnitResult, read_only
 from .whole_file import check_format, whole_file
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
 
 __all__ = ["FORMAT_VERSION", "StoredHistory", "load", "save"]
 
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 _FORMAT = "birm3d result"
 _LISTED = "elements"  # of the history: records of their own
 _FINAL = ("nodes", "deflection", "peak_deflection", "final_velocity")
@@ -132,6 +133,7 @@ def write(result: Result, stream: IO[bytes]) -> None:
         "metrics": dict(result.metrics) if long_enough else None,
         "report": result.report() if long_enough else None,
     }
+    header["checksum"] = _checksum(json.loads(json.dumps(header, allow_nan=False)), arrays)
     arrays["header"] = np.array(json.dumps(header, allow_nan=False))
     # numpy's stub takes a keyword for allow_pickle where ours are names of arrays
     np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
@@ -149,40 +151,43 @@ def from_bytes(content: bytes) -> Result:
     return read(io.BytesIO(content), Path("result"))
 
 
+@reads("must be a file of Result.save(), npz")
 def load(path: str | Path) -> Result:
     """Read a result that :meth:`Result.save` wrote; its scene can be run again.
 
     Raises
     ------
-    ValueError
-        If the file can not be read, is no result, is damaged, or is of a version that this one does not know.
+    FileFormatError
+        If the file can not be read, is no result, is damaged or was changed, or is of a version that this one
+        does not know.
     """
     path = Path(path)
-    try:
-        with path.open("rb") as stream:
-            return read(stream, path)
-    except OSError as error:
-        raise ValueError(f"{path}: can not be read: {error.strerror or error}") from error
+    with path.open("rb") as stream:
+        return read(stream, path)
 
 
 def read(stream: IO[bytes], path: Path) -> Result:
     """Read a result from an open binary file; `path` is for messages."""
-    try:
-        with np.load(stream, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
-    except (ValueError, EOFError, KeyError, TypeError, zipfile.BadZipFile, zlib.error) as error:
-        raise ValueError(f"{path}: must be a file of Result.save(), npz: {error}") from error
-    for array in arrays.values():
-        array.setflags(write=False)
-    try:
-        header = json.loads(str(arrays.pop("header")))
-    except (KeyError, ValueError) as error:
-        raise ValueError(f"{path}: must have a header in JSON: {error}") from error
-    check_format(path, header, _FORMAT, FORMAT_VERSION)
-    try:
-        return _result(header, arrays)
-    except (ValueError, TypeError, KeyError, AttributeError) as error:
-        raise ValueError(f"{path}: must be a complete result, but {error}") from error
+    with reading(path, "must be a file of Result.save(), npz"):
+        arrays = read_arrays(stream, path)
+    if "header" not in arrays:
+        raise FileFormatError.at(path, None, "must have a header in JSON, got none")
+    header = read_json(path, str(arrays.pop("header")))
+    check_format(path, header, _FORMAT, 2, FORMAT_VERSION)
+    with reading(path, "must be a complete result"):
+        result = _result(header, arrays)
+        found = header.pop("checksum", None)
+        if found is not None or header["format_version"] != 2:  # that had none
+            expected = _checksum(header, arrays)
+            if found != expected:
+                reason = f"checksum must be {expected}, got {received(found)}: the file was changed"
+                raise FileFormatError.at(path, None, reason)
+    return result
+
+
+def _checksum(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -> str:
+    """Of all that a file has, however it is packed."""
+    return fingerprint(checksum(header), *(part for name in sorted(arrays) for part in (name, arrays[name])))
 
 
 def _result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -> Result:

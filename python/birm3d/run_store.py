@@ -1,9 +1,9 @@
 """Finished runs on disk: an SQLite file that survives an interruption at any moment.
 
 Table ``study``: key, value (format, fingerprint, package version, units as JSON). Table ``runs``: one row a
-finished run with its number, its parameters, its metrics (NULL: the run does not have it), ``outcome``,
-``end_reason``,
-``state_hash``, ``error``. Any SQLite tool reads it: ``sqlite3 study.db 'select * from runs'``.
+finished run with its number, its parameters, its metrics (NULL: the run does not have it), ``end_reason``,
+``outcome``, ``state_hash``, ``error``, and a checksum of all of it. Any SQLite tool reads it:
+``sqlite3 study.db 'select * from runs'``.
 """
 
 from __future__ import annotations
@@ -15,11 +15,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from .file_format import FileFormatError, reading, received
 from .fingerprint import fingerprint
 
-__all__ = ["Outcome", "RunStore"]
+__all__ = ["Outcome", "RunStore", "StoreError"]
 
-_FORMAT = "birm3d runs 2"
+_FORMAT = "birm3d runs 3"
+_MUST = "store must be a file of runs or a new one"
+_TEXTS = ("inputs", "end_reason", "outcome", "state_hash", "error", "checksum")
 
 
 class Outcome(NamedTuple):
@@ -30,6 +33,10 @@ class Outcome(NamedTuple):
     outcome: str = ""
     state_hash: str = ""
     error: str = ""
+
+
+class StoreError(Exception):
+    """Finished runs can not be written; the cause says why."""
 
 
 class RunStore:
@@ -51,7 +58,9 @@ class RunStore:
     Raises
     ------
     ValueError
-        If the file is no store, holds another study or other values, or is in use by another process.
+        If the file holds another study or other values, can not be written, or is in use by another process.
+    FileFormatError
+        If it is no store, or is damaged.
     """
 
     def __init__(
@@ -65,29 +74,32 @@ class RunStore:
         units: Mapping[str, str],
     ) -> None:
         self.path = Path(path)
+        self.lost: set[int] = set()  # runs that could not be written
         self._rows = rows
         self._metrics = tuple(units)
         columns = (
             "run INTEGER PRIMARY KEY",
             *(_quoted(name) for name in names),
             *(f"{_quoted(name)} REAL" for name in units),
-            *(f"{text} TEXT" for text in ("inputs", "end_reason", "outcome", "state_hash", "error")),
+            *(f"{text} TEXT" for text in _TEXTS),
         )
         self._insert = f"INSERT OR REPLACE INTO runs VALUES ({', '.join('?' * len(columns))})"
         facts = {"format": _FORMAT, "study": study, "version": version, "units": json.dumps(dict(units))}
         if not self.path.parent.is_dir():
             raise ValueError(f"store must be in a folder that exists, got {str(self.path)!r}")
-        self._connection = sqlite3.connect(self.path, timeout=1.0)
         try:
-            self._open(facts, columns)
-        except sqlite3.OperationalError as error:
+            self._connection = sqlite3.connect(self.path, timeout=1.0)
+        except sqlite3.Error as error:
+            raise ValueError(f"store {str(path)!r} can not be opened: {error}") from error
+        try:
+            with reading(self.path, _MUST):
+                self._open(facts, columns)
+        except FileFormatError as error:
             self.close()
-            raise ValueError(f"store {str(path)!r} can not be opened or is in use: {error}") from error
-        except sqlite3.DatabaseError as error:
-            self.close()
-            raise ValueError(
-                f"store must be a file of runs or a new one, got {str(path)!r}: {error}"
-            ) from error
+            if isinstance(error.__cause__, sqlite3.OperationalError):
+                cause = error.__cause__
+                raise ValueError(f"store {str(path)!r} can not be opened or is in use: {cause}") from cause
+            raise
         except BaseException:
             self.close()
             raise
@@ -107,15 +119,17 @@ class RunStore:
                 raise ValueError(f"store must be a file of runs or a new one, got a database of {tables}")
         self._refuse_another(dict(self._connection.execute("SELECT key, value FROM study")), facts["study"])
 
-    def _refuse_another(self, found: Mapping[str, str], study: str) -> None:
+    def _refuse_another(self, found: Mapping[str, Any], study: str) -> None:
         if found.get("format") != _FORMAT:
-            raise ValueError(
-                f"store must have format {_FORMAT!r}, got {found.get('format')!r} in {self.path}"
+            raise FileFormatError.at(
+                self.path,
+                None,
+                f"store must have format {_FORMAT!r}, got {received(found.get('format'))}; give another file",
             )
-        if found["study"] != study:
+        if found.get("study") != study:
             raise ValueError(
                 f"store {str(self.path)!r} holds another study: scene, parameters, metrics or package "
-                f"version differ (fingerprint {found['study']}, made by birm3d {found['version']}; "
+                f"version differ (fingerprint {found.get('study')}, made by birm3d {found.get('version')}; "
                 f"this study has {study})"
             )
         for run, inputs in self._connection.execute("SELECT run, inputs FROM runs ORDER BY run"):
@@ -126,27 +140,52 @@ class RunStore:
                 )
 
     def finished(self) -> dict[int, Outcome]:
-        """Return the outcomes so far, number of the run -> outcome; only runs that the study has."""
-        names = ", ".join(
-            _quoted(name) for name in (*self._metrics, "end_reason", "outcome", "state_hash", "error")
-        )
-        query = f"SELECT run, {names} FROM runs WHERE run < ? ORDER BY run"
-        return {
-            run: Outcome(tuple(math.nan if value is None else value for value in rest[:-4]), *rest[-4:])
-            for run, *rest in self._connection.execute(query, (len(self._rows),))
-        }
+        """Return the outcomes so far, number of the run -> outcome; only runs that the study has.
+
+        Raises
+        ------
+        FileFormatError
+            If the file is damaged, or a row was changed after it was written.
+        """
+        outcomes: dict[int, Outcome] = {}
+        with reading(self.path, _MUST):
+            lines = self._connection.execute(
+                "SELECT * FROM runs WHERE run < ? ORDER BY run", (len(self._rows),)
+            )
+            for run, *rest in lines:
+                *values, end_reason, outcome, state_hash, error, found = rest
+                if found != fingerprint(run, values, end_reason, outcome, state_hash, error):
+                    reason = f"run {run} must have the checksum of its values: it was changed"
+                    raise FileFormatError.at(self.path, None, reason)
+                metrics = values[len(values) - 1 - len(self._metrics) : -1]  # then come the inputs
+                numbers = tuple(math.nan if value is None else value for value in metrics)
+                outcomes[run] = Outcome(numbers, end_reason, outcome, state_hash, error)
+        return outcomes
 
     def add(self, outcomes: Mapping[int, Outcome]) -> None:
-        """Write finished runs, all or none of them."""
-        with self._connection:
-            self._connection.executemany(
-                self._insert, [self._line(run, outcome) for run, outcome in sorted(outcomes.items())]
-            )
+        """Write finished runs, all or none of them; none any more once that has failed.
+
+        Raises
+        ------
+        StoreError
+            If they can not be written: the disk is full or gone, or the file read-only.
+        """
+        if self.lost:
+            self.lost.update(outcomes)
+            return
+        lines = [self._line(run, outcome) for run, outcome in sorted(outcomes.items())]
+        try:
+            with self._connection:
+                self._connection.executemany(self._insert, lines)
+        except sqlite3.Error as error:
+            self.lost.update(outcomes)
+            raise StoreError from error
 
     def _line(self, run: int, outcome: Outcome) -> tuple[Any, ...]:
         row = self._rows[run]
-        metrics = [None if math.isnan(value) else value for value in outcome.metrics]
-        return (run, *(_cell(value) for value in row), *metrics, fingerprint(row), *outcome[1:])
+        metrics = [None if math.isnan(value) else float(value) for value in outcome.metrics]
+        values = [*(_cell(value) for value in row), *metrics, fingerprint(row)]
+        return (run, *values, *outcome[1:], fingerprint(run, values, *outcome[1:]))
 
     def close(self) -> None:
         """Close the file."""
@@ -154,6 +193,8 @@ class RunStore:
 
 
 def _cell(value: Any) -> Any:
+    if isinstance(value, bool):
+        return int(value)  # as it is read back
     return value if value is None or isinstance(value, (int, float, str)) else str(value)
 
 

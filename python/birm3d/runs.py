@@ -113,14 +113,15 @@ def run_study(
         If there are no rows, a parameter or metric is unknown, a value is NaN, or the store is of another
         study.
     StudyStoppedError
-        If the executor dies. Finished runs are in its ``study`` and in the store.
+        If the executor dies, or the store can not be written any more: the disk is full or gone. Finished
+        runs are in its ``study``, and those before that in the store.
     StudyInterrupted
         A KeyboardInterrupt, with the finished runs in its ``study`` and in the store.
     """
     # What only a study needs, such as sqlite3 and multiprocessing, is loaded by the first one.
     from .executors import ExecutorError, run_all
     from .fingerprint import fingerprint
-    from .run_store import RunStore
+    from .run_store import RunStore, StoreError
 
     names = tuple(names)
     joined = simulation.scene.vehicle.joint is not None or "vehicle" in names
@@ -157,6 +158,14 @@ def run_study(
 
             todo = [(run, row) for run, row in enumerate(table) if run not in outcomes]
             run_all(simulation, names, wanted, todo, len(todo), executor, finish)
+    except StoreError as full:
+        cause = full.__cause__
+        stored = len(outcomes) - (0 if kept is None else len(kept.lost))
+        message = (
+            f"store {str(store)!r} can not be written ({cause}): it has {stored} of {len(table)} runs and "
+            f"can be gone on with; {len(outcomes)} are finished and kept in the error's 'study'"
+        )
+        raise StudyStoppedError(message, study(outcomes)) from cause
     except KeyboardInterrupt:
         message = f"stopped: {len(outcomes)} of {len(table)} runs are finished and {where}"
         raise StudyInterrupted(message, study(outcomes), keep) from None

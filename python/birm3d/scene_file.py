@@ -9,6 +9,7 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from . import units
 from .barrier import Barrier
+from .file_format import reads
 from .free_standing import FreeStanding
 from .settings import Settings
 from .simulation import Simulation
@@ -197,36 +198,43 @@ class _SceneDocument(Document):
     error = SceneFileError
 
 
+@reads("must be a scene file", SceneFileError)
 def read_scene_file(path: str | Path) -> Simulation:
     """Read a scene file and return its simulation.
 
     Raises
     ------
-    ValueError
+    FileFormatError
         Naming file, line, key, limit and value of everything that is wrong.
     """
     path = Path(path)
     document = _SceneDocument(path)
     scene = document.validate(_Scene, frozen(document.data))
-    gvw = None if scene.vehicle.gvw is None else units.parse(scene.vehicle.gvw, "mass")
-    if scene.vehicle.preset is not None:
-        vehicle = Vehicle.preset(scene.vehicle.preset, gvw=gvw, mesh_density=scene.vehicle.mesh_density)
-    else:
-        assert scene.vehicle.file is not None  # one of the two is given, see _Vehicle
-        vehicle = Vehicle.from_file(
-            path.parent / scene.vehicle.file, gvw=gvw, mesh_density=scene.vehicle.mesh_density
-        )
-    barrier = None if scene.barrier is None else scene.barrier.made()
+    with document.placed(("vehicle",)):
+        vehicle = _vehicle(path, scene.vehicle)
+    with document.placed(("barrier",)):
+        barrier = None if scene.barrier is None else scene.barrier.made()
+    with document.placed(("settings",)):
+        settings = Settings(**dict(scene.settings))
     impact = scene.impact
-    return Simulation(
-        vehicle,
-        barrier,
-        impact.si("speed"),
-        impact.si("angle"),
-        impact.si("offset"),
-        standoff=impact.si("standoff"),
-        impact_yaw=impact.si("yaw"),
-        impact_roll=impact.si("roll"),
-        duration=None if impact.duration is None else impact.si("duration"),
-        settings=Settings(**dict(scene.settings)),
-    )
+    with document.placed(("impact",)):
+        return Simulation(
+            vehicle,
+            barrier,
+            impact.si("speed"),
+            impact.si("angle"),
+            impact.si("offset"),
+            standoff=impact.si("standoff"),
+            impact_yaw=impact.si("yaw"),
+            impact_roll=impact.si("roll"),
+            duration=None if impact.duration is None else impact.si("duration"),
+            settings=settings,
+        )
+
+
+def _vehicle(path: Path, block: _Vehicle) -> Vehicle:
+    gvw = None if block.gvw is None else units.parse(block.gvw, "mass")
+    if block.preset is not None:
+        return Vehicle.preset(block.preset, gvw=gvw, mesh_density=block.mesh_density)
+    assert block.file is not None  # one of the two is given, see _Vehicle
+    return Vehicle.from_file(path.parent / block.file, gvw=gvw, mesh_density=block.mesh_density)

@@ -5,11 +5,15 @@ from __future__ import annotations
 import re
 import sys
 from bisect import bisect_right
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NoReturn, TypeAlias, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
+
+from .file_format import MOST_DEPTH, FileFormatError, depth, read_bytes, reading, received
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -21,8 +25,8 @@ __all__ = ["Document", "DocumentError", "KeyPath", "Locator", "Strict", "frozen"
 Model = TypeVar("Model", bound=BaseModel)
 
 
-class DocumentError(ValueError):
-    """A file that can not be used; the message gives file, line, key, limit and value."""
+class DocumentError(FileFormatError):
+    """A file of TOML that can not be used; the message gives file, line, key, limit and value."""
 
 
 class Strict(BaseModel):
@@ -37,6 +41,7 @@ def reject(key: str, message: str) -> NoReturn:
 
 
 KeyPath: TypeAlias = tuple[str | int, ...]
+_MOST_BYTES = 16 * 2**20  # the largest vehicle of this package has 25,000
 _HEADER = re.compile(r"(\[\[?)([^\[\]]+)\]")
 _KEY = re.compile(r"""((?:[\w-]+|"[^"]*"|'[^']*')(?:\s*\.\s*(?:[\w-]+|"[^"]*"|'[^']*'))*)\s*=\s*""")
 _PART = re.compile(r"""[\w-]+|"[^"]*"|'[^']*'""")
@@ -123,6 +128,17 @@ class Locator:
         return [part.strip("\"'") for part in _PART.findall(dotted)]
 
 
+def _longest_key(line: str) -> int:
+    """Return how many parts the longest dotted key of a line may have; numbers are separated by commas."""
+    if line.count(".") <= MOST_DEPTH:
+        return 0
+    longest = run = 0
+    for part in line.split("."):
+        run = run + 1 if part.strip() and "," not in part else 0
+        longest = max(longest, run)
+    return longest
+
+
 class Document:
     """A parsed file and the place every value was written."""
 
@@ -130,26 +146,61 @@ class Document:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        with reading(path, "must be a file of TOML", self.error):
+            text = self._text()
+            self.data = self._parsed(text)
+            self._places: dict[KeyPath, tuple[Path, int]] = {
+                key: (path, line) for key, line in Locator(text).lines.items()
+            }
+
+    def _text(self) -> str:
+        content = read_bytes(self.path, _MOST_BYTES)
         try:
-            text = path.read_text(encoding="utf-8")
-            self.data: dict[str, Any] = tomllib.loads(text)
-        except OSError as error:
-            raise self.error(f"{path}: can not be read: {error.strerror}") from error
+            return content.decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
         except UnicodeDecodeError as error:
-            byte = error.object[error.start]
-            raise self.error(f"{path}: must be UTF-8 text, got byte {byte:#x}") from error
+            line = content.count(b"\n", 0, error.start) + 1
+            reason = f"must be UTF-8 text, got byte {content[error.start]:#x}"
+            raise self.error.at(self.path, line, reason) from error
+
+    def _parsed(self, text: str) -> dict[str, Any]:
+        for i, line in enumerate(text.split("\n"), 1):
+            if _longest_key(line) > MOST_DEPTH:  # its parts, squared, are the parser's time
+                raise self.error.at(self.path, i, f"a key must have at most {MOST_DEPTH} parts, got more")
+        try:
+            data = tomllib.loads(text)
         except tomllib.TOMLDecodeError as error:
-            raise self.error(f"{path}: not valid TOML: {error}") from error
-        self._places: dict[KeyPath, tuple[Path, int]] = {
-            key: (path, line) for key, line in Locator(text).lines.items()
-        }
+            found = re.search(r"\(at line (\d+)", str(error))
+            at = int(found[1]) if found else None
+            raise self.error.at(self.path, at, f"not valid TOML: {error}") from error
+        if depth(data) > MOST_DEPTH:
+            raise self.error.at(self.path, None, f"must not be nested deeper than {MOST_DEPTH} levels")
+        return data
 
     def place(self, key: KeyPath) -> str:
         """Return "file:line" of a key, or of the innermost block around it that the file has."""
+        path, line = self._written(key)
+        return f"{path}:{line}"
+
+    def _written(self, key: KeyPath) -> tuple[Path, int]:
         while key and key not in self._places:
             key = key[:-1]
-        path, line = self._places[key]
-        return f"{path}:{line}"
+        return self._places[key]
+
+    def fault(self, key: KeyPath, reason: str) -> DocumentError:
+        """Return the error of one key of the file."""
+        return self.error.at(*self._written(key), reason)
+
+    @contextmanager
+    def placed(self, key: KeyPath) -> Iterator[None]:
+        """Say where a block stands if what is made of it can not be."""
+        try:
+            yield
+        except FileFormatError as error:
+            if error.path is None or error.path == self.path:
+                raise
+            raise self.fault(key, str(error)) from error
+        except (ValueError, TypeError, OverflowError) as error:
+            raise self.fault(key, str(error)) from error
 
     def written_key(self, key: KeyPath) -> KeyPath:
         """Return where a key of the checked data stands in the file."""
@@ -192,9 +243,3 @@ def frozen(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: frozen(item) for key, item in value.items()}
     return value
-
-
-def received(value: Any) -> str:
-    """Return a value as an error message shows it."""
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."

@@ -163,12 +163,25 @@ class Vehicle:
 
         Raises
         ------
+        FileFormatError
+            Naming file, line, key, limit and value of everything that is wrong in the file.
         ValueError
-            Naming file, line, key, limit and value of everything that is wrong.
+            If the vehicle can not have that weight or mesh.
         UnitWarning
             As a warning, if ``gvw`` is most likely in another unit, as 7.5 for 7.5 t.
         """
-        return _read(path, gvw, mesh_density)
+        from .file_format import reading
+        from .vehicle_file import VehicleFileError
+
+        try:
+            return _read(path, gvw, mesh_density)
+        except VehicleFileError:
+            raise
+        except (ValueError, TypeError, ArithmeticError, LookupError, AttributeError):
+            # Is it the file or the arguments? Without them a good file gives a vehicle.
+            with reading(path, "must be a vehicle", VehicleFileError):
+                _read(path, None, 1.0)
+            raise
 
     def save(self, path: str | Path) -> None:
         """Write the vehicle to a file (TOML) that :meth:`from_file` reads back as the same vehicle.

@@ -246,6 +246,10 @@ class End(Strict):
         return self
 
 
+# At mesh density 1; the presets have 6,000.
+_MOST_ELEMENTS = 300_000
+
+
 class Upper(Strict):
     """A block standing on the body: greenhouse, cab, cargo box.
 
@@ -285,6 +289,7 @@ class Exterior(Block):
         for i, (_, _, bottom, top) in enumerate(self.stations_m):
             if not bottom < top:
                 reject(f"stations_m.{i}", f"underside must be below upper edge, got {bottom} and {top}")
+        self._check_size()
         limit = x[0]
         for i, upper in enumerate(self.upper):
             front, rear = upper.base_x_m
@@ -296,6 +301,16 @@ class Exterior(Block):
         if any(upper.name == "body" for upper in self.upper):
             reject("upper", "the name 'body' is taken by the lofted body itself")
         return self
+
+    def _check_size(self) -> None:
+        rows = [*self.stations_m, *((x, half, 0.0, z) for upper in self.upper for x, half, z in upper.roof_m)]
+        length = max(row[0] for row in rows) - min(row[0] for row in rows)
+        width, height = 2.0 * max(row[1] for row in rows), max(row[3] for row in rows)
+        count = 2.0 * (length * width + width * height + height * length) / self.element_size_m**2
+        if not count <= _MOST_ELEMENTS:
+            limit = f"for at most {_MOST_ELEMENTS:,} elements"
+            box = f"{length:g} m by {width:g} m by {height:g} m"
+            reject("element_size_m", f"must be {limit}, got {self.element_size_m} on a box of {box}")
 
 
 class Dents(Block):

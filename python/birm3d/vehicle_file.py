@@ -17,6 +17,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
+from .file_format import reading
 from .toml_document import Document, DocumentError, KeyPath, Strict, frozen, received, reject
 from .vehicle_blocks import (
     Block,
@@ -211,7 +212,7 @@ class _VehicleDocument(ZonesInOrder):
 
     def __init__(self, path: Path, parents: tuple[Path, ...] = ()) -> None:
         if path.resolve() in parents:
-            raise VehicleFileError(f"{path}: extends: the files extend each other in a circle")
+            raise VehicleFileError.at(path, None, "extends: the files extend each other in a circle")
         super().__init__(path)
         if "extends" in self.data:
             self._extend(parents)
@@ -219,8 +220,8 @@ class _VehicleDocument(ZonesInOrder):
     def _extend(self, parents: tuple[Path, ...]) -> None:
         name = self.data.pop("extends")
         if not isinstance(name, str):
-            place = self.place(("extends",))
-            raise VehicleFileError(f"{place}: extends: must be a preset or a file name, got {name!r}")
+            reason = f"extends: must be a preset or a file name, got {received(name)}"
+            raise self.fault(("extends",), reason)
         target = preset_path(name) if name in preset_names() else self.path.parent / name
         base = _VehicleDocument(target, (*parents, self.path.resolve()))
         own = self.data
@@ -261,7 +262,8 @@ def read_vehicle_file(path: str | Path) -> VehicleFile:
         With file, line, key, limit and value of everything that is wrong.
     """
     document = _VehicleDocument(Path(path))
-    return document.validate(VehicleFile, document.zones_in_order())
+    with reading(path, "must be a vehicle file", VehicleFileError):
+        return document.validate(VehicleFile, document.zones_in_order())
 
 
 # By weight, then the replication target.

@@ -7,6 +7,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from .file_format import FileFormatError, received
+
 __all__ = ["check_format", "whole_file"]
 
 
@@ -38,19 +40,20 @@ def whole_file(path: str | Path) -> Iterator[Path]:
         part.unlink(missing_ok=True)
 
 
-def check_format(path: Path, document: Any, name: str, version: int) -> None:
+def check_format(path: Path, document: Any, name: str, *versions: int) -> None:
     """Refuse a document that has another ``format``, or a ``format_version`` that this package does not know.
 
     Raises
     ------
-    ValueError
+    FileFormatError
         Naming the file, what it should be and what it is.
     """
     found = document.get("format") if isinstance(document, dict) else type(document).__name__
     if not isinstance(document, dict) or found != name:
-        raise ValueError(f"{path}: format must be {name!r}, got {found!r}")
-    received = document.get("format_version")
-    if received != version:
-        newer = isinstance(received, int) and received > version
+        raise FileFormatError.at(path, None, f"format must be {name!r}, got {received(found)}")
+    made = document.get("format_version")
+    if made not in versions or isinstance(made, bool):
+        newer = isinstance(made, int) and made > max(versions)
         advice = "; a newer birm3d made the file and can read it" if newer else ""
-        raise ValueError(f"{path}: format_version must be {version}, got {received}{advice}")
+        known = " or ".join(map(str, versions))
+        raise FileFormatError.at(path, None, f"format_version must be {known}, got {received(made)}{advice}")

@@ -225,7 +225,7 @@ class TestKeeping:
             ("{", "must be JSON"),
             ("[]", "format must be 'birm3d calibration', got 'list'"),
             ('{"format": "other"}', "format must be 'birm3d calibration', got 'other'"),
-            (json.dumps({"format": "birm3d calibration", "format_version": 99}), "must be 1, got 99"),
+            (json.dumps({"format": "birm3d calibration", "format_version": 99}), "must be 1 or 2, got 99"),
         ],
     )
     def test_other_files(self, tmp_path: Path, text: str, message: str) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from birm3d import Result, Settings, Simulation, scenes
+from birm3d import Barrier, Result, Settings, Simulation, Vehicle, scenes
 from birm3d.barrier_kinds import RigidWall
 from scipy.spatial.transform import Rotation
 
@@ -199,3 +199,16 @@ def test_force_along_the_truss_makes_energy(
     assert projected < 1e-3
     assert along > 10.0 * projected
     assert along > 0.01  # more than a percent of the kinetic energy
+
+
+@pytest.mark.parametrize("after", [1e-9, 1e-8, 1e-7, 1e-6, 1e-5])
+def test_momentum_closes_where_next_to_nothing_pushes(after: float) -> None:
+    """The run ends so soon after the touch that rounding is as large as the force, 1e-9 to 0.1 N."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    standoff = 15.0 * math.sin(math.radians(40.0)) * (0.1 - after)
+    settings = Settings(gravity=0.0, ground=False)
+    result = Simulation(
+        car, Barrier.rigid_wall(), 15.0, 40.0, standoff=standoff, duration=0.1, settings=settings
+    ).run()
+    assert 0.0 < np.linalg.norm(result.barrier_force, axis=1).max() < 0.1
+    assert result.metrics["momentum_residual"] < 1e-9

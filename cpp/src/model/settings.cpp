@@ -11,7 +11,9 @@ void require_valid(const Settings& s) {
     if (s.time_step && !(std::isfinite(*s.time_step) && *s.time_step >= tolerance::shortest_step))
         refuse("time_step", "finite and >= " + to_text(tolerance::shortest_step) + " s", *s.time_step);
     require_within("tolerance", s.tolerance, 1e-9, 1.0);
-    require_positive("output_interval", s.output_interval);
+    if (!(std::isfinite(s.output_interval) && s.output_interval >= tolerance::shortest_step))
+        refuse("output_interval", "finite and >= " + to_text(tolerance::shortest_step) + " s",
+               s.output_interval);
     require_not_negative("gravity", s.gravity);
     require_not_negative("mu_tire", s.mu_tire);
     require_not_negative("mu_body", s.mu_body);

@@ -5,6 +5,9 @@
 
 namespace birm3d {
 
+// Most rows of a history: some gigabytes.
+inline constexpr double most_rows = 5e6;
+
 // Where the numbers of a row stand. Energies and bodies at the end of the step, impulses within it.
 enum RowOffset : std::size_t { at_time = 0, at_energies = 1, at_units = 11 };
 enum UnitOffset : std::size_t {

@@ -3,12 +3,17 @@
 #include <cmath>
 #include <utility>
 
+#include "birm3d/base/error.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "recorder_rows.hpp"
 
 namespace birm3d {
 
 namespace {
+
+// A force that stops the vehicle within this time is large enough to judge the momentum balance by (s). No crash lasts
+// as long, so that it counts only where next to nothing pushes.
+constexpr double stopping_time = 1.0;
 
 // Where the output instants fall in a record of rows of `width` numbers, of which a unit's begin at `offset`.
 struct Steps {
@@ -46,6 +51,11 @@ void Recorder::resample(const Scene& scene, const Channels& wanted, History& his
     const double interval = scene.settings.output_interval;
     const double end = values_[(rows() - 1) * width_ + at_time];
     // An end that misses an output instant by rounding only still has it.
+    if (end > most_rows * interval)
+        refuse("output_interval",
+               "long enough for at most " + to_text(most_rows) + " rows, >= " + to_text(end / most_rows, 3) +
+                   " s",
+               interval);
     const auto count = static_cast<std::size_t>(std::floor(end / interval * (1.0 + 1e-12))) + 1;
 
     history.time.resize(count);
@@ -197,7 +207,7 @@ void Recorder::resample_motion(const std::vector<std::size_t>& step_of, std::siz
         unit.acceleration[0] = unit.orientation[0].conjugate() * (unit.orientation[1] * unit.acceleration[1]);
 }
 
-// Needs the motion. Returns the largest force of any row, and in `worst` that by which m a misses the sum of forces (N).
+// Needs the motion. Returns the largest force of any row, at least that which stops the unit in `stopping_time`; and in `worst` that by which m a misses the sum of forces (N).
 double Recorder::resample_forces(const std::vector<std::size_t>& step_of, std::size_t offset,
                                  const Column& time, const Unit& model, double gravity, UnitHistory& unit,
                                  double& worst) const {
@@ -214,7 +224,9 @@ double Recorder::resample_forces(const std::vector<std::size_t>& step_of, std::s
     before_step.tire.assign(wheels, 0.0);
     Impulses previous = before_step;  // up to the previous output instant
     Impulses now;
-    double largest = 0.0;
+    const double start_speed =
+        std::max(vec(values_.data() + offset + at_velocity).norm(), tolerance::slowest_reference_speed);
+    double largest = model.body.mass * start_speed / stopping_time;
     std::size_t row = 0;
     for (std::size_t k = 0; k < time.size() && rows() > 1; ++k) {
         for (; row < step_of[k]; ++row) {

@@ -13,6 +13,7 @@
 #include "birm3d/kernels/tires.hpp"
 #include "birm3d/sim/obstacles.hpp"
 #include "birm3d/sim/panel_dents.hpp"
+#include "recorder_rows.hpp"
 
 namespace birm3d {
 
@@ -167,6 +168,10 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
     if (!vehicle || vehicle->units.empty()) refuse("vehicle", "at least one unit", 0.0);
     set_approach(approach_);
     if (duration) require_positive("duration", *duration);
+    if (duration && *duration > most_rows * settings.output_interval)
+        refuse("output_interval",
+               ">= duration / " + to_text(most_rows) + " = " + to_text(*duration / most_rows, 3) + " s",
+               settings.output_interval);
     if (!duration && !barrier) refuse("duration", "given (s) where there is no barrier", "none");
     if (barrier)
         for (const Element& element : barrier->elements)

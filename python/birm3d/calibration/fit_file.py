@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from ..file_format import reads
 from ..scene_file import read_scene_file
 from ..test_data import read_csv_channels
 from ..toml_document import Document, DocumentError, KeyPath, Strict, frozen, reject
@@ -110,13 +109,14 @@ class Fit:
     options: dict[str, Any] = field(default_factory=dict)
 
 
+@reads("must be a fit file", FitFileError)
 def read_fit_file(path: str | Path) -> Fit:
     """Read a fit file, its scenes and its tables.
 
     Raises
     ------
-    ValueError
-        Naming file, line, key, limit and value of what is wrong.
+    FileFormatError
+        Naming file, line, key, limit and value of what is wrong; of a scene file its own.
     """
     path = Path(path)
     document = _FitDocument(path)
@@ -127,31 +127,16 @@ def read_fit_file(path: str | Path) -> Fit:
         fit.simulations.append(read_scene_file(path.parent / simulation.scene))
         goals: list[Target] = []
         for j, curve in enumerate(simulation.curve):
-            with _placed(document, (*key, "curve", j)):
+            with document.placed((*key, "curve", j)):
                 goals.append(_curve(path, curve))
         for j, scalar in enumerate(simulation.scalar):
-            with _placed(document, (*key, "scalar", j)):
+            with document.placed((*key, "scalar", j)):
                 goals.append(ScalarTarget(**dict(scalar)))
         fit.targets.append(goals)
     for i, parameter in enumerate(content.parameter):
-        with _placed(document, ("parameter", i)):
+        with document.placed(("parameter", i)):
             fit.parameters.append(Parameter(**dict(parameter)))
     return fit
-
-
-@contextmanager
-def _placed(document: Document, key: KeyPath) -> Iterator[None]:
-    """Say where a block stands if what is made of it can not be."""
-    try:
-        yield
-    except DocumentError:
-        raise
-    except ValueError as error:
-        raise FitFileError(f"{document.place(key)}: {error}") from error
-    except OSError as error:
-        raise FitFileError(
-            f"{document.place(key)}: {error.filename}: can not be read: {error.strerror}"
-        ) from error
 
 
 def _curve(path: Path, curve: _Curve) -> CurveTarget:

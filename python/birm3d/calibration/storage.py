@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..file_format import check_sum, checksum, read_bytes, read_json, reads
 from ..whole_file import check_format, whole_file
 from .evaluator import Evaluation
 from .fitted import FittedParameter, FittedTarget
@@ -18,13 +19,14 @@ from .result import CalibrationResult
 
 __all__ = ["FORMAT_VERSION", "load", "save"]
 
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 _FORMAT = "birm3d calibration"
 
 
 def save(result: CalibrationResult, path: str | Path) -> None:
     """Write a result; floats keep all their digits. The file is complete or is not there."""
-    text = json.dumps(as_plain(result), indent=1, allow_nan=False)
+    document = as_plain(result)
+    text = json.dumps({**document, "checksum": checksum(document)}, indent=1, allow_nan=False)
     with whole_file(path) as part:
         part.write_text(text, encoding="utf-8")
 
@@ -38,22 +40,17 @@ def as_plain(result: CalibrationResult) -> dict[str, Any]:
     return document
 
 
+@reads("must be a complete calibration")
 def load(path: str | Path) -> CalibrationResult:
     """Read a result that :meth:`CalibrationResult.save` wrote; it has no simulations.
 
     Raises
     ------
-    ValueError
-        If the file is none of these, or of a version that this one does not know.
+    FileFormatError
+        If the file is none of these, is damaged or was changed, or is of a version that this one does not
+        know.
     """
-    path = Path(path)
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ValueError(f"{path}: can not be read: {error.strerror}") from error
-    except ValueError as error:
-        raise ValueError(f"{path}: must be JSON: {error}") from error
-    check_format(path, document, _FORMAT, FORMAT_VERSION)
+    document = _document(Path(path))
     return CalibrationResult(
         parameters=tuple(_parameter(item) for item in document["parameters"]),
         targets=tuple(FittedTarget(**_arrays(item, FittedTarget)) for item in document["targets"]),
@@ -72,6 +69,16 @@ def load(path: str | Path) -> CalibrationResult:
         doubts=tuple(document.get("doubts", ())),  # files of earlier versions have none
         profiles={name: Profile(**_arrays(item, Profile)) for name, item in document["profiles"].items()},
     )
+
+
+def _document(path: Path) -> dict[str, Any]:
+    document = read_json(path, read_bytes(path))
+    check_format(path, document, _FORMAT, 1, FORMAT_VERSION)
+    assert isinstance(document, dict)  # see check_format()
+    found = document.pop("checksum", None)
+    if found is not None or document["format_version"] != 1:  # that had none
+        check_sum(path, found, document)
+    return document
 
 
 def _parameter(item: dict[str, Any]) -> FittedParameter:

@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Study", "Summary"]
 
-_FORMAT = "birm3d study 1"
+_FORMAT = "birm3d study 2"
+_OLD_FORMAT = "birm3d study 1"  # had no checksum
 _TEXTS = ("outcome", "end_reason", "state_hash", "error")
 _WORDS = {"None": None, "True": True, "False": False}  # values of parameters as a file shows them
 
@@ -274,6 +275,9 @@ class Study:
 
         Numbers are written with all their digits; a metric that a run does not have is an empty cell.
         """
+        from ..file_format import checksum
+        from ..whole_file import whole_file
+
         columns = self.columns()
         head = {
             "format": _FORMAT,
@@ -283,12 +287,15 @@ class Study:
             "parameters": {name: values.dtype.kind for name, values in self.parameters.items()},
             "grid": None if self.grid is None else dict(self.grid),
         }
-        with Path(path).open("w", encoding="utf-8", newline="") as file:
+        names = ["run", *columns]
+        lines = [
+            [str(int(run)), *(_text(column[i]) for column in columns.values())]
+            for i, run in enumerate(self.run)
+        ]
+        head["checksum"] = checksum([head, names, lines])
+        with whole_file(path) as part, part.open("w", encoding="utf-8", newline="") as file:
             file.write("# " + json.dumps(head) + "\n")
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(["run", *columns])
-            for i, run in enumerate(self.run):
-                writer.writerow([int(run), *(_text(column[i]) for column in columns.values())])
+            csv.writer(file, lineterminator="\n").writerows([names, *lines])
 
     @staticmethod
     def load(path: str | Path) -> Study:
@@ -296,37 +303,12 @@ class Study:
 
         Raises
         ------
-        ValueError
-            If the file is no study.
+        FileFormatError
+            With the line, if the file is no study, is damaged, or was changed after it was written.
         """
-        with Path(path).open(encoding="utf-8", newline="") as file:
-            first = file.readline()
-            try:
-                head = json.loads(first.removeprefix("# "))
-                found = head["format"]
-            except (ValueError, TypeError, KeyError):
-                found = first[:40]
-            if found != _FORMAT:
-                raise ValueError(f"path must be a study with format {_FORMAT!r}, got {found!r} in {path}")
-            names, *lines = csv.reader(file)
-        cells = {name: [line[i] for line in lines] for i, name in enumerate(names)}
-        kinds = head["parameters"]
-        metrics = [name for name in names if name not in ("run", *kinds, *_TEXTS)]
-        return Study(
-            vehicle=head["vehicle"],
-            run=[int(run) for run in cells["run"]],
-            parameters={
-                name: np.array(cells[name], float if kind == "f" else object) for name, kind in kinds.items()
-            },
-            metrics={name: [float(cell) if cell else math.nan for cell in cells[name]] for name in metrics},
-            outcome=cells.get("outcome"),  # files of 0.1.0 have none
-            end_reason=cells["end_reason"],
-            state_hash=cells["state_hash"],
-            error=cells["error"],
-            units=head["units"],
-            grid=head["grid"],
-            version=head["version"],
-        )
+        from .table_file import read_table
+
+        return Study(**read_table(Path(path), (_FORMAT, _OLD_FORMAT), _TEXTS))
 
     def plot(self, x: str, y: str, by: str | None = None) -> Figure:
         """Return a figure of column `y` against `x`, a line for each value of `by`, without failed runs."""

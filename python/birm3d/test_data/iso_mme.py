@@ -71,7 +71,7 @@ class ChannelCode(NamedTuple):
             If it has not sixteen letters and digits.
         """
         if not re.fullmatch(r"[A-Z0-9?]{16}", code):
-            raise ValueError(f"code must be of sixteen capital letters, digits or '?', got {code!r}")
+            raise ValueError(f"code must be of sixteen capital letters, digits or '?', got {received(code)}")
         return cls(code[0], code[1], code[2:6], code[6:12], code[12:14], code[14], code[15])
 
     @property
@@ -215,6 +215,10 @@ def read_iso_mme(path: str | Path) -> IsoMmeTest:
         if (match := _INDEX_KEY.fullmatch(key)) is None:
             continue
         code = text.split("/")[0].strip()
+        try:
+            ChannelCode.parse(code)
+        except ValueError as error:
+            raise FileFormatError.at(index, keys.line(key), str(error)) from None
         if code in codes:
             raise FileFormatError.at(
                 index, keys.line(key), f"channels must have codes of their own, got {code} twice"
