@@ -123,10 +123,12 @@ void register_history(py::module_& m) {
         "extremes",
         [](const History& self, const ExtremeGroups& wanted, const Event& event, const Vehicle& vehicle,
            const std::vector<std::shared_ptr<Barrier>>& barriers) {
-            return extremes_of(self, vehicle, barriers.empty() ? nullptr : barriers.front().get(), wanted, event);
+            return extremes_of(self, vehicle, barriers.empty() ? nullptr : barriers.front().get(), wanted,
+                               event);
         },
         py::arg("wanted"), py::arg("event"), py::arg("vehicle"), py::arg("barriers"),
-        py::call_guard<py::gil_scoped_release>(), "Of a run of this vehicle into this barrier, or into none.");
+        py::call_guard<py::gil_scoped_release>(),
+        "Of a run of this vehicle into this barrier, or into none.");
     add_view(history, "time", &History::time, "(n,) s");
     add_view(history, "kinetic", &History::kinetic, "(n,) J");
     add_view(history, "potential", &History::potential, "(n,) J");

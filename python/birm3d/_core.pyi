@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Approach', 'Barrier', 'BusyError', 'ContactModel', 'Element', 'EndReason', 'Event', 'ExtremeAttitude', 'ExtremeEnergy', 'ExtremeGroups', 'ExtremeMotion', 'ExtremeNormalForce', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'along_line', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
+__all__: list[str] = ['Approach', 'Barrier', 'BusyError', 'ContactModel', 'Departure', 'Element', 'EndReason', 'Event', 'ExtremeAttitude', 'ExtremeElementLoads', 'ExtremeEnergy', 'ExtremeFilteredForce', 'ExtremeGroups', 'ExtremeJointLoads', 'ExtremeMotion', 'ExtremeNormalForce', 'ExtremeSegments', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'Ledger', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'along_line', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
 class Approach:
     """
     How the vehicle comes (SI, rad). Immutable.
@@ -422,8 +422,10 @@ class History:
     """
     Evenly spaced output of a run; read-only views.
     """
-    def extremes(self, wanted: ExtremeGroups, event: Event) -> Extremes:
-        ...
+    def extremes(self, wanted: ExtremeGroups, event: Event, vehicle: Vehicle, barriers: collections.abc.Sequence[Barrier]) -> Extremes:
+        """
+        Of a run of this vehicle into this barrier, or into none.
+        """
     def joint(self, index: typing.SupportsInt | typing.SupportsIndex) -> JointHistory:
         """
         Of one joint of the vehicle.

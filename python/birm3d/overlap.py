@@ -18,11 +18,11 @@ OVERLAP_LIMIT = 0.1
 class OverlapWarning(UserWarning):
     """The rigid body got into the barrier: loads and travel of the run are not to be believed.
 
-    Trusses hold the rigid body at the barrier where they are closed, and only there. Between their anchors an
-    edge of a wall or a post can enter the body: by a few centimetres with the usual meshes, right through with
-    very coarse ones. The overlap is measured on the core boxes of the vehicle's file, whatever the mesh: how far
-    body and barrier would have to be moved apart. Vehicles from arrays have no boxes, and are measured at
-    their anchors alone.
+    Trusses hold the rigid body at the barrier where they are closed, and only there. Between their anchors
+    an edge of a wall or a post can enter the body: by a few centimetres with the usual meshes, right through
+    with very coarse ones. The overlap is measured on the core boxes of the vehicle's file, whatever the mesh:
+    how far body and barrier would have to be moved apart. Vehicles from arrays have no boxes, and are
+    measured at their anchors alone.
     """
 
 

@@ -225,8 +225,8 @@ class Simulation:
             finally:
                 self._run_time += time.perf_counter() - start
             result = self._result()
-            ledger = self._core.ledger
-        warn_if_overlapping(result.scene, result.statistics)
+            ledger, statistics = self._core.ledger, self._core.statistics
+        warn_if_overlapping(result.scene, statistics)
         warn_if_open(result.scene, ledger)
         return result if frames is None else result.with_frames(frames)
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 
 import pytest
-from birm3d import Barrier, OverlapWarning, Simulation, Vehicle
+from birm3d import Barrier, CoarseSkinWarning, OverlapWarning, Simulation, Vehicle
 from birm3d.overlap import OVERLAP_LIMIT
 
 
 def test_a_pole_that_passes_between_nodes_is_warned_of() -> None:
     """Trusses hold the body at their anchors only; here a pole finds room between them."""
     coarse = Vehicle.preset("cargo_truck", mesh_density=0.02).with_dent_reach(0.0)
-    with pytest.warns(UserWarning):  # that the skin is coarse
+    with pytest.warns(CoarseSkinWarning, match="width of the pole"):
         simulation = Simulation(
             coarse,
             Barrier.pole(diameter=0.3),

@@ -36,8 +36,7 @@ Outcome Runner::run(const Approach& approach, const ExtremeGroups& wanted,
     outcome.peak_deflection = deflections.peak;
     outcome.event = simulation_->event();
     simulation_->recorder().resample(scene, wanted.channels(), history_);
-    outcome.extremes =
-        extremes_of(history_, *scene.vehicle, scene.barrier.get(), wanted, outcome.event);
+    outcome.extremes = extremes_of(history_, *scene.vehicle, scene.barrier.get(), wanted, outcome.event);
     return outcome;
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "birm3d/kernels/body_overlap.hpp"
+#include "birm3d/sim/body_overlap.hpp"
 #include "birm3d/sim/obstacles.hpp"
 
 namespace birm3d {

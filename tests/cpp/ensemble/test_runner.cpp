@@ -36,8 +36,8 @@ void check_same(const Outcome& found, const Scene& scene) {
     CHECK(found.state_hash == alone.state().hash());
     CHECK(found.end_reason == alone.end_reason());
     CHECK(found.statistics.steps == alone.state().statistics.steps);
-    const Extremes expected = extremes_of(alone.recorder().resample(alone.scene()), *scene.vehicle, scene.barrier.get(), {},
-                                          alone.event());
+    const Extremes expected = extremes_of(alone.recorder().resample(alone.scene()), *scene.vehicle,
+                                          scene.barrier.get(), {}, alone.event());
     CHECK(found.extremes.rows == expected.rows);
     CHECK(found.extremes.normal_force->peak == expected.normal_force->peak);
     CHECK(found.extremes.normal_force->last == expected.normal_force->last);

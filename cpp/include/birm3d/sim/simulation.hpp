@@ -84,7 +84,7 @@ class Simulation {
     State state_;
     Trial trial_;
     std::vector<std::size_t> about_;  // obstacles about a unit; only memory
-    std::vector<BodyState> before_;  // the step at hand; only memory
+    std::vector<BodyState> before_;   // the step at hand; only memory
     Recorder recorder_;
     Event event_;
     bool failed_ = false;

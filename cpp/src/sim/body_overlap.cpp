@@ -1,4 +1,4 @@
-#include "birm3d/kernels/body_overlap.hpp"
+#include "birm3d/sim/body_overlap.hpp"
 
 #include <algorithm>
 
