@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "bound_simulation.hpp"
 #include "register.hpp"
 
 namespace birm3d::bindings {
@@ -33,8 +32,7 @@ struct Run {
     }
 };
 
-// Scenes of simulations do not change, so that they may be in use.
-using Job = std::pair<const BoundSimulation*, Approach>;
+using Job = std::pair<const Scene*, Approach>;
 
 // Those that were run before `stop`.
 std::vector<Run> run_all(Runner& runner, const std::vector<Job>& jobs, const ExtremeGroups& wanted,
@@ -44,13 +42,13 @@ std::vector<Run> run_all(Runner& runner, const std::vector<Job>& jobs, const Ext
     };
     std::vector<Run> runs;
     runs.reserve(jobs.size());
-    const BoundSimulation* last = nullptr;
-    for (const auto& [simulation, approach] : jobs) {
+    const Scene* last = nullptr;
+    for (const auto& [scene, approach] : jobs) {
         Run run;
         try {
             poll();
-            if (simulation != std::exchange(last, nullptr)) runner.set_scene(simulation->scene());
-            last = simulation;
+            if (scene != std::exchange(last, nullptr)) runner.set_scene(*scene);
+            last = scene;
             run.outcome = runner.run(approach, wanted, poll);
         } catch (const Stopped&) {
             break;
@@ -97,9 +95,7 @@ void register_runner(py::module_& m) {
         .def(py::init<>())
         .def("run", &run_all, py::arg("jobs"), py::arg("wanted"), py::arg("stop"),
              py::call_guard<py::gil_scoped_release>(),
-             "Run scenes from their starts, each with an approach of its own; the simulations stay as they "
-             "are. "
-             "Returns those that\nwere run before `stop` was set.");
+             "Run scenes from their starts, each with an approach of its own. Returns those that\nwere run before `stop` was set.");
 }
 
 }  // namespace birm3d::bindings

@@ -140,19 +140,22 @@ void register_simulation(py::module_& m) {
                 "state");
         });
 
+    py::class_<Scene>(m, "Scene", "What a run is about (SI, rad): checked, but for its start. Immutable.")
+        .def(py::init([](std::shared_ptr<Vehicle> vehicle,
+                         const std::vector<std::shared_ptr<Barrier>>& barriers, const Approach& approach,
+                         const Settings& settings, std::optional<double> duration) {
+                 return Scene(std::move(vehicle), only(barriers), approach, settings, duration);
+             }),
+             py::kw_only(), py::arg("vehicle"), py::arg("barriers"), py::arg("approach"), py::arg("settings"),
+             py::arg("duration"));
+
     // Reads of one number or column, and what changes the state: each has the simulation to itself.
     py::class_<BoundSimulation>(
         m, "Simulation",
         "A run of one scene (SI, rad). One user at a time: any other gets a BusyError. `with "
         "simulation:` keeps others out\nbetween several calls.")
-        .def(py::init([](std::shared_ptr<Vehicle> vehicle,
-                         const std::vector<std::shared_ptr<Barrier>>& barriers, const Approach& approach,
-                         const Settings& settings, std::optional<double> duration) {
-                 return std::make_unique<BoundSimulation>(
-                     Scene(std::move(vehicle), only(barriers), approach, settings, duration));
-             }),
-             py::kw_only(), py::arg("vehicle"), py::arg("barriers"), py::arg("approach"), py::arg("settings"),
-             py::arg("duration"))
+        .def(py::init([](const Scene& scene) { return std::make_unique<BoundSimulation>(scene); }),
+             py::arg("scene"))
         .def("__enter__", [](BoundSimulation& simulation) { simulation.in_block.take(); })
         .def("__exit__", [](BoundSimulation& simulation, const py::object&, const py::object&,
                             const py::object&) { simulation.in_block.release(); })

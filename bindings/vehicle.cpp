@@ -1,6 +1,8 @@
 #include <pybind11/stl.h>
 
+#include <cstdint>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -10,50 +12,82 @@
 
 namespace birm3d::bindings {
 
+namespace {
+
+using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+
+template <class T>
+std::vector<T> integers(const Integers& array, const char* name) {
+    if (array.ndim() != 1) refuse(std::string(name) + " shape", "(n,)", shape_text(array));
+    std::vector<T> result;
+    for (py::ssize_t i = 0; i < array.shape(0); ++i)
+        result.push_back(static_cast<T>(array.at(i)));
+    return result;
+}
+
+std::vector<Wheel> discs(const InputArray& wheels) {
+    if (wheels.ndim() != 2 || wheels.shape(1) != 4) refuse("wheels shape", "(w, 4)", shape_text(wheels));
+    std::vector<Wheel> result;
+    for (py::ssize_t i = 0; i < wheels.shape(0); ++i)
+        result.push_back({{wheels.at(i, 0), wheels.at(i, 1), wheels.at(i, 2)}, wheels.at(i, 3)});
+    return result;
+}
+
+}  // namespace
+
 void register_vehicle(py::module_& m) {
+    py::class_<TrussMesh>(m, "TrussMesh", "The crushable skin of one rigid body. Immutable.")
+        .def(py::init([](const InputArray& nodes, const InputArray& anchors,
+                         const std::vector<TrussCurve>& curves, const Integers& curve_of,
+                         const InputArray& scale, const InputArray& wheels, double rate_sensitivity,
+                         double dent_reach, const Integers& wheel_of) {
+                 TrussInput trusses{points(nodes, "nodes"), points(anchors, "anchors"), curves,
+                                    integers<std::size_t>(curve_of, "curve_of"), numbers(scale, "scale")};
+                 trusses.rate_sensitivity = rate_sensitivity;
+                 trusses.dent_reach = dent_reach;
+                 trusses.wheel_of = integers<int>(wheel_of, "wheel_of");
+                 return TrussMesh(trusses, discs(wheels));
+             }),
+             py::kw_only(), py::arg("nodes"), py::arg("anchors"), py::arg("curves"), py::arg("curve_of"),
+             py::arg("scale"), py::arg("wheels"), py::arg("rate_sensitivity"), py::arg("dent_reach"),
+             py::arg("wheel_of"),
+             "nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,); wheels (w, "
+             "4): "
+             "centre and radius, m;\n"
+             "rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; wheel_of (n,): "
+             "number of "
+             "the wheel whose tread the node is on, -1 for the skin; empty: all skin.");
     py::class_<Unit>(
         m, "Unit",
         "A rigid body with its crushable skin and wheels; body axes r, s, t, origin at the mass centre.")
-        .def(py::init([](double mass, const InputArray& inertia, const InputArray& nodes,
-                         const InputArray& anchors, const std::vector<TrussCurve>& curves,
-                         const std::vector<std::size_t>& curve_of, const InputArray& scale,
-                         const InputArray& wheels, double mass_center_height, double rate_sensitivity,
-                         double dent_reach, const InputArray& offset, const std::vector<int>& wheel_of,
-                         const InputArray& core) {
-                 TrussInput trusses{points(nodes, "nodes"), points(anchors, "anchors"), curves, curve_of,
-                                    numbers(scale, "scale")};
-                 trusses.rate_sensitivity = rate_sensitivity;
-                 trusses.dent_reach = dent_reach;
-                 trusses.wheel_of = wheel_of;
-                 if (wheels.ndim() != 2 || wheels.shape(1) != 4)
-                     refuse("wheels shape", "(w, 4)", shape_text(wheels));
-                 std::vector<Wheel> discs;
-                 for (py::ssize_t i = 0; i < wheels.shape(0); ++i)
-                     discs.push_back({{wheels.at(i, 0), wheels.at(i, 1), wheels.at(i, 2)}, wheels.at(i, 3)});
+        .def(py::init([](double mass, const InputArray& inertia, const TrussMesh& trusses,
+                         const InputArray& origin, const InputArray& wheels, double mass_center_height,
+                         const InputArray& offset, const InputArray& core) {
                  if (core.ndim() != 2 || core.shape(1) != 6) refuse("core shape", "(k, 6)", shape_text(core));
                  std::vector<Box> boxes;
                  for (py::ssize_t i = 0; i < core.shape(0); ++i)
                      boxes.push_back({{core.at(i, 0), core.at(i, 1), core.at(i, 2)},
                                       {core.at(i, 3), core.at(i, 4), core.at(i, 5)}});
                  const RigidBody body(mass, matrix(inertia, "inertia"));
-                 return Unit(body, trusses, std::move(discs), mass_center_height, vector(offset, "offset"),
-                             std::move(boxes));
+                 return Unit(body, trusses.moved(vector(origin, "origin")), discs(wheels), mass_center_height,
+                             vector(offset, "offset"), std::move(boxes));
              }),
-             py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("nodes"), py::arg("anchors"),
-             py::arg("curves"), py::arg("curve_of"), py::arg("scale"), py::arg("wheels"),
-             py::arg("mass_center_height"), py::arg("rate_sensitivity"), py::arg("dent_reach"),
-             py::arg("offset"), py::arg("wheel_of"), py::arg("core"),
-             "mass kg; inertia (3, 3) kg m^2; nodes, anchors (n, 3) m; curves for the trusses with curve_of "
-             "(n,) and scale (n,);\n"
-             "wheels (w, 4): centre and radius, m; mass_center_height m above the ground;\n"
-             "rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; offset (3,) m of the "
-             "mass centre from the vehicle's reference point along "
-             "the ground; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; "
-             "empty: all skin;\n"
-             "core (k, 6): middles and half edges of the boxes that the rigid body fills, m.")
+             py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("trusses"), py::arg("origin"),
+             py::arg("wheels"), py::arg("mass_center_height"), py::arg("offset"), py::arg("core"),
+             "mass kg; inertia (3, 3) kg m^2; origin (3,) m: of the body axes in those of the trusses, of "
+             "which "
+             "copies share what does not move;\n"
+             "wheels (w, 4): centre and radius, m; mass_center_height m above the ground; offset (3,) m of "
+             "the "
+             "mass centre from the vehicle's reference point along the ground;\n"
+             "core (k, 6): middles and half edges of the boxes that the rigid body fills, body axes, m.")
         .def_property_readonly("n_trusses", [](const Unit& unit) { return unit.trusses.count; })
         .def_property_readonly(
-            "input_index", [](const Unit& unit) { return unit.trusses.input_index; },
+            "input_index",
+            [](const Unit& unit) {
+                return std::vector<std::size_t>(unit.trusses.input_index.begin(),
+                                                unit.trusses.input_index.end());
+            },
             "The caller's number of each truss in the order of the state's columns.");
     py::enum_<JointKind>(m, "JointKind")
         .value("fifth_wheel", JointKind::fifth_wheel)

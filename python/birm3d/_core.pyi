@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Approach', 'Barrier', 'BusyError', 'ContactModel', 'Departure', 'Element', 'EndReason', 'Event', 'ExtremeAttitude', 'ExtremeElementLoads', 'ExtremeEnergy', 'ExtremeFilteredForce', 'ExtremeGroups', 'ExtremeJointLoads', 'ExtremeMotion', 'ExtremeNormalForce', 'ExtremeSegments', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'Ledger', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'along_line', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
+__all__: list[str] = ['Approach', 'Barrier', 'BusyError', 'ContactModel', 'Departure', 'Element', 'EndReason', 'Event', 'ExtremeAttitude', 'ExtremeElementLoads', 'ExtremeEnergy', 'ExtremeFilteredForce', 'ExtremeGroups', 'ExtremeJointLoads', 'ExtremeMotion', 'ExtremeNormalForce', 'ExtremeSegments', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'Ledger', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Scene', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'TrussMesh', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'along_line', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
 class Approach:
     """
     How the vehicle comes (SI, rad). Immutable.
@@ -713,11 +713,17 @@ class Runner:
     """
     def __init__(self) -> None:
         ...
-    def run(self, jobs: collections.abc.Sequence[tuple[Simulation, Approach]], wanted: ExtremeGroups, stop: Stop) -> list[Run]:
+    def run(self, jobs: collections.abc.Sequence[tuple[Scene, Approach]], wanted: ExtremeGroups, stop: Stop) -> list[Run]:
         """
-        Run scenes from their starts, each with an approach of its own; the simulations stay as they are. Returns those that
+        Run scenes from their starts, each with an approach of its own. Returns those that
         were run before `stop` was set.
         """
+class Scene:
+    """
+    What a run is about (SI, rad): checked, but for its start. Immutable.
+    """
+    def __init__(self, *, vehicle: Vehicle, barriers: collections.abc.Sequence[Barrier], approach: Approach, settings: Settings, duration: typing.SupportsFloat | typing.SupportsIndex | None) -> None:
+        ...
 class Segment:
     """
     A free-standing segment of a barrier.
@@ -799,7 +805,7 @@ class Simulation:
         ...
     def __exit__(self, arg0: typing.Any, arg1: typing.Any, arg2: typing.Any) -> None:
         ...
-    def __init__(self, *, vehicle: Vehicle, barriers: collections.abc.Sequence[Barrier], approach: Approach, settings: Settings, duration: typing.SupportsFloat | typing.SupportsIndex | None) -> None:
+    def __init__(self, scene: Scene) -> None:
         ...
     def deflection(self, unit: typing.SupportsInt | typing.SupportsIndex = 0) -> numpy.typing.NDArray[numpy.float64]:
         """
@@ -1053,16 +1059,24 @@ class TrussCurve:
         """
         slope from there on
         """
+class TrussMesh:
+    """
+    The crushable skin of one rigid body. Immutable.
+    """
+    def __init__(self, *, nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex, dent_reach: typing.SupportsFloat | typing.SupportsIndex, wheel_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64]) -> None:
+        """
+        nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,); wheels (w, 4): centre and radius, m;
+        rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; empty: all skin.
+        """
 class Unit:
     """
     A rigid body with its crushable skin and wheels; body axes r, s, t, origin at the mass centre.
     """
-    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex, dent_reach: typing.SupportsFloat | typing.SupportsIndex, offset: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheel_of: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], core: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
+    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], trusses: TrussMesh, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, offset: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], core: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
         """
-        mass kg; inertia (3, 3) kg m^2; nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,);
-        wheels (w, 4): centre and radius, m; mass_center_height m above the ground;
-        rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; offset (3,) m of the mass centre from the vehicle's reference point along the ground; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; empty: all skin;
-        core (k, 6): middles and half edges of the boxes that the rigid body fills, m.
+        mass kg; inertia (3, 3) kg m^2; origin (3,) m: of the body axes in those of the trusses, of which copies share what does not move;
+        wheels (w, 4): centre and radius, m; mass_center_height m above the ground; offset (3,) m of the mass centre from the vehicle's reference point along the ground;
+        core (k, 6): middles and half edges of the boxes that the rigid body fills, body axes, m.
         """
     @property
     def input_index(self) -> list[int]:

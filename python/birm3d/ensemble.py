@@ -13,7 +13,6 @@ from .study import Study
 
 if TYPE_CHECKING:
     from .executors import Finished
-    from .run_store import Outcome
 
 __all__ = ["ensemble"]
 
@@ -69,15 +68,16 @@ def ensemble(
     >>> birm3d.ensemble(scenes, metrics=["vehicle_penetration"])["vehicle_penetration"]
     """
     from .executors import ExecutorError, run_all
+    from .outcome_table import OutcomeTable
 
     wanted = checked_metrics(metrics, joined=True, free=True)
     units = {name: METRIC_UNITS[name] for name in wanted}
-    outcomes: dict[int, Outcome] = {}
+    total = len(simulations) if isinstance(simulations, Sized) else None
+    outcomes = OutcomeTable(len(wanted), total)
 
     def study() -> Study:
         return Study._of(None, (), [], units, outcomes)
 
-    total = len(simulations) if isinstance(simulations, Sized) else None
     todo = ((run, (scene,)) for run, scene in enumerate(simulations))
     try:
         with progress_bar(progress, "ensemble", total) as advance:

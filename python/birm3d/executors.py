@@ -3,8 +3,8 @@
 A run depends on its scene alone, so results are the same bits for every executor, number of threads, chunk
 and order. Other processes get the base scene once a chunk of runs, as bytes that they unpack once.
 
-A chunk is one call of the core, which runs scene after scene in the same memory without the interpreter's
-lock. No histories are kept: metrics are made of the extremes that the core finds.
+The core runs scene after scene in the same memory without the interpreter's lock. No histories are kept:
+metrics are made of the extremes that the core finds.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import math
 import os
 import pickle
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import (
     FIRST_COMPLETED,
     Executor,
@@ -30,11 +30,12 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from . import _core
+from .coarse_skin import warn_if_coarse
 from .ledger import warn_if_open
 from .metrics import extremes_for, metrics_of_outcome
 from .overlap import warn_if_overlapping
 from .run_store import Outcome
-from .scene_parameters import varied
+from .scene_parameters import varied_scene
 from .simulation import APPROACH, Scene, Simulation
 
 __all__ = ["ExecutorError", "Finished", "run_all"]
@@ -208,47 +209,64 @@ def _run_chunk(
     start = time.perf_counter()
     stop = stop or _core.Stop()
     finished: Finished = []
-    jobs: list[tuple[_core.Simulation, _core.Approach]] = []
-    numbers: list[tuple[int, Scene]] = []
-    for run, row in chunk:
-        try:
-            core, scene = _start(simulation, names, row)
-            jobs.append((core, scene.approach))
-            numbers.append((run, scene))
-        except Exception as error:
-            finished.append((run, _failed(error, metrics)))
-    extremes = extremes_for(metrics)
-    # Those that were stopped are missing at the end.
-    for (run, scene), done in zip(numbers, _core.Runner().run(jobs, extremes, stop), strict=False):
-        try:
-            end = done.outcome()
-            warn_if_open(scene, end.ledger)
-            warn_if_overlapping(scene, end.statistics)
-            values = _values(metrics_of_outcome(scene, end, metrics), metrics)
-            reason = _END_REASONS[int(end.end_reason)]
-            outcome = Outcome(values, reason, end.event.outcome, f"{end.state_hash:016x}")
-        except Exception as error:
-            outcome = _failed(error, metrics)
-        finished.append((run, outcome))
+    runner, extremes = _core.Runner(), extremes_for(metrics)
+    for batch in _batches(simulation, names, chunk, finished, metrics):
+        ended = runner.run([(core, scene.approach) for _, scene, core in batch], extremes, stop)
+        # Those that were stopped are missing at the end.
+        for (run, scene, _), done in zip(batch, ended, strict=False):
+            finished.append((run, _outcome(scene, done, metrics)))
+        if len(ended) < len(batch):
+            break
     return finished, time.perf_counter() - start
 
 
-def _start(
-    simulation: Simulation | None, names: tuple[str, ...], row: tuple[Any, ...]
-) -> tuple[_core.Simulation, Scene]:
-    """Return a simulation of the core that has all of a scene but its approach, and the scene."""
+def _outcome(scene: Scene, done: _core.Run, metrics: tuple[str, ...]) -> Outcome:
+    try:
+        end = done.outcome()
+        warn_if_open(scene, end.ledger)
+        warn_if_overlapping(scene, end.statistics)
+        values = _values(metrics_of_outcome(scene, end, metrics), metrics)
+        reason = _END_REASONS[int(end.end_reason)]
+        return Outcome(values, reason, end.event.outcome, f"{end.state_hash:016x}")
+    except Exception as error:
+        return _failed(error, metrics)
+
+
+def _batches(
+    simulation: Simulation | None,
+    names: tuple[str, ...],
+    chunk: Chunk,
+    finished: Finished,
+    metrics: tuple[str, ...],
+) -> Iterator[list[tuple[int, Scene, _core.Scene]]]:
+    """Yield what one call of the core runs; runs whose scene can not be made are `finished`.
+
+    Where all that varies is how the vehicle comes, that is the chunk. Other scenes are held one at a time:
+    each has a vehicle or a barrier of its own.
+    """
     if simulation is not None and all(name in APPROACH for name in names):
-        numbers = {name: float(value) for name, value in zip(names, row, strict=True)}
-        return simulation._core, simulation.scene.approached(numbers)
-    made = _scene(simulation, names, row)
-    return made._core, made.scene
+        base = simulation.scene
+        core = base.core_scene()
+        rows = ((run, dict(zip(names, row, strict=True))) for run, row in chunk)
+        yield [(run, base.approached(numbers), core) for run, numbers in rows]
+        return
+    for run, row in chunk:
+        try:
+            scene = _scene(simulation, names, row)
+            core = scene.core_scene()
+            if simulation is not None:  # of a scene that was given it was told when that was made
+                warn_if_coarse(scene)
+        except Exception as error:
+            finished.append((run, _failed(error, metrics)))
+        else:
+            yield [(run, scene, core)]
 
 
-def _scene(simulation: Simulation | None, names: tuple[str, ...], row: tuple[Any, ...]) -> Simulation:
+def _scene(simulation: Simulation | None, names: tuple[str, ...], row: tuple[Any, ...]) -> Scene:
     if simulation is not None:
-        return varied(simulation, dict(zip(names, row, strict=True)))
+        return varied_scene(simulation.scene, dict(zip(names, row, strict=True)))
     (given,) = row
-    return given if isinstance(given, Simulation) else given()
+    return (given if isinstance(given, Simulation) else given()).scene
 
 
 def _values(found: dict[str, float], metrics: tuple[str, ...]) -> tuple[float, ...]:

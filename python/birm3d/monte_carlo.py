@@ -65,7 +65,7 @@ def monte_carlo(
     return run_study(
         simulation,
         tuple(distributions),
-        sample(distributions, n, seed).tolist(),
+        sample(distributions, n, seed),
         metrics=metrics,
         executor=executor,
         store=store,

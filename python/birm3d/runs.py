@@ -11,8 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ._version import __version__
+from .float_rows import FloatRows
 from .metrics import JOINT_METRICS, METRIC_UNITS, SEGMENT_METRICS
 from .progress import progress_bar
 from .scene_parameters import value_of, varied
@@ -21,7 +23,7 @@ from .study import Study
 
 if TYPE_CHECKING:
     from .executors import Finished
-    from .run_store import Outcome, RunStore
+    from .run_store import RunStore
 
 __all__ = ["StudyInterrupted", "StudyStoppedError", "checked_metrics", "run_study"]
 
@@ -69,7 +71,7 @@ class StudyInterrupted(_Unfinished, KeyboardInterrupt):
 def run_study(
     simulation: Simulation,
     names: Sequence[str],
-    rows: Sequence[Sequence[Any]],
+    rows: Sequence[Sequence[Any]] | npt.NDArray[np.float64],
     *,
     metrics: Sequence[str] | None = None,
     executor: Any = None,
@@ -121,6 +123,7 @@ def run_study(
     # What only a study needs, such as sqlite3 and multiprocessing, is loaded by the first one.
     from .executors import ExecutorError, run_all
     from .fingerprint import fingerprint
+    from .outcome_table import OutcomeTable
     from .run_store import RunStore, StoreError
 
     names = tuple(names)
@@ -128,7 +131,11 @@ def run_study(
     barrier = simulation.scene.barrier
     free = (barrier is not None and bool(barrier.core.segments)) or "barrier" in names
     wanted = checked_metrics(metrics, joined, free)
-    table = [tuple(_plain(value) for value in row) for row in rows]
+    table: Sequence[tuple[Any, ...]]
+    if isinstance(rows, np.ndarray):
+        table = FloatRows(np.asarray(rows, float))
+    else:
+        table = [tuple(_plain(value) for value in row) for row in rows]
     _check_rows(simulation, names, table)
     units = {name: METRIC_UNITS[name] for name in wanted}
     study = partial(Study._of, simulation.scene, names, table, units)
@@ -142,7 +149,7 @@ def run_study(
             new.add(outcomes)
 
     kept = None if store is None else open_store(store)
-    outcomes: dict[int, Outcome] = {}
+    outcomes = OutcomeTable(len(wanted), len(table))
     where = f"kept in {str(store)!r}" if store is not None else "kept in the error's 'study'"
     try:
         if kept is not None:
@@ -156,8 +163,9 @@ def run_study(
                     kept.add(new)
                 advance(len(new))
 
-            todo = [(run, row) for run, row in enumerate(table) if run not in outcomes]
-            run_all(simulation, names, wanted, todo, len(todo), executor, finish)
+            # Asked for when they are needed: none is finished before.
+            todo = ((run, row) for run, row in enumerate(table) if run not in outcomes)
+            run_all(simulation, names, wanted, todo, len(table) - len(outcomes), executor, finish)
     except StoreError as full:
         cause = full.__cause__
         stored = len(outcomes) - (0 if kept is None else len(kept.lost))

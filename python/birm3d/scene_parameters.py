@@ -36,7 +36,15 @@ from .simulation import APPROACH, Scene, Simulation
 from .units import quantity_in, si
 from .vehicle import TRUSS_LAW, Vehicle, Zone
 
-__all__ = ["in_si", "parameter_names", "quantity_of", "unit_of", "value_of", "varied"]
+__all__ = [
+    "in_si",
+    "parameter_names",
+    "quantity_of",
+    "unit_of",
+    "value_of",
+    "varied",
+    "varied_scene",
+]
 
 _VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity", "dent_reach")
 _UNITS = {
@@ -166,18 +174,31 @@ def varied(simulation: Simulation, changes: Mapping[str, Any]) -> Simulation:
     ValueError
         If a name is unknown or a value is out of range; the message names it.
     """
+    return Simulation.from_scene(varied_scene(simulation.scene, changes))
+
+
+def varied_scene(base: Scene, changes: Mapping[str, Any]) -> Scene:
+    """Return a scene with some parameters changed, for :meth:`Simulation.from_scene` or a runner.
+
+    Raises
+    ------
+    ValueError
+        If a name is unknown or a part can not be made; numbers of the scene itself are not checked yet.
+    """
     changes = {name: in_si(name, value) for name, value in changes.items()}
-    given = {field.name: getattr(simulation.scene, field.name) for field in dataclasses.fields(Scene)}
+    given = {field.name: getattr(base, field.name) for field in dataclasses.fields(Scene)}
     whole = {name: value for name, value in changes.items() if name in given}
     given.update(whole)
     if isinstance(given["vehicle"], str):
         given["vehicle"] = _preset(given["vehicle"])
-    if len(whole) == len(changes):
-        return _build(given)
-    if not whole.keys().isdisjoint(("vehicle", "barrier", "settings")):
-        _build(given)  # refuses what is none, before its parts are looked at
     scene = Scene(**given)
-    known = set(_names(scene))
+    if len(whole) == len(changes):
+        return scene
+    if not whole.keys().isdisjoint(("vehicle", "barrier", "settings")):
+        scene.core_scene()  # refuses what is none, before its parts are looked at
+        known = frozenset(_names(scene))
+    else:
+        known = _known(base)
     groups: dict[str, dict[str, Any]] = {}
     for name, value in changes.items():
         if name in whole:
@@ -191,15 +212,24 @@ def varied(simulation: Simulation, changes: Mapping[str, Any]) -> Simulation:
     if "settings" in groups:
         given["settings"] = dataclasses.replace(given["settings"], **groups["settings"])
     given["vehicle"] = _varied_vehicle(given["vehicle"], groups)
-    return _build(given)
+    return Scene(**given)
+
+
+_last_known: list[tuple[Scene, frozenset[str]]] = []
+
+
+def _known(base: Scene) -> frozenset[str]:
+    """Names of the scene's numbers; those of the last scene are remembered, as a study asks for every run."""
+    for scene, names in _last_known[:1]:
+        if scene is base:
+            return names
+    names = frozenset(_names(base))
+    _last_known[:1] = [(base, names)]
+    return names
 
 
 # Reading and meshing a file takes longer than many a run; vehicles are immutable.
 _preset = lru_cache(maxsize=16)(Vehicle.preset)
-
-
-def _build(given: Mapping[str, Any]) -> Simulation:
-    return Simulation.from_scene(Scene(**given))
 
 
 def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -> Vehicle:

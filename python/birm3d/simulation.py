@@ -57,7 +57,15 @@ class Scene:
 
     def start(self) -> _core.Simulation:
         """Return the run of the core at t = 0, checked."""
-        return _core.Simulation(
+        return _core.Simulation(self.core_scene())
+
+    def core_scene(self) -> _core.Scene:
+        """Return the same scene for the core, checked but for its start."""
+        if not isinstance(self.vehicle, Vehicle):
+            raise TypeError(f"vehicle must be a birm3d.Vehicle, got {type(self.vehicle).__name__}")
+        if self.barrier is not None and not isinstance(self.barrier, Barrier):
+            raise TypeError(f"barrier must be a birm3d.Barrier or None, got {type(self.barrier).__name__}")
+        return _core.Scene(
             vehicle=self.vehicle.core,
             barriers=[] if self.barrier is None else [self.barrier.core],
             approach=self.approach,
@@ -163,11 +171,6 @@ class Simulation:
         self._begin(scene)
 
     def _begin(self, scene: Scene) -> None:
-        vehicle, barrier = scene.vehicle, scene.barrier
-        if not isinstance(vehicle, Vehicle):
-            raise TypeError(f"vehicle must be a birm3d.Vehicle, got {type(vehicle).__name__}")
-        if barrier is not None and not isinstance(barrier, Barrier):
-            raise TypeError(f"barrier must be a birm3d.Barrier or None, got {type(barrier).__name__}")
         self._scene = scene
         self._core = scene.start()
         self._run_time = 0.0

@@ -25,8 +25,8 @@ from .zone import KNEE, TRUSS_LAW, Zone, positive
 
 if TYPE_CHECKING:
     from .articulated import ArticulatedVehicle, Joint
-    from .mesher import ExteriorMesh
     from .vehicle_file import VehicleFile
+    from .vehicle_shape import VehicleShape
 
 __all__ = ["TRUSS_LAW", "Vehicle", "Zone"]
 
@@ -105,7 +105,7 @@ class Vehicle:
     # What made the vehicle: laws per truss (m, N, N/m), or a file with its mesh density.
     _truss_laws: Floats | None = None
     _file: VehicleFile | None = None
-    _mesh: ExteriorMesh | None = dataclasses.field(default=None, compare=False)
+    _shape: VehicleShape | None = dataclasses.field(default=None, compare=False)
     _mesh_density: float = 1.0
     _height: float | None = None  # of the mass centre, where one was asked for, in place of the solids' [m]
     _draft: bool = False  # between two changes: the core is not built yet, see draft()
@@ -324,11 +324,11 @@ class Vehicle:
     def _assembled(self, mass: float, height: float | None) -> Vehicle:
         """Return the vehicle of the same file and mesh with another mass and height of the mass centre."""
         assert self._file is not None
-        assert self._mesh is not None  # made together with _file
+        assert self._shape is not None  # made together with _file
         return self._anew(
             _assemble(
                 self._file,
-                self._mesh,
+                self._shape,
                 mass,
                 self._mesh_density,
                 self.zones,
@@ -440,9 +440,12 @@ class Vehicle:
         if shell.all():
             return self
         columns = ("nodes", "anchors", "area", "zone_of_node", "wheel_of_node")
-        return dataclasses.replace(
-            self, _built=None, **{name: getattr(self, name)[shell] for name in columns}
-        )
+        changes = {name: getattr(self, name)[shell] for name in columns}
+        if self._shape is not None:
+            shape = self._shape.without_treads
+            shared = ("area", "zone_of_node", "wheel_of_node")
+            changes.update({name: getattr(shape, name) for name in shared}, _shape=shape)
+        return dataclasses.replace(self, _built=None, **changes)
 
     def with_mesh_density(self, mesh_density: float) -> Vehicle:
         """Return the vehicle with another number of shell elements, relative to its file's choice."""
@@ -690,6 +693,8 @@ class Vehicle:
         """Distance between neighbours of the skin [m], see :func:`birm3d.coarse_skin.node_spacing`."""
         from .coarse_skin import node_spacing
 
+        if self._shape is not None and self._is_shape():
+            return self._shape.node_spacing
         return node_spacing(self.nodes[self.wheel_of_node < 0])
 
     @cached_property
@@ -699,6 +704,24 @@ class Vehicle:
 
     def _core_unit(self, offset: Floats) -> _core.Unit:
         """Return the rigid body for the core; offset of its mass centre along the ground (3,) [m]."""
+        if self._shape is not None and self._is_shape():
+            trusses = self._shape.trusses(self.zones, self.rate_sensitivity, self.dent_reach)
+            origin = self.center_of_mass
+        else:
+            trusses, origin = self._core_trusses(), np.zeros(3)
+        return _core.Unit(
+            mass=self.mass,
+            inertia=self.inertia,
+            trusses=trusses,
+            origin=origin,
+            wheels=self.wheels,
+            mass_center_height=self.mass_center_height,
+            offset=offset,
+            core=self._core_boxes(),
+        )
+
+    def _core_trusses(self) -> _core.TrussMesh:
+        """Return the trusses for the core, body axes."""
         if self._truss_laws is not None:
             laws, which = self._truss_laws[:1], np.zeros(self.n_nodes, int)
             if not (self._truss_laws == laws).all():  # sorting them takes longer than a short run
@@ -711,21 +734,28 @@ class Vehicle:
         else:
             curves = [zone.curve for zone in self.zones.values()]
             curve_of = self.zone_of_node
-        return _core.Unit(
-            mass=self.mass,
-            inertia=self.inertia,
+        return _core.TrussMesh(
             nodes=self.nodes,
             anchors=self.anchors,
             curves=curves,
-            curve_of=curve_of.tolist(),
+            curve_of=curve_of,
             scale=self.area,
             wheels=self.wheels,
-            mass_center_height=self.mass_center_height,
             rate_sensitivity=self.rate_sensitivity,
             dent_reach=self.dent_reach,
-            offset=offset,
-            wheel_of=self.wheel_of_node.tolist(),
-            core=self._core_boxes(),
+            wheel_of=self.wheel_of_node,
+        )
+
+    def _is_shape(self) -> bool:
+        """Whether nodes and anchors are those of the shape, seen from the mass centre."""
+        shape = self._shape
+        return (
+            shape is not None
+            and self.area is shape.area
+            and self.zone_of_node is shape.zone_of_node
+            and self.wheel_of_node is shape.wheel_of_node
+            and np.array_equal(self.nodes, shape.nodes - self.center_of_mass)
+            and np.array_equal(self.anchors, shape.anchors - self.center_of_mass)
         )
 
     def _core_boxes(self) -> Floats:
@@ -798,16 +828,16 @@ def _from_file(
     draft: bool = False,
     load_density: float | None = None,
 ) -> Vehicle:
-    from .mesher import build_mesh
+    from .vehicle_shape import shape_of
 
     mass = file.gvw_kg if gvw is None else positive("gvw", gvw)
-    mesh = build_mesh(file, mesh_density)
-    return _assemble(file, mesh, mass, mesh_density, zones, height, draft, load_density)
+    shape = shape_of(file, float(mesh_density))
+    return _assemble(file, shape, mass, mesh_density, zones, height, draft, load_density)
 
 
 def _assemble(
     file: VehicleFile,
-    mesh: ExteriorMesh,
+    shape: VehicleShape,
     mass: float,
     mesh_density: float,
     zones: Mapping[str, Zone] | None,
@@ -815,34 +845,31 @@ def _assemble(
     draft: bool,
     load_density: float | None,
 ) -> Vehicle:
-    from .tread import build_tread
-
     properties = _core.mass_properties(*solids_at(file, mass, load_density))
     center = np.array(properties.center_of_mass)
     inertia = np.array(properties.inertia)
     if height is not None:
         inertia = stretched_inertia(inertia, height / center[2])
         center[2] = height
-    wheels = np.array([[*wheel.center_m, wheel.radius_m] for wheel in file.wheels], float).reshape(-1, 4)
+    wheels = shape.wheels.copy()
     wheels[:, :3] -= center
-    tread = build_tread(file, mesh_density)
     return Vehicle(
         name=file.name,
         mass=mass,  # the solids' up to rounding, which would grow with every change
         center_of_mass=center,
         inertia=inertia,
-        nodes=np.concatenate([mesh.nodes, tread.nodes]) - center,
-        anchors=np.concatenate([mesh.anchors, tread.anchors]) - center,
-        area=np.concatenate([mesh.area, tread.area]),
-        zone_of_node=np.concatenate([mesh.zone, tread.zone]),
-        wheel_of_node=np.concatenate([np.full(len(mesh.nodes), -1), tread.wheel]),
-        quads=np.array(mesh.quads, np.int64),
+        nodes=shape.nodes - center,
+        anchors=shape.anchors - center,
+        area=shape.area,
+        zone_of_node=shape.zone_of_node,
+        wheel_of_node=shape.wheel_of_node,
+        quads=shape.quads,
         wheels=wheels,
         mass_center_height=float(center[2]),
         zones=zones if zones is not None else {zone.name: Zone._from_file(zone) for zone in file.zones},
         dent_reach=0.0 if file.dents is None else file.dents.reach_m,
         _file=file,
-        _mesh=mesh,
+        _shape=shape,
         _mesh_density=mesh_density,
         _height=height,
         _draft=draft,

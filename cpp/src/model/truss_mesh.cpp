@@ -36,16 +36,17 @@ void require_valid(const TrussInput& input, std::size_t wheels) {
     for (std::size_t c = 0; c < input.curve.size(); ++c)
         require_valid(input.curve[c], input.curve.size() == 1 ? "" : "curve[" + std::to_string(c) + "] ");
     for (std::size_t i = 0; i < n; ++i) {
-        const std::string at = "[" + std::to_string(i) + "]";
-        if (!input.node[i].allFinite()) refuse("nodes" + at, "finite", "a coordinate that is not");
-        if (!input.anchor[i].allFinite()) refuse("anchors" + at, "finite", "a coordinate that is not");
+        const auto at = [i](const char* name) { return name + ("[" + std::to_string(i) + "]"); };
+        if (!input.node[i].allFinite()) refuse(at("nodes"), "finite", "a coordinate that is not");
+        if (!input.anchor[i].allFinite()) refuse(at("anchors"), "finite", "a coordinate that is not");
         const double length = (input.node[i] - input.anchor[i]).norm();
         if (!(length >= tolerance::truss_length))
-            refuse("truss length" + at, ">= " + to_text(tolerance::truss_length) + " m", length);
+            refuse(at("truss length"), ">= " + to_text(tolerance::truss_length) + " m", length);
         if (input.curve_of[i] >= input.curve.size())
-            refuse("curve_of" + at, "< " + std::to_string(input.curve.size()),
+            refuse(at("curve_of"), "< " + std::to_string(input.curve.size()),
                    static_cast<double>(input.curve_of[i]));
-        require_not_negative(("scale" + at).c_str(), input.scale[i]);
+        if (!(input.scale[i] >= 0.0 && std::isfinite(input.scale[i])))
+            require_not_negative(at("scale").c_str(), input.scale[i]);
     }
 }
 
@@ -135,7 +136,7 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
         for (std::size_t i = 0; i < part.size(); i += lanes)
             first.push_back(input_index.size() + i);
         cut_into_blocks(site, part);  // neighbours together
-        input_index.insert(input_index.end(), part.begin(), part.end());
+        input_index.fill().insert(input_index.end(), part.begin(), part.end());
         if (skin > 0) continue;
         skin = input_index.size();
         skin_blocks = first.size();
@@ -146,7 +147,7 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
 
     anchors = Box::around(skin, [&](std::size_t i) { return input.anchor[input_index[i]]; });
     block.resize(blocks);
-    hinge.resize(blocks * hinges);
+    hinge.fill().resize(blocks * hinges);
     for (std::size_t b = 0; b < blocks; ++b)
         fill_block(input, b);
     find_panels();
@@ -188,18 +189,15 @@ void TrussMesh::find_panels() {
     }
 }
 
-void TrussMesh::add_stiffness(const TrussBlock& trusses) {
-    double count_of_block = 0.0;
+StiffnessMoments stiffness_of(const TrussBlock& trusses) {
     StiffnessMoments sum;
     for (std::size_t i = 0; i < lanes; ++i) {
         const double k = trusses.k_unloading[i];
         const Vec3 r(trusses.node_x[i], trusses.node_y[i], trusses.node_z[i]);
-        if (k > 0.0) count_of_block += 1.0;
         sum.total += k;
         sum.second += k * r * r.transpose();
     }
-    pushable.push_back(count_of_block);
-    moments.push_back(sum);
+    return sum;
 }
 
 void TrussMesh::fill_block(const TrussInput& input, std::size_t b) {
@@ -207,7 +205,10 @@ void TrussMesh::fill_block(const TrussInput& input, std::size_t b) {
     for (std::size_t i = 0; i < nodes; ++i)
         fill_lane(input, input_index[first[b] + i], b, i);
     if (nodes < lanes) pad(input, b);
-    add_stiffness(block[b]);
+    const Lanes& k = block[b].k_unloading;
+    pushable.push_back(
+        static_cast<double>(std::count_if(k.begin(), k.end(), [](double each) { return each > 0.0; })));
+    moments.push_back(stiffness_of(block[b]));
     node_box.push_back(box_around(block[b].node_x, block[b].node_y, block[b].node_z));
     anchor_box.push_back(box_around(block[b].anchor_x, block[b].anchor_y, block[b].anchor_z));
 }
@@ -243,7 +244,7 @@ void TrussMesh::fill_lane(const TrussInput& input, std::size_t source, std::size
     to.compliance[i] = to.k_unloading[i] > 0.0 ? 1.0 / to.k_unloading[i] : 0.0;
     double slope = 0.0;
     for (std::size_t j = 0; j < hinges; ++j) {
-        Hinge& h = hinge[b * hinges + j];
+        Hinge& h = hinge.fill()[b * hinges + j];
         const bool used = j < curve.slope.size();
         h.deflection[i] = used ? curve.deflection[j] : 0.0;
         h.slope_change[i] = used ? scale * (curve.slope[j] - slope) : 0.0;

@@ -38,8 +38,12 @@ RigidBody::RigidBody(double mass_, const Mat3& inertia_)
 
 Unit::Unit(const RigidBody& body_, const TrussInput& trusses_, std::vector<Wheel> wheels_,
            double mass_center_height_, const Vec3& offset_, std::vector<Box> core_)
+    : Unit(body_, TrussMesh(trusses_, wheels_), wheels_, mass_center_height_, offset_, std::move(core_)) {}
+
+Unit::Unit(const RigidBody& body_, TrussMesh trusses_, std::vector<Wheel> wheels_, double mass_center_height_,
+           const Vec3& offset_, std::vector<Box> core_)
     : body(body_),
-      trusses(trusses_, wheels_),
+      trusses(std::move(trusses_)),
       wheels(std::move(wheels_)),
       mass_center_height(require_finite("mass_center_height", mass_center_height_)),
       offset(offset_),

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from .._version import __version__
 from ..event import OUTCOMES
+from ..float_rows import FloatRows
 from ..frozen_mapping import FrozenMapping
 from ..scene_parameters import unit_of
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from ..run_store import Outcome
+    from ..outcome_table import OutcomeTable
     from ..simulation import Scene, Simulation
 
 __all__ = ["Study", "Summary"]
@@ -110,26 +111,28 @@ class Study:
         names: Sequence[str],
         rows: Sequence[Sequence[Any]],
         metric_units: Mapping[str, str],
-        outcomes: Mapping[int, Outcome],
+        outcomes: OutcomeTable,
         grid: Mapping[str, Sequence[Any]] | None = None,
     ) -> Study:
-        runs = sorted(outcomes)
-        table = np.array([outcomes[run].metrics for run in runs]).reshape(len(runs), len(metric_units))
-        given = {name: [rows[run][i] for run in runs] for i, name in enumerate(names)}
-        values = {name: _column(column) for name, column in given.items()}
+        runs = outcomes.runs
+        values = {name: _column_of(rows, runs, i) for i, name in enumerate(names)}
         return cls(
             vehicle="ensemble" if scene is None else scene.vehicle.name,
             run=runs,
             parameters=values,
-            metrics=dict(zip(metric_units, table.T, strict=True)),
-            outcome=[outcomes[run].outcome for run in runs],
-            end_reason=[outcomes[run].end_reason for run in runs],
-            state_hash=[outcomes[run].state_hash for run in runs],
-            error=[outcomes[run].error for run in runs],
+            metrics=dict(zip(metric_units, outcomes.metrics(), strict=True)),
+            outcome=outcomes.outcomes(),
+            end_reason=outcomes.end_reasons(),
+            state_hash=outcomes.state_hashes(),
+            error=outcomes.errors(),
             units={**{name: unit_of(name) for name in names}, **metric_units},
             grid=None if grid is None else {name: _column(values).tolist() for name, values in grid.items()},
             scene=scene,
-            given={name: column for name, column in given.items() if values[name].dtype.kind != "f"},
+            given={
+                name: [rows[run][i] for run in runs.tolist()]
+                for i, name in enumerate(names)
+                if values[name].dtype.kind != "f"
+            },
         )
 
     @staticmethod
@@ -349,7 +352,17 @@ def _column(values: Sequence[Any]) -> npt.NDArray[Any]:
     return np.array([str(getattr(value, "name", value)) for value in values], dtype=object)
 
 
+def _column_of(rows: Sequence[Sequence[Any]], runs: npt.NDArray[np.int64], i: int) -> npt.NDArray[Any]:
+    """Return parameter `i` of some runs."""
+    if isinstance(rows, FloatRows):
+        column: npt.NDArray[np.float64] = rows.array[runs, i]
+        return column
+    return _column([rows[run][i] for run in runs.tolist()])
+
+
 def _read_only(values: npt.ArrayLike, kind: Any = None) -> npt.NDArray[Any]:
+    if isinstance(values, np.ndarray) and not values.flags.writeable and kind in (None, values.dtype):
+        return values  # nobody changes it: columns of a million runs are not copied
     array = np.array(values, kind)
     array.setflags(write=False)
     return array

@@ -14,6 +14,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,20 @@
 #include "birm3d/model/wheel.hpp"
 
 namespace birm3d {
+
+// A column that copies of a mesh share: filled once, before there is a copy.
+template <class T>
+class SharedColumn {
+  public:
+    std::vector<T>& fill() { return *values_; }
+    const T& operator[](std::size_t i) const { return (*values_)[i]; }
+    std::size_t size() const { return values_->size(); }
+    auto begin() const { return values_->cbegin(); }
+    auto end() const { return values_->cend(); }
+
+  private:
+    std::shared_ptr<std::vector<T>> values_ = std::make_shared<std::vector<T>>();
+};
 
 // What a caller gives: one curve for many trusses, scaled by each truss's tributary area (or by 1).
 struct TrussInput {
@@ -65,6 +80,9 @@ struct alignas(64) TrussBlock {
     Lanes panel;                         // number of its panel
 };
 
+// Of the trusses of a block.
+StiffnessMoments stiffness_of(const TrussBlock& trusses);
+
 // One slope change of each truss's envelope.
 struct alignas(64) Hinge {
     Lanes deflection;    // m
@@ -82,6 +100,10 @@ struct TrussMesh {
     // Refuses what is not as TrussInput says; `wheels` are those that wheel_of counts.
     explicit TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels = {});
 
+    // The same trusses seen from `origin`, a point of these axes. Numbers and order are those that the constructor would
+    // make of the moved input, up to rounding; what does not change is shared.
+    TrussMesh moved(const Vec3& origin) const;
+
     std::size_t count = 0;        // trusses
     std::size_t skin = 0;         // of the skin, before those of tyres
     std::size_t blocks = 0;       // blocks of `lanes`
@@ -93,7 +115,7 @@ struct TrussMesh {
 
     std::vector<std::size_t> first;  // (blocks + 1) truss of each block, and the end
     std::vector<TrussBlock> block;   // (blocks)
-    std::vector<Hinge> hinge;        // (blocks * hinges), a block's hinges together
+    SharedColumn<Hinge> hinge;       // (blocks * hinges), a block's hinges together
 
     std::vector<double> pushable;           // (blocks) trusses that have a stiffness
     std::vector<StiffnessMoments> moments;  // (blocks) of all of them
@@ -105,7 +127,7 @@ struct TrussMesh {
     // (blocks) bit by bit: which panels have nodes there? The bit after them: treads.
     std::vector<std::uint8_t> panels_of;
     std::vector<std::uint8_t> panels_of_group;  // (groups) the same
-    std::vector<std::size_t> input_index;       // (count) the caller's number of each truss
+    SharedColumn<std::size_t> input_index;      // (count) the caller's number of each truss
 
     // Place of a truss in the blocks: padding stands between some.
     std::size_t slot(std::size_t truss) const {
@@ -133,8 +155,8 @@ struct TrussMesh {
 
   private:
     void fill_block(const TrussInput& input, std::size_t b);
-    void add_stiffness(const TrussBlock& trusses);
     void find_panels();
+    void move_block(std::size_t b, const Vec3& origin);
     void find_tread(const TrussInput& input, const std::vector<Wheel>& wheels);
     void pad(const TrussInput& input, std::size_t b);
     void fill_lane(const TrussInput& input, std::size_t source, std::size_t b, std::size_t i);

@@ -25,6 +25,8 @@ struct RigidBody {
 struct Unit {
     Unit(const RigidBody& body, const TrussInput& trusses, std::vector<Wheel> wheels,
          double mass_center_height, const Vec3& offset = Vec3::Zero(), std::vector<Box> core = {});
+    Unit(const RigidBody& body, TrussMesh trusses, std::vector<Wheel> wheels, double mass_center_height,
+         const Vec3& offset = Vec3::Zero(), std::vector<Box> core = {});
 
     RigidBody body;
     TrussMesh trusses;

@@ -1,0 +1,131 @@
+"""What vehicles of the same file share: the mesh, and its trusses for the core.
+
+Another mass moves the mass centre and nothing else: the trusses are cut into blocks once, and moved.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Mapping
+from functools import cached_property, lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from .mesher import build_mesh
+from .tread import build_tread
+from .vehicle_file import VehicleFile
+from .zone import Zone
+
+__all__ = ["VehicleShape", "shape_of"]
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+_SHAPES = 16  # files and mesh densities that are remembered
+_LAWS = 4  # of each, sets of laws for which the core has the trusses
+
+
+class VehicleShape:
+    """Nodes and trusses of a vehicle's file at a mesh density; immutable, in file axes.
+
+    Attributes
+    ----------
+    nodes, anchors, area, zone_of_node, wheel_of_node, quads
+        As :class:`birm3d.Vehicle` has them, but in the axes of the file.
+    wheels : ndarray, shape (w, 4)
+        Centres and radius [m].
+    """
+
+    def __init__(
+        self,
+        nodes: Floats,
+        anchors: Floats,
+        area: Floats,
+        zone_of_node: Ints,
+        wheel_of_node: Ints,
+        quads: Ints,
+        wheels: Floats,
+    ) -> None:
+        self.nodes = nodes
+        self.anchors = anchors
+        self.area = area
+        self.zone_of_node = zone_of_node
+        self.wheel_of_node = wheel_of_node
+        self.quads = quads
+        self.wheels = wheels
+        for array in (nodes, anchors, area, zone_of_node, wheel_of_node, quads, wheels):
+            array.setflags(write=False)
+        self._trusses: OrderedDict[tuple[object, ...], _core.TrussMesh] = OrderedDict()
+
+    @cached_property
+    def without_treads(self) -> VehicleShape:
+        """The same without the nodes by which tyres meet barriers."""
+        shell = self.wheel_of_node < 0
+        return VehicleShape(
+            nodes=self.nodes[shell],
+            anchors=self.anchors[shell],
+            area=self.area[shell],
+            zone_of_node=self.zone_of_node[shell],
+            wheel_of_node=self.wheel_of_node[shell],
+            quads=self.quads,
+            wheels=self.wheels,
+        )
+
+    @cached_property
+    def node_spacing(self) -> float:
+        """Distance between neighbours of the skin [m], see :func:`birm3d.coarse_skin.node_spacing`."""
+        from .coarse_skin import node_spacing
+
+        return node_spacing(self.nodes[self.wheel_of_node < 0])
+
+    def trusses(
+        self, zones: Mapping[str, Zone], rate_sensitivity: float, dent_reach: float
+    ) -> _core.TrussMesh:
+        """Return the trusses for the core, in file axes, with these laws; the last few are remembered."""
+        key = (*zones.items(), rate_sensitivity, dent_reach)
+        known = self._trusses.get(key)
+        if known is None:
+            known = _core.TrussMesh(
+                nodes=self.nodes,
+                anchors=self.anchors,
+                curves=[zone.curve for zone in zones.values()],
+                curve_of=self.zone_of_node,
+                scale=self.area,
+                wheels=self.wheels,
+                rate_sensitivity=rate_sensitivity,
+                dent_reach=dent_reach,
+                wheel_of=self.wheel_of_node,
+            )
+            self._trusses[key] = known
+            while len(self._trusses) > _LAWS:
+                # Another thread may have been faster.
+                self._trusses.pop(next(iter(self._trusses)), None)
+        return known
+
+    def __reduce__(self) -> tuple[object, ...]:
+        arrays = (self.nodes, self.anchors, self.area, self.zone_of_node, self.wheel_of_node)
+        return (VehicleShape, (*arrays, self.quads, self.wheels))
+
+
+@lru_cache(maxsize=_SHAPES)
+def shape_of(file: VehicleFile, mesh_density: float) -> VehicleShape:
+    """Return the shape of a file; equal files have one.
+
+    Raises
+    ------
+    ValueError
+        What :func:`birm3d.mesher.build_mesh` and :func:`birm3d.tread.build_tread` raise.
+    """
+    mesh, tread = build_mesh(file, mesh_density), build_tread(file, mesh_density)
+    wheels = np.array([[*wheel.center_m, wheel.radius_m] for wheel in file.wheels], float).reshape(-1, 4)
+    return VehicleShape(
+        nodes=np.concatenate([mesh.nodes, tread.nodes]),
+        anchors=np.concatenate([mesh.anchors, tread.anchors]),
+        area=np.concatenate([mesh.area, tread.area]),
+        zone_of_node=np.concatenate([mesh.zone, tread.zone]),
+        wheel_of_node=np.concatenate([np.full(len(mesh.nodes), -1, np.int64), tread.wheel]),
+        quads=np.array(mesh.quads, np.int64),
+        wheels=wheels,
+    )
