@@ -326,7 +326,7 @@ def test_the_mass_centre_rises_with_the_load(truck: Vehicle) -> None:
 def test_next_to_no_goods_are_no_error(truck: Vehicle) -> None:
     empty = truck.with_payload(0.0)
     for payload in (1e-12, 1e-6, 1e-3):
-        loaded = truck.with_payload(payload)
+        loaded = truck.with_payload(f"{payload} kg")
         assert loaded.mass_center_height == pytest.approx(empty.mass_center_height, abs=1e-6)
         assert loaded.inertia == pytest.approx(empty.inertia, rel=1e-5, abs=1e-6)
 
