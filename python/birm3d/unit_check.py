@@ -45,7 +45,7 @@ class Usual(NamedTuple):
     radians: bool = False
 
 
-_SIZE = Usual(0.01, 20.0, "m", "mm")
+_SIZE = Usual(0.001, 20.0, "m", "mm")
 _LONG = Usual(0.05, 1000.0, "m", "mm")
 _TURN = Usual(0.0, math.inf, "deg", "rad", radians=True)
 

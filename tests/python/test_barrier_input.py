@@ -143,4 +143,4 @@ def test_counts_that_can_not_be_held() -> None:
     with pytest.raises(ValueError, match="count must make at most 10,000 bollards with 200 rows, got 100"):
         Barrier.bollards(count=100, rows=200)
     with pytest.raises(ValueError, match="segments must be at most 10,000, got 1000000"):
-        Barrier.jersey(length=1e6, segments=1_000_000)
+        Barrier.jersey(length="1e6 m", segments=1_000_000)

@@ -162,7 +162,7 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "standoff in mm": (lambda: at(standoff=500), r"standoff = 500 m .* 0 to 200 m"),
     "diameter in mm": (lambda: Barrier.pole(diameter=320), r"diameter = 320 m .* 0.01 to 5 m"),
     "spacing in mm": (lambda: Barrier.bollards(spacing=1200), r"spacing = 1200 m .* 0.01 to 100 m"),
-    "height in mm": (lambda: Barrier.bollards(height=900), r"height = 900 m .* 0.01 to 20 m"),
+    "height in mm": (lambda: Barrier.bollards(height=900), r"height = 900 m .* 0.001 to 20 m"),
     "width in mm": (lambda: Barrier.rigid_wall(width=6000), r"width = 6000 m .* 0.05 to 1,000 m"),
     "density in t/m^3": (
         lambda: Barrier.jersey(length=4, free_standing=True, density=2.4),

@@ -116,7 +116,7 @@ def test_what_was_replaced_is_known_in_copies_and_files() -> None:
 
 def test_zones_keep_their_names() -> None:
     with pytest.raises(ValueError, match="zones must keep their names and order"):
-        dataclasses.replace(CAR, zones=dict(reversed(CAR.zones.items())))
+        dataclasses.replace(CAR, zones=dict(reversed(list(CAR.zones.items()))))
     block = scenes.laboratory_block(20, k_initial=3e6, k_unloading=3e6)
     with pytest.raises(ValueError, match="zones must keep their names and order, none; got bumper"):
         dataclasses.replace(block, zones={"bumper": CAR.zones["bumper"]})
