@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["ENERGY_LIMIT", "FALL_LIMIT", "MOMENTUM_LIMIT", "LedgerWarning", "warn_if_open"]
 
 ENERGY_LIMIT = 5e-3
-"""Energy residual, relative to the initial kinetic energy, beyond which a run is wrong."""
+"""Energy residual, relative to the energy at the run's disposal, beyond which a run is wrong."""
 
 FALL_LIMIT = 5e-3
 """Fall of a dissipated term from its highest value, relative to the energy at the run's disposal."""
@@ -31,13 +31,13 @@ def warn_if_open(scene: Scene, ledger: _core.Ledger) -> None:
     """Warn with :class:`LedgerWarning` of each account that is out of bounds, with its size, time and place.
 
     - energy: the sum of all terms departs from that at the start by more than :data:`ENERGY_LIMIT` of the
-      initial kinetic energy;
+      energy at disposal, which is the initial kinetic energy and what the weight has done;
     - momentum: a unit's change in a step departs from its impulses by more than :data:`MOMENTUM_LIMIT` of
       the largest momentum;
     - crush, friction or impacts fall from their highest value by more than :data:`FALL_LIMIT` of the energy
-      at disposal, which is the initial kinetic energy and what the weight has done.
+      at disposal.
     """
-    residual = relative_to_start(scene, ledger.energy.size, ledger.kinetic)
+    residual = relative_to_start(scene, ledger.energy.size, ledger.at_disposal)
     if residual > ENERGY_LIMIT:
         _warn("energy_residual", ENERGY_LIMIT, residual, ledger.energy, _advice(scene))
     momentum = ledger.momentum.size / max(ledger.largest_momentum, scene.vehicle.mass)

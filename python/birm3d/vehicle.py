@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -106,7 +105,7 @@ class Vehicle:
     # What made the vehicle: laws per truss (m, N, N/m), or a file with its mesh density.
     _truss_laws: Floats | None = None
     _file: VehicleFile | None = None
-    _shape: VehicleShape | None = dataclasses.field(default=None, compare=False)
+    _shape: VehicleShape | None = dataclasses.field(default=None, compare=False, metadata=NOT_STORED)
     _mesh_density: float = 1.0
     _height: float | None = None  # of the mass centre, where one was asked for, in place of the solids' [m]
     _draft: bool = False  # between two changes: the core is not built yet, see draft()
@@ -325,11 +324,10 @@ class Vehicle:
     def _assembled(self, mass: float, height: float | None) -> Vehicle:
         """Return the vehicle of the same file and mesh with another mass and height of the mass centre."""
         assert self._file is not None
-        assert self._shape is not None  # made together with _file
         return self._anew(
             _assemble(
                 self._file,
-                self._shape,
+                self._shape_of_file(),
                 mass,
                 self._mesh_density,
                 self.zones,
@@ -338,6 +336,13 @@ class Vehicle:
                 self._load_density,
             )
         )
+
+    def _shape_of_file(self) -> VehicleShape:
+        """Return the shape of the file; a vehicle that was loaded with a result has its arrays only."""
+        from .vehicle_shape import shape_of
+
+        assert self._file is not None
+        return shape_of(self._file, self._mesh_density) if self._shape is None else self._shape
 
     def _mass_given(self, name: str, mass: Quantity, *, stacklevel: int = 4) -> float:
         """Return a mass [kg] > 0, with a word if it is far from that of the vehicle's file."""
@@ -444,8 +449,10 @@ class Vehicle:
         changes = {name: getattr(self, name)[shell] for name in columns}
         if self._shape is not None:
             shape = self._shape.without_treads
-            shared = ("area", "zone_of_node", "wheel_of_node")
-            changes.update({name: getattr(shape, name) for name in shared}, _shape=shape)
+            for name in ("area", "zone_of_node", "wheel_of_node"):
+                if getattr(self, name) is getattr(self._shape, name):
+                    changes[name] = getattr(shape, name)
+            changes["_shape"] = shape
         return dataclasses.replace(self, _built=None, **changes)
 
     def with_mesh_density(self, mesh_density: float) -> Vehicle:
@@ -787,7 +794,7 @@ class Vehicle:
         return {**arguments, "zones": dict(self.zones)}
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (_rebuild, (self._arguments(),))
+        return (_rebuild, ({**self._arguments(), "_shape": self._shape},))
 
     def __repr__(self) -> str:
         return (

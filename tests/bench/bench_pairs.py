@@ -95,7 +95,8 @@ class Row:
 
 def greatest_error(result: Result, reference: Mapping[str, float]) -> tuple[float, str]:
     """Greatest relative error of METRICS, and the metric that has it."""
-    errors = relative_errors(result.metrics, {name: reference[name] for name in METRICS}, METRICS)
+    judged = {name: reference[name] for name in METRICS if name in reference}
+    errors = relative_errors(result.metrics, judged, METRICS)
     worst = max(errors, key=errors.__getitem__)
     return errors[worst], worst
 

@@ -356,7 +356,7 @@ def test_sweep_errors_say_what_is_wrong(monkeypatch, capsys, arguments, parts):
 def test_a_stopped_sweep_without_a_store_keeps_what_is_done(monkeypatch, capsys, tmp_path):
     monkeypatch.chdir(tmp_path)
     Path("birm3d-sweep.db").write_text("of another study")
-    command = [*SWEEP, "--vary", "impact_speed=8:12:0.001"]
+    command = [*SWEEP, "--vary", "impact_speed=8:12:0.001m/s"]
     timer = threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     assert birm3d(monkeypatch, *command) == 130

@@ -33,7 +33,7 @@ def test_staggered_block(bench: ModuleType) -> None:
     names = list(bench.METRICS)
     for changes in (
         found.velocity_change,
-        found.changes[:, names.index("exit_speed")],
+        found.changes[:, names.index("end_speed")],
         found.changes[:, names.index("max_yaw")],
     ):
         assert (np.diff(changes) < 0.0).all(), changes

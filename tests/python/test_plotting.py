@@ -262,8 +262,10 @@ def test_a_tractor_and_its_trailer_are_one_outline() -> None:
             "F-shape barrier, 0.813 m high, 12 m long in 4 segments, free-standing",
         ),
         (
-            Barrier.from_mesh([[0, 0, 0], [0, 2, 0], [0, 0, 1]], [[0, 2, 1]]),
-            "mesh of 1 triangles, 0 by 2 by 1 m",
+            Barrier.from_mesh(
+                [[0, 0, 0], [0, 2, 0], [0, 0, 1], [0.5, 0, 0]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+            ),
+            "mesh of 4 triangles, 0.5 by 2 by 1 m",
         ),
     ],
 )

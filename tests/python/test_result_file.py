@@ -79,7 +79,7 @@ def test_scene_comes_back_and_runs_the_same_way(original: Result, path: Path) ->
 
 
 def test_metrics_are_those_of_the_file(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("birm3d.result.compute_metrics", lambda result: {"peak_deceleration": 0.0})
+    monkeypatch.setattr("birm3d.event.compute_metrics", lambda result: {"peak_deceleration": 0.0})
     assert birm3d.load(path).metrics["peak_deceleration"] > 1.0
 
 

@@ -95,6 +95,7 @@ def test_an_error_without_a_reason_is_a_fault() -> None:
     assert row.reason == "KeyError: 'a fault of the program'"
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.UnitWarning")  # 100 m/s is meant
 def test_ten_turns_and_one_node() -> None:
     cases = [case for case in laboratory_cases() if case.axis == "rollover" or case.scene == "one node"]
     assert len(cases) == 5
