@@ -61,7 +61,10 @@ class _Unfinished(BaseException):
 
 
 class StudyStoppedError(_Unfinished, RuntimeError):
-    """The executor died; ``study`` has the finished runs, which a store has too."""
+    """The executor died, or the store can not be written; ``study`` has the finished runs.
+
+    A store has them too, but for those that it could not take.
+    """
 
 
 class StudyInterrupted(_Unfinished, KeyboardInterrupt):

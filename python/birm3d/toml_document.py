@@ -213,17 +213,14 @@ class Document:
         except ValidationError as error:
             # A misspelt key is an unknown one and a missing one: the unknown one says more.
             problems = sorted(error.errors(include_url=False), key=lambda e: e["type"] == "missing")
-            raise self.error("\n".join(self._message(problem, at) for problem in problems)) from error
+            messages = "\n".join(self._message(problem, at) for problem in problems)
+            path, line = self._written(self._key(problems[0], at))
+            raise self.error(messages, path=path, line=line) from error
 
     def _message(self, error: ErrorDetails, at: KeyPath) -> str:
-        key = self.written_key((*at, *error["loc"]))
         context = error.get("ctx", {})
         if error["type"] == "document":
             text = context["message"]
-            key = (
-                *key,
-                *(int(part) if part.isdigit() else part for part in context["key"].split(".") if part),
-            )
         elif error["type"] == "missing":
             text = "required key is missing"
         elif error["type"] == "extra_forbidden":
@@ -232,8 +229,17 @@ class Document:
             text = str(context["error"])
         else:
             text = f"{error['msg'].replace('Input should', 'must')}, got {received(error['input'])}"
+        key = self._key(error, at)
         dotted = ".".join(str(part) for part in key)
         return f"{self.place(key)}: {dotted}: {text}"
+
+    def _key(self, error: ErrorDetails, at: KeyPath) -> KeyPath:
+        """Return the key of the file that an error is about."""
+        key = self.written_key((*at, *error["loc"]))
+        if error["type"] != "document":
+            return key
+        parts = error["ctx"]["key"].split(".")
+        return (*key, *(int(part) if part.isdigit() else part for part in parts if part))
 
 
 def frozen(value: Any) -> Any:
