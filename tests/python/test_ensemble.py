@@ -97,11 +97,15 @@ def test_extremes_are_those_of_the_rows() -> None:
     for simulation in of_all_kinds():
         result, scene = simulation.run(), simulation.scene
         metrics, start = result.metrics, result.velocity[0]
-        change = np.linalg.norm(result.velocity - start, axis=1)
-        assert metrics["delta_v"] == pytest.approx(change.max(), rel=1e-14) if scene.barrier else True
+        # The change of velocity and the yaw count until separation, which falls between two rows.
+        until = result.time <= metrics.get("time_of_separation", np.inf)
+        change = np.linalg.norm(result.velocity[until] - start, axis=1)
+        if scene.barrier is not None:
+            assert change.max() <= metrics["delta_v"] * (1.0 + 1e-14) <= change.max() * (1.0 + 1e-3)
         assert metrics["peak_deceleration"] == -result.acceleration[:, 0].min()
         for name in ("roll", "pitch", "yaw"):
-            greatest = np.abs(getattr(result, name)).max()
+            values = getattr(result, name)
+            greatest = np.abs(values[until] if name == "yaw" else values).max()
             assert metrics[f"max_{name}"] == pytest.approx(greatest, rel=1e-14)
         scale = max(float(result.energy["kinetic"][0]), 0.005 * scene.vehicle.mass)
         residual = np.abs(result.energy["residual"]).max() / scale
