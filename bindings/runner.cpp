@@ -95,7 +95,8 @@ void register_runner(py::module_& m) {
         .def(py::init<>())
         .def("run", &run_all, py::arg("jobs"), py::arg("wanted"), py::arg("stop"),
              py::call_guard<py::gil_scoped_release>(),
-             "Run scenes from their starts, each with an approach of its own. Returns those that\nwere run before `stop` was set.");
+             "Run scenes from their starts, each with an approach of its own. Returns those that\nwere run "
+             "before `stop` was set.");
 }
 
 }  // namespace birm3d::bindings

@@ -57,6 +57,8 @@ class Zone(Mapping[str, Any]):
             if self.f_max is None:
                 object.__setattr__(self, "f_max", math.inf)
         else:
+            rows = tuple((float(d), float(stress)) for d, stress in self.envelope)
+            object.__setattr__(self, "envelope", rows)
             for name in KNEE:
                 if getattr(self, name) is not None:
                     raise ValueError(f"{name} must be None beside an envelope, got {getattr(self, name)}")

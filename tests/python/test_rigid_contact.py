@@ -75,6 +75,7 @@ def test_speed_after_closing(time_step: float | None) -> None:
     assert metrics["dynamic_crush"] == pytest.approx(length, rel=1e-6 if time_step is None else 2e-2)
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.UnitWarning")  # 300 m/s is meant
 @pytest.mark.parametrize("speed", [5.0, 30.0, 100.0, 300.0])
 def test_nothing_passes_at_any_speed(speed: float) -> None:
     block = scenes.laboratory_block(36, k_initial=1e4, knee=0.1, k_unloading=1e5)

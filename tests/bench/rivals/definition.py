@@ -25,10 +25,13 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 from bench_birm3d import COMPARED, LAW, MASS, SPEED, exact_crush, worst_error
-from birm3d import Vehicle, scenes
+from birm3d import Result, Vehicle, scenes
 from numpy_reference import Answer, Block
 
-__all__ = ["CASES", "COMPARED", "MASS", "SPEED", "AbsentError", "Answer", "Case", "Rival", "Run", "vehicle"]
+__all__ = [
+    *("CASES", "COMPARED", "MASS", "SPEED", "AbsentError", "Answer", "Case", "Rival", "Run"),
+    *("compared", "vehicle"),
+]
 
 NODES = (100, 316, 1000, 3162, 10000)
 TARGETS = (0.01, 1e-3, 1e-4)
@@ -82,6 +85,12 @@ class Rival(Protocol):
     def build(self, case: Case, n: int) -> Run:
         """Build the scene; not timed. Raises AbsentError."""
         ...
+
+
+def compared(result: Result) -> dict[str, float]:
+    """Return what is compared; the speed is that at the end, as a block that turns may not have left for good."""
+    speed = float(np.hypot(*result.velocity[-1, :2]))
+    return {name: speed if name == "exit_speed" else result.metrics[name] for name in COMPARED}
 
 
 def vehicle(case: Case, n: int) -> Vehicle:

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
-from .definition import COMPARED, Case, block, heading
+from .definition import COMPARED, Case, block, compared, heading
 from .ours import simulation
 
 Floats = npt.NDArray[np.float64]
@@ -34,8 +34,7 @@ class Mode(enum.IntEnum):
 
 def with_answer(case: Case, n: int) -> Case:
     """The case with the answer of BIRM3D at its finest."""
-    result = simulation(case, n, **FINEST).run()
-    return dataclasses.replace(case, exact={name: result.metrics[name] for name in COMPARED})
+    return dataclasses.replace(case, exact=compared(simulation(case, n, **FINEST).run()))
 
 
 class Crash:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from birm3d import Barrier, LedgerWarning, Settings, Simulation, UnstableError
 
-from .definition import COMPARED, STEPS, Answer, Case, RefusedError, Run, vehicle
+from .definition import STEPS, Answer, Case, RefusedError, Run, compared, vehicle
 
 TOLERANCES = tuple(10.0 ** (-0.25 * i) for i in range(29))
 
@@ -45,7 +45,7 @@ class Ours:
                     result = scene.run()
             except UnstableError as error:
                 raise RefusedError(str(error)) from None
-            numbers = (result.metrics[name] for name in COMPARED)
+            numbers = compared(result).values()
             return Answer(*numbers, result.statistics.steps, result.run_time)
 
         return run

@@ -37,7 +37,7 @@ TEST("trusses are cut into blocks, the last one padded with members of no stiffn
 
 TEST("the order of the trusses is a permutation of the caller's") {
     const TrussMesh mesh(input);
-    std::vector<std::size_t> order = mesh.input_index;
+    std::vector<std::size_t> order(mesh.input_index.begin(), mesh.input_index.end());
     CHECK(order.size() == mesh.count);
     for (std::size_t i = 0; i < mesh.count; ++i) {
         CHECK(mesh.node(i) == input.node[mesh.input_index[i]]);

@@ -67,8 +67,7 @@ struct StepStatistics {
         std::numeric_limits<double>::infinity();  // s, sqrt(3)/omega of the trusses in contact
     double deepest_point =
         0.0;  // greatest depth of a truss's anchor inside a barrier at the end of a step (m)
-    double greatest_overlap =
-        0.0;  // of the rigid body's boxes with an element; see sim/body_overlap.hpp (m)
+    double greatest_overlap = 0.0;  // of the rigid body's boxes with an element; see sim/body_overlap.hpp (m)
     double greatest_overlap_time = 0.0;        // when (s)
     std::size_t greatest_overlap_element = 0;  // with which
 
