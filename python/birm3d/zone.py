@@ -57,7 +57,7 @@ class Zone(Mapping[str, Any]):
             if self.f_max is None:
                 object.__setattr__(self, "f_max", math.inf)
         else:
-            rows = tuple((float(d), float(stress)) for d, stress in self.envelope)
+            rows = tuple(tuple(row) for row in self.envelope)  # lists have no hash
             object.__setattr__(self, "envelope", rows)
             for name in KNEE:
                 if getattr(self, name) is not None:

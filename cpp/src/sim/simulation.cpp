@@ -190,10 +190,11 @@ bool Simulation::step() {
 void Simulation::run(const std::function<void()>& poll) {
     using Clock = std::chrono::steady_clock;
     constexpr std::chrono::milliseconds between_polls(20);
+    constexpr int steps_between_polls = 256;
     Clock::time_point last = Clock::now();
-    while (step()) {
+    for (int i = 1; step(); ++i) {
         const Clock::time_point now = Clock::now();
-        if (now - last < between_polls) continue;
+        if (i % steps_between_polls != 0 && now - last < between_polls) continue;
         poll();
         last = now;
     }

@@ -88,7 +88,7 @@ class Rival(Protocol):
 
 
 def compared(result: Result) -> dict[str, float]:
-    """Return what is compared; the speed is that at the end, as a block that turns may not have left for good."""
+    """Return what is compared; the speed is that at the end: a block that turns may not have left."""
     speed = float(np.hypot(*result.velocity[-1, :2]))
     return {name: speed if name == "exit_speed" else result.metrics[name] for name in COMPARED}
 

@@ -95,11 +95,16 @@ TEST("energy is kept, and the ledger's terms only grow") {
 }
 
 TEST("a scene turned about the vertical gives the same answer, turned") {
+    // Until a fixed instant: when a run has ended is decided step by step.
+    const auto run_on = [](Simulation& simulation) {
+        while (simulation.state().time < 1.0 && simulation.step()) {
+        }
+    };
     Simulation straight(busy_scene(0.0, 1e-4));
-    laboratory::run(straight);
+    run_on(straight);
     for (const double heading : {0.7, 0.5 * pi, -2.3}) {
         Simulation turned(busy_scene(heading, 1e-4));
-        laboratory::run(turned);
+        run_on(turned);
         const Quat back(Eigen::AngleAxisd(-heading, Vec3::UnitZ()));
         const BodyState& a = straight.state().units[0].body;
         const BodyState& b = turned.state().units[0].body;
