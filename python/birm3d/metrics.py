@@ -170,7 +170,7 @@ def metrics_of_outcome(scene: Scene, outcome: _core.Outcome, names: Collection[s
 
 
 def extremes_for(names: Collection[str]) -> _core.ExtremeGroups:
-    """Return the extremes that metrics are made of, with those of the energy if so asked."""
+    """Return the groups of extremes that metrics are made of."""
     needs = {_METRICS[name].needs for name in names} - {"end"}
     return _core.ExtremeGroups(**dict.fromkeys(needs, True))
 

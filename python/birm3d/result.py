@@ -377,11 +377,6 @@ class Result:
         """
         return metrics_of(self)
 
-    @property
-    def _energy_extremes(self) -> _core.ExtremeEnergy:
-        """Extremes of the energy ledger, of a result that was not read from a file [J]."""
-        return self._extremes(_core.ExtremeGroups(energy=True)).energy
-
     def _extremes(self, groups: _core.ExtremeGroups) -> _core.Extremes:
         """Extremes of the histories, of a result that was not read from a file."""
         assert isinstance(self._history, _core.History)

@@ -75,8 +75,7 @@ bool SlabChain::is_held(const Part& part) {
                        [](const Corner& corner) { return corner.law.squaredNorm() < well * well; });
 }
 
-// From slab `end` on; how many of them hangs on how long the run is already, so that the cost of all tries is no more than
-// a few times the last one's.
+// From slab `end` on: a quarter of the run, and one more. So all tries together cost a few times the last one.
 bool SlabChain::wake(const Run& run, std::size_t end, int direction) {
     const std::size_t wanted = 1 + (run.end - run.begin) / 4;
     auto i = static_cast<std::ptrdiff_t>(end);

@@ -35,7 +35,7 @@ struct Corner {
     std::size_t count = 0;
     std::array<CornerFace, most> face;
 
-    // False where the face is all but parallel to those that are known: they make no corner.
+    // False where the face is nearly parallel to the known ones: such faces make no corner.
     bool add(const CornerFace& further);
 
     // Onto all faces; and what of that way leads along those that have a share.

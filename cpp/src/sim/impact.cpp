@@ -26,9 +26,9 @@ double hardest_impact(double reach, std::span<const ContactBody> bodies,
     return fastest;
 }
 
-// Leaves the contacts that take part. Points that arrive together by all but a hair share one impact, or their order would
-// be chance: the later one comes, the faster it may still approach afterwards, up to any speed a hair away. So the outcome
-// is a continuous function of the gaps.
+// Leaves the contacts that take part. Points that arrive nearly together share one impact: their order would be chance.
+// The later a point comes, the faster it may still approach afterwards. So the outcome is a continuous function of the
+// gaps.
 void set_impact_targets(double restitution, double reach, double fastest, std::span<const ContactBody> bodies,
                         std::vector<RigidContact>& contacts) {
     // Of its gap, what the coming `reach` leaves.

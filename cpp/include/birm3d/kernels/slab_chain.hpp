@@ -1,7 +1,7 @@
 // Coulomb friction of slabs that pins hold together end to end: one minimum for all of them.
 //
-// The convex function is that of ground_slide.hpp, summed over the slabs, with what the pins hold as conditions: how far a
-// chain is dragged along and where it is held hangs on all of it. |u| is rounded off to eta = sqrt(|u|^2 + e^2), e a
+// The convex function is that of ground_slide.hpp, summed over the slabs, with what the pins hold as conditions: where a
+// chain is held, and how far it is dragged along, depends on all of it. |u| is rounded off to eta = sqrt(|u|^2 + e^2), e a
 // millionth of the speed that friction can take.
 //
 // Newton's method for the motions and the frictions y_i together, each a share of the corner's limit c (Chan, Golub and
