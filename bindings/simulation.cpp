@@ -1,6 +1,7 @@
 #include "birm3d/sim/simulation.hpp"
 
 #include <pybind11/stl.h>
+#include <pybind11/typing.h>
 #include <map>
 #include <string>
 
@@ -47,11 +48,12 @@ OutputArray nodes_in_input_order(Simulation& simulation, std::size_t unit) {
 }
 
 // Without the interpreter's lock, but for a look at signals now and then.
-void run(Simulation& simulation) {
+void run(Simulation& simulation, const std::optional<py::typing::Callable<void(double, std::size_t)>>& tick) {
     const py::gil_scoped_release release;
-    simulation.run([] {
+    simulation.run([&simulation, &tick] {
         const py::gil_scoped_acquire acquire;
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        if (tick) (*tick)(simulation.state().time, simulation.state().statistics.steps);
     });
 }
 
@@ -161,7 +163,10 @@ void register_simulation(py::module_& m) {
                             const py::object&) { simulation.in_block.release(); })
         .def("step", alone(+[](Simulation& s) { return s.step(); }), py::call_guard<py::gil_scoped_release>(),
              "One accepted step; False when the run is over.")
-        .def("run", alone(&run), "From the present state to the end; Ctrl-C stops it.")
+        .def(
+            "run", alone(&run), py::arg("tick") = py::none(),
+            "From the present state to the end; Ctrl-C stops it. `tick` is called now and then with the time "
+            "(s) and the number of steps.")
         .def("reset", alone(+[](Simulation& s) { s.reset(); }))
         .def("snapshot", alone(+[](Simulation& s) { return s.snapshot(); }))
         .def("restore", alone(+[](Simulation& s, const Simulation::Snapshot& from) { s.restore(from); }),

@@ -831,9 +831,9 @@ class Simulation:
         ...
     def restore(self, snapshot: Snapshot) -> None:
         ...
-    def run(self) -> None:
+    def run(self, tick: collections.abc.Callable[[typing.SupportsFloat | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex], None] | None = None) -> None:
         """
-        From the present state to the end; Ctrl-C stops it.
+        From the present state to the end; Ctrl-C stops it. `tick` is called now and then with the time (s) and the number of steps.
         """
     def skin_load(self, unit: typing.SupportsInt | typing.SupportsIndex = 0) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], float]:
         """

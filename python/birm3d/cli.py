@@ -57,7 +57,7 @@ def run(
 ) -> None:
     """Run one crash: a SCENE file, or the options --vehicle and --speed."""
     simulation = simulation_of(scene, options)
-    result = simulation.run()
+    result = simulation.run(progress=True)
     if as_json:
         click.echo(json.dumps(_as_json(result), indent=2))
     else:

@@ -33,7 +33,8 @@ class OutputFile(click.ParamType):  # type: ignore[type-arg,unused-ignore]
         """Return the path; a ValueError or an ImportError says why the file can not be written."""
         path = Path(value)
         option = param.opts[0] if param is not None else "file"
-        if self._endings and not path.name.lower().endswith(self._endings):
+        device = path.exists() and not path.is_file() and not path.is_dir()
+        if self._endings and not device and not path.name.lower().endswith(self._endings):
             raise ValueError(f"{option} must end in {_listed(self._endings)}, got {str(path)!r}")
         _check_place(option, path)
         if ctx is not None:

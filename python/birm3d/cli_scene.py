@@ -117,6 +117,9 @@ _OPTIONS = (
         help="To the right at impact, deg.",
     ),
     click.option("--duration", type=QuantityOption("time"), help="Default: until the outcome is decided."),
+    click.option(
+        "--output-interval", type=QuantityOption("time"), help="Between rows of histories.  [default: 0.1ms]"
+    ),
     click.option("--tolerance", type=float, help="Wanted relative error.  [default: 0.001]"),
     click.option("--time-step", type=QuantityOption("time"), help="Fixed step.  [default: adaptive]"),
 )
@@ -163,7 +166,11 @@ def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
     barrier = None
     if kind != "none":
         barrier = getattr(Barrier, kind)(friction=options["friction"], **sizes)
-    settings = {name: options[name] for name in ("tolerance", "time_step") if options[name] is not None}
+    settings = {
+        name: options[name]
+        for name in ("tolerance", "time_step", "output_interval")
+        if options[name] is not None
+    }
     return Simulation(
         vehicle,
         barrier,

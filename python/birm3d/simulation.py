@@ -14,6 +14,7 @@ from .coarse_skin import warn_if_coarse
 from .ledger import warn_if_open
 from .overlap import warn_if_overlapping
 from .result import Result
+from .run_progress import run_progress
 from .settings import MU_TIRE_BARRIER, Settings
 from .unit_check import given
 from .units import Quantity, si
@@ -194,7 +195,7 @@ class Simulation:
         with self._core:
             return self._core.time
 
-    def run(self, *, frames: int | Sequence[float] | None = None) -> Result:
+    def run(self, *, frames: int | Sequence[float] | None = None, progress: bool | None = False) -> Result:
         """Run from the present state to the end; a run that is over starts anew.
 
         Ctrl-C stops it between two steps; called again, it goes on from there.
@@ -204,6 +205,8 @@ class Simulation:
         frames
             Number or instants [s] of the skin's positions that the result keeps for pictures, see
             :meth:`birm3d.Result.with_frames`; ``None``: none, at no cost.
+        progress
+            Whether a run of more than a second shows a line on stderr; ``None``: if that is a terminal.
 
         Raises
         ------
@@ -217,14 +220,16 @@ class Simulation:
             As a warning, if a ledger of the run does not close (:func:`birm3d.ledger.warn_if_open`): energy,
             momentum, or dissipation that falls.
         ValueError
-            If the frames are more than the result's rows or outside the run.
+            If the frames are more than the result's rows or outside the run, or if the run takes more steps
+            than a record holds; :meth:`result` has those that were taken.
         """
         with self._core:
             if self._core.failed or self._core.end_reason != _core.EndReason.running:
                 self._reset()
             start = time.perf_counter()
             try:
-                self._core.run()
+                with run_progress(progress, self._scene.duration) as tick:
+                    self._core.run(tick)
             finally:
                 self._run_time += time.perf_counter() - start
             result = self._result()

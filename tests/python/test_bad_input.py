@@ -379,6 +379,29 @@ def test_every_number_of_every_scene_is_finite(scene_result: Result) -> None:
     assert all(math.isfinite(value) for value in r.metrics.values())
 
 
+def test_fixed_steps_that_can_not_be_held() -> None:
+    block, wall = scenes.elastic_block(4), Barrier.rigid_wall()
+    with pytest.raises(
+        ValueError, match=r"time_step must be at least .* for the 100 s .* got 1e-06"
+    ) as caught:
+        Simulation(block, wall, 10.0, duration=100.0, settings=Settings(time_step=1e-6))
+    advised = float(str(caught.value).split("at least ")[1].split()[0])
+    Simulation(block, wall, 10.0, duration=100.0, settings=Settings(time_step=advised))
+
+
+def test_a_run_that_takes_long_shows_a_line(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("birm3d.run_progress._FIRST", 0.0)
+    simulation = scenes.parked(duration=0.5, settings=Settings(time_step=2e-6))
+    quiet = simulation.run().state_hash
+    assert capsys.readouterr().err == ""
+    assert simulation.run(progress=True).state_hash == quiet
+    assert re.fullmatch(
+        r"(0\.\d+ s of 0\.5 s computed in \d+ s, [\d,]+ steps; Ctrl-C stops\n)+", capsys.readouterr().err
+    )
+
+
 def test_output_interval_beyond_the_run() -> None:
     result = Simulation(scenes.elastic_block(4), Barrier.rigid_wall(), 10.0, duration=1e-5).run()
     with pytest.raises(ValueError, match=r"output_interval .*0\.0001"):

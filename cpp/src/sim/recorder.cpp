@@ -1,12 +1,34 @@
 #include "birm3d/sim/recorder.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 
+#include "birm3d/base/error.hpp"
 #include "birm3d/base/rotation.hpp"
 #include "birm3d/kernels/integrate.hpp"
 #include "recorder_rows.hpp"
 
 namespace birm3d {
+
+namespace {
+
+// Numbers that the record of a run holds at the most, one row a step: 2.4 GB.
+constexpr double most_recorded = 3e8;
+
+// Refuses fixed steps that are more than a record holds.
+void require_room(const Scene& scene, std::size_t width) {
+    if (!scene.settings.time_step || !scene.duration) return;
+    const double most = std::floor(most_recorded / static_cast<double>(width));
+    const double end = *scene.duration, step = *scene.settings.time_step;
+    if (end / step > most)
+        refuse("time_step",
+               "at least " + to_text(1.005 * end / most, 3) + " s for the " + to_text(end) +
+                   " s of the run to be at most " + std::to_string(static_cast<long>(most)) + " steps",
+               step);
+}
+
+}  // namespace
 
 Recorder::Recorder(const Scene& scene, const State& start) {
     restart(scene, start);
@@ -20,11 +42,17 @@ void Recorder::restart(const Scene& scene, const State& start) {
         none.emplace_back(unit.wheels.size());
     }
     width_ += joint_width * scene.vehicle->joints.size() + segment_width * start.segments.size();
+    require_room(scene, width_);
     values_.clear();
     obstacles_.clear();
     add_row(scene, start.time, start.energies,
             {start.units, nullptr, start.segments, none, std::vector<Wrench>(scene.vehicle->joints.size()),
              false});
+}
+
+bool Recorder::full() const {
+    const std::size_t numbers = values_.size() + obstacles_.size() * (sizeof(ObstacleRow) / sizeof(double));
+    return static_cast<double>(numbers) > most_recorded;
 }
 
 void Recorder::add(const Scene& scene, const Trial& accepted) {

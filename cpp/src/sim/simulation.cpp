@@ -180,6 +180,10 @@ void Simulation::adaptive_step() {
 bool Simulation::step() {
     if (failed_) throw std::runtime_error("the last step failed half way: reset the simulation");
     if (finished()) return false;
+    if (recorder_.full())
+        throw InvalidArgument("duration must be over within the " + std::to_string(recorder_.rows() - 1) +
+                              " steps that a record holds, got to " + to_text(state_.time, 6) +
+                              " s with as many; the result so far is there");
     if (scene_.settings.time_step)
         fixed_step();
     else

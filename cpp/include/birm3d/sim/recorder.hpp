@@ -89,6 +89,7 @@ class Recorder {
     void add(const Scene& scene, const Trial& accepted);
 
     std::size_t rows() const { return values_.size() / width_; }
+    bool full() const;  // is there no room for another step?
     History resample(const Scene& scene) const;
 
     // The same in the memory of another history; columns that are not wanted have no rows.
