@@ -13,8 +13,8 @@ from .barrier import Barrier
 from .coarse_skin import warn_if_coarse
 from .ledger import warn_if_open
 from .overlap import warn_if_overlapping
+from .progress import run_bar
 from .result import Result
-from .run_progress import run_progress
 from .settings import MU_TIRE_BARRIER, Settings
 from .unit_check import given
 from .units import Quantity, si
@@ -206,7 +206,8 @@ class Simulation:
             Number or instants [s] of the skin's positions that the result keeps for pictures, see
             :meth:`birm3d.Result.with_frames`; ``None``: none, at no cost.
         progress
-            Whether a run of more than a second shows a line on stderr; ``None``: if that is a terminal.
+            Whether a run of more than a second shows a bar on stderr; ``None``: if that is a terminal, and in
+            notebooks.
 
         Raises
         ------
@@ -228,7 +229,7 @@ class Simulation:
                 self._reset()
             start = time.perf_counter()
             try:
-                with run_progress(progress, self._scene.duration) as tick:
+                with run_bar(progress, self._scene.duration) as tick:
                     self._core.run(tick)
             finally:
                 self._run_time += time.perf_counter() - start

@@ -291,7 +291,7 @@ def test_a_run_lets_other_threads_work() -> None:
 def test_keyboard_interrupt_stops_a_run() -> None:
     code = textwrap.dedent("""
         from birm3d import Settings, scenes
-        simulation = scenes.parked(duration=4.0, settings=Settings(time_step=1e-6, output_interval=0.1))
+        simulation = scenes.parked(duration=1.5, settings=Settings(time_step=1e-6, output_interval=0.1))
         print("running", flush=True)
         try:
             simulation.run()

@@ -389,17 +389,31 @@ def test_fixed_steps_that_can_not_be_held() -> None:
     Simulation(block, wall, 10.0, duration=100.0, settings=Settings(time_step=advised))
 
 
-def test_a_run_that_takes_long_shows_a_line(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("duration", [0.2, None])
+def test_a_run_that_takes_long_shows_a_bar(
+    duration: float | None, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("birm3d.run_progress._FIRST", 0.0)
-    simulation = scenes.parked(duration=0.5, settings=Settings(time_step=2e-6))
+    monkeypatch.setattr("birm3d.progress._FIRST", 1e-3)
+    settings = Settings(time_step=1e-5)
+    block = scenes.elastic_block(400)
+    simulation = Simulation(block, Barrier.rigid_wall(), 1.0, duration=duration, settings=settings)
     quiet = simulation.run().state_hash
     assert capsys.readouterr().err == ""
     assert simulation.run(progress=True).state_hash == quiet
-    assert re.fullmatch(
-        r"(0\.\d+ s of 0\.5 s computed in \d+ s, [\d,]+ steps; Ctrl-C stops\n)+", capsys.readouterr().err
-    )
+    bar = capsys.readouterr().err.split("\r")[1]
+    of = r"\d%\|.*\| [\d.e-]+ of 0.2 s" if duration else r"[\d.e-]+ s"
+    assert re.fullmatch(rf"run: {of} \[00:00.*, [\d,]+ steps, Ctrl-C stops\]", bar)
+
+
+def test_a_record_is_bounded() -> None:
+    block, wall = scenes.elastic_block(4), Barrier.rigid_wall()
+    with pytest.raises(ValueError, match=r"output_interval must be >= duration / 1e\+06 = 0\.1 s, got 1e-04"):
+        Simulation(block, wall, 10.0, duration="100000 s")
+    long = Settings(output_interval=1e6)
+    with pytest.raises(
+        ValueError, match=r"duration must be at most [\d.]+ s, where the \d+ steps end .* got 1e\+09"
+    ):
+        Simulation(block, wall, 10.0, duration="1e9 s", settings=long).run()
 
 
 def test_output_interval_beyond_the_run() -> None:

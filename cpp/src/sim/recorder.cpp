@@ -13,8 +13,8 @@ namespace birm3d {
 
 namespace {
 
-// Numbers that the record of a run holds at the most, one row a step: 2.4 GB.
-constexpr double most_recorded = 3e8;
+// Numbers that the record of a run holds at the most, one row a step: 0.8 GB.
+constexpr double most_recorded = 1e8;
 
 // Refuses fixed steps that are more than a record holds.
 void require_room(const Scene& scene, std::size_t width) {

@@ -181,9 +181,10 @@ bool Simulation::step() {
     if (failed_) throw std::runtime_error("the last step failed half way: reset the simulation");
     if (finished()) return false;
     if (recorder_.full())
-        throw InvalidArgument("duration must be over within the " + std::to_string(recorder_.rows() - 1) +
-                              " steps that a record holds, got to " + to_text(state_.time, 6) +
-                              " s with as many; the result so far is there");
+        refuse("duration",
+               "at most " + to_text(state_.time, 6) + " s, where the " + std::to_string(recorder_.rows() - 1) +
+                   " steps end that a record holds",
+               scene_.duration ? to_text(*scene_.duration) : "none");
     if (scene_.settings.time_step)
         fixed_step();
     else
