@@ -182,8 +182,8 @@ bool Simulation::step() {
     if (finished()) return false;
     if (recorder_.full())
         refuse("duration",
-               "at most " + to_text(state_.time, 6) + " s, where the " + std::to_string(recorder_.rows() - 1) +
-                   " steps end that a record holds",
+               "at most " + to_text(state_.time, 6) + " s, where the " +
+                   std::to_string(recorder_.rows() - 1) + " steps end that a record holds",
                scene_.duration ? to_text(*scene_.duration) : "none");
     if (scene_.settings.time_step)
         fixed_step();
