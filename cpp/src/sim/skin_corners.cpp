@@ -99,13 +99,31 @@ CornerFace Skin::face_at(std::size_t k, const Vec3& place, const Vec3& node) con
     return face;
 }
 
-// Was a node on the face an instant before?
-bool Skin::was_on(const CornerFace& face, const Vec3& node) const {
-    if (std::abs(face.gap) <= tolerance::touching_gap) return true;
-    const NearObstacle& obstacle = near_[seen_[face.seen]];
-    const Nearest then = nearest(near_shape(seen_[face.seen]), obstacle.before.to_own(node));
+// Was a node on the k-th of what is seen an instant before, where it had this normal?
+bool Skin::stood_on(std::size_t k, const Vec3& normal, const Vec3& node) const {
+    const NearObstacle& obstacle = near_[seen_[k]];
+    const Nearest then = nearest(near_shape(seen_[k]), obstacle.before.to_own(node));
     return std::abs(then.gap) <= stood &&
-           then.normal.dot(obstacle.now.direction_to_own(face.normal)) > same_face;
+           obstacle.before.direction_from_own(then.normal).dot(normal) > same_face;
+}
+
+bool Skin::was_on(const CornerFace& face, const Vec3& node) const {
+    return std::abs(face.gap) <= tolerance::touching_gap || stood_on(face.seen, face.normal, node);
+}
+
+// Adds the faces that a node which pushes has been on since an instant before. Where two segments of a wall meet, the
+// face at hand takes over from that of the other, and the node leaves that.
+void Skin::add_pushed(std::size_t b, const Vec3& node, const CornerFace& own, Corner& corner) const {
+    const bool stays = own.dented || stood_on(own.seen, own.normal, node);
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+        if (k == own.seen || !is_solid_to(b, corner.lane, seen_[k])) continue;
+        if (!stays && stood_on(k, own.normal, node)) {
+            if (corner.count == 0) corner.add(own);
+            continue;
+        }
+        const CornerFace face = face_at(k, node, node);
+        if (was_on(face, node)) corner.add(face);
+    }
 }
 
 // Surfaces that the node would get into on its way onto those that it is on.
@@ -135,11 +153,7 @@ void Skin::settle(std::size_t b, std::size_t i) {
     const CornerFace own = own_face(i);
     if (own.gap < 0.0 || own.dented || was_on(own, node)) corner.add(own);
     if (block.force[i] > 0.0) {
-        for (std::size_t k = 0; k < seen_.size(); ++k) {
-            if (k == own.seen || !is_solid_to(b, i, seen_[k])) continue;
-            const CornerFace face = face_at(k, node, node);
-            if (was_on(face, node)) corner.add(face);
-        }
+        add_pushed(b, node, own, corner);
         corner.share_out((anchor - node).normalized());
         corner.release();
     }
