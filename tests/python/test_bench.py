@@ -98,13 +98,7 @@ def output_of(program: str, *arguments: str) -> str:
     return done.stdout
 
 
-# Walls in segments differ from whole ones by 8e-7 of the speed, see test_segments_are_the_same_wall.
-SPLIT = pytest.mark.xfail(reason="a step more is redone where a node leaves beside a joint")
-
-
-@pytest.mark.parametrize(
-    "program", ["bench_library.py", pytest.param("bench_random_impacts.py", marks=SPLIT)]
-)
+@pytest.mark.parametrize("program", ["bench_library.py", "bench_random_impacts.py"])
 def test_quick_robustness(program: str) -> None:
     """No scene of the quick choice has a fault; the program would end with 1."""
     assert " 0 with a fault" in output_of(program, "--quick")

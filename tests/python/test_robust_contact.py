@@ -58,7 +58,6 @@ def test_what_one_slope_lets_go_does_not_spring_into_another(speed: float) -> No
     assert simulation.result().metrics["energy_residual"] < 1e-3
 
 
-@pytest.mark.xfail(reason="a step more is redone where a node leaves beside a joint: 3e-7 of the speed")
 @pytest.mark.parametrize(
     "barrier",
     [
