@@ -223,8 +223,9 @@ class Jersey(Barrier):
         base = half[0, 0]
         left = half[::-1] * [-1.0, 1.0]
         corners = np.vstack([[-base, -_FOOT], [base, -_FOOT], half, left])
-        loose = self.free_standing is not None and self.free_standing.joint == "loose"
-        return _along_line(self, corners, base, self.length, self.segments, abutting=not loose)
+        # Segments that turn open gaps, into which their ends look.
+        fixed = self.free_standing is None
+        return _along_line(self, corners, base, self.length, self.segments, abutting=fixed)
 
     def stands_free(self) -> _core.FreeStanding | None:
         """Return how its segments stand free, for the core; ``None`` where they are fixed."""
