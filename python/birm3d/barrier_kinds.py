@@ -336,7 +336,7 @@ class MeshBarrier(Barrier):
 def _along_line(
     barrier: Barrier, corners: Floats, across: float, length: float, segments: int, *, abutting: bool = True
 ) -> list[_core.Element]:
-    """Extrude a profile along the line; its first edge is in the ground. Abutting ends are no surface."""
+    """Extrude a profile along the line. Abutting ends are no surface."""
     ends = [-math.inf, math.inf] if math.isinf(length) else np.linspace(-0.5, 0.5, segments + 1) * length
     elements = []
     for i in range(segments):
@@ -347,7 +347,7 @@ def _along_line(
                 profile=corners,
                 y_low=low - middle,
                 y_high=high - middle,
-                covered_edges=[0],
+                covered_edges=[],
                 covered_low_end=abutting and i > 0,
                 covered_high_end=abutting and i < segments - 1,
                 position=barrier.place(across, middle),

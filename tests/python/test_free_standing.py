@@ -119,9 +119,6 @@ def test_a_straight_slide_stops_where_friction_says() -> None:
     )  # energies are linear between steps
 
 
-# The block falls along the slab to its lower edge, where its nodes do not keep energy: 1 % of what the
-# weight does. Friction is what is asked here.
-@pytest.mark.filterwarnings("ignore::birm3d.LedgerWarning")
 def test_what_friction_can_hold_does_not_creep() -> None:
     """80 t hold 392 kN; the block pushes with 26 kN."""
     result = Simulation(block(1e5), slab(0.5, 80e3), 1.0, duration=1.5).run()
@@ -168,8 +165,6 @@ def test_segments_come_to_rest(pinned: birm3d.Result) -> None:
     assert metrics["max_overturning_ratio"] > 0.0
 
 
-# Nodes that pass from a segment to the next at a kink keep no energy: 0.52 %.
-@pytest.mark.filterwarnings("ignore::birm3d.LedgerWarning")
 def test_left_and_right_mirror_each_other(car: Vehicle, chain: Barrier) -> None:
     left = Simulation(car, chain, 25.0, 25.0, 1.0, duration=0.4).run()
     right = Simulation(car, chain, 25.0, 155.0, -1.0, duration=0.4).run()

@@ -1,5 +1,6 @@
 #include "birm3d/sim/entered_face.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "birm3d/base/tolerances.hpp"
@@ -35,6 +36,13 @@ At nearest_of_all(const Scene& scene, std::span<const NearObstacle> near, std::s
     return best;
 }
 
+// Was the place in the plane of its nearest face an instant before?
+bool was_in_plane(const Scene& scene, const NearObstacle& obstacle, const Vec3& place) {
+    const Vec3 now = obstacle.now.to_own(place), before = obstacle.before.to_own(place);
+    const Nearest face = nearest(scene.obstacles[obstacle.index].shape, now);
+    return std::abs(face.gap + face.normal.dot(before - now)) <= tolerance::touching_gap;
+}
+
 }  // namespace
 
 std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const NearObstacle> near,
@@ -52,6 +60,9 @@ std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const Near
     // Straight before a face and then straight behind it: it went in there.
     if (entry.seen == nearest_now && std::holds_alternative<Prism>(scene.obstacles[present.index].shape) &&
         entry.nearest.normal.dot(present.now.direction_to_own(normal_now)) > same_normal)
+        return std::nullopt;
+    // From an edge it goes in by both faces. Rounding must not choose: it is the one that is nearest now.
+    if (std::abs(entry.nearest.gap) <= tolerance::touching_gap && was_in_plane(scene, present, place))
         return std::nullopt;
     if (entry.nearest.gap > tolerance::touching_gap) {
         double inside = 1.0;
