@@ -1,6 +1,5 @@
 #include "birm3d/sim/entered_face.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include "birm3d/base/tolerances.hpp"
@@ -36,13 +35,6 @@ At nearest_of_all(const Scene& scene, std::span<const NearObstacle> near, std::s
     return best;
 }
 
-// Was the place in the plane of its nearest face an instant before?
-bool was_in_plane(const Scene& scene, const NearObstacle& obstacle, const Vec3& place) {
-    const Vec3 now = obstacle.now.to_own(place), before = obstacle.before.to_own(place);
-    const Nearest face = nearest(scene.obstacles[obstacle.index].shape, now);
-    return std::abs(face.gap + face.normal.dot(before - now)) <= tolerance::touching_gap;
-}
-
 }  // namespace
 
 std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const NearObstacle> near,
@@ -61,16 +53,14 @@ std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const Near
     if (entry.seen == nearest_now && std::holds_alternative<Prism>(scene.obstacles[present.index].shape) &&
         entry.nearest.normal.dot(present.now.direction_to_own(normal_now)) > same_normal)
         return std::nullopt;
-    // From an edge it goes in by both faces. Rounding must not choose: it is the one that is nearest now.
-    if (std::abs(entry.nearest.gap) <= tolerance::touching_gap && was_in_plane(scene, present, place))
-        return std::nullopt;
-    if (entry.nearest.gap > tolerance::touching_gap) {
+    // What it stood on may be another surface, which it leaves before it goes in.
+    if (entry.nearest.gap >= -tolerance::touching_gap) {
         double inside = 1.0;
         constexpr int halvings = 20;
         for (int i = 0; i < halvings; ++i) {
             const double middle = 0.5 * (outside + inside);
             const At there = nearest_of_all(scene, near, seen, on_way(middle));
-            if (there.nearest.gap > 0.0)
+            if (there.nearest.gap >= -tolerance::touching_gap)
                 outside = middle, entry = there;
             else
                 inside = middle;
