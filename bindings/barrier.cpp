@@ -50,18 +50,16 @@ void register_barrier(py::module_& m) {
             "Upright and round, foot of the axis at position; m.")
         .def_static(
             "prism",
-            [](const InputArray& profile, double y_low, double y_high,
-               const std::vector<std::size_t>& covered_edges, bool covered_low_end, bool covered_high_end,
-               const InputArray& position, double heading) {
+            [](const InputArray& profile, double y_low, double y_high, bool covered_low_end,
+               bool covered_high_end, const InputArray& position, double heading) {
                 return element(Prism(profile_points(profile), y_low, y_high,
-                                     {covered_edges, covered_low_end, covered_high_end}),
+                                     {.low_end = covered_low_end, .high_end = covered_high_end}),
                                position, heading);
             },
-            py::kw_only(), py::arg("profile"), py::arg("y_low"), py::arg("y_high"), py::arg("covered_edges"),
+            py::kw_only(), py::arg("profile"), py::arg("y_low"), py::arg("y_high"),
             py::arg("covered_low_end"), py::arg("covered_high_end"), py::arg("position"), py::arg("heading"),
-            "profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered faces "
-            "are "
-            "no surface.")
+            "profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered ends "
+            "are no surface.")
         .def_static(
             "mesh",
             [](const InputArray& vertices, const std::vector<TriangleMesh::Face>& faces,

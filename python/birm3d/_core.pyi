@@ -109,9 +109,9 @@ class Element:
         Upright and round, foot of the axis at position; m.
         """
     @staticmethod
-    def prism(*, profile: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], y_low: typing.SupportsFloat | typing.SupportsIndex, y_high: typing.SupportsFloat | typing.SupportsIndex, covered_edges: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], covered_low_end: bool, covered_high_end: bool, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
+    def prism(*, profile: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], y_low: typing.SupportsFloat | typing.SupportsIndex, y_high: typing.SupportsFloat | typing.SupportsIndex, covered_low_end: bool, covered_high_end: bool, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
         """
-        profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered faces are no surface.
+        profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered ends are no surface.
         """
 class EndReason:
     """

@@ -347,7 +347,6 @@ def _along_line(
                 profile=corners,
                 y_low=low - middle,
                 y_high=high - middle,
-                covered_edges=[],
                 covered_low_end=abutting and i > 0,
                 covered_high_end=abutting and i < segments - 1,
                 position=barrier.place(across, middle),

@@ -12,7 +12,7 @@ from pathlib import Path
 import birm3d
 import numpy as np
 import pytest
-from birm3d import Barrier, FreeStanding, Settings, Simulation, Vehicle, scenes
+from birm3d import Barrier, FreeStanding, Settings, Simulation, Vehicle, scenes, units
 from birm3d.free_standing import base_corners
 
 MASS, SPEED = 6804.0, 10.0  # of the laboratory block
@@ -151,6 +151,13 @@ def test_pinned_segments_keep_together_and_the_ledger_closes(pinned: birm3d.Resu
     assert np.abs(high[-1, :-1] - low[-1, 1:]).max() < 1e-6
     assert np.abs(high[:, :-1] - low[:, 1:]).max() < 1e-4
     assert np.abs(pinned.energy["joints"]).max() < 1e-3 * pinned.energy["kinetic"][0]
+
+
+def test_gaps_between_turned_segments_keep_the_energy() -> None:
+    """A wheel goes into the gap that two pinned segments open: 2.8e-4 was measured, 1.2 % without their ends."""
+    chain = Barrier.jersey(length=30.0, segments=10, free_standing=True)
+    hit = Simulation(Vehicle.preset("pickup"), chain, units.km_h(100.0), 25.0, duration=1.0).run()
+    assert hit.metrics["energy_residual"] < 1e-3
 
 
 def test_segments_come_to_rest(pinned: birm3d.Result) -> None:
