@@ -154,7 +154,7 @@ def test_pinned_segments_keep_together_and_the_ledger_closes(pinned: birm3d.Resu
 
 
 def test_gaps_between_turned_segments_keep_the_energy() -> None:
-    """A wheel goes into the gap that two pinned segments open: 2.8e-4 was measured, 1.2 % without their ends."""
+    """A wheel goes into the gap that two pinned segments open: 2.8e-4, and 1.2 % without their ends."""
     chain = Barrier.jersey(length=30.0, segments=10, free_standing=True)
     hit = Simulation(Vehicle.preset("pickup"), chain, units.km_h(100.0), 25.0, duration=1.0).run()
     assert hit.metrics["energy_residual"] < 1e-3
