@@ -195,7 +195,8 @@ void register_simulation(py::module_& m) {
              py::arg("unit") = 0, "(3,) m/s, world, now")
         .def("pose", alone(+[](Simulation& s, std::size_t unit) {
                  const BodyState& body = s.state().units.at(unit).body;
-                 return std::pair(copy(body.position), copy(Mat3(body.orientation.toRotationMatrix())));
+                 return std::pair(copy(Vec3(s.scene().base + body.position)),
+                                  copy(Mat3(body.orientation.toRotationMatrix())));
              }),
              py::arg("unit") = 0,
              "Now: mass centre, (3,) m, world; rotation from body axes to the world's, (3, 3)")

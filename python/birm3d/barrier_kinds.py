@@ -61,7 +61,7 @@ class RigidWall(Barrier):
         if math.isinf(self.width) and self.segments > 1:
             raise ValueError(f"segments must be 1 for a wall of infinite width, got {self.segments}")
         if math.isinf(self.width) and math.isinf(self.height):
-            return [_core.Element.plane(position=self.place(0.0, 0.0), heading=heading)]
+            return [_core.Element.plane(position=self.from_origin(0.0, 0.0), heading=heading)]
         top = self.height if math.isfinite(self.height) else _HIGH
         corners = [(0.0, -_FOOT), (self.thickness, -_FOOT), (self.thickness, top), (0.0, top)]
         return _along_line(self, np.array(corners), 0.0, self.width, self.segments)
@@ -85,7 +85,7 @@ class Pole(Barrier):
             _core.Element.post(
                 radius=0.5 * self.diameter,
                 height=math.inf,
-                position=self.place(0.0, 0.0),
+                position=self.from_origin(0.0, 0.0),
                 heading=math.radians(self.heading),
             )
         ]
@@ -133,7 +133,7 @@ class Bollards(Barrier):
             _core.Element.post(
                 radius=0.5 * self.diameter,
                 height=self.height,
-                position=self.place(across, along),
+                position=self.from_origin(across, along),
                 heading=math.radians(self.heading),
             )
             for across, along in self.places()
@@ -307,7 +307,7 @@ class MeshBarrier(Barrier):
             _core.Element.mesh(
                 vertices=self.vertices,
                 faces=self.faces.tolist(),
-                position=self.place(0.0, 0.0),
+                position=self.from_origin(0.0, 0.0),
                 heading=math.radians(self.heading),
             )
         ]
@@ -349,7 +349,7 @@ def _along_line(
                 y_high=high - middle,
                 covered_low_end=abutting and i > 0,
                 covered_high_end=abutting and i < segments - 1,
-                position=barrier.place(across, middle),
+                position=barrier.from_origin(across, middle),
                 heading=math.radians(barrier.heading),
             )
         )

@@ -24,6 +24,18 @@ def block() -> Vehicle:
     )
 
 
+Point = tuple[float, float, float]
+
+
+def box_mesh(depth: float, width: float, height: float) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and faces of a block whose front is at x = 0."""
+    corners = np.array(
+        [(x, y, z) for x in (0.0, depth) for y in (-width / 2, width / 2) for z in (0.0, height)]
+    )
+    quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (1, 5, 7, 3), (0, 2, 6, 4))
+    return corners, np.array([(q[0], q[i], q[i + 1]) for q in quads for i in (1, 2)])
+
+
 def assert_same_metrics(a: Mapping[str, float], b: Mapping[str, float], tolerance: float) -> None:
     assert set(a) == set(b)
     for name in set(a) - NOT_PHYSICS:
@@ -210,6 +222,73 @@ def test_a_site_plan_is_aimed_at_by_stations() -> None:
     for wrong in ((1.0,), (math.nan, 0.0)):
         with pytest.raises(ValueError, match="point must be two or three finite numbers"):
             there.station(wrong)
+
+
+FAR: Mapping[str, tuple[str, Callable[[Point], Barrier], float, float]] = {
+    "car at a wall": ("passenger_car", lambda at: Barrier.rigid_wall(origin=at), 25.0, 0.3),
+    "truck at bollards": ("cargo_truck", lambda at: Barrier.bollards(origin=at, heading=30.0), 65.0, 0.3),
+    "semi at Jersey": (
+        "semi_truck",
+        lambda at: Barrier.jersey(length=12.0, segments=4, origin=at, heading=30.0),
+        40.0,
+        0.3,
+    ),
+    "semi at segments": (
+        "semi_truck",
+        lambda at: Barrier.jersey(length=12.0, segments=4, free_standing=True, origin=at),
+        90.0,
+        0.0,
+    ),
+    "pickup at a mesh": (
+        "pickup",
+        lambda at: Barrier.from_mesh(*box_mesh(0.6, 4.0, 1.0), origin=at),
+        80.0,
+        0.3,
+    ),
+}
+
+
+@pytest.mark.parametrize(("vehicle", "barrier", "angle", "beside"), FAR.values(), ids=FAR.keys())
+def test_a_scene_far_away_has_the_same_bits(
+    vehicle: str, barrier: Callable[[Point], Barrier], angle: float, beside: float
+) -> None:
+    """Places far from zero are rounded more, and a crash of many contacts makes that grow."""
+    truck = Vehicle.preset(vehicle, mesh_density=0.3)
+
+    def crash(at: Point) -> Result:
+        stands = barrier(at)
+        there = Simulation(truck, stands, 20.0, angle, stands.station() + beside, duration=0.3)
+        assert np.subtract(there._core.pose()[0], at) == pytest.approx(here_at, abs=1e-9)
+        return there.run()
+
+    stands = barrier((0.0, 0.0, 0.0))
+    here_at = Simulation(truck, stands, 20.0, angle, beside, duration=0.3)._core.pose()[0]
+    here = crash((0.0, 0.0, 0.0))
+    for at in ((1000.0, 0.0, 0.0), (0.0, -1000.0, 0.0), (1000.1, 999.7, 0.0), (1e5, -1e5, 0.0)):
+        there = crash(at)
+        assert there.state_hash == here.state_hash
+        assert np.abs(there.position - at - here.position).max() < 1e-10
+        moved = there.segment_position - np.array(at[:2]) - here.segment_position
+        assert np.abs(moved).max(initial=0.0) < 1e-10
+        assert_same_metrics(here.metrics, there.metrics, 1e-9)
+        for a, b in zip(here.element_loads, there.element_loads, strict=True):
+            assert np.array_equal(a.force, b.force)
+            assert np.array_equal(a.moment, b.moment)
+
+
+def test_an_endless_barrier_is_the_same_everywhere_along_its_line() -> None:
+    """Its foot, about which moments are counted, stays at the origin."""
+    truck = Vehicle.preset("semi_truck", mesh_density=0.3)
+    short = {"duration": 0.2}
+    here = Simulation(truck, Barrier.jersey(), 20.0, 65.0, 0.0, **short).run()
+    there = Simulation(truck, Barrier.jersey(), 20.0, 65.0, -1000.0, **short).run()
+    assert there.state_hash == here.state_hash
+    assert np.abs(there.position - here.position - [0.0, -1000.0, 0.0]).max() < 1e-10
+    (a,), (b,) = here.element_loads, there.element_loads
+    assert np.array_equal(a.force, b.force)
+    arm = np.cross([0.0, -1000.0, 0.0], a.force)
+    assert np.abs(arm).max() > 1e6
+    assert np.abs(b.moment - a.moment - arm).max() < 1e-12 * np.abs(arm).max()
 
 
 def test_standoff_only_delays() -> None:

@@ -48,6 +48,8 @@ Barrier::Barrier(std::vector<Element> elements_, double friction_, const Vec3& o
       heading(require_finite("heading", heading_)),
       free_standing(free_standing_) {
     if (!origin.allFinite()) refuse("origin", "finite", "a coordinate that is not");
+    if (free_standing && origin.z() != 0.0)
+        refuse("origin height", "0 m where it is free-standing", origin.z());
     if (elements.empty()) refuse("elements", "at least 1", 0.0);
     for (std::size_t i = 0; i < elements.size(); ++i) {
         const std::string name = "elements[" + std::to_string(i) + "] ";
@@ -59,13 +61,13 @@ Barrier::Barrier(std::vector<Element> elements_, double friction_, const Vec3& o
 }
 
 Barrier Barrier::wall(double friction, const Vec3& origin, double heading) {
-    return {{{HalfSpace{}, origin, heading}}, friction, origin, heading, {}};
+    return {{{HalfSpace{}, Vec3::Zero(), heading}}, friction, origin, heading, {}};
 }
 
 Barrier Barrier::pole(double friction, const Vec3& origin, double heading, double radius) {
     require_positive("radius", radius);
     const Post post{radius, std::numeric_limits<double>::infinity()};
-    return {{{post, origin, heading}}, friction, origin, heading, {}};
+    return {{{post, Vec3::Zero(), heading}}, friction, origin, heading, {}};
 }
 
 Vec3 Barrier::normal() const {

@@ -67,7 +67,7 @@ bool runs_along_line(const Scene& scene) {
     return std::abs(std::sin(scene.approach.angle)) < tolerance::along_line;
 }
 
-// Where the line is, along `towards`: its origin; of a path along it where the barrier begins, of meshes where they end.
+// Where the line is, along `towards`: at the base; of a path along it where the barrier begins, of meshes where they end.
 double line_of(const Scene& scene, const State& state, const Vec3& towards) {
     const bool along = runs_along_line(scene);
     double first = infinity, last = -infinity;
@@ -80,7 +80,7 @@ double line_of(const Scene& scene, const State& state, const Vec3& towards) {
         mesh |= own;
     }
     if (along) return first;
-    return mesh ? last : scene.barrier->origin.dot(towards);
+    return mesh ? last : 0.0;
 }
 
 // How far the leading mass centre is past the line (m); of free-standing segments past the nearest of them.

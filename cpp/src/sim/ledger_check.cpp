@@ -7,17 +7,17 @@ namespace birm3d {
 
 namespace {
 
-void note(double size, const State& now, Ledger::Departure& greatest) {
-    if (size > greatest.size) greatest = {size, now.time, now.units.front().body.position};
+void note(double size, const Scene& scene, const State& now, Ledger::Departure& greatest) {
+    if (size > greatest.size) greatest = {size, now.time, scene.base + now.units.front().body.position};
 }
 
-void check_energies(const Energies& e, const State& now, Ledger& ledger) {
-    note(std::abs(e.total() - ledger.total), now, ledger.energy);
+void check_energies(const Energies& e, const Scene& scene, const State& now, Ledger& ledger) {
+    note(std::abs(e.total() - ledger.total), scene, now, ledger.energy);
     ledger.at_disposal = std::max(ledger.at_disposal, ledger.kinetic - e.potential);
     const std::array<double, Ledger::terms> terms{e.crushed,         e.barrier_friction, e.tire_friction,
                                                   e.ground_friction, e.impacts,          e.segment_friction};
     for (std::size_t i = 0; i < terms.size(); ++i) {
-        note(ledger.highest[i] - terms[i], now, ledger.falls[i]);
+        note(ledger.highest[i] - terms[i], scene, now, ledger.falls[i]);
         ledger.highest[i] = std::max(ledger.highest[i], terms[i]);
     }
 }
@@ -43,7 +43,7 @@ void check_momentum(const Scene& scene, const State& state, const Trial& trial, 
         for (const Touch& touch : to.touches)
             impulse += 0.5 * trial.dt * touch.course.now.wrench.force + touch.extra.correction.wrench.force;
         const Vec3 change = mass * (to.body.velocity - from.body.velocity);
-        note((change - impulse).norm(), trial.state, ledger.momentum);
+        note((change - impulse).norm(), scene, trial.state, ledger.momentum);
         ledger.largest_momentum =
             std::max({ledger.largest_momentum, mass * to.body.velocity.norm(), impulse.norm()});
     }
@@ -63,9 +63,9 @@ void check_ledger(const Scene& scene, const State& state, const Trial& trial, Le
                          scene.vehicle->units[u].body.mass * state.units[u].body.velocity.norm());
     }
     const State& now = trial.state;
-    if (trial.at_start.happened) check_energies(trial.at_start.energies, now, ledger);
-    if (trial.at_end.happened) check_energies(trial.at_end.energies, now, ledger);
-    check_energies(now.energies, now, ledger);
+    if (trial.at_start.happened) check_energies(trial.at_start.energies, scene, now, ledger);
+    if (trial.at_end.happened) check_energies(trial.at_end.energies, scene, now, ledger);
+    check_energies(now.energies, scene, now, ledger);
     check_momentum(scene, state, trial, ledger);
 }
 

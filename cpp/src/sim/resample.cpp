@@ -82,6 +82,9 @@ void Recorder::resample(const Scene& scene, const Channels& wanted, History& his
         if (wanted.normal_force) resample_normal_force(step_of, offset, history.time, history.towards, unit);
         if (wanted.motion)
             resample_motion(step_of, offset, history.time, model, scene.settings.gravity, unit);
+        if (wanted.motion)
+            for (Vec3& position : unit.position)
+                position += scene.base;
         if (wanted.contact_forces) resample_contact_forces(step_of, offset, history.time, unit);
         if (wanted.forces)
             largest = std::max(largest, resample_forces(step_of, offset, history.time, model,
@@ -92,7 +95,7 @@ void Recorder::resample(const Scene& scene, const Channels& wanted, History& his
     history.obstacles.clear();
     history.joints.clear();
     history.segments.clear();
-    if (wanted.elements) resample_obstacles(step_of, history);
+    if (wanted.elements) resample_obstacles(scene, step_of, history);
     if (wanted.joints) resample_joints(scene, step_of, history);
     if (wanted.segments) resample_segments(scene, step_of, history);
 }

@@ -51,7 +51,8 @@ void Recorder::resample_joints(const Scene& scene, const std::vector<std::size_t
 }
 
 // Forces and torques on the obstacles that were touched, as means over the output intervals.
-void Recorder::resample_obstacles(const std::vector<std::size_t>& step_of, History& history) const {
+void Recorder::resample_obstacles(const Scene& scene, const std::vector<std::size_t>& step_of,
+                                  History& history) const {
     std::map<std::size_t, std::vector<const ObstacleRow*>>
         touched;  // obstacle -> (rows), null where untouched
     for (const ObstacleRow& row : obstacles_) {
@@ -96,7 +97,7 @@ void Recorder::resample_obstacles(const std::vector<std::size_t>& step_of, Histo
                 if (k > 0) mean[i] = (now[i] - previous[i]) / (history.time[k] - history.time[k - 1]);
             }
             of.force[k] = vec(mean.data());
-            of.moment[k] = vec(mean.data() + 3);
+            of.moment[k] = vec(mean.data() + 3) + scene.from_origin.cross(of.force[k]);
             previous = now;
         }
         if (count > 1) of.force[0] = of.force[1], of.moment[0] = of.moment[1];
@@ -141,7 +142,7 @@ void Recorder::resample_segments(const Scene& scene, const std::vector<std::size
             segment.velocity.push_back(held || s == 1.0 ? v1
                                                         : Vec3(v0 + pushed(t) + s * (v1 - v0 - pushed(dt))));
             segment.position.push_back(p0 + (p1 - p0) * (s * s * (3.0 - 2.0 * s)) +
-                                       dt * s * (1.0 - s) * ((1.0 - s) * v0 - s * v1) -
+                                       dt * s * (1.0 - s) * ((1.0 - s) * v0 - s * v1) + scene.base -
                                        height * Vec3::UnitZ());
             segment.yaw_rate.push_back((1.0 - s) * a[at_segment_spin] + s * b[at_segment_spin]);
             const Eigen::Map<const Eigen::Vector4d> qa(a + at_segment_orientation),

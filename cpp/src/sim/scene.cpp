@@ -3,23 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "birm3d/base/error.hpp"
-#include "birm3d/base/rotation.hpp"
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/kernels/tires.hpp"
-#include "birm3d/sim/obstacles.hpp"
-#include "birm3d/sim/panel_dents.hpp"
 #include "recorder_rows.hpp"
 
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void add_to(Hash& hash, const HalfSpace& plane) {
     hash.add(plane.normal);
@@ -44,119 +36,10 @@ void add_to(Hash& hash, const TriangleMesh& mesh) {
             hash.add(corner);
 }
 
-// How far the barrier reaches along `direction` (m).
-double extent(const std::vector<Obstacle>& elements, const Vec3& direction) {
-    double most = -infinity;
-    for (const Obstacle& element : elements) {
-        const Vec3 own = element.rotation.transpose() * direction;
-        if (const auto* plane = std::get_if<HalfSpace>(&element.shape)) {
-            const bool ends = (own - plane->normal).norm() < 1e-12;
-            most = std::max(most, ends ? element.position.dot(direction) + plane->offset : infinity);
-            continue;
-        }
-        const Box box = bounds(element.shape);
-        double reach = element.position.dot(direction);
-        for (int i = 0; i < 3; ++i)
-            if (std::abs(own[i]) > 1e-12) reach += own[i] * box.center[i] + std::abs(own[i]) * box.half[i];
-        most = std::max(most, reach);
-    }
-    return most;
-}
-
-void move(State& state, const Vec3& way) {
-    for (UnitState& unit : state.units)
-        unit.body.position += way;
-}
-
-// A vehicle that is rolled stands on what is then its lowest point.
-void raise_to_ground(const Scene& scene, State& state) {
-    double lowest = 0.0;
-    for (std::size_t u = 0; u < state.units.size(); ++u) {
-        const Unit& unit = scene.vehicle->units[u];
-        std::vector<RigidContact> wheels;
-        find_tire_contacts(unit, u, state.units[u].body, wheels);
-        for (const RigidContact& wheel : wheels)
-            lowest = std::min(lowest, wheel.gap);
-        if (scene.skin_meets_ground[u])
-            for (std::size_t i = 0; i < unit.trusses.skin; ++i)
-                lowest = std::min(lowest, (state.units[u].body.position +
-                                           state.units[u].body.orientation * unit.trusses.node(i))
-                                              .z());
-    }
-    move(state, -lowest * Vec3::UnitZ());
-}
-
 // Does a segment of a wall go on where the one before it ends?
 bool continues(const Shape& shape) {
     const auto* prism = std::get_if<Prism>(&shape);
     return prism != nullptr && std::isfinite(prism->y_low()) && !prism->low_end_is_surface();
-}
-
-// Beside a post a bowed front is drawn in before the post touches a node: back to before that.
-void stand_back(const Scene& scene, const Vec3& heading, State& state) {
-    constexpr double deepest = 0.3;
-    constexpr int most_steps = 50;
-    for (int i = 0; i < most_steps; ++i) {
-        const double overlap = overlap_of_dents(scene, state, deepest);
-        if (overlap == 0.0) return;
-        move(state, -(overlap + tolerance::touching_gap) * heading);
-    }
-}
-
-// Moves the vehicle of `state` along its path, forward or back, until its nearest point stands `standoff` before the
-// barrier. A path that leads past the barrier starts where the barrier begins.
-void place(const Scene& scene, const Vec3& heading, State& state) {
-    const Barrier& barrier = *scene.barrier;
-    const std::vector<Obstacle> elements(
-        scene.obstacles.begin(),
-        scene.obstacles.begin() + static_cast<std::ptrdiff_t>(barrier.elements.size()));
-    // Towards the barrier, or along it for a path that never comes nearer.
-    const Vec3 inward = heading.dot(barrier.normal()) < -1e-12 ? Vec3(-barrier.normal()) : heading;
-    const double first = -extent(elements, -inward), last = extent(elements, inward);
-    if (!std::isfinite(first))
-        refuse("impact_angle", "> 0 and < 180 deg where the barrier has no end",
-               scene.approach.angle * 180.0 / std::numbers::pi);
-    double front = -infinity, rear = infinity;
-    for (std::size_t u = 0; u < state.units.size(); ++u) {
-        const BodyState& body = state.units[u].body;
-        const TrussMesh& mesh = scene.vehicle->units[u].trusses;
-        const Mat3 R = body.orientation.toRotationMatrix();
-        const auto reach = [&](const Vec3& point) {
-            const double at = inward.dot(body.position + R * point);
-            front = std::max(front, at), rear = std::min(rear, at);
-        };
-        for (std::size_t i = 0; i < mesh.count; ++i)
-            reach(mesh.node(i));
-        for (std::size_t i = 0; i < mesh.skin; ++i)
-            reach(mesh.anchor(i));
-    }
-    const double pace = heading.dot(inward);
-    const double to_plane = (first - scene.approach.standoff - front) / pace;
-    move(state, to_plane * heading);
-    const bool plane_only = elements.size() == 1 && std::holds_alternative<HalfSpace>(elements[0].shape);
-    if (plane_only) return;
-
-    // From there step by step by the distance that is certainly free.
-    const double longest = (last - first + front - rear) / pace + scene.approach.standoff;
-    double way = 0.0;
-    constexpr int most_steps = 1000;
-    for (int i = 0; i < most_steps && way <= longest; ++i) {
-        const double free = nearest_gap(scene, state, {.anchors = true}) - scene.approach.standoff;
-        move(state, free * heading);
-        way += free;
-        if (std::abs(free) < tolerance::initial_overlap * 1e-3) break;
-    }
-    if (way <= longest) {
-        stand_back(scene, heading, state);
-        return;
-    }
-    move(state, -way * heading);
-}
-
-// At barrier heading 0 the line runs along +y: the path (sin, cos) meets it at the impact angle.
-double yaw_of_path(const Scene& scene) {
-    const double barrier_heading = scene.barrier ? scene.barrier->heading : 0.0;
-    return barrier_heading + 0.5 * std::numbers::pi - scene.approach.angle;
 }
 
 }  // namespace
@@ -175,9 +58,9 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
     if (!duration && !barrier) refuse("duration", "given (s) where there is no barrier", "none");
     if (barrier)
         for (const Element& element : barrier->elements)
-            obstacles.push_back({element.shape,
-                                 Eigen::AngleAxisd(element.heading, Vec3::UnitZ()).toRotationMatrix(),
-                                 element.position, barrier->friction, 0});
+            obstacles.push_back(
+                {element.shape, Eigen::AngleAxisd(element.heading, Vec3::UnitZ()).toRotationMatrix(),
+                 element.position + barrier->origin.z() * Vec3::UnitZ(), barrier->friction, 0});
     if (free_segments() > 0 && !settings.ground)
         refuse("ground", "True where the barrier is free-standing", "False");
     for (std::size_t i = 0; i < obstacles.size(); ++i)
@@ -202,29 +85,6 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
     for (const Obstacle& obstacle : obstacles)
         thinnest =
             std::min({thinnest, thickness(obstacle.shape), 2.0 * bounds(obstacle.shape).half.minCoeff()});
-}
-
-void Scene::set_approach(const Approach& a) {
-    require_not_negative("impact_speed", a.speed);
-    if (!(a.angle >= 0.0 && a.angle <= std::numbers::pi))
-        refuse("impact_angle", "within 0 and 180 deg", a.angle * 180.0 / std::numbers::pi);
-    require_finite("impact_yaw", a.yaw);
-    require_finite("impact_roll", a.roll);
-    require_finite("impact_offset", a.offset);
-    if (!(std::isfinite(a.standoff) && a.standoff >= 0.0))
-        refuse("standoff", "finite and >= 0 m, or the vehicle would start inside the barrier", a.standoff);
-    if (!duration && !(a.speed > 0.0)) refuse("duration", "given (s) where the vehicle stands still", "none");
-    approach = a;
-}
-
-Vec3 Scene::heading() const {
-    const double yaw = yaw_of_path(*this);
-    return {std::cos(yaw), std::sin(yaw), 0.0};
-}
-
-Vec3 Scene::towards() const {
-    const bool along = std::abs(std::sin(approach.angle)) < tolerance::along_line;
-    return barrier && !along ? Vec3(-barrier->normal()) : heading();
 }
 
 double Scene::reference_speed() const {
@@ -288,56 +148,6 @@ std::uint64_t Scene::fingerprint() const {
         }
     }
     return hash.value();
-}
-
-State Scene::initial_state() const {
-    State state(*vehicle);
-    start(state);
-    return state;
-}
-
-void Scene::start(State& state) const {
-    state.reset(*vehicle);
-    if (barrier) state.was_near.assign(barrier->elements.size(), char{0});
-    for (std::size_t i = 0; i < free_segments(); ++i) {
-        const Element& element = barrier->elements[i];
-        BodyState segment;
-        segment.orientation = from_roll_pitch_yaw({0.0, 0.0, element.heading});
-        segment.position = element.position + barrier->segments[i].mass_center_height * Vec3::UnitZ();
-        state.segments.push_back(segment);
-    }
-    const double barrier_heading = barrier ? barrier->heading : 0.0;
-    const Vec3 origin = barrier ? barrier->origin : Vec3::Zero();
-    const double yaw = yaw_of_path(*this);
-    const Vec3 heading = this->heading();
-    const Vec3 line(-std::sin(barrier_heading), std::cos(barrier_heading), 0.0);
-
-    const double turn = yaw + approach.yaw;
-    const Quat orientation = from_roll_pitch_yaw({approach.roll, 0.0, turn});
-    const Unit& first = vehicle->units.front();
-    // Zero of the line is the point nearest to the world's origin, wherever along it the elements stand.
-    const Vec3 away(std::cos(barrier_heading), std::sin(barrier_heading), 0.0);
-    const Vec3 zero = origin.dot(away) * away;
-    // A path along the line never meets it: the offset is its distance, away from the traffic.
-    const bool meets_line = std::abs(std::sin(approach.angle)) > 1e-12;
-    const Vec3 foot = zero + approach.offset * (meets_line ? line : away);
-    const Vec3 center = foot + from_roll_pitch_yaw({0.0, 0.0, turn}) * first.place();
-    for (std::size_t u = 0; u < vehicle->units.size(); ++u) {
-        BodyState& body = state.units[u].body;
-        const Unit& unit = vehicle->units[u];
-        body.orientation = orientation;
-        body.position = center + orientation * (unit.place() - first.place());
-        body.velocity = approach.speed * heading;
-        state.energies.kinetic += kinetic_energy(unit.body, body);
-    }
-    if (approach.roll != 0.0 && settings.ground) raise_to_ground(*this, state);
-    if (barrier) {
-        place(*this, heading, state);
-        const double nearest = nearest_gap(*this, state, {.anchors = true});
-        const double rounding = 1e-15 * state.units[0].body.position.norm() + tolerance::initial_overlap;
-        if (nearest < -rounding) refuse("initial gap of the vehicle to the barrier", ">= 0 m", nearest);
-    }
-    state.next_step = tolerance::first_contact_step;
 }
 
 }  // namespace birm3d

@@ -55,22 +55,21 @@ TEST("the path of the mass centre meets the wall's line at the offset from the w
     const Scene scene(laboratory::block(laboratory::w2_curve()), laboratory::wall(0.0, heading, origin),
                       Approach{20.0, angle, 1.25, 0.0}, laboratory::weightless(), {});
     const BodyState body = scene.initial_state().units[0].body;
+    const Vec3 start = scene.base + body.position;
     const double t =
-        (body.position - origin).dot(scene.barrier->normal()) / -scene.barrier->normal().dot(body.velocity);
+        (start - origin).dot(scene.barrier->normal()) / -scene.barrier->normal().dot(body.velocity);
     const Vec3 line(-std::sin(heading), std::cos(heading), 0.0);
     const Vec3 nearest = origin - origin.dot(line) * line;
-    CHECK_CLOSE((body.position + t * body.velocity - nearest - 1.25 * line).norm(), 0.0, 1e-13, "rounding");
+    CHECK_CLOSE((start + t * body.velocity - nearest - 1.25 * line).norm(), 0.0, 1e-13, "rounding");
 }
 
 TEST("the vehicle does not follow a barrier that is moved along its line") {
     const double heading = 0.7;
     const Vec3 line(-std::sin(heading), std::cos(heading), 0.0), away(line.y(), -line.x(), 0.0);
     const auto start = [&](const Vec3& origin) {
-        return Scene(laboratory::block(laboratory::w2_curve()), laboratory::wall(0.0, heading, origin),
-                     Approach{20.0, 0.6, 1.25, 0.3}, laboratory::weightless(), {})
-            .initial_state()
-            .units[0]
-            .body.position;
+        const Scene scene(laboratory::block(laboratory::w2_curve()), laboratory::wall(0.0, heading, origin),
+                          Approach{20.0, 0.6, 1.25, 0.3}, laboratory::weightless(), {});
+        return Vec3(scene.base + scene.initial_state().units[0].body.position);
     };
     const Vec3 here = start(Vec3::Zero());
     CHECK_CLOSE((start(0.6 * line) - here).norm(), 0.0, 1e-13, "rounding");

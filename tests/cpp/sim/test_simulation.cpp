@@ -114,7 +114,8 @@ TEST("a scene turned about the vertical gives the same answer, turned") {
         CHECK_CLOSE((back * b.velocity - a.velocity).norm(), 0.0, 1e-6,
                     "rounding, enlarged by contacts that open and close");
         CHECK_CLOSE((back * b.angular_momentum - a.angular_momentum).norm() / 42000.0, 0.0, 1e-6, "the same");
-        const Vec3 way = back * (b.position - origin) - (a.position - origin);
+        const Vec3 way = back * (turned.scene().base + b.position - origin) -
+                         (straight.scene().base + a.position - origin);
         CHECK_CLOSE(way.norm(), 0.0, 20.0 * 2e-4 + 1e-6, "the way of that step");
         CHECK_CLOSE(deepest(turned), deepest(straight), 1e-8, "the same");
     }

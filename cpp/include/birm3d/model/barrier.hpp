@@ -13,13 +13,14 @@ namespace birm3d {
 
 // A wall or a segment of it, a post, a mesh: loads are reported element by element.
 struct Element {
-    Shape shape;                   // own axes, z up
-    Vec3 position = Vec3::Zero();  // of the own axes' origin, the element's foot, world (m)
-    double heading = 0.0;          // turn of the own axes about z (rad)
+    Shape shape;  // own axes, z up
+    Vec3 position =
+        Vec3::Zero();      // of the own axes' origin, the element's foot: from the barrier's origin (m)
+    double heading = 0.0;  // turn of the own axes about z (rad)
 };
 
 struct Barrier {
-    // origin, heading: of the line. friction: Coulomb coefficient vehicle-barrier. free_standing: absent where it is
+    // origin, heading: of the line, world. friction: Coulomb coefficient vehicle-barrier. free_standing: absent where it is
     // fixed; else all elements are prisms, see segment_of(), and pinned ones follow each other end to end along y.
     Barrier(std::vector<Element> elements, double friction, const Vec3& origin, double heading,
             const std::optional<FreeStanding>& free_standing = {});
@@ -34,7 +35,7 @@ struct Barrier {
 
     std::vector<Element> elements;
     double friction;  // Coulomb coefficient vehicle-barrier (paper 5.4: 0.15 to 0.20 steel on concrete)
-    Vec3 origin;      // m
+    Vec3 origin;      // m, world
     double heading;   // rad
     std::optional<FreeStanding> free_standing;
     std::vector<Segment> segments;  // (elements) where they are free-standing

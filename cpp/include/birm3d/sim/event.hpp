@@ -41,7 +41,7 @@ struct Event {
     double least_upright = 1.0;    // cosine between an up axis and the vertical, least of all units and steps
     bool over_top = false;         // was the mass centre past the line with an element under the rigid body?
     bool crossed = false;          // was it past the line?
-    Vec3 crossing = Vec3::Zero();  // where it was then, world (m)
+    Vec3 crossing = Vec3::Zero();  // where it was then, from the base of the scene (m)
 
     bool touching = false;  // the barrier, now
     // The last loss of contact: when (s), and the velocity of unit 0 then, world (m/s).

@@ -121,7 +121,8 @@ class Recorder {
                          const Unit& model, double gravity, UnitHistory& unit) const;
     double resample_forces(const std::vector<std::size_t>& step_of, std::size_t offset, const Column& time,
                            const Unit& model, double gravity, UnitHistory& unit, double& worst) const;
-    void resample_obstacles(const std::vector<std::size_t>& step_of, History& history) const;
+    void resample_obstacles(const Scene& scene, const std::vector<std::size_t>& step_of,
+                            History& history) const;
     void resample_segments(const Scene& scene, const std::vector<std::size_t>& step_of,
                            History& history) const;
     void resample_joints(const Scene& scene, const std::vector<std::size_t>& step_of, History& history) const;

@@ -31,8 +31,8 @@ struct Approach {
 // What the vehicle can touch: an element of the barrier, or the ground.
 struct Obstacle {
     Shape shape;                       // own axes
-    Mat3 rotation = Mat3::Identity();  // own axes to the world, at the start
-    Vec3 position = Vec3::Zero();      // of the own axes' origin, world, at the start (m)
+    Mat3 rotation = Mat3::Identity();  // own axes to those of the run, at the start
+    Vec3 position = Vec3::Zero();      // of the own axes' origin, the same (m)
     double friction = 0.0;
     std::size_t structure =
         0;  // place of the first obstacle that this one is joined to, itself where it stands alone
@@ -64,6 +64,12 @@ struct Scene {
 
     // Another start; refuses what the constructor refuses.
     void set_approach(const Approach& approach);
+
+    // Where the axes of the run stand, parallel to the world's (m, world, on the ground). A scene is run in axes of its
+    // own, so that its place in the world rounds nothing: state, record and obstacles are in them, a history is in the
+    // world's. They stand at the barrier's origin; of a barrier without end where the path meets its line.
+    Vec3 base = Vec3::Zero();
+    Vec3 from_origin = Vec3::Zero();  // of the barrier to the base, along the line (m)
 
     // Hash of the vehicle and the barrier: equal for equal scenes, wherever they were made.
     std::uint64_t fingerprint() const;
