@@ -1,5 +1,7 @@
 #include <pybind11/stl.h>
 
+#include <limits>
+
 #include "arrays.hpp"
 #include "birm3d/kernels/impulse.hpp"
 #include "birm3d/kernels/integrate.hpp"
@@ -8,12 +10,27 @@
 
 namespace birm3d::bindings {
 
+namespace {
+
+// What a zone's law may have beside its envelope.
+TrussCurve completed(TrussCurve curve, double elastic_recovery, double tail_depth, double tail_slope) {
+    if (tail_slope != 0.0) curve = with_tail(curve, tail_depth, tail_slope);
+    curve.recovery = elastic_recovery;
+    require_valid(curve, "");
+    return curve;
+}
+
+constexpr double none = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
 void register_laws(py::module_& m) {
     py::class_<TrussCurve>(m, "TrussCurve",
                            "Piecewise-linear loading envelope with an unloading slope (paper Fig. 3).")
         .def_readonly("deflection", &TrussCurve::deflection, "m, where the slope changes")
         .def_readonly("slope", &TrussCurve::slope, "slope from there on")
-        .def_readonly("k_unloading", &TrussCurve::k_unloading)
+        .def_readonly("k_unloading", &TrussCurve::k_unloading, "slope of unloading, or the least one")
+        .def_readonly("elastic_recovery", &TrussCurve::recovery, "m, infinite where the slope is constant")
         .def(
             "envelope", [](const TrussCurve& curve, double d) { return envelope_force(curve, d); },
             py::arg("deflection"))
@@ -29,23 +46,26 @@ void register_laws(py::module_& m) {
             py::arg("path"), "Forces (n,) along a path of deflections (n,) that starts uncrushed.");
     m.def(
         "knee_curve",
-        [](double k_initial, double knee, double k_hardening, double f_max, double k_unloading) {
-            TrussCurve curve = knee_curve(k_initial, knee, k_hardening, f_max, k_unloading);
-            require_valid(curve, "");
-            return curve;
+        [](double k_initial, double knee, double k_hardening, double f_max, double k_unloading,
+           double elastic_recovery, double tail_depth, double tail_slope) {
+            return completed(knee_curve(k_initial, knee, k_hardening, f_max, k_unloading), elastic_recovery,
+                             tail_depth, tail_slope);
         },
         py::arg("k_initial"), py::arg("knee"), py::arg("k_hardening"), py::arg("f_max"),
-        py::arg("k_unloading"),
-        "The paper's curve: k_initial to the knee, k_hardening to f_max, then the plateau.");
+        py::arg("k_unloading"), py::arg("elastic_recovery") = none, py::arg("tail_depth") = none,
+        py::arg("tail_slope") = 0.0,
+        "The paper's curve: k_initial to the knee, k_hardening to f_max, then the plateau; beyond tail_depth "
+        "steeper by tail_slope.");
     m.def(
         "point_curve",
-        [](const std::vector<double>& deflection, const std::vector<double>& force, double k_unloading) {
-            TrussCurve curve = point_curve(deflection, force, k_unloading);
-            require_valid(curve, "");
-            return curve;
+        [](const std::vector<double>& deflection, const std::vector<double>& force, double k_unloading,
+           double elastic_recovery, double tail_depth, double tail_slope) {
+            return completed(point_curve(deflection, force, k_unloading), elastic_recovery, tail_depth,
+                             tail_slope);
         },
-        py::arg("deflection"), py::arg("force"), py::arg("k_unloading"),
-        "A curve through points, flat after the last.");
+        py::arg("deflection"), py::arg("force"), py::arg("k_unloading"), py::arg("elastic_recovery") = none,
+        py::arg("tail_depth") = none, py::arg("tail_slope") = 0.0,
+        "A curve through points, flat after the last; beyond tail_depth steeper by tail_slope.");
 
     m.def(
         "tumble",

@@ -1052,8 +1052,15 @@ class TrussCurve:
         m, where the slope changes
         """
     @property
+    def elastic_recovery(self) -> float:
+        """
+        m, infinite where the slope is constant
+        """
+    @property
     def k_unloading(self) -> float:
-        ...
+        """
+        slope of unloading, or the least one
+        """
     @property
     def slope(self) -> list[float]:
         """
@@ -1171,17 +1178,17 @@ def from_roll_pitch_yaw(roll: typing.SupportsFloat | typing.SupportsIndex, pitch
     """
     Quaternion (w, x, y, z) of ISO 8855 angles in rad.
     """
-def knee_curve(k_initial: typing.SupportsFloat | typing.SupportsIndex, knee: typing.SupportsFloat | typing.SupportsIndex, k_hardening: typing.SupportsFloat | typing.SupportsIndex, f_max: typing.SupportsFloat | typing.SupportsIndex, k_unloading: typing.SupportsFloat | typing.SupportsIndex) -> TrussCurve:
+def knee_curve(k_initial: typing.SupportsFloat | typing.SupportsIndex, knee: typing.SupportsFloat | typing.SupportsIndex, k_hardening: typing.SupportsFloat | typing.SupportsIndex, f_max: typing.SupportsFloat | typing.SupportsIndex, k_unloading: typing.SupportsFloat | typing.SupportsIndex, elastic_recovery: typing.SupportsFloat | typing.SupportsIndex = ..., tail_depth: typing.SupportsFloat | typing.SupportsIndex = ..., tail_slope: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> TrussCurve:
     """
-    The paper's curve: k_initial to the knee, k_hardening to f_max, then the plateau.
+    The paper's curve: k_initial to the knee, k_hardening to f_max, then the plateau; beyond tail_depth steeper by tail_slope.
     """
 def mass_properties(solids: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], densities: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> MassProperties:
     """
     Mass properties of 8-node solids (n, 8, 3) in m with densities (n,) in kg/m^3.
     """
-def point_curve(deflection: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], force: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], k_unloading: typing.SupportsFloat | typing.SupportsIndex) -> TrussCurve:
+def point_curve(deflection: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], force: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], k_unloading: typing.SupportsFloat | typing.SupportsIndex, elastic_recovery: typing.SupportsFloat | typing.SupportsIndex = ..., tail_depth: typing.SupportsFloat | typing.SupportsIndex = ..., tail_slope: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> TrussCurve:
     """
-    A curve through points, flat after the last.
+    A curve through points, flat after the last; beyond tail_depth steeper by tail_slope.
     """
 def roll_pitch_yaw(w: typing.SupportsFloat | typing.SupportsIndex, x: typing.SupportsFloat | typing.SupportsIndex, y: typing.SupportsFloat | typing.SupportsIndex, z: typing.SupportsFloat | typing.SupportsIndex) -> tuple[float, float, float]:
     """

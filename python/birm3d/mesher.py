@@ -106,7 +106,7 @@ class _Surface:
         self._size = shell.element_size_m / math.sqrt(density)
         self._stations = np.array(shell.stations_m)
         self._x, marks = self._columns(vehicle)
-        self._eta = self._across()
+        self._eta = self._across(vehicle)
         self._zeta = self._rows(vehicle)
 
         shape = (len(self._x), len(self._eta), len(self._zeta))
@@ -153,10 +153,20 @@ class _Surface:
         x, index = _divide(np.array(sorted(marks.values(), reverse=True)), self._size)
         return x, {_key(x[i]): int(i) for i in index}
 
-    def _across(self) -> Floats:
-        """Positions across the body, -1 (right) to 1 (left): exactly symmetric, one on the centre line."""
-        half = max(1, round(float(self._stations[:, 1].max()) / self._size))
-        return np.arange(-half, half + 1) / half
+    def _across(self, vehicle: VehicleFile) -> Floats:
+        """Positions across the body, -1 (right) to 1 (left): exactly symmetric, one on the centre line.
+
+        Nodes stand where zones of the front meet.
+        """
+        half_width = float(self._stations[:, 1].max())
+        at_front = float(self._stations[0, 1])
+        cuts = {y for zone in vehicle.zones if "front" in zone.panels for y in zone.y_m or ()}
+        marks = [0.0, *sorted(y / at_front for y in cuts if 0.0 < y < at_front), 1.0]
+        if len(marks) == 2:
+            half = max(1, round(half_width / self._size))
+            return np.arange(-half, half + 1) / half
+        left = _divide(np.array(marks) * half_width, self._size)[0] / half_width
+        return np.concatenate([-left[:0:-1], left])
 
     def _rows(self, vehicle: VehicleFile) -> Floats:
         """Positions up the body, 0 (underside) to 1 (upper edge), a row where zones of the front meet."""
@@ -254,9 +264,10 @@ def _zones_of_quads(vehicle: VehicleFile, surface: _Surface) -> Ints:
         match = np.isin(surface.panel, [_PANELS.index(panel) for panel in law.panels if panel != "tire"])
         if law.blocks:
             match &= np.isin(surface.block, [names.index(block) for block in law.blocks])
-        for axis, limits in ((0, law.x_m), (2, law.z_m)):
+        beside = np.abs(middle[:, 1])
+        for place, limits in ((middle[:, 0], law.x_m), (beside, law.y_m), (middle[:, 2], law.z_m)):
             if limits is not None:
-                match &= (limits[0] <= middle[:, axis]) & (middle[:, axis] <= limits[1])
+                match &= (limits[0] <= place) & (place <= limits[1])
         zone[match & (zone < 0)] = index
     if (missing := np.flatnonzero(zone < 0)).size:
         quad = missing[0]

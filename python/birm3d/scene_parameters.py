@@ -12,7 +12,8 @@ name                           value
 ``vehicle.mesh_density``       relative number of shell elements
 ``vehicle.rate_sensitivity``   [s/m], see :meth:`birm3d.Vehicle.with_rate_sensitivity`
 ``vehicle.dent_reach``         see :meth:`birm3d.Vehicle.with_dent_reach`
-``zone.<zone>.<number>``       ``k_initial``, ``knee``, ``k_hardening``, ``f_max`` or ``k_unloading`` of
+``zone.<zone>.<number>``       ``k_initial``, ``knee``, ``k_hardening``, ``f_max``, ``k_unloading``, or
+                               ``elastic_recovery``, ``tail_depth``, ``tail_slope`` where it has them, of
                                :class:`birm3d.Zone`
 ``zone.<zone>.stress[i]``      stress of point i of the zone's envelope [N per m^2]
 ``zone.<zone>.deflection[i]``  its deflection [m]
@@ -80,6 +81,9 @@ _ZONE_UNITS = {
     "k_hardening": "N/m",
     "f_max": "N",
     "k_unloading": "N/m",
+    "elastic_recovery": "m",
+    "tail_depth": "m",
+    "tail_slope": "N/m",
     "stress": "N",
     "deflection": "m",
 }
@@ -264,7 +268,7 @@ def _zone_numbers(zone: Zone) -> tuple[str, ...]:
     points = range(1, len(zone.envelope))
     return (
         *(f"{axis}[{i}]" for i in points for axis in ("deflection", "stress")),
-        "k_unloading",
+        *(name for name in zone if name != "envelope"),
         "scale",
     )
 

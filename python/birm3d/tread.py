@@ -92,8 +92,9 @@ def build_tread(vehicle_file: VehicleFile, density: float = 1.0) -> Tread:
 def _zone_of(vehicle: VehicleFile, wheel: Wheel) -> int | None:
     """Index of the first zone for tyres whose ranges hold the middle of the wheel."""
     for index, zone in enumerate(vehicle.zones):
-        ranges = ((0, zone.x_m), (2, zone.z_m))
-        inside = all(r is None or r[0] <= wheel.center_m[axis] <= r[1] for axis, r in ranges)
+        x, y, z = wheel.center_m
+        ranges = ((x, zone.x_m), (abs(y), zone.y_m), (z, zone.z_m))
+        inside = all(r is None or r[0] <= place <= r[1] for place, r in ranges)
         if "tire" in zone.panels and inside:
             return index
     return None

@@ -21,7 +21,7 @@ from .mass_center import stretched_inertia
 from .unit_check import Usual, given, warn_if_unusual
 from .units import Quantity, Stated, si
 from .vehicle_guard import as_built, changed_by_hand, check_parts
-from .zone import KNEE, TRUSS_LAW, Zone, positive
+from .zone import KNEE, OPTIONAL, TRUSS_LAW, Zone, positive
 
 if TYPE_CHECKING:
     from .articulated import ArticulatedVehicle, Joint
@@ -44,6 +44,9 @@ _LAW_QUANTITIES = {
     "k_hardening": "pressure per length",
     "f_max": "pressure",
     "k_unloading": "pressure per length",
+    "elastic_recovery": "length",
+    "tail_depth": "length",
+    "tail_slope": "pressure per length",
 }
 
 
@@ -533,7 +536,7 @@ class Vehicle:
         if name not in self.zones:
             known = ", ".join(self.zones) or "none: the vehicle was made from arrays"
             raise ValueError(f"zone must be one of {known}; got {name!r}")
-        known = ", ".join((*KNEE, "k_unloading", "envelope"))
+        known = ", ".join((*KNEE, "k_unloading", "envelope", *OPTIONAL))
         for key in changes:
             if key not in known.split(", "):
                 raise ValueError(f"zone parameter must be one of {known}; got {key!r}")
@@ -874,7 +877,7 @@ def _assemble(
         quads=shape.quads,
         wheels=wheels,
         mass_center_height=float(center[2]),
-        zones=zones if zones is not None else {zone.name: Zone._from_file(zone) for zone in file.zones},
+        zones=zones if zones is not None else {zone.name: zone.law for zone in file.zones},
         dent_reach=0.0 if file.dents is None else file.dents.reach_m,
         _file=file,
         _shape=shape,

@@ -8,11 +8,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import pairwise
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 from pydantic import AfterValidator, Field, model_validator
 
 from .toml_document import Strict, reject
+from .zone_law import NonNegative, Positive, ZoneLaw
 
 __all__ = [
     "Block",
@@ -37,10 +38,7 @@ __all__ = [
 
 Point: TypeAlias = tuple[float, float, float]
 Range: TypeAlias = tuple[float, float]
-Positive: TypeAlias = Annotated[float, Field(gt=0.0)]
-NonNegative: TypeAlias = Annotated[float, Field(ge=0.0)]
 Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
-EnvelopePoint: TypeAlias = tuple[NonNegative, NonNegative]
 Panel: TypeAlias = Literal["front", "rear", "side", "top", "bottom", "tire"]
 # Text that may be broken over several lines of the file.
 Text: TypeAlias = Annotated[str, Field(min_length=1), AfterValidator(lambda text: " ".join(text.split()))]
@@ -334,32 +332,27 @@ class CoreBox(Block):
         return self
 
 
-class Zone(Block):
+class Zone(Block, ZoneLaw):
     """Stiffness of the exterior per unit of area, and the part of the exterior it holds for.
 
-    The part: panels, and optionally blocks ("body" or the name of an upper block) and ranges of x and z of
-    the element's middle (m, file axes). Zones are tried in the order of the file; the first match wins.
-    Trusses start from the nearest point of the named core boxes, or of all.
+    The part: panels, and optionally blocks ("body" or the name of an upper block), ranges of x and z of the
+    element's middle (m, file axes), and a range of its distance y from the vehicle's middle plane. Zones are
+    tried in the order of the file; the first match wins. Trusses start from the nearest point of the named
+    core boxes, or of all.
 
     The panel "tire", alone in its zone, is the treads of the wheels: ranges are of a wheel's middle, and the
     area is the tread's. Without such a zone tyres meet the ground only.
 
-    The law (Fig. 3): either k_initial, knee, k_hardening, f_max, or a general envelope with rows
-    [deflection in m, stress in Pa] from [0, 0]; the stress stays constant after its last point.
+    The law: see ZoneLaw.
     """
 
     name: Name
     panels: Annotated[tuple[Panel, ...], Field(min_length=1)]
     blocks: tuple[Name, ...] = ()
     x_m: Range | None = None
+    y_m: Range | None = None
     z_m: Range | None = None
     core: tuple[Name, ...] = ()
-    k_initial_Pa_per_m: Positive | None = None  # noqa: N815
-    knee_m: Positive | None = None
-    k_hardening_Pa_per_m: NonNegative | None = None  # noqa: N815
-    f_max_Pa: Positive | None = None  # noqa: N815
-    envelope_m_Pa: Annotated[tuple[EnvelopePoint, ...], Field(min_length=2)] | None = None  # noqa: N815
-    k_unloading_Pa_per_m: Positive  # noqa: N815
 
     @model_validator(mode="after")
     def _check(self) -> Zone:
@@ -367,18 +360,16 @@ class Zone(Block):
             for key, value in (("blocks", self.blocks), ("core", self.core), ("panels", self.panels[1:])):
                 if value:
                     reject(key, f"must not go with the panel 'tire', got {', '.join(value)}")
-        for key, limits in (("x_m", self.x_m), ("z_m", self.z_m)):
+        if self.y_m is not None and self.y_m[0] < 0.0:
+            reject("y_m", f"must be a range of distances >= 0 from the middle plane, got {list(self.y_m)}")
+        for key, limits in (("x_m", self.x_m), ("y_m", self.y_m), ("z_m", self.z_m)):
             if limits is not None:
                 _check_order(key, limits, "must increase")
         self._check_law()
-        points = self.envelope
-        steepest = max((b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(points))
-        if self.k_unloading_Pa_per_m < steepest * (1.0 - _ROUNDING):
-            reject(
-                "k_unloading_Pa_per_m",
-                f"must be at least the steepest slope of the envelope, {steepest:g}, "
-                f"or unloading would create energy; got {self.k_unloading_Pa_per_m:g}",
-            )
+        try:
+            _ = self.law
+        except ValueError as error:
+            reject("k_unloading_Pa_per_m", str(error))
         return self
 
     def _check_law(self) -> None:
@@ -409,13 +400,7 @@ class Zone(Block):
 
     def scaled(self, factor: float) -> Zone:
         """Return the zone with all stresses and slopes times a factor."""
-        if self.envelope_m_Pa is not None:
-            points = tuple((depth, factor * stress) for depth, stress in self.envelope_m_Pa)
-            changes: dict[str, Any] = {"envelope_m_Pa": points}
-        else:
-            names = ("k_initial_Pa_per_m", "k_hardening_Pa_per_m", "f_max_Pa")
-            changes = {name: factor * getattr(self, name) for name in names}
-        return self.model_copy(update={**changes, "k_unloading_Pa_per_m": factor * self.k_unloading_Pa_per_m})
+        return self.model_copy(update=ZoneLaw.numbers_of(self.law.scaled(factor)))
 
     @property
     def envelope(self) -> tuple[tuple[float, float], ...]:

@@ -7,66 +7,30 @@ A saved file has all blocks of the file that the vehicle comes from, with their 
 from __future__ import annotations
 
 import dataclasses
-import math
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import ConfigDict, Field, model_validator
 
 from .toml_document import Strict
 from .vehicle_blocks import Name, Positive
-from .zone import KNEE, Zone
+from .zone_law import ZoneLaw
 
 if TYPE_CHECKING:
     from .vehicle import Vehicle
     from .vehicle_file import VehicleFile
 
-__all__ = ["Changes", "ZoneLaw", "changes_of", "vehicle_of"]
+__all__ = ["ChangedLaw", "Changes", "changes_of", "vehicle_of"]
 
 
-class ZoneLaw(Strict):
-    """The law of a zone in place of the file's: keys as there; without ``f_max_Pa`` the plateau has no end.
-
-    :class:`birm3d.Zone` checks the numbers.
-    """
+class ChangedLaw(ZoneLaw):
+    """The law of a zone in place of the file's."""
 
     model_config = ConfigDict(allow_inf_nan=True)  # a knee may be infinitely far
 
-    k_initial_Pa_per_m: float | None = None  # noqa: N815
-    knee_m: float | None = None
-    k_hardening_Pa_per_m: float | None = None  # noqa: N815
-    f_max_Pa: float | None = None  # noqa: N815
-    envelope_m_Pa: tuple[tuple[float, float], ...] | None = None  # noqa: N815
-    k_unloading_Pa_per_m: float  # noqa: N815
-
     @model_validator(mode="after")
-    def _check(self) -> ZoneLaw:
-        self.made()
+    def _check(self) -> ChangedLaw:
+        _ = self.law
         return self
-
-    def made(self) -> Zone:
-        """Return the zone."""
-        return Zone(
-            k_initial=self.k_initial_Pa_per_m,
-            knee=self.knee_m,
-            k_hardening=self.k_hardening_Pa_per_m,
-            f_max=self.f_max_Pa,
-            k_unloading=self.k_unloading_Pa_per_m,
-            envelope=self.envelope_m_Pa,
-        )
-
-    @staticmethod
-    def of(zone: Zone) -> ZoneLaw:
-        """Return the law of a zone as a file has it."""
-        if zone.envelope is not None:
-            return ZoneLaw(envelope_m_Pa=zone.envelope, k_unloading_Pa_per_m=zone.k_unloading)
-        numbers = {name: getattr(zone, name) for name in KNEE}
-        return ZoneLaw(
-            k_initial_Pa_per_m=numbers["k_initial"],
-            knee_m=numbers["knee"],
-            k_hardening_Pa_per_m=numbers["k_hardening"],
-            f_max_Pa=None if math.isinf(numbers["f_max"]) else numbers["f_max"],
-            k_unloading_Pa_per_m=zone.k_unloading,
-        )
 
 
 class Changes(Strict):
@@ -86,13 +50,13 @@ class Changes(Strict):
     rate_sensitivity_s_per_m: Annotated[float, Field(ge=0.0)] = 0.0
     dent_reach_m: Annotated[float, Field(ge=0.0)] | None = None
     tire_contact: bool = True
-    zone: dict[Name, ZoneLaw] = Field(default_factory=dict)
+    zone: dict[Name, ChangedLaw] = Field(default_factory=dict)
 
 
 def changes_of(vehicle: Vehicle, file: VehicleFile) -> Changes:
     """Return how a vehicle of one unit differs from its file."""
     reach = 0.0 if file.dents is None else file.dents.reach_m
-    laws = {zone.name: Zone._from_file(zone) for zone in file.zones}
+    laws = {zone.name: zone.law for zone in file.zones}
     treads = any("tire" in zone.panels for zone in file.zones)
     return Changes(
         name=vehicle.name if vehicle.name != file.name else None,
@@ -103,7 +67,11 @@ def changes_of(vehicle: Vehicle, file: VehicleFile) -> Changes:
         rate_sensitivity_s_per_m=vehicle.rate_sensitivity,
         dent_reach_m=vehicle.dent_reach if vehicle.dent_reach != reach else None,
         tire_contact=not treads or bool((vehicle.wheel_of_node >= 0).any()),
-        zone={name: ZoneLaw.of(zone) for name, zone in vehicle.zones.items() if zone != laws[name]},
+        zone={
+            name: ChangedLaw(**ZoneLaw.numbers_of(zone))
+            for name, zone in vehicle.zones.items()
+            if zone != laws[name]
+        },
     )
 
 
@@ -125,12 +93,12 @@ def vehicle_of(file: VehicleFile, gvw: float | None, mesh_density: float) -> Veh
     if changes is None:
         return _from_file(file, gvw, mesh_density, None)
     bare = file.model_copy(update={"changes": None})
-    zones = {zone.name: Zone._from_file(zone) for zone in file.zones}
+    zones = {zone.name: zone.law for zone in file.zones}
     vehicle = _from_file(
         bare,
         changes.gvw_kg if gvw is None else gvw,
         mesh_density * changes.mesh_density,
-        {**zones, **{name: law.made() for name, law in changes.zone.items()}},
+        {**zones, **{name: law.law for name, law in changes.zone.items()}},
         changes.mass_center_height_m,
         load_density=changes.load_density_kg_per_m3,
     )

@@ -7,19 +7,19 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from . import _core
 
-if TYPE_CHECKING:
-    from .vehicle_file import Zone as FileZone
-
-__all__ = ["KNEE", "TRUSS_LAW", "Zone", "positive"]
+__all__ = ["KNEE", "OPTIONAL", "TRUSS_LAW", "Zone", "positive"]
 
 KNEE = ("k_initial", "knee", "k_hardening", "f_max")
 """Those of its loading envelope."""
+
+OPTIONAL = ("elastic_recovery", "tail_depth", "tail_slope")
+"""Numbers that a law may have in addition."""
 
 TRUSS_LAW = ("k_initial", "knee", "k_hardening", "f_max", "k_unloading")
 """The numbers of the paper's law (Fig. 3)."""
@@ -43,6 +43,12 @@ class Zone(Mapping[str, Any]):
         Slope of unloading and reloading [N/m per m^2], not below any slope of the envelope.
     envelope
         Points (deflection [m], stress [N per m^2]) from (0, 0); constant after the last.
+    elastic_recovery
+        Length that the structure gives back [m]: it unloads with the slope stress / elastic_recovery, at
+        least ``k_unloading``, so that restitution falls with speed. ``None``: the one slope of Fig. 3.
+    tail_depth, tail_slope
+        From this deflection on [m] the envelope is steeper by this [N/m per m^2], as what has been crushed is
+        packed together. ``None``: no tail.
     """
 
     k_initial: float | None = None
@@ -51,6 +57,9 @@ class Zone(Mapping[str, Any]):
     f_max: float | None = None
     k_unloading: float = math.nan
     envelope: tuple[tuple[float, float], ...] | None = None
+    elastic_recovery: float | None = None
+    tail_depth: float | None = None
+    tail_slope: float | None = None
 
     def __post_init__(self) -> None:
         if self.envelope is None:
@@ -62,6 +71,9 @@ class Zone(Mapping[str, Any]):
             for name in KNEE:
                 if getattr(self, name) is not None:
                     raise ValueError(f"{name} must be None beside an envelope, got {getattr(self, name)}")
+        if (self.tail_depth is None) != (self.tail_slope is None):
+            given, other = ("tail_slope", "depth") if self.tail_depth is None else ("tail_depth", "slope")
+            raise ValueError(f"tail_{other} must be given beside {given}, got None")
         _ = self.curve
 
     def __getitem__(self, name: str) -> Any:
@@ -77,9 +89,13 @@ class Zone(Mapping[str, Any]):
 
     @property
     def _names(self) -> tuple[str, ...]:
-        if self.envelope is not None:
-            return ("envelope", "k_unloading")
-        return (*KNEE, "k_unloading")
+        law = ("envelope",) if self.envelope is not None else KNEE
+        return (*law, "k_unloading", *self._optional)
+
+    @property
+    def _optional(self) -> dict[str, float]:
+        given = {name: getattr(self, name) for name in OPTIONAL}
+        return {name: value for name, value in given.items() if value is not None}
 
     @cached_property
     def curve(self) -> _core.TrussCurve:
@@ -88,38 +104,27 @@ class Zone(Mapping[str, Any]):
             points = np.asarray(self.envelope, float)
             if points.ndim != 2 or points.shape[1] != 2:
                 raise ValueError(f"envelope must have shape (n, 2), got {points.shape}")
-            return _core.point_curve(points[:, 0].tolist(), points[:, 1].tolist(), self.k_unloading)
+            return _core.point_curve(
+                points[:, 0].tolist(), points[:, 1].tolist(), self.k_unloading, **self._optional
+            )
         numbers = {name: getattr(self, name) for name in KNEE}
         for name, value in numbers.items():
             if value is None:
                 raise ValueError(f"{name} must be given where there is no envelope, got None")
-        return _core.knee_curve(**numbers, k_unloading=self.k_unloading)
+        return _core.knee_curve(**numbers, k_unloading=self.k_unloading, **self._optional)
 
     def scaled(self, factor: float) -> Zone:
         """Return the zone with all its stresses and slopes times a factor > 0; deflections stay."""
         factor = positive("scale", factor)
+        stresses = ("k_initial", "k_hardening", "f_max", "k_unloading", "tail_slope")
+        given = {name: getattr(self, name) for name in stresses}
+        changes: dict[str, Any] = {name: factor * value for name, value in given.items() if value is not None}
         if self.envelope is not None:
-            return Zone(
-                envelope=tuple((d, factor * stress) for d, stress in self.envelope),
-                k_unloading=factor * self.k_unloading,
-            )
-        changes = {name: factor * getattr(self, name) for name in TRUSS_LAW if name != "knee"}
+            changes["envelope"] = tuple((d, factor * stress) for d, stress in self.envelope)
         return dataclasses.replace(self, **changes)
 
     def __getstate__(self) -> dict[str, object]:
         return {name: value for name, value in self.__dict__.items() if name != "curve"}
-
-    @staticmethod
-    def _from_file(zone: FileZone) -> Zone:
-        if zone.envelope_m_Pa is not None:
-            return Zone(envelope=zone.envelope_m_Pa, k_unloading=zone.k_unloading_Pa_per_m)
-        return Zone(
-            k_initial=zone.k_initial_Pa_per_m,
-            knee=zone.knee_m,
-            k_hardening=zone.k_hardening_Pa_per_m,
-            f_max=zone.f_max_Pa,
-            k_unloading=zone.k_unloading_Pa_per_m,
-        )
 
 
 def positive(name: str, value: float) -> float:

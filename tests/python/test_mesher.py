@@ -103,6 +103,19 @@ def test_a_box_has_its_own_area(read, density):
     np.testing.assert_allclose(zone_area(mesh), [2 * 0.43, 28 - 2 * 0.43], rtol=1e-12)
 
 
+@pytest.mark.parametrize("density", [0.01, 0.3, 1.0, 2.7])
+def test_zones_between_two_distances_from_the_middle_plane(read, density):
+    rails = read(BOX.replace("z_m = [0.0, 0.93]", "z_m = [0.0, 0.93]\ny_m = [0.33, 0.47]"))
+    mesh = build_mesh(rails, density)
+    area = 2 * 0.14 * 0.43  # left and right
+    np.testing.assert_allclose(zone_area(mesh), [area, 28 - area], rtol=1e-12)
+    beside = np.abs(mesh.nodes[mesh.zone == 0, 1])
+    assert beside.min() == pytest.approx(0.33, abs=1e-12)
+    assert beside.max() == pytest.approx(0.47, abs=1e-12)
+    mirrored = mesh.nodes * [1.0, -1.0, 1.0]
+    assert {tuple(node) for node in mirrored.tolist()} == {tuple(node) for node in mesh.nodes.tolist()}
+
+
 @pytest.mark.parametrize(("front", "rear"), [(0.5, -1.5), (1.0, -1.5), (0.5, -3.0), (1.0, -3.0)])
 def test_an_upper_box_adds_its_sides_only(read, front, rear):
     text = BOX.replace("# exterior goes on here", UPPER.format(front=front, rear=rear))

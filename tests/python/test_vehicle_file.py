@@ -293,10 +293,22 @@ def test_a_bad_value_is_named_with_its_line(tmp_path, old, new, key, says):
         ({"knee_m": "-0.1"}, "knee_m", "greater than 0, got -0.1"),
         ({"knee_m": None}, "knee_m", "missing"),
         ({"f_max_Pa": "1.0"}, "f_max_Pa", "stress at the knee, 50000, got 1"),
-        ({"k_unloading_Pa_per_m": "1.5e6"}, "k_unloading_Pa_per_m", "steepest slope of the envelope, 2e+06"),
+        ({"k_unloading_Pa_per_m": "1.5e6"}, "k_unloading_Pa_per_m", "every slope of the envelope (2e+06)"),
         ({"k_unloading_Pa_per_m": None}, "k_unloading_Pa_per_m", "missing"),
         ({"envelope_m_Pa": "[[0, 0], [0.1, 5.0]]"}, "k_initial_Pa_per_m", "together with envelope_m_Pa"),
         ({"x_m": "[1.0, 0.0]"}, "x_m", "must increase, got 1 followed by 0"),
+        ({"y_m": "[-0.5, 0.5]"}, "y_m", "distances >= 0 from the middle plane, got [-0.5, 0.5]"),
+        ({"elastic_recovery_m": "0.0"}, "elastic_recovery_m", "greater than 0, got 0.0"),
+        (
+            {"tail_slope_Pa_per_m": "1e6"},
+            "k_unloading_Pa_per_m",
+            "tail_depth must be given beside tail_slope",
+        ),
+        (
+            {"tail_depth_m": "0.6", "tail_slope_Pa_per_m": "2e7"},
+            "k_unloading_Pa_per_m",
+            "every slope of the envelope (2e+07)",
+        ),
     ],
 )
 def test_a_law_that_is_none_is_refused(tmp_path, changes, key, says):
@@ -336,6 +348,19 @@ def one_zone(folder: Path, law: dict[str, str | None]) -> Path:
     path = folder / "one_zone.toml"
     path.write_text("\n".join(lines))
     return path
+
+
+def test_a_law_with_all_its_numbers_is_read_and_scaled(tmp_path):
+    law = {"envelope_m_Pa": "[[0, 0], [0.2, 5e4]]", "k_unloading_Pa_per_m": "1e6"}
+    more = {"elastic_recovery_m": "0.05", "tail_depth_m": "0.6", "tail_slope_Pa_per_m": "5e5"}
+    vehicle = read_vehicle_file(one_zone(tmp_path, {**law, **more}))
+    door = vehicle.zones[vehicle.zone_names.index("door")]
+    assert door.law.curve.elastic_recovery == 0.05
+    assert door.law.curve.envelope(1.0) == pytest.approx(5e4 + 0.4 * 5e5, rel=1e-12)
+    double = door.scaled(2.0).law
+    assert double == door.law.scaled(2.0)
+    assert (double.elastic_recovery, double.tail_depth, double.tail_slope) == (0.05, 0.6, 1e6)
+    assert double.k_unloading == 2e6
 
 
 def test_a_falling_envelope_is_read(tmp_path):

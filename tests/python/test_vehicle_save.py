@@ -142,7 +142,7 @@ def test_what_a_file_can_not_hold_is_refused(tmp_path):
         ("[changes.zone.bumper]", "[changes.zone.bumpr]", r"changes\.zone\.bumpr: must be one of .* 'bumpr'"),
         ("mesh_density = 0.1", "mesh_densty = 0.1", r"changes\.mesh_densty: unknown key"),
         ("mesh_density = 0.1", "mesh_density = -0.1", r"changes\.mesh_density: must be greater than 0"),
-        ("k_initial_Pa_per_m = 1100000.0", "k_initial_Pa_per_m = -1.0", r"changes\.zone\.bumper: k_initial"),
+        ("k_initial_Pa_per_m = 1100000.0", "k_initial_Pa_per_m = -1.0", r"changes\.zone\.bumper\.k_initial"),
     ],
 )
 def test_wrong_changes_name_line_and_key(tmp_path, old, new, message):

@@ -10,29 +10,29 @@ namespace birm3d {
 
 namespace {
 
-BIRM3D_LANE_LOOP double stiffness_of_pushing(const TrussBlock& truss, const Lanes& force, double constant,
-                                             double xx, double yy, double zz, double xy, double xz,
-                                             double yz) {
+BIRM3D_LANE_LOOP double stiffness_of_pushing(const TrussBlock& truss, const Lanes& slope, const Lanes& force,
+                                             double constant, double xx, double yy, double zz, double xy,
+                                             double xz, double yz) {
     alignas(64) Lanes sum;
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
         const double x = truss.node_x[i], y = truss.node_y[i], z = truss.node_z[i];
         const double inverse_mass =
             constant + (x * (xx * x + xy * y + xz * z) + y * (yy * y + yz * z) + zz * z * z);
-        sum[i] = (force[i] > 0.0 ? truss.k_unloading[i] : 0.0) * inverse_mass;
+        sum[i] = (force[i] > 0.0 ? slope[i] : 0.0) * inverse_mass;
     }
     return lane_sum(sum);
 }
 
-// Sum of k_unloading times inverse effective mass over the nodes that push (1/s^2).
+// Sum of the slopes of unloading times inverse effective mass over the nodes that push (1/s^2).
 double contact_stiffness(const FlatContact& surface, const TrussMesh& mesh, std::size_t b,
                          const TrussBlockState& now, double pushing) {
     const InverseMass& inverse_mass = surface.inverse_mass;
     const Mat3& q = inverse_mass.form;
-    if (pushing == mesh.pushable[b])
+    if (pushing == mesh.pushable[b] && !mesh.recovers)
         return mesh.moments[b].total * inverse_mass.constant + mesh.moments[b].second.cwiseProduct(q).sum();
-    return stiffness_of_pushing(mesh.block[b], now.force, inverse_mass.constant, q(0, 0), q(1, 1), q(2, 2),
-                                2.0 * q(0, 1), 2.0 * q(0, 2), 2.0 * q(1, 2));
+    return stiffness_of_pushing(mesh.block[b], now.unloading, now.force, inverse_mass.constant, q(0, 0),
+                                q(1, 1), q(2, 2), 2.0 * q(0, 1), 2.0 * q(0, 2), 2.0 * q(1, 2));
 }
 
 BIRM3D_LANE_LOOP double greatest_slack(const Lanes& force, const Lanes& deflection, const Lanes& residual) {

@@ -18,6 +18,7 @@ inline PressColumns columns_of(const TrussMesh& mesh, std::size_t b, const Lanes
             truss.length.data(),
             truss.k_unloading.data(),
             truss.compliance.data(),
+            mesh.recovers ? truss.per_recovery.data() : nullptr,
             mesh.hinge[b * mesh.hinges].deflection.data(),
             mesh.hinges,
             factor ? factor->data() : nullptr};
@@ -25,9 +26,9 @@ inline PressColumns columns_of(const TrussMesh& mesh, std::size_t b, const Lanes
 
 template <class Number, class State>
 PressState<Number> columns_of(State& state) {
-    return {state.x.data(),          state.y.data(),     state.z.data(),
-            state.deflection.data(), state.force.data(), state.peak_deflection.data(),
-            state.residual.data()};
+    return {state.x.data(),          state.y.data(),        state.z.data(),
+            state.deflection.data(), state.force.data(),    state.peak_deflection.data(),
+            state.residual.data(),   state.unloading.data()};
 }
 
 // The two functions for one instruction set.

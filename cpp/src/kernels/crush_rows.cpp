@@ -93,6 +93,7 @@ struct Curved {
     const CurvedPress s;  // a copy, which no column can overlap
 };
 
+template <bool recovers>
 BIRM3D_IN_LANE_LOOP void copy(const PressState<const double>& before, const PressState<double>& now,
                               std::size_t i) {
     Row::load(before.x + i).store(now.x + i);
@@ -102,6 +103,39 @@ BIRM3D_IN_LANE_LOOP void copy(const PressState<const double>& before, const Pres
     Row::load(before.force + i).store(now.force + i);
     Row::load(before.peak_deflection + i).store(now.peak_deflection + i);
     Row::load(before.residual + i).store(now.residual + i);
+    if constexpr (recovers) Row::load(before.unloading + i).store(now.unloading + i);
+}
+
+// The slope of unloading of each truss, and where its line meets zero force. A truss that loads sets them anew.
+struct Unloading {
+    Row slope, residual;
+    BIRM3D_IN_LANE_LOOP Row line(const Row& d) const {
+        const Row zero = 0.0;
+        return greater(slope * (d - residual), zero);
+    }
+};
+
+// Fig. 3: the slope is constant.
+BIRM3D_IN_LANE_LOOP Row load_one_slope(const PressColumns& truss, Unloading& of, const Row& d,
+                                       const Row& line, const Row& envelope, std::size_t i) {
+    const Row compliance = Row::load(truss.compliance + i);
+    of.residual = where_above(line, envelope, d - envelope * compliance, of.residual);
+    return compliance;
+}
+
+// A constant length is given back (truss_law.hpp). A truss may load and unload with one slope at first.
+BIRM3D_IN_LANE_LOOP Row load_recovery(const PressColumns& truss, Unloading& of, const Row& d, const Row& line,
+                                      const Row& envelope, std::size_t i) {
+    const Row zero = 0.0, one = 1.0;
+    const auto where_loading = [&](const Row& now, const Row& else_) {
+        return where_above(envelope, zero, where_above(envelope, line, else_, now), else_);
+    };
+    const Row steepest =
+        greater(envelope * Row::load(truss.per_recovery + i), Row::load(truss.k_unloading + i));
+    of.slope = where_loading(steepest, of.slope);
+    const Row compliance = where_above(of.slope, zero, one / of.slope, zero);
+    of.residual = where_loading(d - envelope * compliance, of.residual);
+    return compliance;
 }
 
 // The nodes of the row at i whose truss ceased to push. One that follows a receding surface stops where its truss reaches
@@ -151,7 +185,7 @@ Row release(const PressColumns& truss, const Surface& surface, const PressState<
 // Takes the nodes of a block that are at the surface onto it: their places, deflections and the shares of their truss
 // forces along the normal, which stand in for the normal forces until these are known. Rows of which no node pushes or
 // is inside stay as they are, and are not `pressed`.
-template <bool flat, class Surface>
+template <bool flat, bool recovers, class Surface>
 BIRM3D_IN_LANE_LOOP void hold(const PressColumns& truss, const Surface& surface,
                               const PressState<const double>& before, const PressState<double>& now,
                               double* gaps, double* shares, bool* pressed) {
@@ -163,7 +197,7 @@ BIRM3D_IN_LANE_LOOP void hold(const PressColumns& truss, const Surface& surface,
         gap.store(gaps + i);
         pressed[i / row_length] = any_above(greater(F0, -1.0 * gap), zero);
         if (!pressed[i / row_length]) {
-            copy(before, now, i);
+            copy<recovers>(before, now, i);
             zero.store(shares + i);
             if constexpr (!flat) surface.leave(i);
             continue;
@@ -186,7 +220,7 @@ BIRM3D_IN_LANE_LOOP void hold(const PressColumns& truss, const Surface& surface,
 }
 
 // Two rounds over the rows, so that the square roots and divisions of several are under way at a time.
-template <bool flat, class Surface>
+template <bool flat, bool recovers, class Surface>
 BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surface,
                                  const PressState<const double>& before, const PressState<double>& now,
                                  double* gaps, double* pressures, NodeSums& sums) {
@@ -196,7 +230,7 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
     Row stiffness = zero;
     Vector moment{zero, zero, zero}, push{zero, zero, zero};
     bool pressed[lanes / row_length];
-    hold<flat>(truss, surface, before, now, gaps, pressures, pressed);
+    hold<flat, recovers>(truss, surface, before, now, gaps, pressures, pressed);
     for (std::size_t i = 0; i < lanes; i += row_length) {
         if (!pressed[i / row_length]) continue;
         const Row F0 = Row::load(before.force + i), gap = Row::load(gaps + i);
@@ -209,8 +243,9 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
             envelope = envelope + Row::load(hinge + lanes) * greater(d - Row::load(hinge), zero);
         }
         if (truss.factor != nullptr) envelope = envelope * Row::load(truss.factor + i);
-        const Row residual = Row::load(before.residual + i), compliance = Row::load(truss.compliance + i);
-        const Row line = greater(Row::load(truss.k_unloading + i) * (d - residual), zero);
+        const double* const slopes = recovers ? before.unloading : truss.k_unloading;
+        Unloading unloading{Row::load(slopes + i), Row::load(before.residual + i)};
+        const Row line = unloading.line(d);
         // A truss that would push its node off the surface does not push at all.
         const Row law = where_above(share, zero, where_above(line, envelope, envelope, line), zero);
         const Row F = where_above(zero, gap, law, where_above(F0, zero, law, zero));
@@ -218,7 +253,10 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
 
         F.store(now.force + i);
         greater(d, Row::load(before.peak_deflection + i)).store(now.peak_deflection + i);
-        where_above(line, envelope, d - envelope * compliance, residual).store(now.residual + i);
+        const Row compliance = recovers ? load_recovery(truss, unloading, d, line, envelope, i)
+                                        : load_one_slope(truss, unloading, d, line, envelope, i);
+        unloading.residual.store(now.residual + i);
+        if constexpr (recovers) unloading.slope.store(now.unloading + i);
         pressure.store(pressures + i);
 
         const Vector node{Row::load(now.x + i), Row::load(now.y + i), Row::load(now.z + i)};
@@ -232,7 +270,7 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
             const Vector torque = surface.torque(i, node, n);
             moment = {moment.x + pressure * torque.x, moment.y + pressure * torque.y,
                       moment.z + pressure * torque.z};
-            const Row k = Row::load(truss.k_unloading + i) * greater(share * share, one);
+            const Row k = unloading.slope * greater(share * share, one);
             stiffness = stiffness + where_above(F, zero, k * surface.inverse_mass(torque), zero);
         }
         work = work + (F0 + F) * (d - Row::load(before.deflection + i));
@@ -266,13 +304,17 @@ double press_curved(const PressColumns& truss, const CurvedPress& surface,
 
 double press_flat(const PressColumns& truss, const FlatPress& surface, const PressState<const double>& before,
                   const PressState<double>& now, double* gaps, double* pressures, NodeSums& sums) {
-    return press<true>(truss, Flat(surface), before, now, gaps, pressures, sums);
+    if (truss.per_recovery != nullptr)
+        return press<true, true>(truss, Flat(surface), before, now, gaps, pressures, sums);
+    return press<true, false>(truss, Flat(surface), before, now, gaps, pressures, sums);
 }
 
 double press_curved(const PressColumns& truss, const CurvedPress& surface,
                     const PressState<const double>& before, const PressState<double>& now, double* gaps,
                     double* pressures, NodeSums& sums) {
-    return press<false>(truss, Curved(surface), before, now, gaps, pressures, sums);
+    if (truss.per_recovery != nullptr)
+        return press<false, true>(truss, Curved(surface), before, now, gaps, pressures, sums);
+    return press<false, false>(truss, Curved(surface), before, now, gaps, pressures, sums);
 }
 
 }  // namespace birm3d::BIRM3D_INSTRUCTION_SET

@@ -12,6 +12,8 @@ namespace birm3d {
 struct PressColumns {
     const double *anchor_x, *anchor_y, *anchor_z, *length;  // m
     const double *k_unloading, *compliance;                 // N/m, m/N
+    const double*
+        per_recovery;     // 1/m; null where no truss has a recovery: slopes of unloading are constant then
     const double* hinge;  // (hinges)(2)(lanes) deflection (m) and change of slope (N/m), one after the other
     std::size_t hinges;
     const double* factor;  // on the loading envelope; null where there is none
@@ -20,7 +22,7 @@ struct PressColumns {
 // The columns that a step changes.
 template <class Number>
 struct PressState {
-    Number *x, *y, *z, *deflection, *force, *peak_deflection, *residual;
+    Number *x, *y, *z, *deflection, *force, *peak_deflection, *residual, *unloading;
 };
 
 // A flat surface n . p = offset, and the direction h in which it takes along the nodes that it holds already.

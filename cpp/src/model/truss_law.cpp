@@ -15,7 +15,7 @@ TrussCurve knee_curve(double k_initial, double knee, double k_hardening, double 
     if (!(knee > 0.0)) refuse("knee", "> 0", knee);
     if (!(f_max > 0.0)) refuse("f_max", "> 0", f_max);
 
-    TrussCurve curve{{0.0}, {k_initial}, k_unloading};
+    TrussCurve curve{.deflection = {0.0}, .slope = {k_initial}, .k_unloading = k_unloading};
     const double knee_force = std::isinf(knee) ? (k_initial > 0.0 ? knee : 0.0) : k_initial * knee;
     if (knee_force < f_max && std::isfinite(knee)) {
         curve.deflection.push_back(knee);
@@ -40,7 +40,7 @@ TrussCurve point_curve(const std::vector<double>& deflection, const std::vector<
     if (deflection[0] != 0.0 || force[0] != 0.0)
         refuse("envelope[0]", "(0, 0)", "(" + to_text(deflection[0]) + ", " + to_text(force[0]) + ")");
 
-    TrussCurve curve{{}, {}, k_unloading};
+    TrussCurve curve{.deflection = {}, .slope = {}, .k_unloading = k_unloading};
     for (std::size_t i = 0; i + 1 < deflection.size(); ++i) {
         const std::string name = "envelope[" + std::to_string(i + 1) + "]";
         if (!(std::isfinite(deflection[i + 1]) && deflection[i + 1] > deflection[i]))
@@ -54,8 +54,28 @@ TrussCurve point_curve(const std::vector<double>& deflection, const std::vector<
     return curve;
 }
 
+TrussCurve with_tail(const TrussCurve& curve, double depth, double slope) {
+    if (!(depth > 0.0)) refuse("tail_depth", "> 0", depth);
+    require_not_negative("tail_slope", slope);
+    TrussCurve out = curve;
+    const auto place = std::lower_bound(out.deflection.begin(), out.deflection.end(), depth);
+    const auto j = static_cast<std::size_t>(place - out.deflection.begin());
+    if (place == out.deflection.end() || *place != depth) {
+        out.deflection.insert(place, depth);
+        out.slope.insert(out.slope.begin() + static_cast<std::ptrdiff_t>(j), out.slope[j - 1]);
+    }
+    for (std::size_t i = j; i < out.slope.size(); ++i)
+        out.slope[i] += slope;
+    return out;
+}
+
+double unloading_slope(const TrussCurve& curve, double force) {
+    return std::max(curve.k_unloading, force / curve.recovery);
+}
+
 void require_valid(const TrussCurve& curve, const std::string& name) {
     require_positive((name + "k_unloading").c_str(), curve.k_unloading);
+    if (!(curve.recovery > 0.0)) refuse(name + "elastic_recovery", "> 0", curve.recovery);
     if (curve.deflection.empty() || curve.deflection.size() != curve.slope.size() ||
         curve.deflection[0] != 0.0)
         refuse(name + "envelope", "one slope for each deflection, the first at 0",
@@ -72,11 +92,12 @@ void require_valid(const TrussCurve& curve, const std::string& name) {
         // A last point reached by rounding a falling slope may stand a hair below zero.
         if (force < -1e-9 * std::abs(slope)) refuse(name + "envelope force", ">= 0", force);
         if (!std::isfinite(slope)) refuse(name + "envelope slope", "finite", slope);
-        if (slope > curve.k_unloading * (1.0 + 1e-12))
+        const double unloading = unloading_slope(curve, force);
+        if (slope > unloading * (1.0 + 1e-12))
             refuse(
                 name + "k_unloading",
                 ">= every slope of the envelope (" + to_text(slope) + "), or unloading would create energy",
-                curve.k_unloading);
+                unloading);
     }
     if (curve.slope.back() < 0.0) refuse(name + "envelope's last slope", ">= 0", curve.slope.back());
 }
@@ -97,7 +118,8 @@ double truss_force(const TrussCurve& curve, TrussMemory& memory, double deflecti
         memory.peak_force = envelope_force(curve, deflection);
         return memory.peak_force;
     }
-    return std::max(0.0, memory.peak_force - curve.k_unloading * (memory.peak_deflection - deflection));
+    const double slope = unloading_slope(curve, memory.peak_force);
+    return std::max(0.0, memory.peak_force - slope * (memory.peak_deflection - deflection));
 }
 
 }  // namespace birm3d

@@ -129,7 +129,7 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
     dent_reach = input.dent_reach;
     count = input.node.size();
     for (const TrussCurve& curve : input.curve)
-        hinges = std::max(hinges, curve.slope.size());
+        hinges = std::max(hinges, curve.slope.size()), recovers = recovers || std::isfinite(curve.recovery);
 
     const std::vector<Site> site = sites_of(input);
     for (std::vector<std::size_t>& part : parts_of(input, wheels.size())) {
@@ -242,6 +242,7 @@ void TrussMesh::fill_lane(const TrussInput& input, std::size_t source, std::size
     TrussBlock& to = block[b];
     to.k_unloading[i] = scale * curve.k_unloading;
     to.compliance[i] = to.k_unloading[i] > 0.0 ? 1.0 / to.k_unloading[i] : 0.0;
+    to.per_recovery[i] = 1.0 / curve.recovery;
     double slope = 0.0;
     for (std::size_t j = 0; j < hinges; ++j) {
         Hinge& h = hinge.fill()[b * hinges + j];

@@ -107,6 +107,9 @@ std::uint64_t Scene::fingerprint() const {
             for (const Lanes* lane :
                  {&b.node_x, &b.node_y, &b.node_z, &b.anchor_x, &b.anchor_y, &b.anchor_z, &b.k_unloading})
                 hash.add(*lane);
+        if (unit.trusses.recovers)
+            for (const TrussBlock& b : unit.trusses.block)
+                hash.add(b.per_recovery);
         for (const Hinge& hinge : unit.trusses.hinge) {
             hash.add(hinge.deflection);
             hash.add(hinge.slope_change);

@@ -176,7 +176,7 @@ void Skin::place(std::size_t b, const Corner& corner, const Vec3& to) {
     const double deflection = truss.length[i] - (anchor - to).norm();
     const double free = truss.length[i] - (anchor - (to - corner.pushed_way())).norm();
     if (block.force[i] > 0.0 && free < block.deflection[i]) {
-        block.force[i] = std::max(0.0, block.force[i] + truss.k_unloading[i] * (free - block.deflection[i]));
+        block.force[i] = std::max(0.0, block.force[i] + block.unloading[i] * (free - block.deflection[i]));
         block.deflection[i] = free;
     }
     block.x[i] = to.x(), block.y[i] = to.y(), block.z[i] = to.z();

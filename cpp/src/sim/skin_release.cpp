@@ -110,7 +110,7 @@ bool Skin::find_stopped(std::size_t b, const FlatContact* plane) {
         const double deflection = truss.length[i] - (*stop - anchor).norm();
         const double let_go = truss.length[i] - (held - anchor).norm();
         stopped_.push_back({i, *stop, deflection, next.residual[i], next.peak_deflection[i],
-                            std::max(0.0, truss.k_unloading[i] * (deflection - next.residual[i])),
+                            std::max(0.0, next.unloading[i] * (deflection - next.residual[i])),
                             0.5 * last.force[i] * (let_go - last.deflection[i])});
     }
     return !stopped_.empty() && !overlooks_;
@@ -122,6 +122,7 @@ void Skin::stop(std::size_t b) {
     TrussBlockState& block = altered(b);
     block.touching = true;
     for (const Stopped& node : stopped_) {
+        block.unloading[node.lane] = now_.trusses.block[b].unloading[node.lane];
         block.x[node.lane] = node.place.x();
         block.y[node.lane] = node.place.y();
         block.z[node.lane] = node.place.z();

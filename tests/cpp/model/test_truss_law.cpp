@@ -53,6 +53,38 @@ TEST("unloading and reloading run on one line") {
     CHECK_CLOSE(truss.force, 0.0, 1e-12, "residual deflection 0.26 - 38/1000");
 }
 
+TEST("with a recovery the same length is given back from any force") {
+    TrussCurve giving = curve;
+    giving.recovery = 0.02;
+    for (const double turn : {0.25, 0.29, 1.0}) {
+        TrussMemory memory;
+        const double peak = truss_force(giving, memory, turn);
+        CHECK(peak / giving.recovery > giving.k_unloading);
+        CHECK_CLOSE(truss_force(giving, memory, turn - 0.01), 0.5 * peak, 1e-12, "half way");
+        CHECK_CLOSE(truss_force(giving, memory, turn - 0.02), 0.0, 1e-12, "all of it");
+        CHECK_CLOSE(truss_force(giving, memory, turn), peak, 1e-12, "back on the same line");
+    }
+    TrussMemory gentle;
+    CHECK_CLOSE(truss_force(giving, gentle, 0.1), 10.0, 1e-14, "rounding");
+    CHECK_CLOSE(truss_force(giving, gentle, 0.095), 5.0, 1e-12, "k_unloading is the least slope");
+}
+
+TEST("a tail makes the envelope steeper from its depth on") {
+    const TrussCurve tailed = with_tail(curve, 0.5, 400.0);
+    CHECK_CLOSE(envelope_force(tailed, 0.5), 50.0, 1e-12, "rounding");
+    CHECK_CLOSE(envelope_force(tailed, 0.7), 130.0, 1e-12, "the plateau, and 0.2 m of the tail");
+    const TrussCurve early = with_tail(curve, 0.25, 400.0);
+    CHECK_CLOSE(envelope_force(early, 0.2), 20.0, 1e-12, "before it");
+    CHECK_CLOSE(envelope_force(early, 0.3), 70.0, 1e-12, "within a slope");
+    require_valid(early, "");
+    CHECK_THROWS(with_tail(curve, 0.0, 1.0), std::invalid_argument);
+    CHECK_THROWS(with_tail(curve, 0.5, -1.0), std::invalid_argument);
+    CHECK_THROWS(require_valid(with_tail(curve, 0.5, 2000.0), ""), std::invalid_argument);
+    TrussCurve steep = with_tail(curve, 0.5, 2000.0);
+    steep.recovery = 0.02;  // from 50 N it unloads with 2500 N/m
+    require_valid(steep, "");
+}
+
 TEST("a closed loop costs the area of the envelope less what unloading returns") {
     Path truss;
     // Straight pieces end at the knees, so that the trapezoid rule is exact.

@@ -13,9 +13,14 @@
 // The loading envelope is piecewise linear with any number of points: a sum of hinges,
 //   F_env(d) = sum_j slope_change_j * max(0, d - deflection_j),
 // so that one loop without branches serves every curve; the paper's knee is its two-slope case.
-// Below the peak deflection d_p (force F_p) the member moves on  F = max(0, F_p - k_unloading (d_p - d)).
+// Below the peak deflection d_p (force F_p) the member moves on  F = max(0, F_p - k (d_p - d)).
+//
+// Fig. 3 has one slope k = k_unloading. Metal structures give back a nearly constant length r instead, `recovery`:
+//   k = max(k_unloading, F_p / r)
+// so that restitution falls with speed. An infinite r leaves Fig. 3.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "birm3d/base/types.hpp"
@@ -26,7 +31,8 @@ namespace birm3d {
 struct TrussCurve {
     std::vector<double> deflection;  // where the slope changes; starts at 0, increasing (m)
     std::vector<double> slope;       // slope from there on; the last one holds for ever
-    double k_unloading = 0.0;
+    double k_unloading = 0.0;        // with a recovery: the least one
+    double recovery = std::numeric_limits<double>::infinity();  // m
 };
 
 // The paper's curve: k_initial to the knee, k_hardening to f_max, then the plateau. knee and f_max may be
@@ -37,8 +43,15 @@ TrussCurve knee_curve(double k_initial, double knee, double k_hardening, double 
 TrussCurve point_curve(const std::vector<double>& deflection, const std::vector<double>& force,
                        double k_unloading);
 
-// Refuses a curve that is not a law: slopes not finite, forces below zero, an envelope steeper than
-// k_unloading (unloading would give back more than loading took).
+// The curve that rises from `depth` on by `slope` more, as what is crushed is packed together. Refuses a depth that is not
+// > 0 and a slope that is not finite and >= 0.
+TrussCurve with_tail(const TrussCurve& curve, double depth, double slope);
+
+// Slope of unloading from a force.
+double unloading_slope(const TrussCurve& curve, double force);
+
+// Refuses a curve that is not a law: slopes not finite, forces below zero, a recovery that is not > 0, an envelope
+// steeper than unloading from there (which would give back more than loading took).
 void require_valid(const TrussCurve& curve, const std::string& name);
 
 double envelope_force(const TrussCurve& curve, double deflection);

@@ -77,6 +77,7 @@ struct alignas(64) TrussBlock {
     Lanes length;                        // uncrushed (m)
     Lanes k_unloading;                   // N/m
     Lanes compliance;                    // 1/k_unloading, or 0 for a member without stiffness (m/N)
+    Lanes per_recovery;                  // 1/recovery of its curve (1/m)
     Lanes panel;                         // number of its panel
 };
 
@@ -109,6 +110,8 @@ struct TrussMesh {
     std::size_t blocks = 0;       // blocks of `lanes`
     std::size_t skin_blocks = 0;  // the first of them
     std::size_t hinges = 0;       // slope changes of the longest envelope
+    bool recovers =
+        false;  // does any curve have a finite recovery? Then unloading slopes are part of the state.
 
     static constexpr std::size_t group_size = 8;  // blocks of a group, but for the last
     std::size_t end_of_group(std::size_t g) const { return std::min((g + 1) * group_size, blocks); }

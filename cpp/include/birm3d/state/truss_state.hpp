@@ -16,6 +16,7 @@ struct alignas(64) TrussBlockState {
     Lanes x, y, z;                    // shell nodes in body axes (m)
     Lanes deflection, force;          // of the truss, now (m, N)
     Lanes peak_deflection, residual;  // greatest so far; where the unloading line meets zero force (m)
+    Lanes unloading;                  // slope of that line (N/m)
     Box box;                          // around the nodes, body axes
     bool touching;                    // does any node push on an obstacle?
     bool slack;  // has an obstacle drawn any node out beyond the free length of its truss?
@@ -42,7 +43,8 @@ struct BlockGroup {
 };
 
 struct TrussState {
-    explicit TrussState(const TrussMesh& mesh) : block(mesh.blocks), groups(mesh.panels_of_group.size()) {
+    explicit TrussState(const TrussMesh& mesh)
+        : block(mesh.blocks), groups(mesh.panels_of_group.size()), recovers_(mesh.recovers) {
         for (std::size_t b = 0; b < block.size(); ++b)
             uncrush(mesh, b);
         std::vector<std::size_t> all(block.size());
@@ -90,12 +92,17 @@ struct TrussState {
         constexpr std::size_t turns = 8;
         static_assert(lanes % turns == 0);
         std::array<Hash, turns> parts;
-        for (const TrussBlockState& b : block)
+        const auto add_column = [&parts](const Lanes& column) {
+            for (std::size_t i = 0; i < lanes; i += turns)
+                for (std::size_t turn = 0; turn < turns; ++turn)
+                    parts[turn].add(column[i + turn]);
+        };
+        for (const TrussBlockState& b : block) {
             for (const Lanes* column :
                  {&b.x, &b.y, &b.z, &b.deflection, &b.force, &b.peak_deflection, &b.residual})
-                for (std::size_t i = 0; i < lanes; i += turns)
-                    for (std::size_t turn = 0; turn < turns; ++turn)
-                        parts[turn].add((*column)[i + turn]);
+                add_column(*column);
+            if (recovers_) add_column(b.unloading);
+        }
         for (const Hash& part : parts)
             hash.add(part.value());
     }
@@ -106,6 +113,7 @@ struct TrussState {
         block[b].x = mesh.block[b].node_x;
         block[b].y = mesh.block[b].node_y;
         block[b].z = mesh.block[b].node_z;
+        block[b].unloading = mesh.block[b].k_unloading;
         block[b].box = mesh.node_box[b];
     }
     void group(const TrussMesh& mesh, std::size_t g) {
@@ -114,6 +122,8 @@ struct TrussState {
         for (std::size_t b = first; b < mesh.end_of_group(g); ++b)
             groups[g].add(block[b], b == first);
     }
+
+    bool recovers_;  // see TrussMesh
 };
 
 }  // namespace birm3d
