@@ -53,7 +53,7 @@ class Drawn:
 
 @dataclass(frozen=True)
 class Row(Drawn):
-    """How its run went; energies relative, see birm3d.ledger."""
+    """How its run went; energies relative to that at its disposal, see birm3d.ledger."""
 
     steps: int = 0
     seconds: float = 0.0
@@ -185,7 +185,7 @@ def examine(seed: int, limit: float = 60.0) -> Row:
             fault = f"{type(error).__name__}: {error}"
         ledger, scene = simulation._core.ledger, simulation.scene
         warn_if_open(scene, ledger)
-    energy = relative_to_start(scene, ledger.energy.size, ledger.kinetic)
+    energy = relative_to_start(scene, ledger.energy.size, ledger.at_disposal)
     term, fall = max(
         ((name, relative_to_start(scene, f.size, ledger.at_disposal)) for name, f in ledger.falls.items()),
         key=lambda pair: pair[1],

@@ -71,3 +71,17 @@ def test_no_dissipation_falls_in_any_pose(
         car, wall, speed, angle, impact_yaw=yaw, impact_roll=roll, duration=0.4, settings=settings
     ).run()
     assert max(greatest_fall(run).values()) < 1e-4
+
+
+# A high body that friction tips over its outer wheels at a walk of a few cm/s.
+@pytest.mark.parametrize(
+    ("name", "speed"), [("semi_truck", 0.136), ("semi_truck", 0.17), ("cargo_truck", 0.3)]
+)
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
+def test_a_slow_slide_on_locked_wheels_keeps_its_energy(name: str, speed: float, tolerance: float) -> None:
+    """It opened by up to 10 %: friction turned the sliding round, and no step was too long for it."""
+    truck = Vehicle.preset(name, mesh_density=0.1)
+    settings = Settings(braking=1.0, tolerance=tolerance)
+    run = Simulation(truck, None, speed, impact_yaw=90.0, duration=0.4, settings=settings).run()
+    assert run.metrics["energy_residual"] < 5e-3
+    assert max(greatest_fall(run).values()) < 1e-5

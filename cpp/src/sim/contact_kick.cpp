@@ -73,6 +73,21 @@ const std::vector<Twist>& motions_that_rub(const KickMemory& memory) {
     return memory.sliding.empty() ? memory.pushed : memory.sliding;
 }
 
+// Friction brings sliding to rest and does not reverse it: what of its impulse on a body does no more than that.
+// `motion`: of the body without it.
+Wrench without_reversal(const Wrench& friction, const ContactBody& body, const Twist& motion) {
+    const double slides = -power(friction, motion);
+    const double gives =
+        power(friction, {body.inverse_mass * friction.force, body.inverse_inertia * friction.torque});
+    return gives > slides ? scaled(friction, std::max(0.0, slides / gives)) : friction;
+}
+
+// Of a unit that friction has kicked.
+Twist motion_without(const Wrench& friction, const ContactBody& body) {
+    return {body.motion.velocity - body.inverse_mass * friction.force,
+            body.motion.angular_velocity - body.inverse_inertia * friction.torque};
+}
+
 // Friction of both sides of closed trusses and of tyres, by the present impulses; kicks the units by what has changed.
 void rub_units(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
     ContactKick& kicked = memory.kick;
@@ -84,9 +99,14 @@ void rub_units(const Scene& scene, const KickedBy& by, KickMemory& memory, State
         const Unit& unit = scene.vehicle->units[u];
         BodyState& body = state.units[u].body;
         const bool rolls_freely = !kicked.rolls_freely.empty() && kicked.rolls_freely[u] != 0;
-        const Wrench on_ground = rolls_freely ? Wrench{}
-                                              : tire_friction(unit, scene.settings, body,
-                                                              {motion[u], by.at_end[u]}, memory.tire[u]);
+        Wrench on_ground;
+        if (!rolls_freely) {
+            Wrench all = kicked.on_ground[u];
+            all += kicked.on_members[u];
+            on_ground = without_reversal(
+                tire_friction(unit, scene.settings, body, {motion[u], by.at_end[u]}, memory.tire[u]),
+                memory.bodies[u], motion_without(all, memory.bodies[u]));
+        }
         on_members[u] =
             member_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u]);
         kick(unit.body, difference(on_ground, kicked.on_ground[u]), body);

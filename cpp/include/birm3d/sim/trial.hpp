@@ -113,6 +113,7 @@ struct Trial {
     std::vector<ContactImpulses> impulses;  // (units) of lasting contacts, even over the step
     std::vector<Wrench> joint_impulses;     // (joints) the same, on the leading unit, about the joint
     std::vector<Twist> by_contacts;         // (bodies) by how much these changed motions before the drift
+    Column climbing;                        // (units) vertical velocity in the drift (m/s)
     Impact at_start, at_end;
     std::vector<std::size_t> seen;  // obstacles that blocks of nodes had in reach, once for each unit
     SkinMemory skin;
