@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .arguments import checked
 from .unit_check import given
 from .units import Quantity, si
 from .vehicle import Vehicle
@@ -30,6 +31,7 @@ Place = tuple[float, float, float]
 _FIT = 1e-3
 
 
+@checked
 @dataclass(frozen=True)
 class Joint:
     """How a trailing unit hangs on a leading one.
@@ -76,6 +78,7 @@ class Joint:
         return np.subtract(self.place_on_leading, self.place_on_trailing)
 
 
+@checked
 @dataclass(frozen=True, eq=False, repr=False)
 class ArticulatedVehicle(Vehicle):
     """A vehicle of two units; make one with :meth:`Vehicle.articulated`. Immutable.

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .arguments import check_fields, checked
 from .checks import MOST_ELEMENTS, whole_number
 from .unit_check import USUAL, given, warn_if_mesh_unusual
 from .units import Quantity, si
@@ -25,6 +26,7 @@ __all__ = ["Barrier"]
 Point = tuple[float, float, float]
 
 
+@checked
 @dataclass(frozen=True)
 class Barrier:
     """A barrier that stands on the ground; immutable. Make one with :meth:`rigid_wall`, :meth:`bollards`, ...
@@ -61,6 +63,7 @@ class Barrier:
         for name in self._counts:
             count = whole_number(name, getattr(self, name), most=MOST_ELEMENTS)
             object.__setattr__(self, name, count)  # a sweep gives 3.0
+        check_fields(self)
         if not math.isfinite(self.heading):
             raise ValueError(f"heading must be finite, got {self.heading}")
         _ = self.core
@@ -292,7 +295,7 @@ class Barrier:
 
         points = np.array(vertices, float)
         if points.ndim == 2 and points.shape[0] > 0 and points.shape[1] == 3:
-            warn_if_mesh_unusual(float(np.ptp(points[:, 2])), stacklevel=3)
+            warn_if_mesh_unusual(float(np.ptp(points[:, 2])))
         return MeshBarrier(
             float(friction),
             _point(origin),

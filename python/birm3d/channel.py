@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import units
+from .arguments import checked
 from .filters import cfc as cfc_filter
 from .frozen_mapping import FrozenMapping
 
@@ -35,6 +36,7 @@ _INTEGRALS = {
 }
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Channel:
     """A history; immutable, arrays are read-only copies.

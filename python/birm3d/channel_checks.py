@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import checked
+
 if TYPE_CHECKING:
     from .channel import Channel
 
@@ -73,6 +75,7 @@ class Findings(tuple[Finding, ...]):
         return "\n".join(map(str, self))
 
 
+@checked
 def check_channel(
     channel: Channel,
     *,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import caller_level
 from .barrier_kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
 
 if TYPE_CHECKING:
@@ -91,7 +92,7 @@ def warn_if_coarse(scene: Scene) -> None:
         narrowest = min(met, key=lambda part: part.width)
         # Nothing passes between nodes that is wider than all of the skin: no spacing is asked for at walls.
         if narrowest.width < (high - low).max() and narrowest.width < unit.node_spacing:
-            warnings.warn(_told(scene, unit, narrowest), CoarseSkinWarning, stacklevel=4)
+            warnings.warn(_told(scene, unit, narrowest), CoarseSkinWarning, stacklevel=caller_level())
             return
 
 

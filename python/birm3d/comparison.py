@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .arguments import checked
 from .channel import Channel
 from .curve_metrics import Residuals, SpragueGeers, residuals, sprague_geers
 from .iso18571 import INTERVAL, ObjectiveRating, objective_rating
@@ -40,6 +41,7 @@ class Criterion:
     """Whose limit it is."""
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class CurveComparison:
     """The two curves on one footing, and how far they are apart.
@@ -141,6 +143,7 @@ class CurveComparison:
         return f"CurveComparison(M {m:+.1%}, P {p:.1%}, rating {self.rating.overall:.3f}, criteria {verdict})"
 
 
+@checked
 def compare_curves(
     measured: Channel,
     computed: Channel,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .checks import index as place
 from .unit_shapes import UnitShape, unit_shapes
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ def crush_map(result: Result, side: Side | None = None, *, unit: int = 0) -> Cru
         return _struck(result, unit)
     if side not in _SIDES:
         raise ValueError(f"side must be one of {', '.join(_SIDES)}; got {side!r}")
-    shape = unit_shapes(result.scene.vehicle)[unit]
+    shape = _shape(result, unit)
     axis, sign, lateral = _SIDES[side]
     triangles = _visible(shape, _facing(shape, axis, sign, lateral), axis, sign, lateral)
     if len(triangles) == 0:
@@ -145,7 +146,7 @@ def crush_profile(
     field = crush_map(result, side, unit=unit)
     side = field.side
     if height is None:
-        height = _usual_height(unit_shapes(result.scene.vehicle)[unit], field)
+        height = _usual_height(_shape(result, unit), field)
     lateral, crush = _cut(field, height)
     if len(lateral) < 2:
         heights = field.height[field.triangles]
@@ -174,9 +175,14 @@ def crushed_sides(result: Result, least: float = 0.01, *, unit: int = 0) -> tupl
     return tuple(field.side for field in _all_sides(result, unit) if _greatest(field) > least)
 
 
+def _shape(result: Result, unit: int) -> UnitShape:
+    shapes = unit_shapes(result.scene.vehicle)
+    return shapes[place("unit", unit, len(shapes), "units")]
+
+
 def _all_sides(result: Result, unit: int) -> list[CrushMap]:
     """Return the maps of all sides that have a skin, that of the greatest crush first."""
-    shape = unit_shapes(result.scene.vehicle)[unit]
+    shape = _shape(result, unit)
     fields = [
         crush_map(result, side, unit=unit) for side, axes in _SIDES.items() if len(_facing(shape, *axes))
     ]

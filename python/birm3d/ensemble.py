@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence, Sized
 from typing import TYPE_CHECKING, Any
 
+from .arguments import checked
 from .metrics import METRIC_UNITS
 from .progress import progress_bar
 from .runs import StudyInterrupted, StudyStoppedError, checked_metrics
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["ensemble"]
 
 
+@checked
 def ensemble(
     simulations: Iterable[Simulation | Callable[[], Simulation]],
     *,

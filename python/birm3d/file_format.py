@@ -12,6 +12,8 @@ from typing import Any, ParamSpec, TypeVar
 
 from typing_extensions import Self
 
+from .arguments import checked
+
 __all__ = [
     "MOST_BYTES", "MOST_DEPTH", "FileFormatError", "check_sum", "checksum", "depth", "read_bytes",
     "read_json", "reading", "reads", "received",
@@ -91,7 +93,7 @@ def reads(
             with reading(Path(path), must, error):
                 return reader(*args, **kwargs)
 
-        return guarded
+        return checked(guarded)
 
     return decorate
 

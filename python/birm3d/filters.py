@@ -7,11 +7,14 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import checked
+
 __all__ = ["cfc", "moving_average"]
 
 Floats = npt.NDArray[np.float64]
 
 
+@checked
 def cfc(signal: npt.ArrayLike, channel_class: float, interval: float) -> Floats:
     """Filter a signal by a channel frequency class of SAE J211-1.
 
@@ -36,6 +39,8 @@ def cfc(signal: npt.ArrayLike, channel_class: float, interval: float) -> Floats:
     from scipy.signal import filtfilt  # imported when used: it takes longer to load than a crash to run
 
     x = np.asarray(signal, float)
+    if x.ndim == 0 or len(x) == 0:
+        raise ValueError(f"signal must have shape (n,) or (n, k) and n > 0, got {x.shape}")
     if not np.isfinite(x).all():
         raise ValueError("signal must be finite, got a value that is not")
     if not channel_class > 0.0:
@@ -54,6 +59,7 @@ def cfc(signal: npt.ArrayLike, channel_class: float, interval: float) -> Floats:
     return filtered
 
 
+@checked
 def moving_average(signal: npt.ArrayLike, width: float, interval: float) -> Floats:
     """Mean over a window of `width` [s] that ends at each row; zero before the start.
 
@@ -65,6 +71,8 @@ def moving_average(signal: npt.ArrayLike, width: float, interval: float) -> Floa
         Of the window and of the sampling [s].
     """
     x = np.asarray(signal, float)
+    if x.ndim == 0 or len(x) == 0:
+        raise ValueError(f"signal must have shape (n,) or (n, k) and n > 0, got {x.shape}")
     if not np.isfinite(x).all():
         raise ValueError("signal must be finite, got a value that is not")
     for name, value in (("width", width), ("interval", interval)):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import checked
 from .distributions import check_count, check_distributions, check_seed, sample
 from .event import DECIDED
 from .lognormal_fit import Draws, LognormalFit, fit_lognormal
@@ -30,6 +31,7 @@ __all__ = ["Fragility", "fragility"]
 Floats = npt.NDArray[np.float64]
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Fragility:
     """Probability of an event against the impact speed.
@@ -100,6 +102,7 @@ class Fragility:
         return f"Fragility({self.event}; {len(self.speeds)} speeds, {self.runs.sum()} runs; {curve})"
 
 
+@checked
 def fragility(
     simulation: Simulation,
     speeds: Iterable[Quantity],
@@ -195,7 +198,7 @@ def fragility(
 
 
 def _speeds(speeds: Iterable[Quantity]) -> list[float]:
-    listed = [given("impact_speed", speed, stacklevel=5) for speed in speeds]
+    listed = [given("impact_speed", speed) for speed in speeds]
     if len(listed) < 2:
         raise ValueError(f"speeds must have at least two values, got {listed}")
     for before, speed in zip([0.0, *listed], listed, strict=False):

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .arguments import check_fields
 from .filters import moving_average
 from .units import Quantity, si
 
@@ -68,13 +69,14 @@ class FreeStanding:
         ) -> None: ...
 
     def __post_init__(self) -> None:
+        check_fields(self, texts=("density", "mass_per_length"))
         if self.density is not None and self.mass_per_length is not None:
             raise ValueError(
                 f"mass_per_length must be None where density is given, got {self.mass_per_length}"
             )
         for name, quantity in (("density", "density"), ("mass_per_length", "mass per length")):
             value = getattr(self, name)
-            if isinstance(value, str):
+            if value is not None:
                 value = si(name, value, quantity)
                 object.__setattr__(self, name, value)
             if value is not None and not 0.0 < value < math.inf:

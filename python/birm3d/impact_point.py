@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import checked
 from .distributions import check_count
 from .runs import run_study
 from .scene_parameters import in_si, unit_of, value_of
@@ -27,6 +28,7 @@ __all__ = ["CriticalImpactPoint", "critical_impact_point"]
 Floats = npt.NDArray[np.float64]
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class CriticalImpactPoint:
     """Where a metric is greatest (or least) inside given ranges.
@@ -83,6 +85,7 @@ class CriticalImpactPoint:
         return f"CriticalImpactPoint({self.metric} = {self.value:.6g} at {where}; {runs} runs)"
 
 
+@checked
 def critical_impact_point(
     simulation: Simulation,
     metric: str,

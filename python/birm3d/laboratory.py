@@ -9,12 +9,15 @@ import math
 
 import numpy as np
 
+from .arguments import checked
 from .articulated import ArticulatedVehicle, Joint
+from .checks import MOST_NODES, whole_number
 from .vehicle import Vehicle
 
 __all__ = ["elastic_block", "laboratory_block", "laboratory_semi"]
 
 
+@checked
 def laboratory_block(
     n: int,
     *,
@@ -29,6 +32,7 @@ def laboratory_block(
     Stiffnesses are those of all trusses together [N/m]. `stagger` spreads the nodes over that depth [m] by a
     fixed pattern.
     """
+    whole_number("n", n, most=MOST_NODES)
     across = math.isqrt(n * 3 // 2)
     while n % across:
         across -= 1
@@ -48,6 +52,7 @@ def laboratory_block(
     )
 
 
+@checked
 def laboratory_semi(*, front: float = 4e6, side: float = 2e6) -> ArticulatedVehicle:
     """Return a 72,000-lb tractor and semi-trailer, both boxes: a laboratory, not a model of a truck.
 
@@ -106,6 +111,7 @@ def _box(
     )
 
 
+@checked
 def elastic_block(n: int) -> Vehicle:
     """Return the body of W1: 3 MN/m, elastic."""
     return laboratory_block(n, k_initial=3e6, k_unloading=3e6)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING
 
+from .arguments import caller_level
 from .metrics import relative_to_start
 
 if TYPE_CHECKING:
@@ -67,5 +68,5 @@ def _warn(name: str, limit: float, value: float, worst: _core.Departure, advice:
         f"{name} must be at most {limit:g}, got {value:.2g} at t = {worst.time:.4g} s, mass centre at "
         f"({x:.3g}, {y:.3g}, {z:.3g}) m: {advice}",
         LedgerWarning,
-        stacklevel=4,
+        stacklevel=caller_level(),
     )

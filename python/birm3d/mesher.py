@@ -77,7 +77,7 @@ def build_mesh(vehicle_file: VehicleFile, density: float = 1.0) -> ExteriorMesh:
     """
     low, high = _DENSITY
     if not low <= density <= high:
-        raise ValueError(f"density must be between {low:g} and {high:g}, got {density!r}")
+        raise ValueError(f"mesh_density must be between {low:g} and {high:g}, got {density!r}")
     surface = _Surface(vehicle_file, density)
     quad_zone = _zones_of_quads(vehicle_file, surface)
     nodes, quads, zone = _split_at_zone_borders(surface.points, surface.quads, quad_zone)

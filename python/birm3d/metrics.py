@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .arguments import checked
 
 if TYPE_CHECKING:
     from .barrier import Barrier
@@ -98,6 +99,7 @@ ALONG_LINE = _core.along_line
 _STANDSTILL = 0.1
 
 
+@checked
 def compute_metrics(result: Result, names: Collection[str] | None = None) -> dict[str, float]:
     """Return the scalars of a run, SI units and degrees: all that it has, or those among `names`.
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from .arguments import checked
 from .distributions import check_count, check_distributions, check_seed, sample
 from .runs import run_study
 from .simulation import Simulation
@@ -15,6 +16,7 @@ from .unit_check import warn_if_any_unusual
 __all__ = ["monte_carlo"]
 
 
+@checked
 def monte_carlo(
     simulation: Simulation,
     distributions: Mapping[str, Any],
@@ -61,7 +63,7 @@ def monte_carlo(
     check_seed(seed)
     check_distributions(simulation, distributions)
     for name, distribution in distributions.items():
-        warn_if_any_unusual(name, [float(distribution.ppf(0.5))], stacklevel=3)
+        warn_if_any_unusual(name, [float(distribution.ppf(0.5))])
     return run_study(
         simulation,
         tuple(distributions),

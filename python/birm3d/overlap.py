@@ -5,6 +5,8 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING
 
+from .arguments import caller_level
+
 if TYPE_CHECKING:
     from . import _core
     from .simulation import Scene
@@ -37,5 +39,5 @@ def warn_if_overlapping(scene: Scene, statistics: _core.StepStatistics) -> None:
         f"{statistics.greatest_overlap_time:.3f} s the rigid body of {scene.vehicle.name!r} was inside "
         f"{element!r}; a finer mesh (with_mesh_density) or with_dent_reach holds it",
         OverlapWarning,
-        stacklevel=3,
+        stacklevel=caller_level(),
     )

@@ -7,18 +7,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+from .arguments import checked
+from .crush_profile import Side
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
     from matplotlib.figure import Figure
 
-    from .crush_profile import Side
-    from .rendering import Color, View
     from .result import Result
 
 __all__ = [
+    "Color",
+    "View",
     "animate",
     "plot",
     "plot_crush",
@@ -30,7 +33,11 @@ __all__ = [
     "write_html",
 ]
 
+View: TypeAlias = Literal["three_quarter", "side", "top", "front", "driver"]
+Color: TypeAlias = Literal["crush", "zone", "plain"]
 
+
+@checked
 def plot(self: Result) -> Figure:
     """Return a figure of force, motion, angles and energies against time."""
     from .plotting import plot_result
@@ -38,6 +45,7 @@ def plot(self: Result) -> Figure:
     return plot_result(self)
 
 
+@checked
 def plot_histories(self: Result) -> Figure:
     """Return time histories with their filter class; see :func:`birm3d.plotting.plot_histories`."""
     from .plotting import plot_histories
@@ -45,6 +53,7 @@ def plot_histories(self: Result) -> Figure:
     return plot_histories(self)
 
 
+@checked
 def plot_plan(self: Result, times: Sequence[float] | None = None, *, exit_box: bool = True) -> Figure:
     """Return the plan view of the trajectory; see :func:`birm3d.plotting.plot_plan`."""
     from .plotting import plot_plan
@@ -52,6 +61,7 @@ def plot_plan(self: Result, times: Sequence[float] | None = None, *, exit_box: b
     return plot_plan(self, times, exit_box=exit_box)
 
 
+@checked
 def plot_crush(
     self: Result, side: Side | None = None, *, height: float | None = None, unit: int = 0
 ) -> Figure:
@@ -64,6 +74,7 @@ def plot_crush(
     return plot_crush(self, side, height=height, unit=unit)
 
 
+@checked
 def plot_elements(self: Result) -> Figure:
     """Return the loads on the barrier's elements over time; see :func:`birm3d.plotting.plot_elements`."""
     from .plotting import plot_elements
@@ -71,6 +82,7 @@ def plot_elements(self: Result) -> Figure:
     return plot_elements(self)
 
 
+@checked
 def render(
     self: Result,
     time: float | Sequence[float] | str | Path | None = None,
@@ -90,6 +102,7 @@ def render(
     return render(self, time, path, view=view, color=color, size=size, follow=follow)
 
 
+@checked
 def animate(
     self: Result,
     path: str | Path,
@@ -118,6 +131,7 @@ def animate(
     )
 
 
+@checked
 def show(self: Result, *, view: View = "three_quarter", color: Color = "crush") -> None:
     """Open a window with the scene in three dimensions; see :func:`birm3d.rendering.show`."""
     from .rendering import show
@@ -125,6 +139,7 @@ def show(self: Result, *, view: View = "three_quarter", color: Color = "crush") 
     show(self, view=view, color=color)
 
 
+@checked
 def write_html(self: Result, path: str | Path, *, frames: int = 61) -> None:
     """Write one self-contained, interactive page; see :func:`birm3d.html_page.write_html`."""
     from .html_page import write_html

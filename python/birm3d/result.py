@@ -13,6 +13,8 @@ import numpy.typing as npt
 
 from . import _core, pictures, result_table
 from ._version import __version__
+from .arguments import checked
+from .checks import index as place
 from .element_loads import ElementLoad, element_loads
 from .event import Metrics, metrics_of, outcome_detail
 from .frames import Frames, capture, pose
@@ -41,6 +43,7 @@ _ENERGIES = (
 )
 
 
+@checked
 class Result:
     """Histories of n rows at the output interval, and what follows from them.
 
@@ -158,9 +161,7 @@ class Result:
         ValueError
             If the vehicle has no such unit.
         """
-        if not 0 <= index < len(self._units):
-            raise ValueError(f"index must be >= 0 and < {len(self._units)}, the number of units, got {index}")
-        return self._units[index]
+        return self._units[place("index", index, len(self._units), "units")]
 
     @property
     def position(self) -> Floats:
@@ -403,7 +404,7 @@ class Result:
 
         Positions are linear between the rows, orientations turn at a constant rate.
         """
-        rows = self._history.unit(unit)
+        rows = self._history.unit(place("unit", unit, len(self._units), "units"))
         return pose(self.time, rows.position, rows.roll_pitch_yaw, time)
 
     def with_frames(self, frames: int | Sequence[float] = 61) -> Result:

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from functools import partial
-from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._version import __version__
+from .checks import is_number
 from .float_rows import FloatRows
 from .metrics import JOINT_METRICS, METRIC_UNITS, SEGMENT_METRICS
 from .progress import progress_bar
@@ -210,8 +210,7 @@ def checked_metrics(metrics: Sequence[str] | None, joined: bool, free: bool) -> 
 
 def _plain(value: Any) -> Any:
     """Numbers as float, so that 20 and 20.0 and numpy's are the same run."""
-    number = isinstance(value, Real) and not isinstance(value, (bool, np.bool_))
-    return float(value) if number else value
+    return float(value) if is_number(value) else value
 
 
 def _check_rows(simulation: Simulation, names: tuple[str, ...], rows: Sequence[tuple[Any, ...]]) -> None:

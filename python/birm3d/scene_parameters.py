@@ -32,6 +32,7 @@ from difflib import get_close_matches
 from functools import lru_cache
 from typing import Any
 
+from .arguments import checked
 from .settings import Settings
 from .simulation import APPROACH, Scene, Simulation
 from .units import quantity_in, si
@@ -92,11 +93,13 @@ _PER_AREA = {"N/m per m^2": "pressure per length", "N per m^2": "pressure"}
 _POINT = re.compile(r"(stress|deflection)\[(\d+)\]")
 
 
+@checked
 def parameter_names(simulation: Simulation) -> tuple[str, ...]:
     """Return the names of all numbers that the scene has; see the table above."""
     return _names(simulation.scene)
 
 
+@checked
 def unit_of(name: str) -> str:
     """Return the unit of a parameter, ``""`` for one that is a pure number or none."""
     if name.startswith("zone.") or name.startswith("truss."):
@@ -107,6 +110,7 @@ def unit_of(name: str) -> str:
     return _UNITS.get(name, "")
 
 
+@checked
 def in_si(name: str, value: Any) -> Any:
     """Return the value of a parameter with text such as ``"30 mph"`` as a number in SI (angles: deg).
 
@@ -121,6 +125,7 @@ def in_si(name: str, value: Any) -> Any:
     return value
 
 
+@checked
 def quantity_of(name: str) -> str | None:
     """Return the quantity of a parameter, as "speed"; ``None`` for a pure number."""
     unit = unit_of(name)
@@ -144,6 +149,7 @@ def _names(scene: Scene) -> tuple[str, ...]:
     return tuple(names)
 
 
+@checked
 def value_of(simulation: Simulation, name: str) -> Any:
     """Return the present value of a parameter.
 
@@ -170,6 +176,7 @@ def value_of(simulation: Simulation, name: str) -> Any:
     return _zone_value(scene.vehicle.zones[zone], number)
 
 
+@checked
 def varied(simulation: Simulation, changes: Mapping[str, Any]) -> Simulation:
     """Return a new simulation of the same scene with some parameters changed.
 
@@ -181,6 +188,7 @@ def varied(simulation: Simulation, changes: Mapping[str, Any]) -> Simulation:
     return Simulation.from_scene(varied_scene(simulation.scene, changes))
 
 
+@checked
 def varied_scene(base: Scene, changes: Mapping[str, Any]) -> Scene:
     """Return a scene with some parameters changed, for :meth:`Simulation.from_scene` or a runner.
 
@@ -294,7 +302,7 @@ def _zone(zone: Zone, numbers: Mapping[str, float]) -> Zone:
             changes["envelope"] = tuple((d, s) for d, s in points)
         elif number != "scale":
             changes[number] = float(value)
-    return dataclasses.replace(zone, **changes).scaled(float(numbers.get("scale", 1.0)))
+    return dataclasses.replace(zone, **changes).scaled(numbers.get("scale", 1.0))
 
 
 def _unknown(scene: Scene, name: str) -> ValueError:

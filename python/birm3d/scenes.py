@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import units
+from .arguments import checked
 from .barrier import Barrier
 from .laboratory import elastic_block, laboratory_block, laboratory_semi
 from .reference import NhtsaTest, nhtsa_tests
@@ -18,6 +19,7 @@ from .settings import Settings
 from .simulation import Simulation
 from .units import Quantity
 from .vehicle import Vehicle
+from .zone import positive
 
 __all__ = [
     "TABLE_2",
@@ -49,17 +51,20 @@ def _laboratory(vehicle: Vehicle, settings: Settings | None) -> Simulation:
     return Simulation(vehicle, Barrier.rigid_wall(friction=0.0), 22.352, settings=settings)
 
 
+@checked
 def w1(n: int = 1000, settings: Settings | None = None) -> Simulation:
     """Elastic impact at 50 mph. Exact: crush v sqrt(m/k) = 1.0645 m, peak 47.9 g, rebound -22.352 m/s."""
     return _laboratory(elastic_block(n), settings)
 
 
+@checked
 def w2(n: int = 1000, settings: Settings | None = None) -> Simulation:
     """Crush with a knee at 50 mph. Exact: crush 0.9256 m, peak 4,353.8 kN, rebound -6.814 m/s."""
     block = laboratory_block(n, k_initial=3e6, knee=0.4, k_hardening=6e6, k_unloading=60e6)
     return _laboratory(block, settings)
 
 
+@checked
 def w2_force(
     time: npt.ArrayLike,
     *,
@@ -73,6 +78,8 @@ def w2_force(
     One mass on one spring in each of three phases, w = sqrt(k / m): to the knee, to the turn, and off along
     the unloading slope until the force is nil. Stiffnesses in N/m; the block must turn beyond the knee [m].
     """
+    for name, value in (("k_initial", k_initial), ("k_hardening", k_hardening), ("k_unloading", k_unloading)):
+        positive(name, value)
     t = np.asarray(time, float)
     mass, speed = 6804.0, 22.352
     w1, w2, w3 = (math.sqrt(k / mass) for k in (k_initial, k_hardening, k_unloading))
@@ -95,12 +102,14 @@ def w2_force(
     )
 
 
+@checked
 def paper_table_2(speed_mph: float, settings: Settings | None = None) -> Simulation:
     """Paper, case 2: its pickup head-on into a rigid wall; see :data:`TABLE_2`."""
     vehicle = Vehicle.preset("paper_pickup")
     return Simulation(vehicle, Barrier.rigid_wall(), units.mph(speed_mph), settings=settings)
 
 
+@checked
 def nhtsa_10146(settings: Settings | None = None, mesh_density: float = 1.0) -> Simulation:
     """NHTSA test 10146: a 1,719 kg sedan at 57.09 km/h into a rigid load-cell wall.
 
@@ -111,6 +120,7 @@ def nhtsa_10146(settings: Settings | None = None, mesh_density: float = 1.0) -> 
     return Simulation(vehicle, Barrier.rigid_wall(), units.km_h(57.09), settings=settings)
 
 
+@checked
 def preset_for(test: NhtsaTest) -> str:
     """Name of the preset that stands for the vehicle of a test.
 
@@ -128,6 +138,7 @@ def preset_for(test: NhtsaTest) -> str:
     return min(fitted, key=lambda name: abs(fitted[name] - test.mass))
 
 
+@checked
 def nhtsa_frontal(number: str, settings: Settings | None = None, mesh_density: float = 1.0) -> Simulation:
     """Return a full-width rigid-wall test of NHTSA, by its number in :func:`birm3d.reference.nhtsa_tests`.
 
@@ -142,6 +153,7 @@ def nhtsa_frontal(number: str, settings: Settings | None = None, mesh_density: f
     return Simulation(vehicle, Barrier.rigid_wall(), test.speed, settings=settings)
 
 
+@checked
 def truck_at_wall(settings: Settings | None = None, mesh_density: float = 1.0) -> Simulation:
     """Paper, case 4: a 15,000-lb truck at 50 mph head-on into a rigid wall.
 
@@ -152,6 +164,7 @@ def truck_at_wall(settings: Settings | None = None, mesh_density: float = 1.0) -
     return Simulation(truck, Barrier.rigid_wall(), units.mph(50.0), duration=1.5, settings=settings)
 
 
+@checked
 def truck_at_bollards(
     settings: Settings | None = None,
     mesh_density: float = 1.0,
@@ -172,6 +185,7 @@ def truck_at_bollards(
     return Simulation(truck, row, units.mph(50.0), 90.0, offset, duration=1.5, settings=settings)
 
 
+@checked
 def pickup_at_bollards(
     clear_spacing: float,
     offset: float = 0.0,
@@ -191,6 +205,7 @@ def pickup_at_bollards(
     return Simulation(pickup, row, units.mph(30.0), 90.0, offset, duration=1.0, settings=settings)
 
 
+@checked
 def oblique(angle: float, friction: float = 0.0, settings: Settings | None = None) -> Simulation:
     """Passenger car of 4,500 lb at 59.8 mph (paper, case 3, at 24 deg) against a rigid wall."""
     vehicle = Vehicle.preset("passenger_car", gvw=units.lb(4500))
@@ -199,6 +214,7 @@ def oblique(angle: float, friction: float = 0.0, settings: Settings | None = Non
     )
 
 
+@checked
 def oblique_car(
     friction: float = 0.175, settings: Settings | None = None, mesh_density: float = 1.0
 ) -> Simulation:
@@ -212,11 +228,13 @@ def oblique_car(
     return Simulation(vehicle, wall, units.mph(59.8), 24.0, settings=settings)
 
 
+@checked
 def rolling(duration: Quantity = 2.0, settings: Settings | None = None) -> Simulation:
     """Paper, case 1: a pickup that rolls at 30 mph; the tyre reactions sum to its weight."""
     return Simulation(Vehicle.preset("pickup"), None, units.mph(30.0), duration=duration, settings=settings)
 
 
+@checked
 def parked(duration: Quantity = 10.0, settings: Settings | None = None) -> Simulation:
     """Pickup that stands still."""
     return Simulation(Vehicle.preset("pickup"), None, 0.0, duration=duration, settings=settings)

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 from . import _core
+from .arguments import check_fields
 from .units import Quantity, si
 
 __all__ = ["MU_TIRE_BARRIER", "Settings"]
@@ -102,6 +103,7 @@ class Settings:
             value: object = getattr(self, name)
             if isinstance(value, str):
                 object.__setattr__(self, name, si(name, value, quantity))
+        check_fields(self)
         _ = self.core
 
     @cached_property

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 from . import _core
 from ._version import __version__
+from .arguments import checked
 from .barrier import Barrier
 from .coarse_skin import warn_if_coarse
 from .ledger import warn_if_open
@@ -26,6 +27,7 @@ APPROACH = ("impact_speed", "impact_angle", "impact_offset", "standoff", "impact
 """Numbers of a scene that say how the vehicle comes; nothing has to be made anew for others."""
 
 
+@checked
 @dataclass(frozen=True)
 class Scene:
     """What a run is about; the arguments of :class:`Simulation`."""
@@ -87,6 +89,7 @@ class Scene:
         )
 
 
+@checked
 class Simulation:
     """A vehicle that runs into a barrier.
 

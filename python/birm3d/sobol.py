@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import checked
 from .distributions import check_count, check_distributions, check_seed, quantiles, spread
 from .frozen_mapping import FrozenMapping
 from .runs import run_study
@@ -91,6 +92,7 @@ class SobolDesign:
         return SobolIndex(*(np.asarray(found[key], float) for key in ("S1", "S1_conf", "ST", "ST_conf")))
 
 
+@checked
 class SobolIndices:
     """Sobol indices of the metrics of a study.
 
@@ -153,6 +155,7 @@ class SobolIndices:
         )
 
 
+@checked
 def sobol(
     simulation: Simulation,
     distributions: Mapping[str, Any],

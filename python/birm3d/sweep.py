@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
+from .arguments import checked
 from .checks import MOST_RUNS, check_runs, shown
 from .runs import run_study
 from .scene_parameters import in_si
@@ -18,6 +19,7 @@ from .unit_check import warn_if_any_unusual
 __all__ = ["sweep"]
 
 
+@checked
 def sweep(
     simulation: Simulation,
     parameters: Mapping[str, Iterable[Any]] | None = None,
@@ -101,7 +103,7 @@ def _values(name: str, values: Iterable[Any]) -> list[Any]:
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise ValueError(f"{name} must be a list of values, got {values!r}")
     wanted = list(itertools.islice(values, MOST_RUNS + 1))  # an endless one ends too
-    warn_if_any_unusual(name, wanted, stacklevel=4)
+    warn_if_any_unusual(name, wanted)
     listed = [in_si(name, value) for value in wanted]
     if not listed:
         raise ValueError(f"{name} must have at least one value, got an empty list")

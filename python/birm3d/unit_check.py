@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from .arguments import caller_level
+from .checks import is_number
 from .units import Quantity, Stated, quantity_in, si
 
 __all__ = [
@@ -79,7 +81,7 @@ _MESH_HEIGHT = Usual(0.001, 100.0, "m", "mm")
 _ROUND, _NEAR = math.pi / 36.0, 1e-3
 
 
-def given(name: str, value: Quantity, *, stacklevel: int = 3) -> float:
+def given(name: str, value: Quantity) -> float:
     """Return an argument of :data:`USUAL` in SI (angles: deg), with a word if it is an unusual number.
 
     Raises
@@ -93,11 +95,11 @@ def given(name: str, value: Quantity, *, stacklevel: int = 3) -> float:
     assert quantity is not None  # all units of USUAL are known
     number = si(name, value, quantity)
     if not isinstance(value, (str, Stated)):
-        warn_if_unusual(name, number, USUAL[name], stacklevel=stacklevel + 1)
+        warn_if_unusual(name, number, USUAL[name])
     return number
 
 
-def warn_if_any_unusual(name: str, values: Iterable[Any], *, stacklevel: int = 2) -> None:
+def warn_if_any_unusual(name: str, values: Iterable[Any]) -> None:
     """Warn with :class:`UnitWarning` of the first number that is unusual for a parameter of a scene.
 
     ``name`` as in :mod:`birm3d.scene_parameters`; parameters without a usual range are left alone.
@@ -107,9 +109,9 @@ def warn_if_any_unusual(name: str, values: Iterable[Any], *, stacklevel: int = 2
     if usual is None:
         return
     for value in values:
-        plain = isinstance(value, (int, float)) and not isinstance(value, Stated)
+        plain = is_number(value) and not isinstance(value, Stated)
         if plain and _is_unusual(float(value), usual):
-            warn_if_unusual(name, float(value), usual, stacklevel=stacklevel + 1)
+            warn_if_unusual(name, float(value), usual)
             return
 
 
@@ -123,7 +125,7 @@ def _is_unusual(value: float, usual: Usual) -> bool:
     return size > 0.0 and not usual.low <= size <= usual.high
 
 
-def warn_if_unusual(name: str, value: float, usual: Usual, *, stacklevel: int = 2) -> None:
+def warn_if_unusual(name: str, value: float, usual: Usual) -> None:
     """Warn with :class:`UnitWarning` of a number outside its usual range; what is no number is left alone."""
     if not _is_unusual(value, usual):
         return
@@ -138,11 +140,10 @@ def warn_if_unusual(name: str, value: float, usual: Usual, *, stacklevel: int = 
         f"{name} = {value:g} {usual.unit}",
         guess,
         f"accepted without this warning is {accepted}, or text with its unit, as '{value:g} {usual.text}'",
-        stacklevel,
     )
 
 
-def warn_if_mesh_unusual(height: float, *, stacklevel: int = 2) -> None:
+def warn_if_mesh_unusual(height: float) -> None:
     """Warn with :class:`UnitWarning` of vertices that are most likely in millimetres; height in m."""
     if not _is_unusual(height, _MESH_HEIGHT):
         return
@@ -151,7 +152,6 @@ def warn_if_mesh_unusual(height: float, *, stacklevel: int = 2) -> None:
         "in another unit",
         f"accepted without this warning is {_MESH_HEIGHT.low:g} to {_MESH_HEIGHT.high:g} m; vertices in "
         "millimetres are 1e-3 * vertices in m",
-        stacklevel,
     )
 
 
@@ -160,5 +160,5 @@ def _is_round_in_radians(angle: float) -> bool:
     return turns > 0 and abs(angle) <= math.pi + _NEAR and abs(abs(angle) - turns * _ROUND) < _NEAR
 
 
-def _warn(what: str, guess: str, rest: str, stacklevel: int) -> None:
-    warnings.warn(f"{what} is most likely {guess}: {rest}", UnitWarning, stacklevel=stacklevel + 1)
+def _warn(what: str, guess: str, rest: str) -> None:
+    warnings.warn(f"{what} is most likely {guess}: {rest}", UnitWarning, stacklevel=caller_level())

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .arguments import checked
 
 if TYPE_CHECKING:
     from .result_file import Stored
@@ -18,6 +19,7 @@ __all__ = ["UnitResult", "read_only"]
 Floats = npt.NDArray[np.float64]
 
 
+@checked
 class UnitResult:
     """Histories of n rows of one unit; what is said of :class:`birm3d.Result` holds.
 

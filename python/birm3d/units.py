@@ -14,6 +14,9 @@ import math
 import re
 from typing import NamedTuple, TypeAlias
 
+from .arguments import checked
+from .checks import is_number, number, shown
+
 __all__ = [
     "Measure",
     "Quantity",
@@ -49,7 +52,7 @@ class Unit(float):
 
     def __call__(self, value: float) -> float:
         """Return ``value`` of this unit in SI."""
-        return float(value) * float(self)
+        return number("value", value) * float(self)
 
 
 m = Unit(1.0)
@@ -119,6 +122,7 @@ _SYMBOLS = {
 }
 
 
+@checked
 def measure(symbol: str) -> Measure:
     """Return what a unit of measured data measures, such as ``"kN"``, ``"g"`` or ``"deg/s"``.
 
@@ -149,6 +153,7 @@ class Stated(float):
     """A number whose unit was stated: nobody needs to ask whether it was meant in another."""
 
 
+@checked
 def parse(text: str, quantity: str, *, plain: bool = True) -> float:
     """Read a number with a unit, such as ``"50mph"`` or ``"1719 kg"``; letter case counts.
 
@@ -171,6 +176,8 @@ def parse(text: str, quantity: str, *, plain: bool = True) -> float:
     ValueError
         If there is no number, or its unit does not belong to the quantity or is missing.
     """
+    if quantity not in _QUANTITIES:
+        raise ValueError(f"quantity must be one of {', '.join(_QUANTITIES)}; got {quantity!r}")
     _, allowed = _QUANTITIES[quantity]
     match = _VALUE.fullmatch(text.strip())
     if match is None or not (match[2] in allowed or (plain and not match[2])):
@@ -182,6 +189,7 @@ def parse(text: str, quantity: str, *, plain: bool = True) -> float:
     return Stated(float(match[1]) * float(allowed[match[2]]))
 
 
+@checked
 def si(name: str, value: Quantity, quantity: str) -> float:
     """Return a number, or text with a unit, in SI; degrees for angles.
 
@@ -205,18 +213,16 @@ def si(name: str, value: Quantity, quantity: str) -> float:
             return float(parse(value, quantity, plain=False))
         except ValueError:
             pass
-    else:
-        try:
-            return float(value)
-        except (TypeError, ValueError):
-            pass
+    elif is_number(value):
+        return float(value)
     unit, allowed = _QUANTITIES[quantity]
     raise ValueError(
         f"{name} must be a number in {unit}, or text with one of the {quantity} units {', '.join(allowed)}; "
-        f"got {value!r}"
+        f"got {shown(value)}"
     )
 
 
+@checked
 def quantity_in(unit: str) -> str | None:
     """Return the quantity that a unit of this package is of, as "speed" for "m/s"; ``None`` for a number."""
     return next((name for name, (si_unit, _) in _QUANTITIES.items() if si_unit == unit and unit != "1"), None)

@@ -14,6 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .arguments import checked
+from .checks import array
 from .dimensions import Dimensions, dimensions
 from .frozen_mapping import FrozenMapping
 from .loading import check_load, solids_at, structure_mass
@@ -50,6 +52,7 @@ _LAW_QUANTITIES = {
 }
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Vehicle:
     """A vehicle; immutable. Make one with :meth:`preset`, :meth:`from_file` or :meth:`from_arrays`.
@@ -241,7 +244,7 @@ class Vehicle:
             Shape (w, 4): centre in body axes and radius [m].
         """
         height = si("mass_center_height", mass_center_height, "length")
-        node = np.array(nodes, float)
+        node = array("nodes", nodes, "n", 3).copy()
         n = len(node)
         laws = np.empty((n, 5))
         columns = {
@@ -256,14 +259,14 @@ class Vehicle:
             if column.shape not in ((), (n,)):
                 raise ValueError(f"{label} must have shape () or ({n},), got {column.shape}")
             laws[:, i] = column
-        discs = np.array(wheels, float).reshape(-1, 4) if len(wheels) == 0 else np.array(wheels, float)
+        discs = np.empty((0, 4)) if len(wheels) == 0 else array("wheels", wheels, "w", 4).copy()
         return Vehicle(
             name=name,
             mass=si("mass", mass, "mass"),
             center_of_mass=np.array([0.0, 0.0, height]),
-            inertia=np.array(inertia, float),
+            inertia=array("inertia", inertia, 3, 3).copy(),
             nodes=node,
-            anchors=np.array(anchors, float),
+            anchors=array("anchors", anchors, "n", 3).copy(),
             area=np.ones(n),
             zone_of_node=np.full(n, -1, np.int64),
             quads=np.empty((0, 4), np.int64),
@@ -347,14 +350,12 @@ class Vehicle:
         assert self._file is not None
         return shape_of(self._file, self._mesh_density) if self._shape is None else self._shape
 
-    def _mass_given(self, name: str, mass: Quantity, *, stacklevel: int = 4) -> float:
+    def _mass_given(self, name: str, mass: Quantity) -> float:
         """Return a mass [kg] > 0, with a word if it is far from that of the vehicle's file."""
         number = positive(name, si(name, mass, "mass"))
         if not isinstance(mass, (str, Stated)) and not self._draft and self.has_file:
             usual = sum(unit._file.gvw_kg for unit in self.units if unit._file is not None)
-            warn_if_unusual(
-                name, number, Usual(usual * _LEAST, usual * _MOST, "kg", "t"), stacklevel=stacklevel
-            )
+            warn_if_unusual(name, number, Usual(usual * _LEAST, usual * _MOST, "kg", "t"))
         return number
 
     def with_payload(
@@ -826,7 +827,7 @@ def _read(path: str | Path, gvw: Quantity | None, mesh_density: float) -> Vehicl
         vehicle = combine(units, combination.file)
         vehicle = vehicle if mass is None else vehicle._with_mass(mass)
     if gvw is not None:
-        vehicle._mass_given("gvw", gvw, stacklevel=5)
+        vehicle._mass_given("gvw", gvw)
     return vehicle
 
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
+from .arguments import checked
 
 __all__ = ["KNEE", "OPTIONAL", "TRUSS_LAW", "Zone", "positive"]
 
@@ -25,6 +26,7 @@ TRUSS_LAW = ("k_initial", "knee", "k_hardening", "f_max", "k_unloading")
 """The numbers of the paper's law (Fig. 3)."""
 
 
+@checked
 @dataclass(frozen=True)
 class Zone(Mapping[str, Any]):
     """Crush stiffness of a part of the skin per unit of area (paper Fig. 3); also a read-only mapping.

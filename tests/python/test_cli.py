@@ -140,7 +140,7 @@ def test_a_duration_that_can_not_be_held_is_one_line(monkeypatch, capsys):
     assert birm3d(monkeypatch, *SEDAN, "--duration", "100000s") == 2
     out, err = capsys.readouterr()
     assert out == ""
-    assert err.startswith("birm3d: output_interval must be >= duration / 1e+06 = 0.1 s")
+    assert err.startswith("birm3d: output_interval must be >= duration / 2e+06 = 0.05 s")
     assert err.count("\n") == 1
     few = ["--duration", "0.2s", "--output-interval", "1ms"]
     assert birm3d(monkeypatch, *SEDAN, *few, "--csv", "/dev/null") == 0

@@ -210,7 +210,7 @@ def test_plot(study: Study) -> None:
     assert axes.get_xlabel() == "impact speed [m/s]"
     assert axes.get_ylabel() == "dynamic crush [m]"
     assert sum(len(line.get_xdata()) for line in axes.get_lines()) == 8  # the others have failed
-    with pytest.raises(KeyError, match="dynamic_crash"):
+    with pytest.raises(ValueError, match=r"y must be one of .*; got 'dynamic_crash'"):
         study.plot("impact_speed", "dynamic_crash")
 
 

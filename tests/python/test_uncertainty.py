@@ -341,7 +341,7 @@ GOOD = {"impact_speed": norm(20.0, 1.0)}
         (lambda s: birm3d.monte_carlo(s, {"impact_speed": norm}, 10), "frozen distribution"),
         (lambda s: birm3d.monte_carlo(s, {"impact_speed": norm(20.0, -1.0)}, 10), "finite quartiles.*nan"),
         (lambda s: birm3d.monte_carlo(s, GOOD, 0), "n must be an integer >= 1, got 0"),
-        (lambda s: birm3d.monte_carlo(s, GOOD, 2.5), "n must be an integer >= 1, got 2.5"),
+        (lambda s: birm3d.monte_carlo(s, GOOD, 2.5), "n must be a whole number, got 2.5"),
         (lambda s: birm3d.monte_carlo(s, GOOD, 2, seed=-1), "seed must be an integer >= 0, got -1"),
         (lambda s: birm3d.monte_carlo(s, GOOD, 10**12), "n must make at most 5,000,000 runs, got 1,000,000,"),
         (lambda s: birm3d.sobol(s, GOOD, 2**40), "n must make at most 5,000,000 runs, got 3,298,534,883,328"),

@@ -5,8 +5,8 @@
 
 namespace birm3d {
 
-// Most rows of a history: about a gigabyte.
-inline constexpr double most_rows = 1e6;
+// Most rows of a history: about two gigabytes.
+inline constexpr double most_rows = 2e6;
 
 // Where the numbers of a row stand. Energies and bodies at the end of the step, impulses within it.
 enum RowOffset : std::size_t { at_time = 0, at_energies = 1, at_units = 11 };

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import checked
+from ..checks import check_runs
 from .curve_target import CurveTarget
 from .errors import CalibrationError, CalibrationInterruptedError
 from .evaluator import Evaluator, Progress
@@ -30,6 +32,7 @@ __all__ = ["calibrate"]
 Floats = npt.NDArray[np.float64]
 
 
+@checked
 def calibrate(
     simulations: Simulation | Sequence[Simulation],
     targets: Target | Sequence[Target] | Sequence[Sequence[Target]],
@@ -186,6 +189,7 @@ def _check(
     for name, number, least in (("starts", starts, 1), ("seed", seed, 0), ("max_steps", max_steps, 1)):
         if not (isinstance(number, int) and number >= least):
             raise ValueError(f"{name} must be a whole number >= {least}, got {number!r}")
+    check_runs("starts", starts)
     if not 0.0 < confidence < 1.0:
         raise ValueError(f"confidence must be between 0 and 1, got {confidence}")
     if not 1e-9 <= tolerance <= 1.0:

@@ -10,6 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import units
+from ..arguments import checked
+from ..checks import is_number, pair
 from ..event import DECIDED
 from ..filters import cfc
 from .quantities import QUANTITIES, computed_curve, touch_time
@@ -29,6 +31,7 @@ _EVEN = 0.05
 _OPPOSITE = -0.5
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class CurveTarget:
     r"""A measured curve.
@@ -128,11 +131,11 @@ class CurveTarget:
             check_positive("cfc", self.cfc)
             y = y if self.filtered else self._filter(x, y)
         points = self.independent_points
-        if points is not None and points != "all" and not 1.0 <= float(points) <= len(x):
+        if not (points is None or points == "all" or (is_number(points) and 1.0 <= points <= len(x))):
             raise ValueError(f"independent_points must be 'all' or 1 to {len(x)}, got {points!r}")
         keep = x >= 0.0  # before the touch a scene has nothing to be held against
         if self.window is not None:
-            first, last = self.window
+            first, last = pair("window", self.window)
             if not first < last:
                 raise ValueError(f"window must be first < last, got {self.window}")
             keep &= (x >= first) & (x <= last)

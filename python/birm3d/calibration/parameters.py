@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import check_fields
+from ..checks import number, pair
 from ..scene_parameters import quantity_of, value_of, varied
 from ..units import Quantity, si
 
@@ -85,6 +87,7 @@ class Parameter:
         ) -> None: ...
 
     def __post_init__(self) -> None:
+        check_fields(self, texts=("lower", "upper", "start", "prior"))
         names = (self.names,) if isinstance(self.names, str) else tuple(self.names)
         object.__setattr__(self, "names", names)
         if bool(names) == (self.apply is not None):
@@ -97,6 +100,7 @@ class Parameter:
             object.__setattr__(self, key, self._in_si(key, getattr(self, key)))
         if self.prior is not None:
             object.__setattr__(self, "prior", tuple(self._in_si("prior", one) for one in self.prior))
+        check_fields(self)
         if self.simulations is not None:
             object.__setattr__(self, "simulations", tuple(int(i) for i in self.simulations))
         for bound in ("lower", "upper"):
@@ -111,7 +115,7 @@ class Parameter:
         if self.start is not None:
             self.check_start(self.start)
         if self.prior is not None:
-            mean, sigma = self.prior
+            mean, sigma = pair(f"prior of {self.label}", self.prior)
             if not (math.isfinite(mean) and (mean > 0.0 or not self.log)):
                 limit = "finite and > 0 with log" if self.log else "finite"
                 raise ValueError(f"prior mean of {self.label} must be {limit}, got {mean}")
@@ -121,7 +125,7 @@ class Parameter:
     def _in_si(self, key: str, value: Quantity | None) -> float | None:
         """Return a number that may be given as text with the unit of the first name."""
         if not isinstance(value, str):
-            return value
+            return value if value is None else number(f"{key} of {self.label}", value)
         quantity = quantity_of(self.names[0]) if self.names and not self.factor else None
         if quantity is None:
             raise ValueError(f"{key} of {self.label} must be a number, got {value!r}")

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import checked
 from .evaluator import Channel, Evaluator, NoRunError
 from .fit import descend
 from .identifiability import Spread
@@ -26,6 +27,7 @@ _BLIND_STEP = 1.0 / 12.0
 _BEYOND = 1.3
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Profile:
     """Least cost along one parameter.

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import checked
 from .evaluator import Evaluation, Evaluator
 from .fitted import FittedParameter, FittedTarget
 from .identifiability import Spread
@@ -31,6 +32,7 @@ __all__ = ["CalibrationResult"]
 Floats = npt.NDArray[np.float64]
 
 
+@checked
 @dataclass(eq=False)
 class CalibrationResult:
     """Fitted values and how far they can be trusted.
@@ -181,6 +183,8 @@ class CalibrationResult:
 
         Kept in :attr:`profiles`. Also for a parameter without an interval: it shows why.
         """
+        if label not in self.values:
+            raise ValueError(f"label must be one of {', '.join(self.values)}; got {label!r}")
         fitted = self[label]
         if label not in self.profiles:
             problem = self._loaded("profile()")

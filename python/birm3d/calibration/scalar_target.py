@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import checked
 from ..metrics import METRIC_UNITS
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ __all__ = ["ScalarTarget", "check_positive"]
 Floats = npt.NDArray[np.float64]
 
 
+@checked
 @dataclass(frozen=True)
 class ScalarTarget:
     """A measured scalar.

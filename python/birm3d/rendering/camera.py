@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from ..barrier_kinds import Bollards, Pole
 from ..barrier_surfaces import barrier_axes
+from ..pictures import View
 from ..plan_axes import is_oblique
 from ..skin import Skin
 from ..unit_shapes import unit_shapes
@@ -20,8 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["VIEWS", "Camera", "View", "check_view", "crushed_direction", "driver_camera", "outside_camera"]
 
 Floats = npt.NDArray[np.float64]
-View: TypeAlias = Literal["three_quarter", "side", "top", "front", "driver"]
-VIEWS: tuple[View, ...] = ("three_quarter", "side", "top", "front", "driver")
+VIEWS: tuple[View, ...] = get_args(View)
 
 _LENS = 28.0  # vertical angle of the outer views, deg
 _DRIVER_LENS = 62.0

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ..checks import shown
 from ..whole_file import whole_file
 from .camera import View
 from .stage import Color, Stage
@@ -64,7 +65,7 @@ def render(
         time, path = None, time
     if path is not None:  # before it is drawn
         _check_ending(Path(path))
-    times = np.asarray(result.time[-1] if time is None else time, float)
+    times = np.asarray(result.time[-1]) if time is None else _instants(time)
     with Stage(result, times, view=view, color=color, size=size, follow=follow) as stage:
         pictures = []
         for k in range(len(stage.times)):
@@ -84,6 +85,13 @@ def _check_ending(path: Path) -> None:
     known = Image.registered_extensions()
     if known.get(path.suffix.lower()) not in Image.SAVE:
         raise ValueError(f"path must end in .png, .jpg or another kind of picture, got {str(path)!r}")
+
+
+def _instants(time: float | Sequence[float]) -> npt.NDArray[np.float64]:
+    try:
+        return np.asarray(time, float)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"time must be a number or a list of numbers, got {shown(time)}") from None
 
 
 def show(result: Result, *, view: View = "three_quarter", color: Color = "crush") -> None:

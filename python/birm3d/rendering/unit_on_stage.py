@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, TypeAlias
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ..pictures import Color
 from ..skin import Skin
 from ..unit_shapes import UnitShape
 
 __all__ = ["Color", "UnitOnStage", "polygons"]
-
-Color: TypeAlias = Literal["crush", "zone", "plain"]
 
 _PLAIN, _WHEEL, _TRUSS = "#9DB8CF", "#2B2B2B", "#35618A"
 # Tell zones apart, also for colour-blind readers: Okabe and Ito's colours, lightened, then greys.

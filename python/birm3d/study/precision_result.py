@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import checked
 from ..frozen_mapping import FrozenMapping
 from ..metrics import METRIC_UNITS
 from ..settings import Settings
@@ -97,6 +98,7 @@ class PrecisionRow:
         return max((self.errors[name] for name in metrics if name in self.errors), default=math.inf)
 
 
+@checked
 class WorkPrecision:
     """Error of every metric against run time; see :func:`birm3d.study.work_precision`.
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..arguments import checked
 from ..coarse_skin import CoarseSkinWarning
 from ..ledger import warn_if_open
 from ..progress import progress_bar
@@ -26,6 +27,7 @@ _STILL_SPEED = 1e-3
 _REFUSALS = (ValueError, RuntimeError)
 
 
+@checked
 def stability(
     simulation: Simulation | None = None,
     *,

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ..arguments import checked
 from .watched import Limits, text
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ class StabilityRow:
     anchor_depth: float = math.nan
 
 
+@checked
 class Stability:
     """What holds, what is refused, and what is wrong; see :func:`birm3d.study.stability`.
 

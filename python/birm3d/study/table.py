@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._version import __version__
+from ..arguments import checked
 from ..event import OUTCOMES
 from ..float_rows import FloatRows
 from ..frozen_mapping import FrozenMapping
@@ -46,6 +47,7 @@ class Summary(NamedTuple):
     p95: float
 
 
+@checked
 class Study:
     """Parameters, metrics and the end of n runs; immutable, in the order in which the runs were asked for.
 
@@ -78,7 +80,7 @@ class Study:
         *,
         vehicle: str,
         run: npt.ArrayLike,
-        parameters: Mapping[str, npt.ArrayLike],
+        parameters: Mapping[str, Sequence[Any] | npt.NDArray[Any]],
         metrics: Mapping[str, npt.ArrayLike],
         end_reason: Sequence[str],
         state_hash: Sequence[str],
@@ -91,6 +93,8 @@ class Study:
         given: Mapping[str, Sequence[Any]] | None = None,
     ) -> None:
         self.vehicle = vehicle
+        if np.ndim(run) != 1:
+            raise ValueError(f"run must have shape (n,), got {np.shape(run)}")
         self.run = _read_only(run, np.int64)
         self.parameters = FrozenMapping({name: _read_only(v) for name, v in parameters.items()})
         self.metrics = FrozenMapping({name: _read_only(v, float) for name, v in metrics.items()})
@@ -138,6 +142,8 @@ class Study:
     @staticmethod
     def joined(studies: Sequence[Study]) -> Study:
         """Return the runs of several studies of the same columns, one after the other, numbered anew."""
+        if len(studies) == 0:
+            raise ValueError("studies must be at least one, got none")
         first = studies[0]
 
         def column(name: str) -> npt.NDArray[Any]:
@@ -315,6 +321,10 @@ class Study:
 
     def plot(self, x: str, y: str, by: str | None = None) -> Figure:
         """Return a figure of column `y` against `x`, a line for each value of `by`, without failed runs."""
+        known = (*self.parameters, *self.metrics, "outcome")
+        for axis, name in (("x", x), ("y", y), ("by", by)):
+            if name is not None and name not in known:
+                raise ValueError(f"{axis} must be one of {', '.join(known)}; got {name!r}")
         from .plots import plot_study
 
         return plot_study(self, x, y, by)

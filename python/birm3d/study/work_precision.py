@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from ..arguments import checked
 from ..progress import progress_bar
 from ..scene_parameters import varied
 from ..settings import Settings
@@ -32,6 +33,7 @@ _OF_ELEMENTS = (
 )
 
 
+@checked
 def work_precision(
     simulation: Simulation,
     *,
