@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from .barrier_kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
@@ -10,7 +11,7 @@ from .barrier_kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
 if TYPE_CHECKING:
     from .barrier import Barrier
 
-__all__ = ["barrier_text"]
+__all__ = ["barrier_text", "varied_barrier_text"]
 
 _PROFILES = {
     "new_jersey": "New Jersey barrier",
@@ -41,6 +42,16 @@ def barrier_text(barrier: Barrier | None) -> str:
         sizes = [f"{size:.3g}" for size in barrier.vertices.max(axis=0) - barrier.vertices.min(axis=0)]
         return f"mesh of {len(barrier.faces):,} triangles, {' by '.join(sizes)} m"
     return type(barrier).__name__
+
+
+def varied_barrier_text(barrier: Barrier | None, parameters: Iterable[str]) -> str:
+    """Return :func:`barrier_text` of a study, which may vary the barrier or some of its numbers."""
+    names = list(parameters)
+    if "barrier" in names:
+        return "several barriers"
+    own = [name.removeprefix("barrier.") for name in names if name.startswith("barrier.")]
+    words = ", ".join(name.replace("_", " ") for name in own)
+    return barrier_text(barrier) + (f"; {words} varied" if own else "")
 
 
 def _bollards(barrier: Bollards) -> str:

@@ -217,14 +217,20 @@ def _as_json(study: Study) -> dict[str, Any]:
         for name, values in study.columns().items()
     }
     summary = {name: row._asdict() for name, row in study.summary().items()}
-    return {"vehicle": study.vehicle, "units": dict(study.units), "runs": columns, "summary": summary}
+    return {
+        "vehicle": study.vehicle,
+        "barrier": study.barrier,
+        "units": dict(study.units),
+        "runs": columns,
+        "summary": summary,
+    }
 
 
 def _print_runs(study: Study, metrics: Sequence[str]) -> None:
     from rich.table import Table
 
     shown = [*study.parameters, "outcome", *(name for name in metrics if name in study.metrics)]
-    table = Table(*(_heading(study, name) for name in shown), title=f"{study.vehicle}, {len(study)} runs")
+    table = Table(*(_heading(study, name) for name in shown), title=f"{study.title}, {len(study)} runs")
     for i in range(len(study)):
         cells = [_cell(study[name][i]) for name in shown]
         if study.error[i]:
@@ -238,7 +244,7 @@ def _print_summary(study: Study) -> None:
 
     table = Table(
         *("metric", "runs", "mean", "standard deviation", "5 %", "median", "95 %"),
-        title=f"{study.vehicle}, {len(study)} random runs over {', '.join(study.parameters)}",
+        title=f"{study.title}, {len(study)} random runs over {', '.join(study.parameters)}",
     )
     for name, row in study.summary().items():
         deviation = "" if row.standard_deviation is None else _cell(row.standard_deviation)

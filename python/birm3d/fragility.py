@@ -13,7 +13,6 @@ import numpy.typing as npt
 
 from .arguments import checked
 from .distributions import check_count, check_distributions, check_seed, sample
-from .event import DECIDED
 from .lognormal_fit import Draws, LognormalFit, fit_lognormal
 from .metrics import METRIC_UNITS
 from .runs import run_study
@@ -118,10 +117,9 @@ def fragility(
 ) -> Fragility:
     """Return the probability of stopping, or of exceeding limits, against the impact speed.
 
-    A run *stops* if the vehicle's motion towards the barrier has come to an end (the velocity of its mass
-    centre along the inward normal of the face has passed zero: the run has ``time_of_zero_velocity``) and the
-    outcome is decided (``end_reason`` is among :data:`birm3d.event.DECIDED`). Give
-    a limit to ``vehicle_penetration`` to ask how far it got.
+    A run *stops* if the barrier contains the vehicle: its outcome (:mod:`birm3d.event`) is ``stopped`` or
+    ``redirected``, or ``rolled_over`` and its motion towards the barrier ended (the run has
+    ``time_of_zero_velocity``). Give a limit to ``vehicle_penetration`` to ask how far it got.
 
     Parameters
     ----------
@@ -218,8 +216,10 @@ def _limits(exceeds: Mapping[str, float] | None) -> Sequence[str]:
 
 
 def _stopped(study: Study) -> npt.NDArray[np.bool_]:
-    decided = np.isin(study.end_reason, DECIDED)
-    return np.asarray(decided & np.isfinite(study.metrics["time_of_zero_velocity"]))
+    outcome = study["outcome"]
+    turned = np.isfinite(study.metrics["time_of_zero_velocity"])
+    contained = np.isin(outcome, ("stopped", "redirected")) | ((outcome == "rolled_over") & turned)
+    return np.asarray(contained, bool)
 
 
 def _exceeded(study: Study, exceeds: Mapping[str, float]) -> npt.NDArray[np.bool_]:

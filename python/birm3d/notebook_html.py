@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import math
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -73,11 +72,8 @@ def study_html(study: Study) -> str:
     """Return the outcomes, what was varied, the spread of the headline metrics, and a scatter of one."""
     from .study.plots import plot_small
 
-    outcomes = Counter(text for text, error in zip(study.end_reason, study.error, strict=True) if not error)
     rows = [("runs", f"{len(study):,}")]
-    rows += [
-        (f"ended: {text}", f"{count:,} ({count / len(study):.0%})") for text, count in outcomes.most_common()
-    ]
+    rows += [(word, f"{count:,} ({count / len(study):.0%})") for word, count in study.outcomes.items()]
     if study.failed:
         rows.append(("failed", f"{len(study.failed):,} (reasons in .failed)"))
     for name, values in list(study.parameters.items())[:_MOST_PARAMETERS]:
@@ -86,7 +82,7 @@ def study_html(study: Study) -> str:
         rows.append(("more parameters", str(len(study.parameters) - _MOST_PARAMETERS)))
     tables = table_html(("", ""), rows) + _spread_table(study)
     figure = plot_small(study)
-    return _card(study.vehicle, tables, "" if figure is None else figure_html(figure, "scatter of the runs"))
+    return _card(study.title, tables, "" if figure is None else figure_html(figure, "scatter of the runs"))
 
 
 def text_html(text: str, figure: Any, name: str) -> str:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import pickle
 from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
 
 import birm3d
 import nbformat
@@ -112,6 +115,36 @@ def test_study_card(drawn: Study) -> None:
         drawn["peak_normal_force_cfc60"].mean() / 1e3, rel=1e-3
     )
     assert card.cells[card.cells.index("runs") + 1] == "40"
+    assert drawn.outcomes == {"stopped": 40}
+    assert card.cells[card.cells.index("stopped") + 1] == "40 (100%)"
+    assert "rigid wall without end; friction varied" in drawn._repr_html_()
+
+
+def test_figures_of_studies_name_the_barrier(tmp_path: Path) -> None:
+    heads = []
+    unknown = {"vehicle.gvw": stats.norm(7000.0, 10.0)}
+    posts = Simulation(scenes.elastic_block(150), Barrier.bollards(count=3, spacing=0.8), 5.0)
+    kept: Any = {"metrics": ["dynamic_crush"], "progress": False}
+    swept = birm3d.sweep(posts, impact_speed=[4.0, 5.0], **kept)
+    swept.save(tmp_path / "study.csv")
+    for study in (swept, Study.load(tmp_path / "study.csv"), pickle.loads(pickle.dumps(swept))):
+        heads.append(study.plot("impact_speed", "dynamic_crush").axes[0].get_title())
+    heads.append(birm3d.fragility(posts, [4.0, 5.0], unknown, 2, progress=False).plot().axes[0].get_title())
+    indices = birm3d.sobol(posts, unknown, n=2, **kept)
+    drawn = birm3d.monte_carlo(posts, unknown, 3, **kept)
+    figures = (indices.plot(), drawn.plot("vehicle.gvw", "dynamic_crush"))
+    heads += [figure.get_suptitle() for figure in figures]
+    point = birm3d.critical_impact_point(
+        posts, "dynamic_crush", {"impact_speed": (4.0, 5.0)}, points=3, max_runs=4
+    )
+    heads.append(point.plot().axes[0].get_title())
+    for head in heads:
+        assert head.startswith("laboratory_block: 3 bollards, Ø 0.32 m, 1 m high, 0.8 m apart"), head
+    assert (
+        birm3d.sweep(posts, {"barrier": [Barrier.pole()]}, **kept).title
+        == "laboratory_block: several barriers"
+    )
+    assert birm3d.sweep(posts, {"barrier.count": [3]}, **kept).title.endswith("0.8 m apart; count varied")
 
 
 def test_drawn_runs_are_a_scatter_with_marginals(drawn: Study, simulation: Simulation) -> None:

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Settings, Simulation, scenes
 from birm3d.distributions import sample, uniforms
+from birm3d.fragility import _stopped
 from birm3d.sobol import SobolDesign
 from scipy.stats import ks_1samp, lognorm, norm, uniform
 
@@ -325,6 +326,28 @@ def test_a_rigid_wall_stops_and_a_short_run_does_not_tell(block: Simulation) -> 
     for duration in (0.06, 0.09):
         short = birm3d.scene_parameters.varied(block, {"duration": duration})
         assert birm3d.fragility(short, [10.0, 20.0], mass, 8).probability.tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("outcome", "end_reason", "turned", "counted"),
+    [
+        ("stopped", "separated", 0.1, True),
+        ("redirected", "duration", 0.1, True),  # decided before the given duration was over
+        ("rolled_over", "separated", 0.1, True),
+        ("rolled_over", "duration", math.nan, False),
+        ("passed", "stopped", 0.1, False),  # it came to rest behind the barrier
+        ("overridden", "stopped", 0.1, False),
+        ("undecided", "duration", 0.1, False),
+        ("", "", math.nan, False),  # failed
+    ],
+)
+def test_what_counts_as_stopped(outcome: str, end_reason: str, turned: float, counted: bool) -> None:
+    study = birm3d.Study(
+        vehicle="car", run=[0], parameters={"impact_speed": [10.0]},
+        metrics={"time_of_zero_velocity": [turned]},
+        outcome=[outcome], end_reason=[end_reason], state_hash=[""], error=[""], units={},
+    )  # fmt: skip
+    assert _stopped(study).tolist() == [counted]
 
 
 # ---- bad input --------------------------------------------------------------------------------------------

@@ -46,7 +46,7 @@ def plot_study(study: Study, x: str, y: str, by: str | None = None) -> Figure:
         axes.plot(x_values[rows], y_values[rows], label=label, **more)
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
-    axes.set_title(study.vehicle)
+    axes.set_title(study.title, fontsize="medium")
     legend([axes])
     return figure
 
@@ -110,7 +110,7 @@ def plot_fragility(fragility: Fragility) -> Figure:
     axes.set_ylim(-0.03, 1.03)
     axes.set_xlabel("impact speed [m/s]")
     axes.set_ylabel(f"probability: {fragility.event}")
-    axes.set_title(fragility.study.vehicle)
+    axes.set_title(fragility.study.title, fontsize="medium")
     legend([axes])
     return figure
 
@@ -149,7 +149,7 @@ def _plot_scatter(study: Study, x: str, y: str) -> Figure:
     right.set_xlabel("runs")
     left_out = len(study) - len(x_values)
     rest = f", {left_out:,} without a value left out" if left_out else ""
-    figure.suptitle(f"{study.vehicle}, {len(x_values):,} runs{rest}", fontsize="medium")
+    figure.suptitle(f"{study.title}\n{len(x_values):,} runs{rest}", fontsize="medium")
     return figure
 
 

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from .._version import __version__
 from ..arguments import checked
+from ..barrier_text import varied_barrier_text
 from ..event import OUTCOMES
 from ..float_rows import FloatRows
 from ..frozen_mapping import FrozenMapping
@@ -55,6 +56,8 @@ class Study:
     ----------
     vehicle : str
         Name of the vehicle that was varied.
+    barrier : str
+        Kind, count and sizes of the barrier; empty for an ensemble and for files of older versions.
     run : ndarray of int, shape (n,)
         Numbers of the runs; not all of them when the study was stopped.
     parameters : mapping of str to ndarray, shape (n,)
@@ -79,6 +82,7 @@ class Study:
         self,
         *,
         vehicle: str,
+        barrier: str = "",
         run: npt.ArrayLike,
         parameters: Mapping[str, Sequence[Any] | npt.NDArray[Any]],
         metrics: Mapping[str, npt.ArrayLike],
@@ -93,6 +97,7 @@ class Study:
         given: Mapping[str, Sequence[Any]] | None = None,
     ) -> None:
         self.vehicle = vehicle
+        self.barrier = barrier
         if np.ndim(run) != 1:
             raise ValueError(f"run must have shape (n,), got {np.shape(run)}")
         self.run = _read_only(run, np.int64)
@@ -122,6 +127,7 @@ class Study:
         values = {name: _column_of(rows, runs, i) for i, name in enumerate(names)}
         return cls(
             vehicle="ensemble" if scene is None else scene.vehicle.name,
+            barrier="" if scene is None else varied_barrier_text(scene.barrier, names),
             run=runs,
             parameters=values,
             metrics=dict(zip(metric_units, outcomes.metrics(), strict=True)),
@@ -151,6 +157,7 @@ class Study:
 
         return Study(
             vehicle=first.vehicle,
+            barrier=first.barrier if len({study.barrier for study in studies}) == 1 else "several barriers",
             run=np.arange(sum(len(study) for study in studies)),
             parameters={name: column(name) for name in first.parameters},
             metrics={name: column(name) for name in first.metrics},
@@ -181,6 +188,11 @@ class Study:
         raise KeyError(
             f"column must be one of {', '.join((*self.parameters, *self.metrics, 'outcome'))}; got {name!r}"
         )
+
+    @property
+    def title(self) -> str:
+        """Vehicle and barrier: what figures and tables of the study are headed with."""
+        return f"{self.vehicle}: {self.barrier}" if self.barrier else self.vehicle
 
     @property
     def outcomes(self) -> Mapping[str, int]:
@@ -232,7 +244,7 @@ class Study:
             return _WORDS.get(value, value)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        names = ("vehicle", "run", "parameters", "metrics", *_TEXTS, "units", "grid", "version")
+        names = ("vehicle", "barrier", "run", "parameters", "metrics", *_TEXTS, "units", "grid", "version")
         content = {name: getattr(self, name) for name in names}
         return (_rebuild, ({**content, "scene": self._scene, "given": self._given},))
 
@@ -276,7 +288,7 @@ class Study:
                 data[name] = (dims, values.reshape(shape))
         for name, unit in self.units.items():
             data[name].attrs["units"] = unit
-        data.attrs.update(vehicle=self.vehicle, birm3d_version=self.version)
+        data.attrs.update(vehicle=self.vehicle, barrier=self.barrier, birm3d_version=self.version)
         return data
 
     def save(self, path: str | Path) -> None:
@@ -292,6 +304,7 @@ class Study:
             "format": _FORMAT,
             "version": self.version,
             "vehicle": self.vehicle,
+            "barrier": self.barrier,
             "units": dict(self.units),
             "parameters": {name: values.dtype.kind for name, values in self.parameters.items()},
             "grid": None if self.grid is None else dict(self.grid),

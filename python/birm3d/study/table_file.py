@@ -58,6 +58,7 @@ def read_table(path: Path, formats: Sequence[str], texts: Sequence[str]) -> dict
 
     return {
         "vehicle": head["vehicle"],
+        "barrier": head.get("barrier", ""),  # not in files of older versions
         "run": [_whole(path, line, cell) for line, cell in column("run")],
         "parameters": {
             name: numbers(name) if kind == "f" else _objects([cell for _, cell in column(name)])
@@ -94,6 +95,8 @@ def _head(path: Path, line: str, formats: Sequence[str]) -> dict[str, Any]:
         "vehicle": (str,), "version": (str,), "units": (dict,), "parameters": (dict,),
         "grid": (dict, type(None)),
     }  # fmt: skip
+    if "barrier" in head:
+        kinds["barrier"] = (str,)
     for key, kind in kinds.items():
         if not isinstance(head.get(key), kind):
             got = received(head[key]) if key in head else "none"

@@ -65,7 +65,7 @@ def plot_sobol(indices: SobolIndices, metrics: Sequence[str] | None = None) -> F
     figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize="small")
     level = f"{100 * indices.design.confidence:g} %"
     figure.suptitle(
-        f"{indices.study.vehicle}: Sobol indices of {len(indices.study):,} runs, {level} intervals",
+        f"{indices.study.title}\nSobol indices of {len(indices.study):,} runs, {level} intervals",
         fontsize="medium",
     )
     return figure
@@ -109,7 +109,7 @@ def plot_critical_point(found: CriticalImpactPoint) -> Figure:
     notes = "".join(f"; {name.replace('_', ' ')} at its bound" for name in found.at_bound)
     runs = len(found.grid) + len(found.refinement)
     value = f"{found.metric.replace('_', ' ')} {found.value / size:.4g} {unit}".rstrip()
-    axes.set_title(f"{found.grid.vehicle}: {value}, {runs} runs{notes}", fontsize="medium")
+    axes.set_title(f"{found.grid.title}\n{value}, {runs} runs{notes}", fontsize="medium")
     legend([axes])
     return figure
 

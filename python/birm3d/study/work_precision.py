@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..arguments import checked
+from ..barrier_text import barrier_text
 from ..progress import progress_bar
 from ..scene_parameters import varied
 from ..settings import Settings
@@ -241,8 +242,7 @@ def _first_refusal(runs: Sequence[PrecisionRun]) -> str:
 
 def _title(simulation: Simulation) -> str:
     scene = simulation.scene
-    barrier = "no barrier" if scene.barrier is None else type(scene.barrier).__name__
     return (
-        f"{scene.vehicle.name} ({scene.vehicle.n_nodes} nodes), {barrier}, {scene.impact_speed:g} m/s, "
-        f"{scene.impact_angle:g} deg"
+        f"{scene.vehicle.name} ({scene.vehicle.n_nodes} nodes), {barrier_text(scene.barrier)}, "
+        f"{scene.impact_speed:g} m/s, {scene.impact_angle:g} deg"
     )
