@@ -131,7 +131,7 @@ def test_figures_of_studies_name_the_barrier(tmp_path: Path) -> None:
         heads.append(study.plot("impact_speed", "dynamic_crush").axes[0].get_title())
     heads.append(birm3d.fragility(posts, [4.0, 5.0], unknown, 2, progress=False).plot().axes[0].get_title())
     indices = birm3d.sobol(posts, unknown, n=2, **kept)
-    drawn = birm3d.monte_carlo(posts, unknown, 3, **kept)
+    drawn = birm3d.monte_carlo(posts, unknown, 8, **kept)
     figures = (indices.plot(), drawn.plot("vehicle.gvw", "dynamic_crush"))
     heads += [figure.get_suptitle() for figure in figures]
     point = birm3d.critical_impact_point(
