@@ -32,6 +32,7 @@ class Kind(NamedTuple):
     words: str
     holds: Callable[[Any], bool]
     by_type: bool = False  # whether a message shows the type of a value and not the value
+    item: Any = None  # kind of the items of a list, of which a message names the first that is wrong
 
 
 def checked(public: Checked) -> Checked:
@@ -106,6 +107,9 @@ def check_fields(instance: Any, texts: Container[str] = ()) -> None:
 
 def _check(name: str, kind: Kind | None, value: Any) -> None:
     if kind is not None and not kind.holds(value):
+        if kind.item is not None and _is_list(value) and not isinstance(value, np.ndarray):
+            for i, item in enumerate(value):
+                _check(f"{name}[{i}]", kind.item, item)
         got = type(value).__name__ if kind.by_type and value is not None else shown(value)
         raise WrongTypeError(f"{name} must be {kind.words}, got {got}")
 
@@ -193,6 +197,7 @@ def _container(origin: Any, parts: tuple[Any, ...]) -> Kind | None:
     return Kind(
         f"a list of {_plural(item.words) if item else 'values'}",
         lambda found: _is_list(found) and (once or item is None or _all_hold(item, found)),
+        item=item,
     )
 
 
