@@ -1070,10 +1070,10 @@ class TrussMesh:
     """
     The crushable skin of one rigid body. Immutable.
     """
-    def __init__(self, *, nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex, dent_reach: typing.SupportsFloat | typing.SupportsIndex, wheel_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64]) -> None:
+    def __init__(self, *, nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex, dent_reach: typing.SupportsFloat | typing.SupportsIndex, wheel_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64], along_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64]) -> None:
         """
         nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,); wheels (w, 4): centre and radius, m;
-        rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; empty: all skin.
+        rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; empty: all skin; along_of (n,): number of the node of the skin whose second truss this is, -1 for others; empty: none.
         """
 class Unit:
     """

@@ -316,6 +316,7 @@ def articulate(units: Sequence[Vehicle], joint: Joint, name: str | None) -> Arti
         return np.concatenate(shifted)
 
     wheel_numbers = trailing.wheel_of_node + np.where(trailing.wheel_of_node >= 0, len(leading.wheels), 0)
+    shell_numbers = trailing.along_of_node + np.where(trailing.along_of_node >= 0, len(leading.nodes), 0)
     zone_numbers = trailing.zone_of_node + np.where(trailing.zone_of_node >= 0, len(leading.zones), 0)
     return ArticulatedVehicle(
         name=name if name is not None else f"{leading.name} + {trailing.name}",
@@ -327,6 +328,7 @@ def articulate(units: Sequence[Vehicle], joint: Joint, name: str | None) -> Arti
         area=np.concatenate([leading.area, trailing.area]),
         zone_of_node=np.concatenate([leading.zone_of_node, zone_numbers]),
         wheel_of_node=np.concatenate([leading.wheel_of_node, wheel_numbers]),
+        along_of_node=np.concatenate([leading.along_of_node, shell_numbers]),
         quads=np.concatenate([leading.quads, trailing.quads + len(leading.nodes)]),
         wheels=of_both("wheels"),
         mass_center_height=float(center[2]),

@@ -131,7 +131,7 @@ def _shared(fields: Mapping[str, Any]) -> Mapping[str, Any]:
     shape = shape_of(fields["_file"], fields.get("_mesh_density", 1.0))
     if not (fields["wheel_of_node"] >= 0).any():
         shape = shape.without_treads
-    same = {name: getattr(shape, name) for name in ("area", "zone_of_node", "wheel_of_node")}
-    if all(np.array_equal(fields[name], array) for name, array in same.items()):
+    same = {name: getattr(shape, name) for name in ("area", "zone_of_node", "wheel_of_node", "along_of_node")}
+    if all(np.array_equal(fields.get(name, array), array) for name, array in same.items()):
         return {**same, "_shape": shape}
     return {}

@@ -71,13 +71,15 @@ class Vehicle:
     inertia : ndarray, shape (3, 3)
         About the mass centre [kg m^2].
     nodes, anchors : ndarray, shape (n, 3)
-        Uncrushed nodes of the shell, then of the treads by which tyres meet barriers
-        (:mod:`birm3d.tread`), and the points that their trusses start from [m]; those of the shell are
-        points of the rigid body.
+        Uncrushed nodes of the shell, then those of second trusses (:mod:`birm3d.along_panel`), then of the
+        treads by which tyres meet barriers (:mod:`birm3d.tread`), and the points that their trusses start
+        from [m]; the first of these, of the shell, are points of the rigid body.
     area : ndarray, shape (n,)
         Tributary area of each node [m^2]; 1 for vehicles made from arrays.
     wheel_of_node : ndarray of int, shape (n,)
         Index of the wheel whose tread the node is on; -1 for nodes of the shell.
+    along_of_node : ndarray of int, shape (n,)
+        Number of the node whose second truss, along the vehicle, this node carries; -1 for all others.
     zone_of_node : ndarray of int, shape (n,)
         Index into ``zones``; -1 for vehicles made from arrays.
     quads : ndarray of int, shape (m, 4)
@@ -108,6 +110,7 @@ class Vehicle:
     rate_sensitivity: float = 0.0
     dent_reach: float = 0.0
     wheel_of_node: npt.NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.empty(0, np.int64))
+    along_of_node: npt.NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.empty(0, np.int64))
     # What made the vehicle: laws per truss (m, N, N/m), or a file with its mesh density.
     _truss_laws: Floats | None = None
     _file: VehicleFile | None = None
@@ -121,8 +124,9 @@ class Vehicle:
     _own: tuple[str, ...] = dataclasses.field(default=(), compare=False)
 
     def __post_init__(self) -> None:
-        if len(self.wheel_of_node) == 0:
-            object.__setattr__(self, "wheel_of_node", np.full(len(self.nodes), -1, np.int64))
+        for name in ("wheel_of_node", "along_of_node"):
+            if len(getattr(self, name)) == 0:
+                object.__setattr__(self, name, np.full(len(self.nodes), -1, np.int64))
         for field in dataclasses.fields(self):
             value = getattr(self, field.name)
             if isinstance(value, np.ndarray):
@@ -449,11 +453,11 @@ class Vehicle:
         shell = self.wheel_of_node < 0
         if shell.all():
             return self
-        columns = ("nodes", "anchors", "area", "zone_of_node", "wheel_of_node")
+        columns = ("nodes", "anchors", "area", "zone_of_node", "wheel_of_node", "along_of_node")
         changes = {name: getattr(self, name)[shell] for name in columns}
         if self._shape is not None:
             shape = self._shape.without_treads
-            for name in ("area", "zone_of_node", "wheel_of_node"):
+            for name in columns[2:]:
                 if getattr(self, name) is getattr(self._shape, name):
                     changes[name] = getattr(shape, name)
             changes["_shape"] = shape
@@ -636,6 +640,11 @@ class Vehicle:
         return self._mesh_density
 
     @property
+    def is_skin(self) -> npt.NDArray[np.bool_]:
+        """Which nodes are tied to the rigid body by their first truss, shape (n,)."""
+        return (self.wheel_of_node < 0) & (self.along_of_node < 0)
+
+    @property
     def truss_law(self) -> Mapping[str, float]:
         """Law of a vehicle made from arrays: sums over its trusses [N/m, N], and its mean knee [m]."""
         if self._truss_laws is None:
@@ -697,7 +706,7 @@ class Vehicle:
     @cached_property
     def skin_bounds(self) -> tuple[Floats, Floats]:
         """Lowest and highest coordinates of the skin's nodes, body axes, shape (3,) each [m]."""
-        skin = self.nodes[self.wheel_of_node < 0]
+        skin = self.nodes[self.is_skin]
         return skin.min(axis=0), skin.max(axis=0)
 
     @cached_property
@@ -707,7 +716,7 @@ class Vehicle:
 
         if self._shape is not None and self._is_shape():
             return self._shape.node_spacing
-        return node_spacing(self.nodes[self.wheel_of_node < 0])
+        return node_spacing(self.nodes[self.is_skin])
 
     @cached_property
     def core(self) -> _core.Vehicle:
@@ -756,6 +765,7 @@ class Vehicle:
             rate_sensitivity=self.rate_sensitivity,
             dent_reach=self.dent_reach,
             wheel_of=self.wheel_of_node,
+            along_of=self.along_of_node,
         )
 
     def _is_shape(self) -> bool:
@@ -766,6 +776,7 @@ class Vehicle:
             and self.area is shape.area
             and self.zone_of_node is shape.zone_of_node
             and self.wheel_of_node is shape.wheel_of_node
+            and self.along_of_node is shape.along_of_node
             and np.array_equal(self.nodes, shape.nodes - self.center_of_mass)
             and np.array_equal(self.anchors, shape.anchors - self.center_of_mass)
         )
@@ -875,10 +886,11 @@ def _assemble(
         area=shape.area,
         zone_of_node=shape.zone_of_node,
         wheel_of_node=shape.wheel_of_node,
+        along_of_node=shape.along_of_node,
         quads=shape.quads,
         wheels=wheels,
         mass_center_height=float(center[2]),
-        zones=zones if zones is not None else {zone.name: zone.law for zone in file.zones},
+        zones=zones if zones is not None else file.laws,
         dent_reach=0.0 if file.dents is None else file.dents.reach_m,
         _file=file,
         _shape=shape,

@@ -16,6 +16,7 @@ from .toml_document import Strict, reject
 from .zone_law import NonNegative, Positive, ZoneLaw
 
 __all__ = [
+    "AlongLaw",
     "Block",
     "CoreBox",
     "Dents",
@@ -332,6 +333,15 @@ class CoreBox(Block):
         return self
 
 
+class AlongLaw(Block, ZoneLaw):
+    """Stiffness of a panel in its own plane, along the vehicle, per unit of the panel's area."""
+
+    @model_validator(mode="after")
+    def _check(self) -> AlongLaw:
+        self.require_law()
+        return self
+
+
 class Zone(Block, ZoneLaw):
     """Stiffness of the exterior per unit of area, and the part of the exterior it holds for.
 
@@ -343,7 +353,8 @@ class Zone(Block, ZoneLaw):
     The panel "tire", alone in its zone, is the treads of the wheels: ranges are of a wheel's middle, and the
     area is the tread's. Without such a zone tyres meet the ground only.
 
-    The law: see ZoneLaw.
+    The law: see ZoneLaw. A second one, ``along``, is what a panel that does not look forward or backward
+    resists along the vehicle (:mod:`birm3d.along_panel`).
     """
 
     name: Name
@@ -353,9 +364,12 @@ class Zone(Block, ZoneLaw):
     y_m: Range | None = None
     z_m: Range | None = None
     core: tuple[Name, ...] = ()
+    along: AlongLaw | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Zone:
+        if self.along is not None and (other := set(self.panels) - {"side", "top", "bottom"}):
+            reject("along", f"must be in a zone of the panels side, top and bottom, got {min(other)}")
         if "tire" in self.panels:
             for key, value in (("blocks", self.blocks), ("core", self.core), ("panels", self.panels[1:])):
                 if value:
@@ -366,10 +380,7 @@ class Zone(Block, ZoneLaw):
             if limits is not None:
                 _check_order(key, limits, "must increase")
         self._check_law()
-        try:
-            _ = self.law
-        except ValueError as error:
-            reject("k_unloading_Pa_per_m", str(error))
+        self.require_law()
         return self
 
     def _check_law(self) -> None:
@@ -400,7 +411,16 @@ class Zone(Block, ZoneLaw):
 
     def scaled(self, factor: float) -> Zone:
         """Return the zone with all stresses and slopes times a factor."""
-        return self.model_copy(update=ZoneLaw.numbers_of(self.law.scaled(factor)))
+        changes = ZoneLaw.numbers_of(self.law.scaled(factor))
+        if self.along is not None:
+            update = ZoneLaw.numbers_of(self.along.law.scaled(factor))
+            changes["along"] = self.along.model_copy(update=update)
+        return self.model_copy(update=changes)
+
+    @property
+    def along_name(self) -> str:
+        """Name of the law along the panel."""
+        return f"{self.name}.along"
 
     @property
     def envelope(self) -> tuple[tuple[float, float], ...]:

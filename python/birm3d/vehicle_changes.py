@@ -7,12 +7,12 @@ A saved file has all blocks of the file that the vehicle comes from, with their 
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 from pydantic import ConfigDict, Field, model_validator
 
 from .toml_document import Strict
-from .vehicle_blocks import Name, Positive
+from .vehicle_blocks import Positive
 from .zone_law import ZoneLaw
 
 if TYPE_CHECKING:
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 __all__ = ["ChangedLaw", "Changes", "changes_of", "vehicle_of"]
 
 
+LawName: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*(\.along)?$")]
+
+
 class ChangedLaw(ZoneLaw):
     """The law of a zone in place of the file's."""
 
@@ -29,7 +32,7 @@ class ChangedLaw(ZoneLaw):
 
     @model_validator(mode="after")
     def _check(self) -> ChangedLaw:
-        _ = self.law
+        self.require_law()
         return self
 
 
@@ -50,13 +53,13 @@ class Changes(Strict):
     rate_sensitivity_s_per_m: Annotated[float, Field(ge=0.0)] = 0.0
     dent_reach_m: Annotated[float, Field(ge=0.0)] | None = None
     tire_contact: bool = True
-    zone: dict[Name, ChangedLaw] = Field(default_factory=dict)
+    zone: dict[LawName, ChangedLaw] = Field(default_factory=dict)
 
 
 def changes_of(vehicle: Vehicle, file: VehicleFile) -> Changes:
     """Return how a vehicle of one unit differs from its file."""
     reach = 0.0 if file.dents is None else file.dents.reach_m
-    laws = {zone.name: zone.law for zone in file.zones}
+    laws = file.laws
     treads = any("tire" in zone.panels for zone in file.zones)
     return Changes(
         name=vehicle.name if vehicle.name != file.name else None,
@@ -93,7 +96,7 @@ def vehicle_of(file: VehicleFile, gvw: float | None, mesh_density: float) -> Veh
     if changes is None:
         return _from_file(file, gvw, mesh_density, None)
     bare = file.model_copy(update={"changes": None})
-    zones = {zone.name: zone.law for zone in file.zones}
+    zones = file.laws
     vehicle = _from_file(
         bare,
         changes.gvw_kg if gvw is None else gvw,

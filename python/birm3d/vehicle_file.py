@@ -39,6 +39,7 @@ from .vehicle_blocks import (
     check_unique,
 )
 from .vehicle_changes import Changes
+from .zone import Zone as LawOfZone
 
 __all__ = [
     "Block",
@@ -112,7 +113,7 @@ class VehicleFile(Strict):
             check_known(f"zone.{zone.name}.core", zone.core, boxes)
         self._check_cores()
         for name in () if self.changes is None else self.changes.zone:
-            check_known(f"changes.zone.{name}", (name,), set(self.zone_names))
+            check_known(f"changes.zone.{name}", (name,), set(self.laws))
         known = {source.id for source in self.sources}
         for key, block in self._blocks():
             check_known(f"{key}.source", block.source, known)
@@ -147,6 +148,8 @@ class VehicleFile(Strict):
                 yield f"{key}.{i}", item
         for zone in self.zones:
             yield f"zone.{zone.name}", zone
+            if zone.along is not None:
+                yield f"zone.{zone.along_name}", zone.along
 
     @property
     def solids_mass(self) -> float:
@@ -168,6 +171,12 @@ class VehicleFile(Strict):
         zones = tuple(zone.scaled(strength) for zone in self.zones)
         changes = {"gvw_kg": mass, "zones_at_kg": mass, "solids": solids, "zones": zones, "targets": ()}
         return self.model_copy(update=changes)
+
+    @property
+    def laws(self) -> dict[str, LawOfZone]:
+        """Laws of the zones by their names, in order, then those along their panels: ``door.along``."""
+        along = {zone.along_name: zone.along.law for zone in self.zones if zone.along is not None}
+        return {**{zone.name: zone.law for zone in self.zones}, **along}
 
     @property
     def zone_names(self) -> tuple[str, ...]:

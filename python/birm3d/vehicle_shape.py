@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .along_panel import build_along
 from .mesher import build_mesh
 from .tread import build_tread
 from .vehicle_file import VehicleFile
@@ -32,7 +33,7 @@ class VehicleShape:
 
     Attributes
     ----------
-    nodes, anchors, area, zone_of_node, wheel_of_node, quads
+    nodes, anchors, area, zone_of_node, wheel_of_node, along_of_node, quads
         As :class:`birm3d.Vehicle` has them, but in the axes of the file.
     wheels : ndarray, shape (w, 4)
         Centres and radius [m].
@@ -45,6 +46,7 @@ class VehicleShape:
         area: Floats,
         zone_of_node: Ints,
         wheel_of_node: Ints,
+        along_of_node: Ints,
         quads: Ints,
         wheels: Floats,
     ) -> None:
@@ -53,9 +55,10 @@ class VehicleShape:
         self.area = area
         self.zone_of_node = zone_of_node
         self.wheel_of_node = wheel_of_node
+        self.along_of_node = along_of_node
         self.quads = quads
         self.wheels = wheels
-        for array in (nodes, anchors, area, zone_of_node, wheel_of_node, quads, wheels):
+        for array in (nodes, anchors, area, zone_of_node, wheel_of_node, along_of_node, quads, wheels):
             array.setflags(write=False)
         self._trusses: OrderedDict[tuple[object, ...], _core.TrussMesh] = OrderedDict()
 
@@ -69,6 +72,7 @@ class VehicleShape:
             area=self.area[shell],
             zone_of_node=self.zone_of_node[shell],
             wheel_of_node=self.wheel_of_node[shell],
+            along_of_node=self.along_of_node[shell],
             quads=self.quads,
             wheels=self.wheels,
         )
@@ -78,7 +82,7 @@ class VehicleShape:
         """Distance between neighbours of the skin [m], see :func:`birm3d.coarse_skin.node_spacing`."""
         from .coarse_skin import node_spacing
 
-        return node_spacing(self.nodes[self.wheel_of_node < 0])
+        return node_spacing(self.nodes[(self.wheel_of_node < 0) & (self.along_of_node < 0)])
 
     def trusses(
         self, zones: Mapping[str, Zone], rate_sensitivity: float, dent_reach: float
@@ -97,6 +101,7 @@ class VehicleShape:
                 rate_sensitivity=rate_sensitivity,
                 dent_reach=dent_reach,
                 wheel_of=self.wheel_of_node,
+                along_of=self.along_of_node,
             )
             self._trusses[key] = known
             while len(self._trusses) > _LAWS:
@@ -106,7 +111,7 @@ class VehicleShape:
 
     def __reduce__(self) -> tuple[object, ...]:
         arrays = (self.nodes, self.anchors, self.area, self.zone_of_node, self.wheel_of_node)
-        return (VehicleShape, (*arrays, self.quads, self.wheels))
+        return (VehicleShape, (*arrays, self.along_of_node, self.quads, self.wheels))
 
 
 @lru_cache(maxsize=_SHAPES)
@@ -119,13 +124,17 @@ def shape_of(file: VehicleFile, mesh_density: float) -> VehicleShape:
         What :func:`birm3d.mesher.build_mesh` and :func:`birm3d.tread.build_tread` raise.
     """
     mesh, tread = build_mesh(file, mesh_density), build_tread(file, mesh_density)
+    along = build_along(file, mesh)
+    parts = (mesh, along, tread)
+    none = [np.full(len(part.nodes), -1, np.int64) for part in parts]
     wheels = np.array([[*wheel.center_m, wheel.radius_m] for wheel in file.wheels], float).reshape(-1, 4)
     return VehicleShape(
-        nodes=np.concatenate([mesh.nodes, tread.nodes]),
-        anchors=np.concatenate([mesh.anchors, tread.anchors]),
-        area=np.concatenate([mesh.area, tread.area]),
-        zone_of_node=np.concatenate([mesh.zone, tread.zone]),
-        wheel_of_node=np.concatenate([np.full(len(mesh.nodes), -1, np.int64), tread.wheel]),
+        nodes=np.concatenate([part.nodes for part in parts]),
+        anchors=np.concatenate([part.anchors for part in parts]),
+        area=np.concatenate([part.area for part in parts]),
+        zone_of_node=np.concatenate([part.zone for part in parts]),
+        wheel_of_node=np.concatenate([none[0], none[1], tread.wheel]),
+        along_of_node=np.concatenate([none[0], along.of, none[2]]),
         quads=np.array(mesh.quads, np.int64),
         wheels=wheels,
     )

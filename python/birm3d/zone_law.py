@@ -7,7 +7,7 @@ from typing import Annotated, Any, TypeAlias
 
 from pydantic import Field
 
-from .toml_document import Strict
+from .toml_document import Strict, reject
 from .zone import Zone
 
 __all__ = ["NonNegative", "Positive", "ZoneLaw"]
@@ -51,6 +51,13 @@ class ZoneLaw(Strict):
     def law(self) -> Zone:
         """The zone that the numbers make; refuses those that are no law."""
         return Zone(**{name: getattr(self, key) for key, name in _KEYS.items()})
+
+    def require_law(self) -> None:
+        """Reject numbers that make no law."""
+        try:
+            _ = self.law
+        except ValueError as error:
+            reject("k_unloading_Pa_per_m", str(error))
 
     @staticmethod
     def numbers_of(zone: Zone) -> dict[str, Any]:

@@ -14,6 +14,10 @@ namespace birm3d {
 
 namespace {
 
+bool is_of_skin(const TrussInput& input, std::size_t i) {
+    return input.wheel_of.empty() || input.wheel_of[i] == -1;
+}
+
 void require_valid(const TrussInput& input, std::size_t wheels) {
     const std::size_t n = input.node.size();
     require_not_negative("rate_sensitivity", input.rate_sensitivity);
@@ -27,11 +31,23 @@ void require_valid(const TrussInput& input, std::size_t wheels) {
     same_size("curve_of", input.curve_of.size());
     same_size("scale", input.scale.size());
     if (!input.wheel_of.empty()) same_size("wheel_of", input.wheel_of.size());
+    if (!input.along_of.empty()) same_size("along_of", input.along_of.size());
     for (std::size_t i = 0; i < input.wheel_of.size(); ++i)
         if (input.wheel_of[i] < -1 || input.wheel_of[i] >= static_cast<int>(wheels))
             refuse("wheel_of[" + std::to_string(i) + "]",
                    "-1 or below " + std::to_string(wheels) + ", the number of wheels",
                    static_cast<double>(input.wheel_of[i]));
+
+    for (std::size_t i = 0; i < input.along_of.size(); ++i) {
+        const int of = input.along_of[i];
+        if (of == -1) continue;
+        const bool is_skin = of >= 0 && of < static_cast<int>(n) && is_of_skin(input, i) &&
+                             is_of_skin(input, static_cast<std::size_t>(of)) &&
+                             input.along_of[static_cast<std::size_t>(of)] == -1;
+        if (!is_skin)
+            refuse("along_of[" + std::to_string(i) + "]", "-1 or the number of a node of the skin",
+                   static_cast<double>(of));
+    }
 
     for (std::size_t c = 0; c < input.curve.size(); ++c)
         require_valid(input.curve[c], input.curve.size() == 1 ? "" : "curve[" + std::to_string(c) + "] ");
@@ -102,11 +118,14 @@ std::vector<Site> sites_of(const TrussInput& input) {
     return site;
 }
 
-// The skin's trusses, then each wheel's.
+// The skin's trusses, the second ones of its nodes, then each wheel's.
 std::vector<std::vector<std::size_t>> parts_of(const TrussInput& input, std::size_t wheels) {
-    std::vector<std::vector<std::size_t>> part(1 + wheels);
-    for (std::size_t i = 0; i < input.node.size(); ++i)
-        part[static_cast<std::size_t>(1 + (input.wheel_of.empty() ? -1 : input.wheel_of[i]))].push_back(i);
+    std::vector<std::vector<std::size_t>> part(2 + wheels);
+    for (std::size_t i = 0; i < input.node.size(); ++i) {
+        const bool second = !input.along_of.empty() && input.along_of[i] >= 0;
+        const int wheel = input.wheel_of.empty() ? -1 : input.wheel_of[i];
+        part[second ? 1 : wheel < 0 ? 0 : static_cast<std::size_t>(2 + wheel)].push_back(i);
+    }
     return part;
 }
 
@@ -132,15 +151,16 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
         hinges = std::max(hinges, curve.slope.size()), recovers = recovers || std::isfinite(curve.recovery);
 
     const std::vector<Site> site = sites_of(input);
-    for (std::vector<std::size_t>& part : parts_of(input, wheels.size())) {
+    std::vector<std::vector<std::size_t>> parts = parts_of(input, wheels.size());
+    if (parts[0].empty()) refuse("nodes of the skin", "at least 1", 0.0);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        std::vector<std::size_t>& part = parts[p];
         for (std::size_t i = 0; i < part.size(); i += lanes)
             first.push_back(input_index.size() + i);
         cut_into_blocks(site, part);  // neighbours together
         input_index.fill().insert(input_index.end(), part.begin(), part.end());
-        if (skin > 0) continue;
-        skin = input_index.size();
-        skin_blocks = first.size();
-        if (skin == 0) refuse("nodes of the skin", "at least 1", 0.0);
+        if (p == 0) skin = input_index.size(), skin_blocks = first.size();
+        if (p == 1) shell = input_index.size(), shell_blocks = first.size();
     }
     blocks = first.size();
     first.push_back(count);
@@ -150,12 +170,12 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
     hinge.fill().resize(blocks * hinges);
     for (std::size_t b = 0; b < blocks; ++b)
         fill_block(input, b);
-    find_panels();
+    find_panels(input);
     find_tread(input, wheels);
 }
 
 void TrussMesh::find_tread(const TrussInput& input, const std::vector<Wheel>& wheels) {
-    for (std::size_t truss = skin; truss < count; ++truss) {
+    for (std::size_t truss = shell; truss < count; ++truss) {
         const std::size_t source = input_index[truss];
         const auto w = static_cast<std::size_t>(input.wheel_of[source]);
         const Vec3 d = input.node[source] - wheels[w].center;
@@ -163,19 +183,24 @@ void TrussMesh::find_tread(const TrussInput& input, const std::vector<Wheel>& wh
     }
 }
 
-void TrussMesh::find_panels() {
+void TrussMesh::find_panels(const TrussInput& input) {
     std::array<std::vector<Vec3>, panels> nodes, anchors_of;
     panels_of.assign(blocks, 0);
-    for (std::size_t truss = 0; truss < skin; ++truss) {
-        const std::size_t p = panel_of(anchor(truss) - node(truss));
-        block[truss / lanes].panel[truss % lanes] = static_cast<double>(p);
-        panels_of[truss / lanes] |= static_cast<std::uint8_t>(1U << p);
+    for (std::size_t truss = 0; truss < shell; ++truss) {
+        const std::size_t source = input_index[truss];
+        const bool second = truss >= skin;
+        const std::size_t of = second ? static_cast<std::size_t>(input.along_of[source]) : source;
+        const std::size_t p = panel_of(input.anchor[of] - input.node[of]);
+        block[slot(truss) / lanes].panel[slot(truss) % lanes] = static_cast<double>(p);
+        panels_of[slot(truss) / lanes] |= static_cast<std::uint8_t>(1U << p);
+        if (second) continue;
         nodes[p].push_back(node(truss));
         anchors_of[p].push_back(anchor(truss));
     }
-    for (std::size_t padding = skin; padding < skin_blocks * lanes; ++padding)
-        block[padding / lanes].panel[padding % lanes] = block[skin_blocks - 1].panel[(skin - 1) % lanes];
-    for (std::size_t b = skin_blocks; b < blocks; ++b)
+    for (std::size_t b = 0; b < shell_blocks; ++b)
+        for (std::size_t i = nodes_in(b); i < lanes; ++i)
+            block[b].panel[i] = block[b].panel[nodes_in(b) - 1];
+    for (std::size_t b = shell_blocks; b < blocks; ++b)
         block[b].panel.fill(static_cast<double>(panels)), panels_of[b] = 1U << panels;  // of none of these
     panels_of_group.assign((blocks + group_size - 1) / group_size, 0);
     for (std::size_t b = 0; b < blocks; ++b)

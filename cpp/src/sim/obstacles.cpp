@@ -93,7 +93,7 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
             };
             if (what.nodes)
                 least = nearest_in_blocks(
-                    shape, seen, i == scene.ground ? mesh.skin_blocks : mesh.blocks,
+                    shape, seen, i == scene.ground ? mesh.shell_blocks : mesh.blocks,
                     [&](std::size_t b) {
                         const TrussBlockState& block = unit.trusses.block[b];
                         return Points{block.box, &block.x, &block.y, &block.z};

@@ -54,7 +54,7 @@ class Skin {
     void draw_in(std::size_t b, const TrussBlockState& block);
     // Does the block meet what is near? Treads meet the barrier only: the wheels stand on the ground.
     bool meets(std::size_t b, std::size_t near) const {
-        return b < mesh_.skin_blocks || near_[near].index != scene_.ground;
+        return b < mesh_.shell_blocks || near_[near].index != scene_.ground;
     }
     void find_seen(std::size_t b, double margin);
     bool sees(std::uint8_t of, std::size_t near, const Box& box, double margin) const;

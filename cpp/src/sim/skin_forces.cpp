@@ -198,7 +198,7 @@ void Skin::press(std::size_t b) {
 void Skin::note_met(std::size_t b) {
     if (before_.trusses.block[b].met) return;
     StepStatistics& statistics = trial_.state.statistics;
-    (b < mesh_.skin_blocks ? statistics.skin_nodes : statistics.tread_nodes) += mesh_.nodes_in(b);
+    (b < mesh_.shell_blocks ? statistics.skin_nodes : statistics.tread_nodes) += mesh_.nodes_in(b);
 }
 
 // The plane that is all that the block at hand can meet of an obstacle; null if it can meet more.

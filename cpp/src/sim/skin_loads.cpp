@@ -62,7 +62,7 @@ void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, con
                const BlockContact& contact) {
     ObstacleSums& sums = obstacles_[near];
     if (along_) sums.by_trusses += along_trusses(mesh_.block[b], next, contact);
-    if (b >= mesh_.skin_blocks) {
+    if (b >= mesh_.shell_blocks) {
         if (scene_.settings.mu_tire_barrier > 0.0) note_treads(near, b, places, contact);
         return;
     }

@@ -54,7 +54,7 @@ std::optional<Vec3> Skin::stop_on_way(std::size_t b, std::size_t i, const Vec3& 
         const Vec3 place = start + share * way;
         double least = enough;
         for (const NearObstacle& other : further_)
-            if (other.index != scene_.ground || b < mesh_.skin_blocks)
+            if (other.index != scene_.ground || b < mesh_.shell_blocks)
                 least = std::min(least,
                                  nearest(scene_.obstacles[other.index].shape, other.now.to_own(place)).gap);
         for (std::size_t k = 0; k < near_.size(); ++k)

@@ -8,7 +8,7 @@ namespace birm3d {
 
 // A wheel turns as all its nodes together will have it: their friction waits until they are all known.
 void Skin::note_treads(std::size_t near, std::size_t b, const Places& places, const BlockContact& contact) {
-    const std::size_t first = mesh_.first[b] - mesh_.skin;
+    const std::size_t first = mesh_.first[b] - mesh_.shell;
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!(contact.pressure[i] > 0.0)) continue;
         treads_.push_back(tread_contact(mesh_.tread[first + i], near, away_[near],

@@ -163,3 +163,33 @@ TEST("treads of wheels that are not there are refused") {
     wrong.wheel_of = {-1, -1};
     CHECK_THROWS(TrussMesh{wrong}, std::invalid_argument);
 }
+
+TEST("second trusses stand in blocks of their own behind the skin, on the panels of their nodes") {
+    TrussInput with = input;
+    const int n = columns * rows;
+    for (int i = 0; i < 70; ++i) {
+        const auto of = static_cast<std::size_t>(i);
+        with.node.push_back(input.node[of]);
+        with.anchor.push_back(input.node[of] + Vec3(0.0, 3.0, 0.0));
+        with.curve_of.push_back(0);
+        with.scale.push_back(input.scale[of]);
+    }
+    with.along_of.assign(with.node.size(), -1);
+    for (int i = 0; i < 70; ++i)
+        with.along_of[static_cast<std::size_t>(n + i)] = i;
+    const TrussMesh mesh(with), bare(input);
+    CHECK(mesh.skin == 130 && mesh.shell == 200 && mesh.count == 200);
+    CHECK(mesh.skin_blocks == 3 && mesh.shell_blocks == 5 && mesh.blocks == 5);
+    CHECK(mesh.tread.empty());
+    for (std::size_t b = 0; b < mesh.blocks; ++b) {
+        CHECK(mesh.panels_of[b] == bare.panels_of[0]);
+        for (std::size_t i = 0; i < lanes; ++i)
+            CHECK(mesh.block[b].panel[i] == bare.block[0].panel[0]);
+    }
+    CHECK(mesh.anchors.half == bare.anchors.half && mesh.anchors.center == bare.anchors.center);
+    CHECK(mesh.reach == bare.reach);
+    for (const int wrong : {-2, n, 1000}) {
+        with.along_of.back() = wrong;
+        CHECK_THROWS(TrussMesh(with), std::invalid_argument);
+    }
+}

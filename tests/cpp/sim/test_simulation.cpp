@@ -98,6 +98,35 @@ TEST("restitution falls with speed where a constant length is given back") {
         }
 }
 
+TEST("a wall that ploughs along a panel meets the second trusses alone, as a spring") {
+    // Sides 1.2 m from the middle with trusses across; second ones run to the rear.
+    const double m = 6804.0, k = 3e6, v = 22.352;
+    TrussInput input;
+    for (const double side : {-1.2, 1.2})
+        for (const double z : {-0.3, 0.0, 0.3}) {
+            input.node.emplace_back(3.0, side, z);
+            input.anchor.emplace_back(3.0, 0.25 * side, z);
+        }
+    const std::size_t n = input.node.size();
+    input.along_of.assign(n, -1);
+    for (std::size_t i = 0; i < n; ++i) {
+        input.node.push_back(input.node[i]);
+        input.anchor.push_back(input.node[i] - Vec3(3.0, 0.0, 0.0));
+        input.along_of.push_back(static_cast<int>(i));
+    }
+    input.curve = {laboratory::elastic_curve(10.0 * k), laboratory::elastic_curve(k)};
+    input.curve_of.assign(n, 0);
+    input.curve_of.resize(2 * n, 1);
+    input.scale.assign(2 * n, 1.0 / static_cast<double>(n));
+    auto vehicle = std::make_shared<Vehicle>();
+    vehicle->units.emplace_back(laboratory::body(), input, std::vector<Wheel>{}, 0.0);
+    Simulation simulation(laboratory::scene(vehicle, laboratory::wall(), laboratory::weightless(1e-4)));
+    laboratory::run(simulation);
+    CHECK_CLOSE(greatest_force(simulation) / (v * std::sqrt(m * k)), 1.0, 1e-4, "the tolerance asked for");
+    CHECK_CLOSE(simulation.state().units[0].body.velocity.x() / v, -1.0, 1e-4, "the tolerance asked for");
+    CHECK(simulation.state().energies.impacts == 0.0);
+}
+
 TEST("energy is kept, and the ledger's terms only grow") {
     Simulation simulation(busy_scene(0.0));
     const double start = simulation.state().energies.total();

@@ -5,8 +5,12 @@
 // that can not touch anything is left out by one test, and kernels run over whole blocks without gathers. Blocks are left
 // out by the group too. The last block is padded with trusses of no stiffness.
 //
-// Tyres that meet a barrier are nodes too, on the tread's outer edge, each wheel's in blocks of its own after those of the
-// skin, padded too. They are no part of the rigid body: their anchors meet nothing. The ground is met by the wheels
+// A panel may resist in its own plane as well: a node has a second truss then, along the vehicle, which is a node of its own
+// at the same place. It moves as the first one does, meets what that meets and is dented with its panel; its anchor is no
+// part of the rigid body. Their blocks follow those of the skin.
+//
+// Tyres that meet a barrier are nodes too, on the tread's outer edge, each wheel's in blocks of its own after
+// these, padded too. They are no part of the rigid body: their anchors meet nothing. The ground is met by the wheels
 // themselves (kernels/tires.hpp), not by these nodes, and posts do not dent them.
 #pragma once
 
@@ -54,6 +58,8 @@ struct TrussInput {
     double dent_reach = 0.0;
     // (n) Number of the wheel whose tread the node is on, -1 for the skin; empty: all skin.
     std::vector<int> wheel_of = {};
+    // (n) Number of the node of the skin whose second truss this is, -1 for all others; empty: there is none.
+    std::vector<int> along_of = {};
 };
 
 // Unloading stiffness of some trusses and its second moments about the mass centre, body axes.
@@ -106,10 +112,12 @@ struct TrussMesh {
     TrussMesh moved(const Vec3& origin) const;
 
     std::size_t count = 0;        // trusses
-    std::size_t skin = 0;         // of the skin, before those of tyres
+    std::size_t skin = 0;         // those that tie the skin to the rigid body
+    std::size_t shell = 0;        // and second ones, before those of tyres
     std::size_t blocks = 0;       // blocks of `lanes`
     std::size_t skin_blocks = 0;  // the first of them
-    std::size_t hinges = 0;       // slope changes of the longest envelope
+    std::size_t shell_blocks = 0;
+    std::size_t hinges = 0;  // slope changes of the longest envelope
     bool recovers =
         false;  // does any curve have a finite recovery? Then unloading slopes are part of the state.
 
@@ -124,7 +132,7 @@ struct TrussMesh {
     std::vector<StiffnessMoments> moments;  // (blocks) of all of them
     std::vector<Box> node_box;              // (blocks) around the uncrushed nodes
     std::vector<Box> anchor_box;            // (blocks)
-    std::vector<TreadNode> tread;           // (count - skin)
+    std::vector<TreadNode> tread;           // (count - shell)
     Box anchors;                            // around those of the skin
     std::array<Panel, panels> panel;
     // (blocks) bit by bit: which panels have nodes there? The bit after them: treads.
@@ -158,7 +166,7 @@ struct TrussMesh {
 
   private:
     void fill_block(const TrussInput& input, std::size_t b);
-    void find_panels();
+    void find_panels(const TrussInput& input);
     void move_block(std::size_t b, const Vec3& origin);
     void find_tread(const TrussInput& input, const std::vector<Wheel>& wheels);
     void pad(const TrussInput& input, std::size_t b);
