@@ -99,13 +99,13 @@ TEST("restitution falls with speed where a constant length is given back") {
 }
 
 TEST("a wall that ploughs along a panel meets the second trusses alone, as a spring") {
-    // Sides 1.2 m from the middle with trusses across; second ones run to the rear.
+    // Sides 1.2 m from the middle, whose own trusses hardly resist; second ones run to the rear.
     const double m = 6804.0, k = 3e6, v = 22.352;
     TrussInput input;
     for (const double side : {-1.2, 1.2})
         for (const double z : {-0.3, 0.0, 0.3}) {
             input.node.emplace_back(3.0, side, z);
-            input.anchor.emplace_back(3.0, 0.25 * side, z);
+            input.anchor.emplace_back(0.5, 0.25 * side, z);
         }
     const std::size_t n = input.node.size();
     input.along_of.assign(n, -1);
@@ -114,7 +114,7 @@ TEST("a wall that ploughs along a panel meets the second trusses alone, as a spr
         input.anchor.push_back(input.node[i] - Vec3(3.0, 0.0, 0.0));
         input.along_of.push_back(static_cast<int>(i));
     }
-    input.curve = {laboratory::elastic_curve(10.0 * k), laboratory::elastic_curve(k)};
+    input.curve = {laboratory::elastic_curve(1e-6 * k), laboratory::elastic_curve(k)};
     input.curve_of.assign(n, 0);
     input.curve_of.resize(2 * n, 1);
     input.scale.assign(2 * n, 1.0 / static_cast<double>(n));
