@@ -48,6 +48,7 @@ OTHERS: dict[str, Callable[[Vehicle], Any]] = {
     "rate_sensitivity": lambda v: 0.07,
     "dent_reach": lambda v: 0.31,
     "wheel_of_node": lambda v: np.where(v.wheel_of_node == 0, 1, v.wheel_of_node),
+    "along_of_node": lambda v: np.where(np.arange(v.n_nodes) == 7, 0, v.along_of_node),
 }
 
 
@@ -81,7 +82,8 @@ def test_a_replaced_field_is_kept_or_the_next_change_is_refused(field: str, meth
         return
     if (method, field) in (("rate", "rate_sensitivity"), ("reach", "dent_reach")):
         return
-    if method == "tyres" and field in ("nodes", "anchors", "area", "zone_of_node", "wheel_of_node"):
+    of_nodes = ("nodes", "anchors", "area", "zone_of_node", "wheel_of_node", "along_of_node")
+    if method == "tyres" and field in of_nodes:
         shell = vehicle.wheel_of_node < 0
         assert same(getattr(result, field), getattr(vehicle, field)[shell])
     elif field == "zones":
