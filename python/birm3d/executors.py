@@ -31,10 +31,9 @@ from typing import Any
 
 from . import _core
 from .coarse_skin import warn_if_coarse
-from .ledger import warn_if_open
 from .metrics import extremes_for, metrics_of_outcome
-from .overlap import warn_if_overlapping
 from .run_store import Outcome
+from .run_warnings import warn_of_run
 from .scene_parameters import varied_scene
 from .simulation import APPROACH, Scene, Simulation
 
@@ -223,8 +222,7 @@ def _run_chunk(
 def _outcome(scene: Scene, done: _core.Run, metrics: tuple[str, ...]) -> Outcome:
     try:
         end = done.outcome()
-        warn_if_open(scene, end.ledger)
-        warn_if_overlapping(scene, end.statistics)
+        warn_of_run(scene, end.statistics, end.ledger)
         values = _values(metrics_of_outcome(scene, end, metrics), metrics)
         reason = _END_REASONS[int(end.end_reason)]
         return Outcome(values, reason, end.event.outcome, f"{end.state_hash:016x}")

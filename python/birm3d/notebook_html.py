@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .outcome import headline_rows
+from .outcome import HEADLINES, headline_rows
 from .scene_text import scene_text
 
 if TYPE_CHECKING:
@@ -19,21 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = ["figure_html", "result_html", "study_html", "table_html", "text_html"]
 
-# Metrics by which a run or a study is judged first; of each the first that there are.
-_HEADLINES = (
-    "dynamic_crush",
-    "vehicle_penetration",
-    "max_displacement",
-    "barrier_deflection",
-    "peak_normal_force_cfc60",
-    "peak_force_50ms",
-    "peak_element_force_50ms",
-    "peak_deceleration_cfc60",
-    "delta_v",
-    "exit_speed",
-    "exit_angle",
-    "max_roll",
-)
 _MOST_METRICS = 8
 _MOST_PARAMETERS = 12
 _CELL = "text-align:left;padding:1px 10px 1px 0"
@@ -63,7 +48,7 @@ def result_html(result: Result) -> str:
     """Return outcome, headline numbers with their units, and a plan view of start and end."""
     from .plotting import plot_thumbnail
 
-    rows = [(label, f"{value} {unit}".strip()) for label, value, unit in headline_rows(result, _HEADLINES)]
+    rows = [(label, f"{value} {unit}".strip()) for label, value, unit in headline_rows(result)]
     picture = figure_html(plot_thumbnail(result), "plan view of start and end")
     return _card(scene_text(result.scene), table_html(("", ""), rows), picture)
 
@@ -95,7 +80,7 @@ def _spread_table(study: Study) -> str:
     from .plotting.style import shown_unit
 
     summary = study.summary()
-    names = [name for name in _HEADLINES if name in summary] or list(summary)
+    names = [name for name in HEADLINES if name in summary] or list(summary)
     rows = []
     for name in names[:_MOST_METRICS]:
         found = summary[name]

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from . import units
 from .element_loads import touched_elements
@@ -11,7 +10,7 @@ from .element_loads import touched_elements
 if TYPE_CHECKING:
     from .result import Result
 
-__all__ = ["ELEMENT_COLUMNS", "element_rows", "elements_in_si", "headline_rows", "outcome_rows"]
+__all__ = ["ELEMENT_COLUMNS", "HEADLINES", "element_rows", "elements_in_si", "headline_rows", "outcome_rows"]
 
 ELEMENT_COLUMNS = (
     "element",
@@ -22,32 +21,56 @@ ELEMENT_COLUMNS = (
 )
 """Of :func:`element_rows`."""
 
+
+class Row(NamedTuple):
+    """A metric as tables show it: divided by ``size`` it is in ``unit``; ``form`` is its format."""
+
+    metric: str
+    label: str
+    unit: str
+    size: float
+    form: str
+    headline: bool = False  # whether a run or a study is judged by it first
+
+
 _ROWS = (
-    ("dynamic_crush", "dynamic crush (greatest truss shortening)", "m", 1.0, ".3f"),
-    ("residual_crush", "residual crush", "m", 1.0, ".3f"),
-    ("max_displacement", "travel of the mass centre towards the barrier", "m", 1.0, ".3f"),
-    ("vehicle_penetration", "rigid body past the barrier's line", "m", 1.0, ".3f"),
-    ("barrier_deflection", "deflection of the barrier", "m", 1.0, ".3f"),
-    ("residual_barrier_deflection", "deflection of the barrier that stays", "m", 1.0, ".3f"),
-    ("max_overturning_ratio", "overturning / restoring moment of a segment", "", 1.0, ".2f"),
-    ("time_of_zero_velocity", "time of zero normal velocity", "ms", 1e-3, ".1f"),
-    ("peak_normal_force_cfc60", "peak barrier force along the normal, CFC 60", "kN", 1e3, ".0f"),
-    ("peak_force_50ms", "peak 50-ms mean of the force along the normal", "kN", 1e3, ".0f"),
-    ("peak_element_force_50ms", "peak 50-ms force (vector) on one element", "kN", 1e3, ".0f"),
-    ("peak_overturning_moment_50ms", "peak 50-ms overturning moment of one element", "kN m", 1e3, ".0f"),
-    ("peak_deceleration_cfc60", "peak deceleration along r, CFC 60", "g", units.g, ".1f"),
-    ("delta_v", "change of velocity", "m/s", 1.0, ".2f"),
-    ("time_of_separation", "time of separation", "ms", 1e-3, ".1f"),
-    ("restitution", "restitution along the normal", "", 1.0, ".2f"),
-    ("exit_speed", "exit speed", "m/s", 1.0, ".2f"),
-    ("exit_angle", "exit angle from the barrier's line", "deg", 1.0, ".1f"),
-    ("max_roll", "greatest roll", "deg", 1.0, ".1f"),
-    ("max_pitch", "greatest pitch", "deg", 1.0, ".1f"),
-    ("max_yaw", "greatest yaw", "deg", 1.0, ".1f"),
-    ("later_contacts", "later contacts, which count for nothing above", "", 1.0, ".0f"),
-    ("energy_residual", "energy residual / initial kinetic energy", "", 1.0, ".1e"),
-    ("momentum_residual", "momentum residual / greatest force", "", 1.0, ".1e"),
+    Row("dynamic_crush", "dynamic crush (greatest truss shortening)", "m", 1.0, ".3f", True),
+    Row("residual_crush", "residual crush", "m", 1.0, ".3f"),
+    Row("max_displacement", "travel of the mass centre towards the barrier", "m", 1.0, ".3f", True),
+    Row("vehicle_penetration", "rigid body past the barrier's line", "m", 1.0, ".3f", True),
+    Row("barrier_deflection", "deflection of the barrier", "m", 1.0, ".3f", True),
+    Row("residual_barrier_deflection", "deflection of the barrier that stays", "m", 1.0, ".3f"),
+    Row("max_overturning_ratio", "overturning / restoring moment of a segment", "", 1.0, ".2f"),
+    Row("time_of_zero_velocity", "time of zero normal velocity", "ms", 1e-3, ".1f"),
+    Row(
+        "peak_normal_force_cfc60",
+        "peak barrier force along the normal, CFC 60",
+        "kN",
+        1e3,
+        ".0f",
+        headline=True,
+    ),
+    Row("peak_force_50ms", "peak 50-ms mean of the force along the normal", "kN", 1e3, ".0f", True),
+    Row(
+        "peak_element_force_50ms", "peak 50-ms force (vector) on one element", "kN", 1e3, ".0f", headline=True
+    ),
+    Row("peak_overturning_moment_50ms", "peak 50-ms overturning moment of one element", "kN m", 1e3, ".0f"),
+    Row("peak_deceleration_cfc60", "peak deceleration along r, CFC 60", "g", units.g, ".1f", True),
+    Row("delta_v", "change of velocity", "m/s", 1.0, ".2f", True),
+    Row("time_of_separation", "time of separation", "ms", 1e-3, ".1f"),
+    Row("restitution", "restitution along the normal", "", 1.0, ".2f"),
+    Row("exit_speed", "exit speed", "m/s", 1.0, ".2f", True),
+    Row("exit_angle", "exit angle from the barrier's line", "deg", 1.0, ".1f", True),
+    Row("max_roll", "greatest roll", "deg", 1.0, ".1f", True),
+    Row("max_pitch", "greatest pitch", "deg", 1.0, ".1f"),
+    Row("max_yaw", "greatest yaw", "deg", 1.0, ".1f"),
+    Row("later_contacts", "later contacts, which count for nothing above", "", 1.0, ".0f"),
+    Row("energy_residual", "energy residual / initial kinetic energy", "", 1.0, ".1e"),
+    Row("momentum_residual", "momentum residual / greatest force", "", 1.0, ".1e"),
 )
+
+HEADLINES = tuple(row.metric for row in _ROWS if row.headline)
+"""Metrics by which a run or a study is judged first."""
 
 
 def outcome_rows(result: Result) -> list[tuple[str, str, str]]:
@@ -57,9 +80,9 @@ def outcome_rows(result: Result) -> list[tuple[str, str, str]]:
         ("outcome", result.outcome, ""),
         ("", result.outcome_detail, ""),
         *(
-            (label, format(metrics[name] / size, form), unit)
-            for name, label, unit, size, form in _ROWS
-            if name in metrics
+            (row.label, format(metrics[row.metric] / row.size, row.form), row.unit)
+            for row in _ROWS
+            if row.metric in metrics
         ),
     ]
 
@@ -90,7 +113,7 @@ def elements_in_si(result: Result) -> list[dict[str, str | float]]:
     ]
 
 
-def headline_rows(result: Result, names: Collection[str]) -> list[tuple[str, str, str]]:
-    """Return :func:`outcome_rows` without the metrics that are not among the names."""
-    others = {label for name, label, *_ in _ROWS if name not in names}
+def headline_rows(result: Result) -> list[tuple[str, str, str]]:
+    """Return :func:`outcome_rows` without the metrics that are no headlines."""
+    others = {row.label for row in _ROWS if not row.headline}
     return [row for row in outcome_rows(result) if row[0] not in others]

@@ -114,24 +114,8 @@ def decode(plain: Any, arrays: Arrays) -> Any:
         fields.pop("_mesh", None)
         if fields.pop("_raised", 0.0) != 0.0:
             fields["_height"] = fields["mass_center_height"]
-        fields.update(_shared(fields))
     known = {field.name for field in dataclasses.fields(kind)}
     for key in fields:
         if key not in known:
             raise ValueError(f"{kind.__name__} has no {key!r}; a newer birm3d may have made the file")
     return kind(**fields)
-
-
-def _shared(fields: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return what a vehicle shares with others of its file, where the file still makes the same arrays."""
-    from .vehicle_shape import shape_of
-
-    if fields.get("_file") is None:
-        return {}
-    shape = shape_of(fields["_file"], fields.get("_mesh_density", 1.0))
-    if not (fields["wheel_of_node"] >= 0).any():
-        shape = shape.without_treads
-    same = {name: getattr(shape, name) for name in ("area", "zone_of_node", "wheel_of_node", "along_of_node")}
-    if all(np.array_equal(fields.get(name, array), array) for name, array in same.items()):
-        return {**same, "_shape": shape}
-    return {}

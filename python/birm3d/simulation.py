@@ -12,10 +12,9 @@ from ._version import __version__
 from .arguments import checked
 from .barrier import Barrier
 from .coarse_skin import warn_if_coarse
-from .ledger import warn_if_open
-from .overlap import warn_if_overlapping
 from .progress import run_bar
 from .result import Result
+from .run_warnings import warn_of_run
 from .settings import MU_TIRE_BARRIER, Settings
 from .unit_check import given
 from .units import Quantity, si
@@ -238,8 +237,7 @@ class Simulation:
                 self._run_time += time.perf_counter() - start
             result = self._result()
             ledger, statistics = self._core.ledger, self._core.statistics
-        warn_if_overlapping(result.scene, statistics)
-        warn_if_open(result.scene, ledger)
+        warn_of_run(result.scene, statistics, ledger)
         return result if frames is None else result.with_frames(frames)
 
     def step(self) -> bool:

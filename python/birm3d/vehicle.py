@@ -137,6 +137,8 @@ class Vehicle:
             object.__setattr__(self, "_own", tuple(dict.fromkeys((*self._own, *changed))))
         object.__setattr__(self, "_built", as_built(self))
         check_parts(self)
+        if self._file is not None and self._shape is None:  # a file of a result has the arrays only
+            object.__setattr__(self, "_shape", self._shape_of_file(self._file))
         if not self._draft:
             _ = self.core  # the core checks every number
 
@@ -334,10 +336,11 @@ class Vehicle:
     def _assembled(self, mass: float, height: float | None) -> Vehicle:
         """Return the vehicle of the same file and mesh with another mass and height of the mass centre."""
         assert self._file is not None
+        assert self._shape is not None
         return self._anew(
             _assemble(
                 self._file,
-                self._shape_of_file(),
+                self._shape,
                 mass,
                 self._mesh_density,
                 self.zones,
@@ -347,12 +350,12 @@ class Vehicle:
             )
         )
 
-    def _shape_of_file(self) -> VehicleShape:
-        """Return the shape of the file; a vehicle that was loaded with a result has its arrays only."""
+    def _shape_of_file(self, file: VehicleFile) -> VehicleShape:
+        """Return what all vehicles of the file and mesh density share."""
         from .vehicle_shape import shape_of
 
-        assert self._file is not None
-        return shape_of(self._file, self._mesh_density) if self._shape is None else self._shape
+        shape = shape_of(file, self._mesh_density)
+        return shape if (self.wheel_of_node >= 0).any() else shape.without_treads
 
     def _mass_given(self, name: str, mass: Quantity) -> float:
         """Return a mass [kg] > 0, with a word if it is far from that of the vehicle's file."""
@@ -769,14 +772,15 @@ class Vehicle:
         )
 
     def _is_shape(self) -> bool:
-        """Whether nodes and anchors are those of the shape, seen from the mass centre."""
+        """Whether the arrays are those of the shape, nodes and anchors seen from the mass centre."""
         shape = self._shape
         return (
             shape is not None
-            and self.area is shape.area
-            and self.zone_of_node is shape.zone_of_node
-            and self.wheel_of_node is shape.wheel_of_node
-            and self.along_of_node is shape.along_of_node
+            and all(
+                getattr(self, name) is getattr(shape, name)
+                or np.array_equal(getattr(self, name), getattr(shape, name))
+                for name in ("area", "zone_of_node", "wheel_of_node", "along_of_node")
+            )
             and np.array_equal(self.nodes, shape.nodes - self.center_of_mass)
             and np.array_equal(self.anchors, shape.anchors - self.center_of_mass)
         )

@@ -22,6 +22,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TextIO
 
 # Before NumPy is loaded: one core, also for what NumPy would hand to threads of its own.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
@@ -235,6 +236,20 @@ def machine(core: str) -> dict[str, str]:
     }
 
 
+def print_machine() -> dict[str, str]:
+    """Pin this process to one core, print the head of a table, and return what it says."""
+    facts = machine(use_one_core())
+    for key, value in facts.items():
+        print(f"{key:8s}{value}")
+    return facts
+
+
+def write_machine(file: TextIO, facts: Mapping[str, str]) -> None:
+    """Write the head of a table to a file, as comments."""
+    for key, value in facts.items():
+        file.write(f"# {key}: {value}\n")
+
+
 def use_one_core() -> str:
     if not hasattr(os, "sched_setaffinity"):
         return "not pinned (this system can not)"
@@ -299,8 +314,7 @@ def save(rows: Sequence[Row], facts: Mapping[str, str]) -> Path:
     path = Path(__file__).parent / "results" / f"{name}.csv"
     path.parent.mkdir(exist_ok=True)
     with path.open("w", encoding="utf-8", newline="") as file:
-        for key, value in facts.items():
-            file.write(f"# {key}: {value}\n")
+        write_machine(file, facts)
         writer = csv.writer(file, lineterminator="\n")
         head = "case solver setting steps error of time_ms times_slower state_hash"
         writer.writerow(head.split())
@@ -332,9 +346,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.repeats < 1:
         parser.error(f"--repeats must be >= 1, got {options.repeats}")
 
-    facts = machine(use_one_core())
-    for key, value in facts.items():
-        print(f"{key:8s}{value}")
+    facts = print_machine()
     print(f"median of {options.repeats} runs in turn; stepping only, scenes are built beforehand\n")
 
     rows: list[Row] = []

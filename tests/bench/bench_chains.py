@@ -19,7 +19,7 @@ from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
 import numpy as np
-from bench_birm3d import machine, use_one_core
+from bench_birm3d import print_machine, write_machine
 from birm3d import Barrier, FreeStanding, Result, Settings, Simulation, Vehicle, units
 
 RESULTS = Path(__file__).parent / "results/chains"
@@ -101,9 +101,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     if options.repeats < 1:
         parser.error(f"--repeats must be >= 1, got {options.repeats}")
-    facts = machine(use_one_core())
-    for key, value in facts.items():
-        print(f"{key:8s}{value}")
+    facts = print_machine()
     sizes = options.segments or (SIZES[:5] if options.quick else SIZES)
     print("joint    segments   steps        s  ms a step  of s      energy     falls  deflects     left")
     lines = []
@@ -117,8 +115,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.save:
         RESULTS.mkdir(parents=True, exist_ok=True)
         with (RESULTS / "chains.csv").open("w", encoding="utf-8", newline="") as file:
-            for key, value in facts.items():
-                file.write(f"# {key}: {value}\n")
+            write_machine(file, facts)
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow([field.name for field in fields(Line)])
             for line in lines:

@@ -29,7 +29,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from bench_birm3d import BOOKKEEPING, COMPARED, exact_w2, machine, use_one_core, worst_error
+from bench_birm3d import BOOKKEEPING, COMPARED, exact_w2, print_machine, worst_error, write_machine
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle, scenes
 
 RESULTS = Path(__file__).parent / "results/scaling"
@@ -245,9 +245,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     if options.repeats < 1:
         parser.error(f"--repeats must be >= 1, got {options.repeats}")
-    facts = machine(use_one_core())
-    for key, value in facts.items():
-        print(f"{key:8s}{value}")
+    facts = print_machine()
     known = axes(options.quick)
     wanted = [axis for axis in known if options.axes is None or axis.name in options.axes]
     if not wanted:
@@ -266,8 +264,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.save:
         RESULTS.mkdir(parents=True, exist_ok=True)
         with (RESULTS / "scaling.csv").open("w", encoding="utf-8", newline="") as file:
-            for key, value in facts.items():
-                file.write(f"# {key}: {value}\n")
+            write_machine(file, facts)
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(
                 ["axis", "size", "time_ms", "steps", "node_evaluations", "error", "of", "exponent"]
