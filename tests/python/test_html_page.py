@@ -67,12 +67,14 @@ def data_of(page: Page) -> dict[str, Any]:
     return json.loads(page.texts["script"][0])  # type: ignore[no-any-return]
 
 
-def test_tables_hold_the_outcome(page: Page, result: Result) -> None:
+def test_tables_hold_the_outcome(page: Page, text: str, result: Result) -> None:
     cells = page.texts["td"]
     assert f"{result.metrics['exit_angle']:.1f}" in cells
     for name, value in result.metrics.items():
         assert cells[cells.index(name) + 1] == f"{value:.6g}"
     assert cells.count("✓ yes") == 3
+    # A sentence beside numbers would leave their names no room on a phone.
+    assert f'<tr><td colspan="3">{result.outcome_detail}</td></tr>' in text
     assert any("passenger_car, 1,814.4 kg" in cell for cell in cells)
     assert page.texts["pre"] == [result.report()]
     assert "<!--" not in "".join(page.texts["body"])

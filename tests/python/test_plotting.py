@@ -284,6 +284,36 @@ def test_every_figure_names_the_barrier(oblique: Result) -> None:
         assert barrier_text(oblique.scene.barrier) in heading(figure)
 
 
+def test_plans_say_what_became_of_the_vehicle(oblique: Result, head_on: Result) -> None:
+    for result in (oblique, head_on):
+        words = heading(result.plot_plan())
+        assert f"{result.outcome}: {result.outcome_detail}\n" in words
+        side = "from" if result.metrics["exit_angle"] >= 0.0 else "towards"
+        assert words.endswith(f"{abs(result.metrics['exit_angle']):.1f}° {side} the barrier's line")
+        assert f"{result.metrics['time_of_separation'] * 1e3:.0f} ms" in words
+
+
+def test_rounding_errors_are_not_drawn_as_motion() -> None:
+    spring = Vehicle.from_arrays(
+        mass=1000.0,
+        inertia=1000.0 * np.eye(3),
+        nodes=[[1.0, 0.01, 0.0], [1.0, -0.01, 0.0]],
+        anchors=[[0.0, 0.01, 0.0], [0.0, -0.01, 0.0]],
+        k_initial=1e6,
+        k_unloading=4e6,
+        mass_center_height=0.5,
+    )
+    free = Settings(gravity=0.0, ground=False)
+    block = Simulation(spring, Barrier.rigid_wall(friction=0.0), 5.0, settings=free).run()
+    assert max(np.abs(block.pitch).max(), np.abs(block.roll).max(), np.abs(block.yaw).max()) < 1e-6
+    panels = [*block.plot().get_axes(), *block.plot_histories().get_axes()]
+    angles = [axes for axes in panels if axes.get_title() == "Angles"]
+    assert len(angles) == 2
+    for axes in angles:
+        low, high = axes.get_ylim()
+        assert high - low >= 1.0
+
+
 def test_legends_are_off_the_curves(oblique: Result, head_on: Result) -> None:
     for result in (oblique, head_on):
         for figure in (result.plot(), result.plot_histories(), result.plot_elements()):

@@ -86,6 +86,10 @@ def write_html(result: Result, path: str | Path, *, frames: int = 61) -> None:
 
 def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
     def line(cells: tuple[str, ...], tag: str) -> str:
+        text = [cell for cell in cells if cell]
+        if len(cells) == 3 and not cells[0] and len(text) == 1:
+            # A remark to the row above, which beside numbers would leave their names no room on a phone.
+            return f'<tr><td colspan="3">{escape(text[0])}</td></tr>'
         return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>"
 
     body = "".join(line(row, "td") for row in rows)

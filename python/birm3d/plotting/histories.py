@@ -11,7 +11,21 @@ from matplotlib.figure import Figure
 from .. import units
 from ..filters import moving_average
 from .figure import new_figure
-from .style import BLUE, DASHED, DOTTED, ORANGE, RED, fit, legend, plot_filtered, prepare, title
+from .style import (
+    BLUE,
+    DASHED,
+    DOTTED,
+    LEAST_ANGLE,
+    LEAST_RATE,
+    ORANGE,
+    RED,
+    at_least,
+    fit,
+    legend,
+    plot_filtered,
+    prepare,
+    title,
+)
 
 if TYPE_CHECKING:
     from ..result import Result
@@ -73,6 +87,7 @@ def plot_histories(result: Result) -> Figure:
     rates.set_ylabel("angular rate [deg/s]")
     legend([rates])
     angles.set_title("Angles")
+    at_least(angles, LEAST_ANGLE)
     angles.set_ylabel("angle [deg]")
     legend([angles])
 
@@ -87,6 +102,7 @@ def plot_histories(result: Result) -> Figure:
 
     for axes in (force, acceleration, rates, tires):
         fit(axes)
+    at_least(rates, LEAST_RATE)
     if result.tire_reaction.shape[1]:
         tires.set_ylim(bottom=0.0)
     for axes in panels[-1]:

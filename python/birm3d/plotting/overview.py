@@ -10,7 +10,20 @@ from matplotlib.figure import Figure
 from .. import units
 from .energies import plot_energies
 from .figure import new_figure
-from .style import BLUE, DASHED, GREEN, RED, SOLID, fit, legend, plot_filtered, prepare, title
+from .style import (
+    BLUE,
+    DASHED,
+    GREEN,
+    LEAST_ANGLE,
+    RED,
+    SOLID,
+    at_least,
+    fit,
+    legend,
+    plot_filtered,
+    prepare,
+    title,
+)
 
 if TYPE_CHECKING:
     from ..result import Result
@@ -58,6 +71,7 @@ def plot_result(result: Result) -> Figure:
         angles.plot(ms, getattr(result, name), label=name)
     angles.set_ylabel("angle [deg]")
     angles.set_title("Angles")
+    at_least(angles, LEAST_ANGLE)
     legend([angles])
 
     plot_energies(energies, result)

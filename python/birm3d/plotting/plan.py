@@ -94,7 +94,7 @@ def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box:
     draw_barrier(axes, view, around, drawn, result)
     axes.set_xlabel(view.labels[0])
     axes.set_ylabel(view.labels[1])
-    fit_to(figure, axes, np.vstack(drawn), _WIDTH, _HEIGHTS, room=2.1)
+    fit_to(figure, axes, np.vstack(drawn), _WIDTH, _HEIGHTS, room=2.3)
     figure.suptitle(f"{title(result)}\n{_outcome(result)}", fontsize="medium")
     figure.legend(loc="outside lower center", ncols=4, frameon=False, fontsize="small")
     return figure
@@ -212,11 +212,14 @@ def _exit_box(axes: Axes, result: Result, plan: Callable[[Floats], Floats]) -> F
 
 def _outcome(result: Result) -> str:
     metrics = result.metrics
+    outcome = f"{result.outcome}: {result.outcome_detail}"
     if "exit_angle" not in metrics:
-        return f"{result.outcome}: {result.outcome_detail}"
+        return outcome
+    angle, separation = metrics["exit_angle"], metrics["time_of_separation"]
+    side = "from" if angle >= 0.0 else "towards"
     return (
-        f"leaves at {metrics['exit_speed']:.1f} m/s, {metrics['exit_angle']:.1f}° from the barrier's line; "
-        f"turned by {round(result.yaw[-1], 1) + 0.0:.1f}° after {result.time[-1] * 1e3:.0f} ms"
+        f"{outcome}\nat separation, {separation * 1e3:.0f} ms: {metrics['exit_speed']:.1f} m/s, "
+        f"{abs(angle):.1f}° {side} the barrier's line"
     )
 
 

@@ -23,12 +23,15 @@ __all__ = [
     "DASH_DOT",
     "DOTTED",
     "GREEN",
+    "LEAST_ANGLE",
+    "LEAST_RATE",
     "ORANGE",
     "RED",
     "SOLID",
     "STYLES",
     "WIDTHS",
     "Style",
+    "at_least",
     "filtered",
     "fit",
     "legend",
@@ -39,6 +42,9 @@ __all__ = [
 ]
 
 Floats = npt.NDArray[np.float64]
+
+LEAST_ANGLE, LEAST_RATE = 1.0, 1.0
+"""Least ranges of panels with angles [deg] and angular rates [deg/s]."""
 
 # Okabe and Ito's palette, told apart by colour-blind readers; yellow is left out: too faint on white.
 BLUE, ORANGE, GREEN, RED = "#0072B2", "#E69F00", "#009E73", "#D55E00"
@@ -119,6 +125,14 @@ def fit(axes: Axes) -> None:
     margin = 0.05 * (high - low)
     if margin > 0.0:
         axes.set_ylim(low - margin, high + margin)
+
+
+def at_least(axes: Axes, span: float) -> None:
+    """Widen a vertical range that is narrower than the span: rounding errors are not drawn as motion."""
+    low, high = axes.get_ylim()
+    if high - low < span:
+        middle = 0.5 * (low + high)
+        axes.set_ylim(middle - 0.5 * span, middle + 0.5 * span)
 
 
 def legend(axes: Sequence[Axes]) -> None:

@@ -37,7 +37,7 @@ _NO_DRAWING = (
 )
 _LEAST_SCALE = 0.05  # m, of the colours of crush
 _BAR = 0.12  # share of the picture's width that the bar of colours or the names of zones take
-_AROUND = 3.0  # ground past what is shown, m
+_AROUND = 8.0  # ground past what is shown, m: its edges are not in the foreground
 _NEAR = 1.5  # posts as near to the vehicle as this are shown whole, m
 _SEEN_THROUGH = 0.22  # opacity of a barrier that the camera stands behind
 
