@@ -22,6 +22,16 @@ void Skin::find_dents() {
         const Dented dented = dents_of(k);
         if ((dented.panels | dented.passed) != 0) now_.dented.push_back(dented);
     }
+    find_abandoned_panels();
+}
+
+void Skin::find_abandoned_panels() {
+    for (const Dented& before : before_.dented) {
+        const auto now = std::find_if(now_.dented.begin(), now_.dented.end(),
+                                      [&](const Dented& d) { return d.obstacle == before.obstacle; });
+        const unsigned still = now != now_.dented.end() ? now->panels : 0U;
+        abandoned_ |= static_cast<std::uint8_t>(before.panels & ~still);
+    }
 }
 
 // Which panels does the post dent? Those that it comes into from in front, until it has let go of them.

@@ -260,7 +260,8 @@ void Skin::press_plane(PlaneSums& plane, std::size_t b) {
     const TrussBlockState& next = now_.trusses.block[b];
     if (!plane_normal_ || *plane_normal_ != plane.surface.face.normal)
         contact_.set_normal(plane_normal_.emplace(plane.surface.face.normal));
-    if (crush_plane(plane, b, plane.sums) && find_stopped(b, &plane.surface)) {
+    const bool ceased = crush_plane(plane, b, plane.sums);
+    if ((ceased || abandoned_ != 0) && find_stopped(b, &plane.surface)) {
         CrushSums undone;
         crush_plane(plane, b, undone);
         plane.sums -= undone;
@@ -300,7 +301,8 @@ void Skin::press_shapes(std::size_t b) {
     const bool fixed = corners_.empty() && (seen_.size() == 1 || !may_go_into_another);
     const std::size_t at = fixed ? where_met(from(b).force) : several;
     CrushSums& to = at != several ? obstacles_[at].sums : shared_;
-    if (crush_shapes(b, at, to) && find_stopped(b, nullptr)) {
+    const bool ceased = crush_shapes(b, at, to);
+    if ((ceased || abandoned_ != 0) && find_stopped(b, nullptr)) {
         CrushSums undone;
         crush_shapes(b, at, undone);
         to -= undone;

@@ -83,14 +83,32 @@ std::optional<Vec3> Skin::stop_on_way(std::size_t b, std::size_t i, const Vec3& 
     return start + outside * way;
 }
 
-// Nodes that `plane`, or where it is null the faces at hand, let go, and that other surfaces stop on their way. Are there
-// any?
+// Has a dent gone from under the node at once, as where a post has come to lie across the panel? No motion of the step
+// takes it as far outwards as it stands now.
+bool Skin::is_abandoned(std::size_t b, std::size_t i) const {
+    const double panel = mesh_.block[b].panel[i];
+    const TrussBlockState &last = from(b), &next = now_.trusses.block[b];
+    if (!(panel >= 0.0) || (abandoned_ >> static_cast<unsigned>(panel) & 1U) == 0) return false;
+    const Vec3 way(next.x[i] - last.x[i], next.y[i] - last.y[i], next.z[i] - last.z[i]);
+    return last.force[i] > 0.0 && next.deflection[i] < last.deflection[i] && way.norm() > 2.0 * margin_;
+}
+
+// Nodes that `plane`, or where it is null the faces at hand, let go, and that other surfaces stop on their way; and those
+// that a dent has abandoned, where they stand now. Are there any?
 bool Skin::find_stopped(std::size_t b, const FlatContact* plane) {
     stopped_.clear();
     const TrussBlock& truss = mesh_.block[b];
     const TrussBlockState &last = from(b), &next = now_.trusses.block[b];
     for (std::size_t i = 0; i < lanes; ++i) {
+        if (abandoned_ != 0 && is_abandoned(b, i)) {
+            stopped_.push_back({i, Vec3(next.x[i], next.y[i], next.z[i]), next.deflection[i],
+                                next.residual[i], next.peak_deflection[i],
+                                std::max(0.0, next.unloading[i] * (next.deflection[i] - next.residual[i])),
+                                0.0});
+            continue;
+        }
         if (!(last.force[i] > 0.0 && next.force[i] == 0.0)) continue;
+        if (plane == nullptr && faces_.per_force[i] > 0.0) continue;  // a dent keeps it
         const Vec3 anchor(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
         const Vec3 to(next.x[i], next.y[i], next.z[i]), was(last.x[i], last.y[i], last.z[i]);
         // The face held it to the end of the step, but where it moved off by itself: see release() in crush_rows.cpp.
