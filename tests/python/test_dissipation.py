@@ -87,9 +87,9 @@ def test_a_slow_slide_on_locked_wheels_keeps_its_energy(name: str, speed: float,
     assert max(greatest_fall(run).values()) < 1e-5
 
 
-# On its roof, beside thin posts: one post after the other comes to lie across a panel that it dents, or lets a node of
-# it go towards the next post. What the trusses lose then has no other taker. Posts enter the body between its anchors:
-# that is warned of, and not what is asked here.
+# On its roof, beside thin posts: a post comes to lie across a panel that it dents, or lets a node of it go
+# towards the next post. What the trusses lose then has no other taker. Posts enter the body between its
+# anchors: that is warned of, and not what is asked here.
 @pytest.mark.filterwarnings("ignore::birm3d.OverlapWarning")
 @pytest.mark.parametrize(
     ("name", "density", "load", "count", "diameter", "height", "spacing", "speed", "angle", "offset", "yaw"),

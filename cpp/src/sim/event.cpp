@@ -98,6 +98,13 @@ double distance_past(const Scene& scene, const State& state, const Event& event)
     return past;
 }
 
+// Own axes (m). The bounds of a post are endless.
+double top_of(const Shape& shape) {
+    if (const auto* post = std::get_if<Post>(&shape)) return post->height;
+    const Box box = bounds(shape);
+    return box.center.z() + box.half.z();
+}
+
 // Does the top of any element stand under the rigid body of the leading unit?
 bool stands_over(const Scene& scene, const State& state) {
     const BodyState& body = state.units.front().body;
@@ -108,7 +115,7 @@ bool stands_over(const Scene& scene, const State& state) {
         if (i == scene.ground) continue;
         const Pose pose = pose_of(scene, i, state);
         const Box box = bounds(scene.obstacles[i].shape);
-        const double top = box.center.z() + box.half.z();
+        const double top = top_of(scene.obstacles[i].shape);
         if (!(pose.position.z() + top < body.position.z())) continue;
         // The place of the top that is nearest to the mass centre, seen from above.
         Vec3 place = pose.rotation.transpose() * (body.position - pose.position);
