@@ -1,0 +1,77 @@
+"""The truck of the finite-element runs: its mass, and what its fitted front computes of two of them."""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+from types import ModuleType
+
+import birm3d
+import numpy as np
+import pytest
+
+VALIDATION = Path(__file__).resolve().parents[1] / "validation"
+
+
+@pytest.fixture
+def truck(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    monkeypatch.syspath_prepend(str(VALIDATION))
+    return importlib.import_module("truck_runs")
+
+
+@pytest.fixture
+def page(truck: ModuleType) -> ModuleType:
+    return importlib.import_module("truck_page")
+
+
+def test_solids_meet_the_models_mass_properties(truck: ModuleType) -> None:
+    vehicle = birm3d.Vehicle.from_file(truck.START)
+    front = float(vehicle.nodes[:, 0].max())
+    assert vehicle.mass == pytest.approx(truck.MASS["mass"], rel=1e-3)
+    assert front == pytest.approx(truck.MASS["x"], rel=1e-3)
+    assert vehicle.mass_center_height == pytest.approx(truck.MASS["z"], rel=1e-3)
+    found = (*np.diag(vehicle.inertia), vehicle.inertia[0, 2])
+    assert found == pytest.approx(tuple(truck.INERTIA.values()), rel=1e-3)
+
+
+def test_impulses_of_the_runs_are_their_change_of_momentum(truck: ModuleType) -> None:
+    """Signs and order of the posts: what they take is what the truck loses."""
+    for run in truck.runs().values():
+        if run.impact_angle == 90.0:
+            lost = truck.MASS["mass"] * (run.speed - run.speed_at_end)
+            assert run.impulse[:, 0].sum() == pytest.approx(lost, rel=1e-2)  # the runs close so far
+        assert run.time[0] == 0.0
+        assert run.displacement.max() == pytest.approx(run.travel, abs=1e-2)
+    assert truck.runs()["bollards2_50_offset"].posts == (-0.8, 0.4)
+
+
+@pytest.mark.parametrize("name", ["wall00_50", "bollards3_50"])
+def test_the_fitted_truck_meets_the_runs(page: ModuleType, truck: ModuleType, name: str) -> None:
+    fitted = birm3d.Vehicle.from_file(truck.FITTED)
+    (row,) = page.computed(fitted, [truck.runs()[name]])
+    assert row.met["travel"], row.errors
+    assert row.met["force"], row.errors
+    assert row.met["sideways"], row.errors
+    assert not row.own.core_contact
+    (before,) = page.computed(birm3d.Vehicle.preset("cargo_truck"), [truck.runs()[name]])
+    assert not before.met["force"]
+
+
+def test_the_left_front_goes_ahead_at_the_slanted_wall(page: ModuleType, truck: ModuleType) -> None:
+    fitted = birm3d.Vehicle.from_file(truck.FITTED)
+    (row,) = page.computed(fitted, [truck.runs()["wall25_50"]])
+    assert row.own.yaw < 0.0  # the nose is turned away from the wall, to the right
+    assert row.own.impulse[0, 1] > 0.0
+
+
+def test_the_fitted_truck_runs_at_other_masses_speeds_and_places(truck: ModuleType) -> None:
+    fitted = birm3d.Vehicle.from_file(truck.FITTED)
+    heavy, light = fitted.with_gvw(8000.0), fitted.with_gvw(6000.0)
+    barrier = birm3d.Barrier.bollards(count=3, spacing=1.4, origin=(0.0, 0.3, 0.0))
+    travel = []
+    for vehicle in (light, heavy):
+        result = birm3d.Simulation(vehicle, barrier, "40 mph", 80.0, 0.1).run()
+        assert "time_of_zero_velocity" in result.metrics
+        assert result.statistics.body_steps == 0
+        travel.append(result.metrics["max_displacement"])
+    assert travel[0] < travel[1]
