@@ -93,6 +93,8 @@ def test_numbers_are_those_of_the_result(page: Page, result: Result) -> None:
     colors = [curve["color"] for curve in panels["Energy balance"]["curves"]]
     assert len(set(colors)) == len(colors)
     assert panels["Angles"]["unit"] == "deg"
+    angles = np.array([curve["y"] for curve in panels["Angles"]["curves"]])
+    assert (panels["Angles"]["range"] is None) == (np.ptp(angles) >= 1.0)  # else they are rounding errors
     rates = panels["Angular rates, body axes"]["curves"]
     assert [curve["name"] for curve in rates] == [f"{n} rate, CFC 180" for n in ("roll", "pitch", "yaw")]
 

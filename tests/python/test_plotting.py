@@ -16,6 +16,7 @@ from birm3d.barrier_text import barrier_text
 from birm3d.crush_profile import crush_map, crush_profile, crushed_sides
 from birm3d.filters import cfc
 from birm3d.plotting import plot_comparisons
+from birm3d.plotting.elements import _mark_peaks
 from birm3d.plotting.energies import energy_look
 from birm3d.plotting.style import prepare
 from birm3d.silhouette import rings, silhouette
@@ -386,6 +387,20 @@ def test_loads_on_elements_end_and_have_peaks() -> None:
     assert moment.texts[0].get_text().endswith("kN m")
     assert text.get_position()[1] > greatest.max()
     assert force.get_ylim()[1] > text.get_position()[1]
+
+
+@pytest.mark.parametrize(("first", "descend"), [(20.0, True), (80.0, False)])
+def test_lines_to_peaks_cross_no_text(first: float, descend: bool) -> None:
+    """Texts of early peaks go to the right and descend, those of late ones to the left and rise."""
+    ms = np.linspace(0.0, 100.0, 1001)
+    curves = [
+        peak * np.exp(-(((ms - at) / 5.0) ** 2)) for at, peak in ((first, 2000.0), (first + 6.0, 900.0))
+    ]
+    axes = Figure().subplots()
+    _mark_peaks(axes, ms, curves, ["bollard 1", "bollard 2"], 100.0, "kN")
+    heights = [text.get_position()[1] for text in axes.texts]
+    assert [text.get_text()[:9] for text in axes.texts] == ["bollard 1", "bollard 2"]
+    assert (heights[0] > heights[1]) is descend
 
 
 # ---- crush -----------------------------------------------------------------------------------------------

@@ -38,7 +38,7 @@ data.panels.forEach((panel, n) => {
     showlegend: true,
     legend: { orientation: "h", y: -0.26, font: { size: 11 } },
     xaxis: { ...axis, title: { text: "time [ms]", standoff: 4 }, range: [data.time[0], data.time.at(-1)] },
-    yaxis: { ...axis, title: { text: `[${panel.unit}]` } },
+    yaxis: { ...axis, title: { text: `[${panel.unit}]` }, ...(panel.range && { range: panel.range }) },
   }, config);
 });
 let following = false;

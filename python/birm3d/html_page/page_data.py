@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,7 @@ from ..element_loads import touched_elements
 from ..filters import moving_average
 from ..plan_axes import PlanAxes
 from ..plotting.energies import energy_look
-from ..plotting.style import DASH_DOT, DASHED, DOTTED, SOLID, filtered
+from ..plotting.style import DASH_DOT, DASHED, DOTTED, LEAST_ANGLE, LEAST_RATE, SOLID, filtered
 from ..silhouette import rings, silhouette
 from ..skin import skins_at
 from ..unit_shapes import unit_shapes
@@ -23,11 +23,13 @@ if TYPE_CHECKING:
 __all__ = ["page_data"]
 
 Floats = npt.NDArray[np.float64]
+Curves: TypeAlias = list[tuple[str, Floats]]
 
 _ROWS = 3000  # more than a screen has pixels across
 _ACCURACY = 1e-3  # of outlines, m
 _DIGITS = 6
 _ENERGIES = "Energy balance"
+_LEAST = {"deg": LEAST_ANGLE, "deg/s": LEAST_RATE}
 _DASHES = {SOLID: "solid", DASHED: "dash", DASH_DOT: "dashdot", DOTTED: "dot"}
 
 
@@ -39,6 +41,7 @@ def page_data(result: Result, frames: int) -> dict[str, Any]:
         {
             "title": name,
             "unit": unit,
+            "range": _range(unit, curves),
             "curves": [{"name": label, "y": _short(values[::every])} for label, values in curves],
         }
         for name, unit, curves in _panels(result)
@@ -55,7 +58,18 @@ def page_data(result: Result, frames: int) -> dict[str, Any]:
     }
 
 
-def _panels(result: Result) -> list[tuple[str, str, list[tuple[str, Floats]]]]:
+def _range(unit: str, curves: Curves) -> list[float] | None:
+    """Return a range for angles and rates that are rounding errors; ``None``: that of the curves."""
+    least = _LEAST.get(unit, 0.0)
+    low = min(float(values.min()) for _, values in curves)
+    high = max(float(values.max()) for _, values in curves)
+    if high - low >= least:
+        return None
+    middle = 0.5 * (low + high)
+    return [middle - 0.5 * least, middle + 0.5 * least]
+
+
+def _panels(result: Result) -> list[tuple[str, str, Curves]]:
     interval = result.scene.settings.output_interval
 
     def curve(name: str, values: Floats, channel_class: float) -> tuple[str, Floats]:

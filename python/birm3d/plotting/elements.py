@@ -132,8 +132,10 @@ def _mark_peaks(
     rows = min(len(peaks), 3)
     for k, peak in enumerate(peaks):
         text = f"{peak.name}: {peak.value:,.0f} {unit}" if several else f"{peak.value:,.0f} {unit}"
-        height = top * (1.10 + 0.13 * (k % rows))
         late = peak.time > 0.6 * end
+        # No line to a peak crosses a text: texts that go to the right descend, those to the left rise.
+        row = k % rows if late else rows - 1 - k % rows
+        height = top * (1.10 + 0.13 * row)
         axes.annotate(
             text,
             (peak.time, peak.value),

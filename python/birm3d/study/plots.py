@@ -109,7 +109,7 @@ def plot_fragility(fragility: Fragility) -> Figure:
         axes.fill_between(speeds, low, high, color=RED, alpha=0.15, lw=0, label=f"{level} of the fit")
     axes.set_ylim(-0.03, 1.03)
     axes.set_xlabel("impact speed [m/s]")
-    axes.set_ylabel(f"probability: {fragility.event}")
+    axes.set_ylabel(f"probability: {fragility.event.replace('_', ' ')}")
     axes.set_title(fragility.study.title, fontsize="medium")
     legend([axes])
     return figure
