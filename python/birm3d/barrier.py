@@ -327,6 +327,12 @@ class Barrier:
             free_standing=[] if free is None else [free],
         )
 
+    @cached_property
+    def _past(self) -> tuple[float, float, float]:
+        """Unit vector square to the line, into the barrier, world axes."""
+        x, y, z = (-np.asarray(self.core.normal)).tolist()
+        return x, y, z
+
     def stands_free(self) -> _core.FreeStanding | None:
         """Return how its elements stand free, for the core; ``None`` where they are fixed."""
         return None

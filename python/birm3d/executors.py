@@ -268,10 +268,10 @@ def _scene(simulation: Simulation | None, names: tuple[str, ...], row: tuple[Any
 
 
 def _values(found: dict[str, float], metrics: tuple[str, ...]) -> tuple[float, ...]:
-    for name in metrics:
-        if math.isnan(found.get(name, 0.0)):
+    for name, value in found.items():
+        if math.isnan(value):
             raise ArithmeticError(f"{name} is not a number")
-    return tuple(found.get(name, math.nan) for name in metrics)
+    return tuple([found.get(name, math.nan) for name in metrics])
 
 
 def _failed(error: Exception, metrics: tuple[str, ...]) -> Outcome:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from .vehicle_file import Solid, VehicleFile
 
-__all__ = ["check_load", "load_height", "solids_at", "structure_mass"]
+__all__ = ["check_load", "core_ranges", "load_height", "solids_at", "structure_mass"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -32,11 +33,10 @@ def solids_at(file: VehicleFile, gvw: float, load_density: float | None = None) 
     Other payload (people on seats) gets heavier where it is. Below the unladen mass the structure is
     rescaled, without payload.
     """
-    mass, payload = _masses(file)
+    mass, payload, corners, density = _solids(_Same(file))
+    corners, density = corners.copy(), density.copy()
     structure = float(mass[~payload].sum())
     factor = max(0.0, (gvw - structure) / float(mass[payload].sum()))
-    corners = np.array([solid.corners for solid in file.solids], float)
-    density = np.array([solid.density for solid in file.solids])
     density[~payload] *= min(1.0, gvw / structure) if structure else 1.0
     for i in np.flatnonzero(payload):
         solid = file.solids[i]
@@ -49,11 +49,47 @@ def solids_at(file: VehicleFile, gvw: float, load_density: float | None = None) 
     return corners, density
 
 
+class _Same:
+    """A file as a key: files are immutable, and it takes long to compare all of their numbers."""
+
+    def __init__(self, file: VehicleFile) -> None:
+        self.file = file
+
+    def __hash__(self) -> int:
+        return id(self.file)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and other.file is self.file
+
+
+@lru_cache(maxsize=16)
+def _solids(same: _Same) -> tuple[Floats, npt.NDArray[np.bool_], Floats, Floats]:
+    """Mass of each solid [kg]; whether it is payload: all, where a file names none; corners and densities."""
+    solids = same.file.solids
+    payload = np.array([solid.payload for solid in solids])
+    return (
+        np.array([solid.mass for solid in solids]),
+        payload if payload.any() else np.ones_like(payload),
+        np.array([solid.corners for solid in solids], float),
+        np.array([solid.density for solid in solids]),
+    )
+
+
+@lru_cache(maxsize=16)
+def _core_ranges(same: _Same) -> Floats:
+    boxes = same.file.core
+    ranges = np.array([(box.x_m, (-box.half_width_m, box.half_width_m), box.z_m) for box in boxes])
+    return ranges.reshape(-1, 3, 2)
+
+
+def core_ranges(file: VehicleFile) -> Floats:
+    """Return where the rigid body's boxes begin and end along each axis of the file, shape (k, 3, 2) [m]."""
+    return _core_ranges(_Same(file))
+
+
 def _masses(file: VehicleFile) -> tuple[Floats, npt.NDArray[np.bool_]]:
-    """Mass of each solid [kg], and whether it is payload: all, where a file names none; shape (n,)."""
-    mass = np.array([solid.mass for solid in file.solids])
-    payload = np.array([solid.payload for solid in file.solids])
-    return mass, payload if payload.any() else np.ones_like(payload)
+    """Mass of each solid [kg], and whether it is payload; shape (n,)."""
+    return _solids(_Same(file))[:2]
 
 
 def load_height(solid: Solid, mass: float, density: float | None = None) -> float:

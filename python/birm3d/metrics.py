@@ -14,7 +14,7 @@ import math
 from collections.abc import Callable, Collection, Mapping
 from functools import cached_property, partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -23,7 +23,6 @@ from . import _core
 from .arguments import checked
 
 if TYPE_CHECKING:
-    from .barrier import Barrier
     from .result import Result
     from .result_file import Stored
     from .simulation import Scene
@@ -184,8 +183,15 @@ def _require_rows(scene: Scene, rows: int) -> None:
 
 
 def _found(run: _Run, names: Collection[str]) -> dict[str, float]:
-    found = {name: _METRICS[name].of(run) for name in names}
-    return {name: value for name, value in found.items() if value is not None}
+    found = {}
+    for name in names:
+        metric = _METRICS[name]
+        if metric.of_barrier and run.barrier is None:
+            continue
+        value = metric.of(run)
+        if value is not None:
+            found[name] = value
+    return found
 
 
 class _ResultOutcome:
@@ -211,36 +217,26 @@ class _ResultOutcome:
 
 
 class _Run:
-    """What several metrics of a run share, each computed when it is first asked for."""
+    """What several metrics of a run share. What the core has found is taken from it once, when asked for."""
+
+    normal_force: _core.ExtremeNormalForce
+    motion: _core.ExtremeMotion
+    attitude: _core.ExtremeAttitude
+    energy: _core.ExtremeEnergy
+    filtered_force: _core.ExtremeFilteredForce
+    element_loads: _core.ExtremeElementLoads
 
     def __init__(self, scene: Scene, outcome: _core.Outcome | _ResultOutcome) -> None:
         self.scene = scene
         self.outcome = outcome
         self.extremes = outcome.extremes
+        self.event = outcome.event
+        self.barrier = scene.barrier
 
-    @cached_property
-    def normal_force(self) -> _core.ExtremeNormalForce:
-        return self.extremes.normal_force
-
-    @cached_property
-    def motion(self) -> _core.ExtremeMotion:
-        return self.extremes.motion
-
-    @cached_property
-    def attitude(self) -> _core.ExtremeAttitude:
-        return self.extremes.attitude
-
-    @cached_property
-    def energy(self) -> _core.ExtremeEnergy:
-        return self.extremes.energy
-
-    @cached_property
-    def loads(self) -> _core.ExtremeElementLoads:
-        return self.extremes.element_loads
-
-    @property
-    def barrier(self) -> Barrier | None:
-        return self.scene.barrier
+    def __getattr__(self, group: str) -> Any:
+        found = getattr(self.extremes, group)
+        setattr(self, group, found)
+        return found
 
     @property
     def joined(self) -> bool:
@@ -255,12 +251,6 @@ class _Run:
         return abs(math.sin(math.radians(self.scene.impact_angle))) < ALONG_LINE
 
     @property
-    def past(self) -> Floats:
-        """Square to the barrier's line, into it."""
-        assert self.barrier is not None
-        return -np.asarray(self.barrier.core.normal)
-
-    @property
     def dynamic_crush(self) -> float:
         return self.outcome.peak_deflection
 
@@ -269,10 +259,6 @@ class _Run:
         """When the motion towards the barrier ends [s], if it began and anything was crushed."""
         began = self.dynamic_crush > 0.0 and self.motion.approach_speed > 0.0
         return self.motion.turn_time if began else None
-
-    @property
-    def event(self) -> _core.Event:
-        return self.outcome.event
 
     @property
     def residual_crush(self) -> float:
@@ -289,10 +275,6 @@ def energy_residual(scene: Scene, energy: _core.ExtremeEnergy) -> float:
 def relative_to_start(scene: Scene, energy: float, start: float) -> float:
     """Return an energy relative to that at the start, which counts as no less than that of a standstill."""
     return energy / max(start, 0.5 * scene.vehicle.mass * _STANDSTILL**2)
-
-
-def _of_barrier(metric: _Function) -> _Function:
-    return lambda run: None if run.barrier is None else metric(run)
 
 
 def _of_segments(metric: _Function) -> _Function:
@@ -333,7 +315,8 @@ def _exit_speed(run: _Run) -> float | None:
 
 
 def _exit_angle(run: _Run) -> float | None:
-    velocity, past = run.event.exit_velocity, run.past.tolist()
+    assert run.barrier is not None
+    velocity, past = run.event.exit_velocity, run.barrier._past
     contained = run.event.manner in ("rebounds", "leaves", "slides_to_end", "slides_on")
     if velocity is None or not contained or math.hypot(*velocity[:2]) < _SLOWEST:
         return None
@@ -373,6 +356,7 @@ def _greatest(result: Result, name: str) -> float:
 class _Metric(NamedTuple):
     needs: str  # the group of extremes that it is made of; "end": none
     of: _Function
+    of_barrier: bool = False  # only a run with a barrier has it
 
 
 def _all_metrics() -> dict[str, _Metric]:
@@ -390,34 +374,36 @@ def _all_metrics() -> dict[str, _Metric]:
     return {
         "peak_deceleration": motion(lambda run: run.motion.deceleration),
         "peak_deceleration_cfc60": filtered_deceleration(lambda run: run.extremes.filtered_deceleration),
-        "peak_normal_force": normal_force(_of_barrier(lambda run: run.normal_force.peak)),
-        "peak_normal_force_cfc60": filtered_force(_of_barrier(lambda run: run.extremes.filtered_force.cfc60)),
-        "peak_force_50ms": filtered_force(_of_barrier(lambda run: run.extremes.filtered_force.mean_50ms)),
-        "peak_element_force": element_loads(_of_barrier(lambda run: run.loads.force)),
-        "peak_element_force_50ms": element_loads(_of_barrier(lambda run: run.loads.force_50ms)),
-        "peak_overturning_moment": element_loads(_of_barrier(lambda run: run.loads.moment)),
-        "peak_overturning_moment_50ms": element_loads(_of_barrier(lambda run: run.loads.moment_50ms)),
-        "dynamic_crush": end(_of_barrier(lambda run: run.dynamic_crush)),
-        "residual_crush": end(_of_barrier(lambda run: run.residual_crush)),
-        "max_displacement": motion(_of_barrier(lambda run: run.motion.way - run.scene.standoff)),
-        "vehicle_penetration": penetration(_of_barrier(_vehicle_penetration)),
-        "contact_overlap": end(_of_barrier(_contact_overlap)),
+        "peak_normal_force": normal_force(lambda run: run.normal_force.peak, of_barrier=True),
+        "peak_normal_force_cfc60": filtered_force(lambda run: run.filtered_force.cfc60, of_barrier=True),
+        "peak_force_50ms": filtered_force(lambda run: run.filtered_force.mean_50ms, of_barrier=True),
+        "peak_element_force": element_loads(lambda run: run.element_loads.force, of_barrier=True),
+        "peak_element_force_50ms": element_loads(lambda run: run.element_loads.force_50ms, of_barrier=True),
+        "peak_overturning_moment": element_loads(lambda run: run.element_loads.moment, of_barrier=True),
+        "peak_overturning_moment_50ms": element_loads(
+            lambda run: run.element_loads.moment_50ms, of_barrier=True
+        ),
+        "dynamic_crush": end(lambda run: run.dynamic_crush, of_barrier=True),
+        "residual_crush": end(lambda run: run.residual_crush, of_barrier=True),
+        "max_displacement": motion(lambda run: run.motion.way - run.scene.standoff, of_barrier=True),
+        "vehicle_penetration": penetration(_vehicle_penetration, of_barrier=True),
+        "contact_overlap": end(_contact_overlap, of_barrier=True),
         "barrier_deflection": segments(_of_segments(lambda run: run.extremes.segments.deflection)),
         "residual_barrier_deflection": segments(
             _of_segments(lambda run: run.extremes.segments.residual_deflection)
         ),
         "max_overturning_ratio": segments(_of_segments(_max_overturning_ratio)),
-        "time_of_zero_velocity": motion(_of_barrier(_time_of_zero_velocity)),
-        "time_of_separation": end(_of_barrier(lambda run: run.event.time_of_separation)),
-        "restitution": motion(_of_barrier(_restitution)),
-        "delta_v": motion(_of_barrier(lambda run: run.motion.velocity_change)),
-        "impact_severity": end(_of_barrier(_impact_severity)),
-        "exit_speed": end(_of_barrier(_exit_speed)),
-        "exit_angle": end(_of_barrier(_exit_angle)),
+        "time_of_zero_velocity": motion(_time_of_zero_velocity, of_barrier=True),
+        "time_of_separation": end(lambda run: run.event.time_of_separation, of_barrier=True),
+        "restitution": motion(_restitution, of_barrier=True),
+        "delta_v": motion(lambda run: run.motion.velocity_change, of_barrier=True),
+        "impact_severity": end(_impact_severity, of_barrier=True),
+        "exit_speed": end(_exit_speed, of_barrier=True),
+        "exit_angle": end(_exit_angle, of_barrier=True),
         "max_roll": attitude(lambda run: math.degrees(run.attitude.roll)),
         "max_pitch": attitude(lambda run: math.degrees(run.attitude.pitch)),
         "max_yaw": attitude(lambda run: math.degrees(run.attitude.yaw)),
-        "later_contacts": end(_of_barrier(lambda run: float(run.event.later_contacts))),
+        "later_contacts": end(lambda run: float(run.event.later_contacts), of_barrier=True),
         "wheel_climb": wheel_climb(_wheel_climb),
         "max_articulation_angle": joint(_of_joint(lambda run: math.degrees(run.extremes.joint.angle))),
         "peak_joint_force": joint(_of_joint(lambda run: run.extremes.joint.force)),

@@ -37,6 +37,7 @@ from .settings import Settings
 from .simulation import APPROACH, Scene, Simulation
 from .units import quantity_in, si
 from .vehicle import TRUSS_LAW, Vehicle, Zone
+from .zone import positive
 
 __all__ = [
     "in_si",
@@ -247,6 +248,11 @@ _preset = lru_cache(maxsize=16)(Vehicle.preset)
 def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -> Vehicle:
     if groups.keys().isdisjoint(("zone", "truss", "vehicle")):
         return vehicle
+    numbers = groups.get("vehicle", {})
+    if tuple(numbers) == ("gvw",) and groups.keys().isdisjoint(("zone", "truss")) and vehicle.joint is None:
+        return vehicle._with_mass(
+            positive("gvw", si("gvw", numbers["gvw"], "mass"))
+        )  # one change needs no draft
     changed = vehicle.draft()
     zones: dict[str, dict[str, Any]] = {}
     for rest, value in groups.get("zone", {}).items():
@@ -256,7 +262,6 @@ def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -
         changed = changed.with_zones({name: _zone(changed.zones[name], new) for name, new in zones.items()})
     if "truss" in groups:
         changed = changed.with_truss_law(**groups["truss"])
-    numbers = groups.get("vehicle", {})
     if "mesh_density" in numbers:
         changed = changed.with_mesh_density(numbers["mesh_density"])
     if "rate_sensitivity" in numbers:

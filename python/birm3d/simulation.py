@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from . import _core
 from ._version import __version__
@@ -71,7 +72,7 @@ class Scene:
             vehicle=self.vehicle.core,
             barriers=[] if self.barrier is None else [self.barrier.core],
             approach=self.approach,
-            settings=replace(self.settings, mu_tire_barrier=self.mu_tire_barrier).core,
+            settings=_with_tire_friction(self.settings, self.mu_tire_barrier).core,
             duration=self.duration,
         )
 
@@ -86,6 +87,11 @@ class Scene:
             yaw=math.radians(self.impact_yaw),
             roll=math.radians(self.impact_roll),
         )
+
+
+@lru_cache(maxsize=16)
+def _with_tire_friction(settings: Settings, mu_tire_barrier: float) -> Settings:
+    return replace(settings, mu_tire_barrier=mu_tire_barrier)
 
 
 @checked

@@ -18,7 +18,7 @@ from .arguments import checked
 from .checks import array
 from .dimensions import Dimensions, dimensions
 from .frozen_mapping import FrozenMapping
-from .loading import check_load, solids_at, structure_mass
+from .loading import check_load, core_ranges, solids_at, structure_mass
 from .mass_center import stretched_inertia
 from .unit_check import Usual, given, warn_if_unusual
 from .units import Quantity, Stated, si
@@ -605,9 +605,9 @@ class Vehicle:
             )
         if not (self.wheel_of_node >= 0).any():
             vehicle = vehicle.without_tire_contact()
-        return dataclasses.replace(
-            vehicle, name=self.name, rate_sensitivity=self.rate_sensitivity, dent_reach=self.dent_reach
-        )
+        names = ("name", "rate_sensitivity", "dent_reach")
+        others = {n: getattr(self, n) for n in names if getattr(self, n) != getattr(vehicle, n)}
+        return dataclasses.replace(vehicle, **others) if others else vehicle
 
     def draft(self) -> Vehicle:
         """Return the vehicle to be changed several times at the cost of one; end with :meth:`finished`.
@@ -774,22 +774,18 @@ class Vehicle:
     def _is_shape(self) -> bool:
         """Whether the arrays are those of the shape, nodes and anchors seen from the mass centre."""
         shape = self._shape
-        return (
-            shape is not None
-            and all(
-                getattr(self, name) is getattr(shape, name)
-                or np.array_equal(getattr(self, name), getattr(shape, name))
-                for name in ("area", "zone_of_node", "wheel_of_node", "along_of_node")
-            )
-            and np.array_equal(self.nodes, shape.nodes - self.center_of_mass)
-            and np.array_equal(self.anchors, shape.anchors - self.center_of_mass)
-        )
+        if shape is None:
+            return False
+        names = ("area", "zone_of_node", "wheel_of_node", "along_of_node")
+        pairs = [(getattr(self, name), getattr(shape, name)) for name in names]
+        pairs += zip((self.nodes, self.anchors), shape.seen_from(self.center_of_mass), strict=True)
+        return all(own is seen or np.array_equal(own, seen) for own, seen in pairs)
 
     def _core_boxes(self) -> Floats:
         """Return middles and half edges of the rigid body's boxes, body axes, shape (k, 6) [m]."""
-        boxes = () if self._file is None else self._file.core
-        ranges = np.array([(box.x_m, (-box.half_width_m, box.half_width_m), box.z_m) for box in boxes])
-        ranges = ranges.reshape(-1, 3, 2) - self.center_of_mass[:, None]
+        if self._file is None:
+            return np.empty((0, 6))
+        ranges = core_ranges(self._file) - self.center_of_mass[:, None]
         return np.hstack([ranges.mean(axis=2), 0.5 * np.ptp(ranges, axis=2)])
 
     def __eq__(self, other: object) -> bool:
@@ -880,13 +876,14 @@ def _assemble(
         center[2] = height
     wheels = shape.wheels.copy()
     wheels[:, :3] -= center
+    nodes, anchors = shape.seen_from(center)
     return Vehicle(
         name=file.name,
         mass=mass,  # the solids' up to rounding, which would grow with every change
         center_of_mass=center,
         inertia=inertia,
-        nodes=shape.nodes - center,
-        anchors=shape.anchors - center,
+        nodes=nodes,
+        anchors=anchors,
         area=shape.area,
         zone_of_node=shape.zone_of_node,
         wheel_of_node=shape.wheel_of_node,

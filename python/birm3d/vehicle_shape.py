@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Mapping
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +27,7 @@ Ints = npt.NDArray[np.int64]
 
 _SHAPES = 16  # files and mesh densities that are remembered
 _LAWS = 4  # of each, sets of laws for which the core has the trusses
+_PLACES = 4  # of each, mass centres from which nodes and anchors were seen
 
 
 class VehicleShape:
@@ -61,6 +63,7 @@ class VehicleShape:
         for array in (nodes, anchors, area, zone_of_node, wheel_of_node, along_of_node, quads, wheels):
             array.setflags(write=False)
         self._trusses: OrderedDict[tuple[object, ...], _core.TrussMesh] = OrderedDict()
+        self._seen: OrderedDict[bytes, tuple[Floats, Floats]] = OrderedDict()
 
     @cached_property
     def without_treads(self) -> VehicleShape:
@@ -84,6 +87,18 @@ class VehicleShape:
 
         return node_spacing(self.nodes[(self.wheel_of_node < 0) & (self.along_of_node < 0)])
 
+    def seen_from(self, center: Floats) -> tuple[Floats, Floats]:
+        """Return nodes and anchors in axes with their origin at `center` (3,) [m]; the last few are kept."""
+        key = center.tobytes()
+        seen = self._seen.get(key)
+        if seen is None:
+            seen = (self.nodes - center, self.anchors - center)
+            for array in seen:
+                array.setflags(write=False)
+            self._seen[key] = seen
+            _forget_first(self._seen, _PLACES)
+        return seen
+
     def trusses(
         self, zones: Mapping[str, Zone], rate_sensitivity: float, dent_reach: float
     ) -> _core.TrussMesh:
@@ -104,14 +119,21 @@ class VehicleShape:
                 along_of=self.along_of_node,
             )
             self._trusses[key] = known
-            while len(self._trusses) > _LAWS:
-                # Another thread may have been faster.
-                self._trusses.pop(next(iter(self._trusses)), None)
+            _forget_first(self._trusses, _LAWS)
         return known
 
     def __reduce__(self) -> tuple[object, ...]:
         arrays = (self.nodes, self.anchors, self.area, self.zone_of_node, self.wheel_of_node)
         return (VehicleShape, (*arrays, self.along_of_node, self.quads, self.wheels))
+
+
+def _forget_first(known: OrderedDict[Any, Any], most: int) -> None:
+    """Forget the oldest until there are `most`; other threads may do the same, and be faster."""
+    while len(known) > most:
+        try:
+            known.popitem(last=False)
+        except KeyError:
+            return
 
 
 @lru_cache(maxsize=_SHAPES)

@@ -10,21 +10,26 @@ namespace birm3d {
 
 namespace {
 
-// Two poles in the transposed direct form II, and its state.
+// Two poles in the transposed direct form II, and their states for two signals.
 struct Biquad {
     double b0, b1, b2, a1, a2;
-    double z1 = 0.0, z2 = 0.0;
+    TwoSignals z1{}, z2{};
 
     // As after an endless signal of this value.
-    void settle(double value) {
-        const double out = (b0 + b1 + b2) / (1.0 + a1 + a2) * value;
-        z2 = b2 * value - a2 * out;
-        z1 = b1 * value - a1 * out + z2;
+    void settle(const TwoSignals& value) {
+        for (std::size_t i = 0; i < 2; ++i) {
+            const double out = (b0 + b1 + b2) / (1.0 + a1 + a2) * value[i];
+            z2[i] = b2 * value[i] - a2 * out;
+            z1[i] = b1 * value[i] - a1 * out + z2[i];
+        }
     }
-    double next(double value) {
-        const double out = b0 * value + z1;
-        z1 = b1 * value - a1 * out + z2;
-        z2 = b2 * value - a2 * out;
+    TwoSignals next(const TwoSignals& value) {
+        TwoSignals out;
+        for (std::size_t i = 0; i < 2; ++i) {
+            out[i] = b0 * value[i] + z1[i];
+            z1[i] = b1 * value[i] - a1 * out[i] + z2[i];
+            z2[i] = b2 * value[i] - a2 * out[i];
+        }
         return out;
     }
 };
@@ -43,27 +48,31 @@ std::size_t rows_in(double width, double interval) {
     return static_cast<std::size_t>(std::max(1.0, std::nearbyint(width / interval)));
 }
 
-std::optional<double> peak_of_filtered(std::span<const double> signal, double channel_class,
-                                       double interval) {
+std::optional<TwoSignals> peaks_of_filtered(std::span<const TwoSignals> signal, double channel_class,
+                                            double interval) {
     if (signal.empty() || !(interval * channel_class <= 0.1)) return std::nullopt;
     Biquad filter = low_pass(channel_class, interval);
     const std::size_t n = signal.size();
     // Before the start the filter is settled; after the end it runs on for this long.
     const auto padding =
         std::min(n - 1, static_cast<std::size_t>(std::ceil(2.0 / (channel_class * interval))));
-    thread_local std::vector<double> once;
+    thread_local std::vector<TwoSignals> once;
     once.resize(n + padding);
     filter.settle(signal.front());
     for (std::size_t k = 0; k < n; ++k)
         once[k] = filter.next(signal[k]);
     for (std::size_t k = n; k < n + padding; ++k)
         once[k] = filter.next(signal.back());
-    double peak = -std::numeric_limits<double>::infinity();
+    TwoSignals peak;
+    peak.fill(-std::numeric_limits<double>::infinity());
     filter.settle(once.back());
     for (std::size_t k = n + padding; k-- > n;)
         filter.next(once[k]);
-    for (std::size_t k = n; k-- > 0;)
-        peak = std::max(peak, filter.next(once[k]));
+    for (std::size_t k = n; k-- > 0;) {
+        const TwoSignals out = filter.next(once[k]);
+        for (std::size_t i = 0; i < 2; ++i)
+            peak[i] = std::max(peak[i], out[i]);
+    }
     return peak;
 }
 

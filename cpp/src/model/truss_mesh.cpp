@@ -156,17 +156,17 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
     for (std::size_t p = 0; p < parts.size(); ++p) {
         std::vector<std::size_t>& part = parts[p];
         for (std::size_t i = 0; i < part.size(); i += lanes)
-            first.push_back(input_index.size() + i);
+            first.fill().push_back(input_index.size() + i);
         cut_into_blocks(site, part);  // neighbours together
         input_index.fill().insert(input_index.end(), part.begin(), part.end());
         if (p == 0) skin = input_index.size(), skin_blocks = first.size();
         if (p == 1) shell = input_index.size(), shell_blocks = first.size();
     }
     blocks = first.size();
-    first.push_back(count);
+    first.fill().push_back(count);
 
     anchors = Box::around(skin, [&](std::size_t i) { return input.anchor[input_index[i]]; });
-    block.resize(blocks);
+    block.fill().resize(blocks);
     hinge.fill().resize(blocks * hinges);
     for (std::size_t b = 0; b < blocks; ++b)
         fill_block(input, b);
@@ -179,32 +179,33 @@ void TrussMesh::find_tread(const TrussInput& input, const std::vector<Wheel>& wh
         const std::size_t source = input_index[truss];
         const auto w = static_cast<std::size_t>(input.wheel_of[source]);
         const Vec3 d = input.node[source] - wheels[w].center;
-        tread.push_back({d.z() / wheels[w].radius, -d.x() / wheels[w].radius, w});
+        tread.fill().push_back({d.z() / wheels[w].radius, -d.x() / wheels[w].radius, w});
     }
 }
 
 void TrussMesh::find_panels(const TrussInput& input) {
     std::array<std::vector<Vec3>, panels> nodes, anchors_of;
-    panels_of.assign(blocks, 0);
+    panels_of.fill().assign(blocks, 0);
     for (std::size_t truss = 0; truss < shell; ++truss) {
         const std::size_t source = input_index[truss];
         const bool second = truss >= skin;
         const std::size_t of = second ? static_cast<std::size_t>(input.along_of[source]) : source;
         const std::size_t p = panel_of(input.anchor[of] - input.node[of]);
-        block[slot(truss) / lanes].panel[slot(truss) % lanes] = static_cast<double>(p);
-        panels_of[slot(truss) / lanes] |= static_cast<std::uint8_t>(1U << p);
+        block.fill()[slot(truss) / lanes].panel[slot(truss) % lanes] = static_cast<double>(p);
+        panels_of.fill()[slot(truss) / lanes] |= static_cast<std::uint8_t>(1U << p);
         if (second) continue;
         nodes[p].push_back(node(truss));
         anchors_of[p].push_back(anchor(truss));
     }
     for (std::size_t b = 0; b < shell_blocks; ++b)
         for (std::size_t i = nodes_in(b); i < lanes; ++i)
-            block[b].panel[i] = block[b].panel[nodes_in(b) - 1];
+            block.fill()[b].panel[i] = block[b].panel[nodes_in(b) - 1];
     for (std::size_t b = shell_blocks; b < blocks; ++b)
-        block[b].panel.fill(static_cast<double>(panels)), panels_of[b] = 1U << panels;  // of none of these
-    panels_of_group.assign((blocks + group_size - 1) / group_size, 0);
+        block.fill()[b].panel.fill(static_cast<double>(panels)),
+            panels_of.fill()[b] = 1U << panels;  // of none of these
+    panels_of_group.fill().assign((blocks + group_size - 1) / group_size, 0);
     for (std::size_t b = 0; b < blocks; ++b)
-        panels_of_group[b / group_size] |= panels_of[b];
+        panels_of_group.fill()[b / group_size] |= panels_of[b];
     for (std::size_t p = 0; p < panels; ++p) {
         const double way = p % 2 == 0 ? 1.0 : -1.0;
         panel[p] = {way * Vec3::Unit(static_cast<Eigen::Index>(p / 2)), {}, {}, !nodes[p].empty()};
@@ -231,11 +232,11 @@ void TrussMesh::fill_block(const TrussInput& input, std::size_t b) {
         fill_lane(input, input_index[first[b] + i], b, i);
     if (nodes < lanes) pad(input, b);
     const Lanes& k = block[b].k_unloading;
-    pushable.push_back(
+    pushable.fill().push_back(
         static_cast<double>(std::count_if(k.begin(), k.end(), [](double each) { return each > 0.0; })));
-    moments.push_back(stiffness_of(block[b]));
-    node_box.push_back(box_around(block[b].node_x, block[b].node_y, block[b].node_z));
-    anchor_box.push_back(box_around(block[b].anchor_x, block[b].anchor_y, block[b].anchor_z));
+    moments.fill().push_back(stiffness_of(block[b]));
+    node_box.fill().push_back(box_around(block[b].node_x, block[b].node_y, block[b].node_z));
+    anchor_box.fill().push_back(box_around(block[b].anchor_x, block[b].anchor_y, block[b].anchor_z));
 }
 
 // Padding stands by an anchor of the skin, where nothing meets it before the body: the one next to the block.
@@ -254,7 +255,7 @@ void TrussMesh::pad(const TrussInput& input, std::size_t b) {
 
 void TrussMesh::place_lane(const Vec3& node, const Vec3& anchor, std::size_t b, std::size_t i) {
     reach = std::max({reach, node.norm(), b < skin_blocks ? anchor.norm() : 0.0});
-    TrussBlock& to = block[b];
+    TrussBlock& to = block.fill()[b];
     to.node_x[i] = node.x(), to.node_y[i] = node.y(), to.node_z[i] = node.z();
     to.anchor_x[i] = anchor.x(), to.anchor_y[i] = anchor.y(), to.anchor_z[i] = anchor.z();
     to.length[i] = (node - anchor).norm();
@@ -264,7 +265,7 @@ void TrussMesh::fill_lane(const TrussInput& input, std::size_t source, std::size
     place_lane(input.node[source], input.anchor[source], b, i);
     const double scale = input.scale[source];
     const TrussCurve& curve = input.curve[input.curve_of[source]];
-    TrussBlock& to = block[b];
+    TrussBlock& to = block.fill()[b];
     to.k_unloading[i] = scale * curve.k_unloading;
     to.compliance[i] = to.k_unloading[i] > 0.0 ? 1.0 / to.k_unloading[i] : 0.0;
     to.per_recovery[i] = 1.0 / curve.recovery;

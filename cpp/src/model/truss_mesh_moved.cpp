@@ -38,10 +38,8 @@ void move(Lanes& values, double by) {
         value -= by;
 }
 
-}  // namespace
-
-void TrussMesh::move_block(std::size_t b, const Vec3& origin) {
-    TrussBlock& to = block[b];
+TrussBlock moved_block(const TrussBlock& block, const Vec3& origin) {
+    TrussBlock to = block;
     move(to.node_x, origin.x()), move(to.node_y, origin.y()), move(to.node_z, origin.z());
     move(to.anchor_x, origin.x()), move(to.anchor_y, origin.y()), move(to.anchor_z, origin.z());
     for (std::size_t i = 0; i < lanes; ++i) {
@@ -49,18 +47,32 @@ void TrussMesh::move_block(std::size_t b, const Vec3& origin) {
                      z = to.node_z[i] - to.anchor_z[i];
         to.length[i] = std::sqrt(x * x + y * y + z * z);
     }
-    node_box[b] = box_around(to.node_x, to.node_y, to.node_z);
-    anchor_box[b] = box_around(to.anchor_x, to.anchor_y, to.anchor_z);
-    moments[b] = stiffness_of(to);
+    return to;
 }
+
+// A column of its own, in place of one that copies share.
+template <class T>
+std::vector<T>& anew(SharedColumn<T>& column, std::size_t size) {
+    column = {};
+    column.fill().reserve(size);
+    return column.fill();
+}
+
+}  // namespace
 
 TrussMesh TrussMesh::moved(const Vec3& origin) const {
     TrussMesh mesh = *this;
     if (origin == Vec3::Zero()) return mesh;
     double reach_2 = 0.0;
+    std::vector<TrussBlock>& to = anew(mesh.block, blocks);
+    std::vector<Box>&nodes = anew(mesh.node_box, blocks), &places = anew(mesh.anchor_box, blocks);
+    std::vector<StiffnessMoments>& stiffness = anew(mesh.moments, blocks);
     for (std::size_t b = 0; b < blocks; ++b) {
-        mesh.move_block(b, origin);
-        const TrussBlock& at = mesh.block[b];
+        to.push_back(moved_block(block[b], origin));
+        const TrussBlock& at = to.back();
+        nodes.push_back(box_around(at.node_x, at.node_y, at.node_z));
+        places.push_back(box_around(at.anchor_x, at.anchor_y, at.anchor_z));
+        stiffness.push_back(stiffness_of(at));
         reach_2 = std::max(reach_2, reach_squared(at.node_x, at.node_y, at.node_z));
         if (b < skin_blocks)
             reach_2 = std::max(reach_2, reach_squared(at.anchor_x, at.anchor_y, at.anchor_z));

@@ -1,6 +1,7 @@
 #include "birm3d/model/vehicle.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -66,8 +67,12 @@ Unit::Unit(const RigidBody& body_, TrussMesh trusses_, std::vector<Wheel> wheels
 
 bool stands_on_wheels(const Unit& unit) {
     if (unit.wheels.empty()) return false;
-    for (std::size_t i = 0; i < unit.trusses.skin; ++i)
-        if (unit.trusses.node(i).z() + unit.mass_center_height < 0.0) return false;
+    const TrussMesh& mesh = unit.trusses;
+    for (std::size_t b = 0; b < mesh.skin_blocks; ++b) {
+        const auto first = mesh.block[b].node_z.begin();
+        const double lowest = *std::min_element(first, first + static_cast<std::ptrdiff_t>(mesh.nodes_in(b)));
+        if (lowest + unit.mass_center_height < 0.0) return false;
+    }
     return true;
 }
 

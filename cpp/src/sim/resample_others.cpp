@@ -6,12 +6,11 @@
 #include <utility>
 
 #include "birm3d/base/rotation.hpp"
-#include "recorder_rows.hpp"
+#include "resample_rows.hpp"
 
 namespace birm3d {
 
-void Recorder::resample_joints(const Scene& scene, const std::vector<std::size_t>& step_of,
-                               History& history) const {
+void Recorder::resample_joints(const Scene& scene, const OutputInstants& output, History& history) const {
     const std::vector<Joint>& joints = scene.vehicle->joints;
     const std::size_t first = width_ - segment_width * scene.free_segments() - joint_width * joints.size(),
                       count = history.time.size();
@@ -24,26 +23,24 @@ void Recorder::resample_joints(const Scene& scene, const std::vector<std::size_t
         for (std::size_t k = 0; k < count; ++k)
             joint.angles.push_back(joint_angles(leading[k], trailing[k]));
 
-        const auto row_at = [&](std::size_t row) { return values_.data() + row * width_; };
         const auto add = [&](std::size_t row, double share, Wrench& sum) {
-            const double* impulse = row_at(row + 1) + first + j * joint_width;
+            const double* impulse = output.view(row, first + j * joint_width).b;
             sum += {share * vec(impulse), share * vec(impulse + 3)};
         };
         Wrench before_step, previous;
         std::size_t row = 0;
-        for (std::size_t k = 0; k < count && rows() > 1; ++k) {
-            for (; row < step_of[k]; ++row)
+        for (const Span& span : output.span) {
+            for (; row < span.row; ++row)
                 add(row, 1.0, before_step);
-            const double dt = row_at(row + 1)[at_time] - row_at(row)[at_time];
-            const double t = std::clamp(history.time[k] - row_at(row)[at_time], 0.0, dt);
-            Wrench now = before_step;
-            add(row, dt > 0.0 ? t / dt : 1.0, now);
-            if (k > 0) {
-                const double per = 1.0 / (history.time[k] - history.time[k - 1]);
-                joint.force[k] = per * (now.force - previous.force);
-                joint.moment[k] = per * (now.torque - previous.torque);
+            for (std::size_t k = span.first; k < span.end; ++k) {
+                Wrench now = before_step;
+                add(row, output.share[k], now);
+                if (k > 0) {
+                    joint.force[k] = output.per[k] * (now.force - previous.force);
+                    joint.moment[k] = output.per[k] * (now.torque - previous.torque);
+                }
+                previous = now;
             }
-            previous = now;
         }
         if (count > 1) joint.force[0] = joint.force[1], joint.moment[0] = joint.moment[1];
         history.joints.push_back(std::move(joint));
@@ -51,8 +48,7 @@ void Recorder::resample_joints(const Scene& scene, const std::vector<std::size_t
 }
 
 // Forces and torques on the obstacles that were touched, as means over the output intervals.
-void Recorder::resample_obstacles(const Scene& scene, const std::vector<std::size_t>& step_of,
-                                  History& history) const {
+void Recorder::resample_obstacles(const Scene& scene, const OutputInstants& output, History& history) const {
     std::map<std::size_t, std::vector<const ObstacleRow*>>
         touched;  // obstacle -> (rows), null where untouched
     for (const ObstacleRow& row : obstacles_) {
@@ -61,45 +57,47 @@ void Recorder::resample_obstacles(const Scene& scene, const std::vector<std::siz
         rows_of[row.row] = &row;
     }
     static constexpr std::array<double, obstacle_width> nothing{};
-    const auto time_at = [&](std::size_t row) { return values_[row * width_ + at_time]; };
     for (const auto& [obstacle, rows_of] : touched) {
         const auto view = [&](std::size_t r) {
             const auto values = [&](std::size_t i) {
                 return rows_of[i] ? rows_of[i]->values.data() : nothing.data();
             };
-            return StepView{values(r), values(r + 1), time_at(r + 1) - time_at(r)};
+            return StepView{values(r), values(r + 1), output.time_at(r + 1) - output.time_at(r)};
         };
-        const auto within = [](const StepView& step, double t) {
-            std::array<double, 6> sum;
-            for (std::size_t i = 0; i < 6; ++i)
-                sum[i] = step.force_integral(at_load + i, at_load_bend + i, t) +
-                         step.impulse(at_load_impulse + i, t);
-            return sum;
-        };
-        ObstacleHistory of{obstacle, {}, {}};
         const std::size_t count = history.time.size();
-        of.force.assign(count, Vec3::Zero());
-        of.moment.assign(count, Vec3::Zero());
+        ObstacleHistory of{obstacle, std::vector<Vec3>(count, Vec3::Zero()),
+                           std::vector<Vec3>(count, Vec3::Zero())};
         std::array<double, 6> before_step{}, previous{};
+        std::array<SpanColumn, 6> now;
         std::size_t row = 0;
-        for (std::size_t k = 0; k < count && rows() > 1; ++k) {
-            for (; row < step_of[k]; ++row) {
-                const std::array<double, 6> whole = within(view(row), view(row).dt);
+        for (const Span& span : output.span) {
+            for (; row < span.row; ++row) {
+                if (!rows_of[row] && !rows_of[row + 1]) continue;
+                const StepView whole = view(row);
                 for (std::size_t i = 0; i < 6; ++i)
-                    before_step[i] += whole[i];
+                    before_step[i] += whole.force_integral(at_load + i, at_load_bend + i, whole.dt) +
+                                      whole.impulse(at_load_impulse + i, whole.dt);
             }
+            if (!rows_of[row] && !rows_of[row + 1] && previous == before_step) continue;
             const StepView step = view(row);
-            std::array<double, 6> now =
-                within(step, std::clamp(history.time[k] - time_at(row), 0.0, step.dt));
-            std::array<double, 6> mean{};
             for (std::size_t i = 0; i < 6; ++i) {
-                now[i] += before_step[i];
-                if (k > 0) mean[i] = (now[i] - previous[i]) / (history.time[k] - history.time[k - 1]);
+                output.integrate(span, step.a[at_load + i], step.b[at_load + i], step.b[at_load_bend + i],
+                                 step.b[at_load_impulse + i], now[i].data());
+                for (std::size_t n = 0; n < span.size(); ++n)
+                    now[i][n] += before_step[i];
             }
-            of.force[k] = vec(mean.data());
-            of.moment[k] = vec(mean.data() + 3) + scene.from_origin.cross(of.force[k]);
-            previous = now;
+            for (std::size_t i = 0; i < 6; ++i) {
+                std::vector<Vec3>& to = i < 3 ? of.force : of.moment;
+                for (std::size_t k = span.first; k < span.end; ++k) {
+                    const double sum = now[i][k - span.first];
+                    if (k > 0)
+                        to[k][static_cast<Eigen::Index>(i % 3)] = (sum - previous[i]) / output.interval[k];
+                    previous[i] = sum;
+                }
+            }
         }
+        for (std::size_t k = 0; k < count; ++k)
+            of.moment[k] += scene.from_origin.cross(of.force[k]);
         if (count > 1) of.force[0] = of.force[1], of.moment[0] = of.moment[1];
         history.obstacles.push_back(std::move(of));
     }
@@ -108,8 +106,7 @@ void Recorder::resample_obstacles(const Scene& scene, const std::vector<std::siz
 // Between rows a segment moves by what the vehicle does to it, as the record has it; what the ground and the pins do
 // within the step, the rest of its change of velocity, is spread evenly. So the momentum of all bodies adds up at every
 // instant.
-void Recorder::resample_segments(const Scene& scene, const std::vector<std::size_t>& step_of,
-                                 History& history) const {
+void Recorder::resample_segments(const Scene& scene, const OutputInstants& output, History& history) const {
     const std::size_t segments = scene.free_segments(), count = history.time.size();
     const std::size_t first = width_ - segment_width * segments;
     static constexpr std::array<double, obstacle_width> nothing{};
@@ -122,14 +119,17 @@ void Recorder::resample_segments(const Scene& scene, const std::vector<std::size
         const auto at = [&](std::size_t row) {
             return values_.data() + row * width_ + first + i * segment_width;
         };
-        const auto time_at = [&](std::size_t row) { return values_[row * width_ + at_time]; };
 
         SegmentHistory segment;
+        std::size_t span = 0;
         double yaw = 0.0, last_angle = 0.0;
         for (std::size_t k = 0; k < count; ++k) {
-            const std::size_t row = step_of[k], next = rows() > 1 ? row + 1 : row;
-            const double *a = at(row), *b = at(next), dt = time_at(next) - time_at(row);
-            const double t = std::clamp(history.time[k] - time_at(row), 0.0, dt), s = dt > 0.0 ? t / dt : 1.0;
+            while (span + 1 < output.span.size() && output.span[span].end <= k)
+                ++span;
+            const std::size_t row = output.span.empty() ? 0 : output.span[span].row;
+            const std::size_t next = rows() > 1 ? row + 1 : row;
+            const double *a = at(row), *b = at(next), dt = output.time_at(next) - output.time_at(row);
+            const double t = output.within[k], s = output.share[k];
             const StepView load{loads[row], loads[next], dt};
             const auto pushed = [&](double until) -> Vec3 {
                 const Vec3 impulse = load.force_integral3(at_load, at_load_bend, until) +

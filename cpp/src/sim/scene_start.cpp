@@ -73,6 +73,38 @@ void stand_back(const Scene& scene, const Vec3& heading, State& state) {
     }
 }
 
+struct Ends {
+    double rear, front;
+};
+
+// Of the uncrushed vehicle along a direction (m).
+Ends ends_along(const Scene& scene, const State& state, const Vec3& direction) {
+    Ends ends{infinity, -infinity};
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const BodyState& body = state.units[u].body;
+        const TrussMesh& mesh = scene.vehicle->units[u].trusses;
+        const Mat3 R = body.orientation.toRotationMatrix();
+        const Vec3 own = R.transpose() * direction;
+        const double middle = direction.dot(body.position);
+        const auto look = [&](std::size_t b, const Box& box, const Lanes& x, const Lanes& y, const Lanes& z) {
+            // A block that can not reach further is left out.
+            const double center = middle + own.dot(box.center);
+            const double reach = own.cwiseAbs().dot(box.half) + 1e-9 * (1.0 + std::abs(center));
+            if (center + reach < ends.front && center - reach > ends.rear) return;
+            for (std::size_t i = 0; i < mesh.nodes_in(b); ++i) {
+                const double at = direction.dot(body.position + R * Vec3(x[i], y[i], z[i]));
+                ends.front = std::max(ends.front, at), ends.rear = std::min(ends.rear, at);
+            }
+        };
+        for (std::size_t b = 0; b < mesh.blocks; ++b) {
+            const TrussBlock& of = mesh.block[b];
+            look(b, mesh.node_box[b], of.node_x, of.node_y, of.node_z);
+            if (b < mesh.skin_blocks) look(b, mesh.anchor_box[b], of.anchor_x, of.anchor_y, of.anchor_z);
+        }
+    }
+    return ends;
+}
+
 // Moves the vehicle of `state` along its path, forward or back, until its nearest point stands `standoff` before the
 // barrier. A path that leads past the barrier starts where the barrier begins.
 void place(const Scene& scene, const Vec3& heading, State& state) {
@@ -86,20 +118,7 @@ void place(const Scene& scene, const Vec3& heading, State& state) {
     if (!std::isfinite(first))
         refuse("impact_angle", "> 0 and < 180 deg where the barrier has no end",
                scene.approach.angle * 180.0 / std::numbers::pi);
-    double front = -infinity, rear = infinity;
-    for (std::size_t u = 0; u < state.units.size(); ++u) {
-        const BodyState& body = state.units[u].body;
-        const TrussMesh& mesh = scene.vehicle->units[u].trusses;
-        const Mat3 R = body.orientation.toRotationMatrix();
-        const auto reach = [&](const Vec3& point) {
-            const double at = inward.dot(body.position + R * point);
-            front = std::max(front, at), rear = std::min(rear, at);
-        };
-        for (std::size_t i = 0; i < mesh.count; ++i)
-            reach(mesh.node(i));
-        for (std::size_t i = 0; i < mesh.skin; ++i)
-            reach(mesh.anchor(i));
-    }
+    const auto [rear, front] = ends_along(scene, state, inward);
     const double pace = heading.dot(inward);
     const double to_plane = (first - scene.approach.standoff - front) / pace;
     move(state, to_plane * heading);

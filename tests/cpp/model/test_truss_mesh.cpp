@@ -193,3 +193,15 @@ TEST("second trusses stand in blocks of their own behind the skin, on the panels
         CHECK_THROWS(TrussMesh(with), std::invalid_argument);
     }
 }
+
+TEST("copies share their columns; a mesh that is seen from elsewhere has new places and shares the rest") {
+    const TrussMesh mesh(input), copy = mesh, moved = mesh.moved(Vec3(0.5, -0.25, 0.125));
+    CHECK(copy.block.data() == mesh.block.data());
+    CHECK(moved.block.data() != mesh.block.data());
+    CHECK(moved.first.data() == mesh.first.data());
+    CHECK(moved.hinge.begin() == mesh.hinge.begin());
+    for (std::size_t i = 0; i < mesh.count; ++i) {
+        CHECK(mesh.node(i) == input.node[mesh.input_index[i]]);
+        CHECK_CLOSE((moved.node(i) + Vec3(0.5, -0.25, 0.125) - mesh.node(i)).norm(), 0.0, 1e-15, "rounding");
+    }
+}

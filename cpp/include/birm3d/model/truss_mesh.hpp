@@ -37,6 +37,8 @@ class SharedColumn {
     std::vector<T>& fill() { return *values_; }
     const T& operator[](std::size_t i) const { return (*values_)[i]; }
     std::size_t size() const { return values_->size(); }
+    bool empty() const { return values_->empty(); }
+    const T* data() const { return values_->data(); }
     auto begin() const { return values_->cbegin(); }
     auto end() const { return values_->cend(); }
 
@@ -124,21 +126,21 @@ struct TrussMesh {
     static constexpr std::size_t group_size = 8;  // blocks of a group, but for the last
     std::size_t end_of_group(std::size_t g) const { return std::min((g + 1) * group_size, blocks); }
 
-    std::vector<std::size_t> first;  // (blocks + 1) truss of each block, and the end
-    std::vector<TrussBlock> block;   // (blocks)
-    SharedColumn<Hinge> hinge;       // (blocks * hinges), a block's hinges together
+    SharedColumn<std::size_t> first;  // (blocks + 1) truss of each block, and the end
+    SharedColumn<TrussBlock> block;   // (blocks)
+    SharedColumn<Hinge> hinge;        // (blocks * hinges), a block's hinges together
 
-    std::vector<double> pushable;           // (blocks) trusses that have a stiffness
-    std::vector<StiffnessMoments> moments;  // (blocks) of all of them
-    std::vector<Box> node_box;              // (blocks) around the uncrushed nodes
-    std::vector<Box> anchor_box;            // (blocks)
-    std::vector<TreadNode> tread;           // (count - shell)
-    Box anchors;                            // around those of the skin
+    SharedColumn<double> pushable;           // (blocks) trusses that have a stiffness
+    SharedColumn<StiffnessMoments> moments;  // (blocks) of all of them
+    SharedColumn<Box> node_box;              // (blocks) around the uncrushed nodes
+    SharedColumn<Box> anchor_box;            // (blocks)
+    SharedColumn<TreadNode> tread;           // (count - shell)
+    Box anchors;                             // around those of the skin
     std::array<Panel, panels> panel;
     // (blocks) bit by bit: which panels have nodes there? The bit after them: treads.
-    std::vector<std::uint8_t> panels_of;
-    std::vector<std::uint8_t> panels_of_group;  // (groups) the same
-    SharedColumn<std::size_t> input_index;      // (count) the caller's number of each truss
+    SharedColumn<std::uint8_t> panels_of;
+    SharedColumn<std::uint8_t> panels_of_group;  // (groups) the same
+    SharedColumn<std::size_t> input_index;       // (count) the caller's number of each truss
 
     // Place of a truss in the blocks: padding stands between some.
     std::size_t slot(std::size_t truss) const {
@@ -167,7 +169,6 @@ struct TrussMesh {
   private:
     void fill_block(const TrussInput& input, std::size_t b);
     void find_panels(const TrussInput& input);
-    void move_block(std::size_t b, const Vec3& origin);
     void find_tread(const TrussInput& input, const std::vector<Wheel>& wheels);
     void pad(const TrussInput& input, std::size_t b);
     void fill_lane(const TrussInput& input, std::size_t source, std::size_t b, std::size_t i);

@@ -22,7 +22,9 @@ struct ExtremeGroups {
                 .normal_force = normal_force || filtered_force,
                 .motion = motion || attitude || filtered_deceleration || penetration || wheel_climb ||
                           momentum || joint,
-                .forces = momentum,
+                .angular_velocity = false,
+                .forces = false,
+                .momentum = momentum,
                 .contact_forces = false,
                 .elements = element_loads || segments,
                 .joints = joint,
@@ -99,6 +101,9 @@ Extremes extremes_of(const History& history, const Vehicle& vehicle, const Barri
                      const ExtremeGroups& wanted, const Event& event);
 
 // Parts of the above.
+Extremes::Motion greatest_motion(const History& history, const Event& event);
+Extremes::Attitude greatest_attitude(const History& history, const Event& event);
+Extremes::JointLoads greatest_joint_loads(const JointHistory& joint);
 double greatest_penetration(const History& history, const Vehicle& vehicle, const Barrier& barrier);
 double greatest_wheel_climb(const History& history, const Vehicle& vehicle);
 Extremes::ElementLoads greatest_element_loads(const History& history, const Barrier& barrier);

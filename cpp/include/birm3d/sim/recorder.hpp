@@ -71,12 +71,16 @@ struct Channels {
     bool energies = true;
     bool normal_force = true;
     bool motion = true;
-    bool forces = true;          // all other forces on the units; only with the motion
-    bool contact_forces = true;  // UnitHistory::sum_of_contact_forces
-    bool elements = true;        // loads on the elements of the barrier
-    bool joints = true;          // only with the motion
+    bool angular_velocity = true;  // only with the motion
+    bool forces = true;            // all other forces on the units; only with the motion
+    bool momentum = true;          // History::momentum_residual; only with the motion
+    bool contact_forces = true;    // UnitHistory::sum_of_contact_forces
+    bool elements = true;          // loads on the elements of the barrier
+    bool joints = true;            // only with the motion
     bool segments = true;
 };
+
+struct OutputInstants;
 
 class Recorder {
   public:
@@ -111,21 +115,13 @@ class Recorder {
 
     void add_row(const Scene& scene, double time, const Energies& energies, const Loads& loads);
     ObstacleRow& obstacle_row(std::size_t row, std::size_t obstacle);
-    // `step_of`: row at which the step begins that holds each output instant.
-    void resample_energies(const std::vector<std::size_t>& step_of, History& history) const;
-    void resample_normal_force(const std::vector<std::size_t>& step_of, std::size_t offset,
-                               const Column& time, const Vec3& towards, UnitHistory& unit) const;
-    void resample_contact_forces(const std::vector<std::size_t>& step_of, std::size_t offset,
-                                 const Column& time, UnitHistory& unit) const;
-    void resample_motion(const std::vector<std::size_t>& step_of, std::size_t offset, const Column& time,
-                         const Unit& model, double gravity, UnitHistory& unit) const;
-    double resample_forces(const std::vector<std::size_t>& step_of, std::size_t offset, const Column& time,
-                           const Unit& model, double gravity, UnitHistory& unit, double& worst) const;
-    void resample_obstacles(const Scene& scene, const std::vector<std::size_t>& step_of,
-                            History& history) const;
-    void resample_segments(const Scene& scene, const std::vector<std::size_t>& step_of,
-                           History& history) const;
-    void resample_joints(const Scene& scene, const std::vector<std::size_t>& step_of, History& history) const;
+    void resample_energies(const OutputInstants& output, History& history) const;
+    void resample_contact_forces(const OutputInstants& output, std::size_t offset, UnitHistory& unit) const;
+    void resample_units(const OutputInstants& output, const Scene& scene, const Channels& wanted,
+                        History& history) const;
+    void resample_obstacles(const Scene& scene, const OutputInstants& output, History& history) const;
+    void resample_segments(const Scene& scene, const OutputInstants& output, History& history) const;
+    void resample_joints(const Scene& scene, const OutputInstants& output, History& history) const;
 
     std::size_t width_;  // numbers in a row
     Column values_;      // (rows * width), flat: adding a row allocates only when the buffer grows
