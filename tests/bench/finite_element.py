@@ -1,4 +1,5 @@
-"""Finite-element runs of two vehicles, and the same crashes as scenes: what bench_finite_element.py compares.
+"""Finite-element runs of two vehicles, and the same crashes as scenes: what bench_finite_element.py and
+tests/validation compare.
 
 The runs were made for this project with OpenRadioss on two public training models;
 tests/data/finite_element holds our own vehicle files and reduced curves. They are a finite-element code's
@@ -75,12 +76,18 @@ class Run:
 
     name: str
     barrier: str
-    impact_angle: float
+    impact_angle: float  # beyond 90 deg the left front corner touches first
+    impact_offset: float  # of a pole to the right of the centre line [m]
     speed: float
     crush: float
     time_of_zero_velocity: float
     peak_force: float
     mean_force: float
+    restitution: float
+    end: float  # since the first touch [s]; yaw and impulses are of then
+    yaw: float  # positive nose to the left [deg]
+    normal_impulse: float  # N s
+    lateral_impulse: float  # on the vehicle, to the left [N s]
     time: Floats
     force: Floats
     displacement: Floats
@@ -122,11 +129,17 @@ def runs() -> Mapping[str, Run]:
             name=row["run"],
             barrier=row["barrier"],
             impact_angle=float(row["impact_angle_deg"]),
+            impact_offset=float(row["impact_offset_m"]),
             speed=units.mph(float(row["speed_mph"])),
             crush=float(row["crush_m"]),
             time_of_zero_velocity=float(row["time_of_zero_velocity_s"]),
             peak_force=float(row["peak_force_N"]),
             mean_force=float(row["mean_force_N"]),
+            restitution=float(row["restitution"]),
+            end=float(row["end_s"]),
+            yaw=float(row["yaw_end_deg"]),
+            normal_impulse=float(row["normal_impulse_Ns"]),
+            lateral_impulse=float(row["lateral_impulse_Ns"]),
             time=time,
             force=force,
             displacement=displacement,
@@ -140,22 +153,27 @@ def check_vehicle(key: str, mesh_density: float = 1.0) -> birm3d.Vehicle:
 
 
 def scene(vehicle: birm3d.Vehicle, run: Run) -> birm3d.Simulation:
-    """The run as a scene: rigid ground and barrier without friction, as long as the reduced curves."""
+    """The run as a scene: rigid ground and barrier without friction, as long as the run and its curve."""
     barrier = (
         birm3d.Barrier.pole(diameter=POLE_DIAMETER, friction=0.0)
         if run.barrier == "pole"
         else birm3d.Barrier.rigid_wall(friction=0.0)
     )
-    approach = run.speed * np.sin(np.radians(run.impact_angle))
     return birm3d.Simulation(
         vehicle,
         barrier,
         run.speed,
         run.impact_angle,
+        run.impact_offset,
         standoff=STANDOFF,
-        duration=float(STANDOFF / approach + run.time[-1] + 2e-3),
+        duration=float(touch(run) + max(run.end, run.time[-1]) + 2e-3),
         settings=birm3d.Settings(mu_tire=0.0),
     )
+
+
+def touch(run: Run) -> float:
+    """When the vehicle of a scene meets the barrier [s]."""
+    return float(STANDOFF / (run.speed * np.sin(np.radians(run.impact_angle))))
 
 
 def targets(run: Run) -> tuple[Target, ...]:

@@ -1,0 +1,139 @@
+"""Writes README.md beside this file from the tables in results.
+
+python tests/validation/page.py
+"""
+
+from __future__ import annotations
+
+import csv
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from statistics import median
+
+FOLDER = Path(__file__).parent
+sys.path.insert(0, str(FOLDER.parent / "bench"))
+
+from finite_element import VEHICLES  # noqa: E402
+
+YAW_MARK = 5.0  # deg
+KINDS = ("before", "fitted", "left out")
+HEAD = (
+    "run",
+    "crush, m",
+    "error",
+    "CFC60 force, kN",
+    "error",
+    "yaw at the end, deg",
+    "error",
+    "lateral over normal impulse",
+)
+
+INTRODUCTION = """# Predicted beside given results
+
+Tables are written by `python tests/validation/page.py` from `results`.
+
+## Finite-element vehicles N and S
+
+`python tests/validation/fit_finite_element.py n` (or `s`) fits the skin of a vehicle to all its given runs
+together and saves it as `tests/data/finite_element/fitted_n.toml`. Then it fits it without each run in turn.
+Runs were made with OpenRadioss on public training models. The last number of a name is the speed in mph.
+`wall25` is 25 degrees from head-on, left front corner first; `pole350` is a pole 0.35 m to the right of the
+centre line. Barriers are without friction.
+
+- before: the law of `tests/bench/bench_finite_element.py`, one even front, fitted to walls at 20 and 40 mph.
+- fitted: the saved vehicle; all runs of its table were fitted.
+- left out: the same fit without the run of the row.
+
+Marks: crush within 10 % (N) or 5 % (S), force within 15 % or 10 %, yaw within 5 degrees. An error beyond its
+mark is bold. Repeats of the same finite-element run differ by as much as the marks of crush and force.
+"""
+
+
+def rows_of(key: str) -> list[dict[str, str]]:
+    with (FOLDER / f"results/finite_element_{key}.csv").open(encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def errors(row: dict[str, str]) -> tuple[float, float, float]:
+    """Of crush and force relative to the run, of yaw in degrees."""
+    crush, force = (
+        float(row[name]) / float(row[f"{name}_measured"]) - 1.0 for name in ("crush", "peak_force")
+    )
+    return crush, force, float(row["yaw"]) - float(row["yaw_measured"])
+
+
+def marks(row: dict[str, str]) -> tuple[float, float, float]:
+    vehicle = VEHICLES[row["vehicle"].lower()]
+    return vehicle.crush_trust, vehicle.force_trust, YAW_MARK
+
+
+def within(row: dict[str, str]) -> tuple[bool, ...]:
+    return tuple(abs(error) <= mark for error, mark in zip(errors(row), marks(row), strict=True))
+
+
+def _cells(row: dict[str, str]) -> list[str]:
+    told = [f"{100.0 * error:+.1f} %" for error in errors(row)[:2]] + [f"{errors(row)[2]:+.1f}"]
+    crush, force, yaw = (text if ok else f"**{text}**" for text, ok in zip(told, within(row), strict=True))
+    value = {name: float(text) for name, text in row.items() if name not in ("vehicle", "run", "what")}
+    lateral = (
+        f"{round(value['lateral'], 3) + 0.0:.3f} ({value['lateral_measured']:.3f})"
+        if "pole" in row["run"]
+        else ""
+    )
+    return [
+        row["run"],
+        f"{value['crush']:.3f} ({value['crush_measured']:.3f})",
+        crush,
+        f"{1e-3 * value['peak_force']:.0f} ({1e-3 * value['peak_force_measured']:.0f})",
+        force,
+        f"{round(value['yaw'], 1) + 0.0:.1f} ({value['yaw_measured']:.1f})",
+        yaw,
+        lateral,
+    ]
+
+
+def _summary(tables: dict[str, list[dict[str, str]]]) -> Iterator[str]:
+    yield "### How many are within their marks\n"
+    yield "| vehicle | law | runs | crush | force | yaw | all | median error of crush | of force |"
+    yield "|" + "---|" * 9
+    for key, table in tables.items():
+        for kind in KINDS:
+            chosen = [row for row in table if row["what"] == kind]
+            good = [sum(each) for each in zip(*(within(row) for row in chosen), strict=True)]
+            crush, force = (median(abs(errors(row)[i]) for row in chosen) for i in (0, 1))
+            counts = " | ".join(f"{n} of {len(chosen)}" for n in good)
+            share = f"{sum(good)} of {3 * len(chosen)}"
+            medians = f"{100 * crush:.1f} % | {100 * force:.1f} %"
+            yield f"| {key.upper()} | {kind} | {len(chosen)} | {counts} | {share} | {medians} |"
+    yield ""
+
+
+def _table(key: str, kind: str, rows: Sequence[dict[str, str]]) -> Iterator[str]:
+    yield f"### {key.upper()}, {kind}: computed (run)\n"
+    yield f"| {' | '.join(HEAD)} |"
+    yield "|" + "---|" * len(HEAD)
+    for row in rows:
+        yield f"| {' | '.join(_cells(row))} |"
+    yield ""
+
+
+def page() -> str:
+    """The text of README.md."""
+    tables = {key: rows_of(key) for key in VEHICLES}
+    lines = [INTRODUCTION, *_summary(tables)]
+    for key, table in tables.items():
+        for kind in KINDS:
+            lines += _table(key, kind, [row for row in table if row["what"] == kind])
+    closed = max(
+        float(row["closed"]) for table in tables.values() for row in table if row["what"] != "before"
+    )
+    lines.append(
+        f"The rigid core is never met: no truss loses more than {100.0 * closed:.0f} % of its length.\n"
+    )
+    notes = FOLDER / "finite_element_notes.md"
+    return "\n".join(lines) + "\n" + notes.read_text(encoding="utf-8")
+
+
+if __name__ == "__main__":
+    (FOLDER / "README.md").write_text(page(), encoding="utf-8", newline="\n")
