@@ -34,6 +34,7 @@ class Skin {
 
   private:
     static constexpr std::size_t several = static_cast<std::size_t>(-1);
+    static constexpr double infinite = std::numeric_limits<double>::infinity();
 
     bool look_about_group(std::size_t g);
     void press(std::size_t b);
@@ -46,7 +47,6 @@ class Skin {
     const Shape& near_shape(std::size_t near) const { return scene_.obstacles[near_[near].index].shape; }
     void find_dents();
     Dented dents_of(std::size_t near);
-    void find_abandoned_panels();
     bool was_before(std::size_t near, std::size_t panel);
     double reach_of_dent(const DentedPanel& dented, std::uint8_t of, const Box& box, bool touching) const;
     bool find_dents_of_block(std::size_t b);
@@ -70,7 +70,8 @@ class Skin {
     std::size_t where_met(const Lanes& force) const;
     TrussBlockState& altered(std::size_t b);
     bool find_stopped(std::size_t b, const FlatContact* plane);
-    bool is_abandoned(std::size_t b, std::size_t i) const;
+    bool springs_off(std::size_t b) const;
+    bool springs_off(std::size_t b, std::size_t i) const;
     void stop(std::size_t b);
     void look_further();
     std::optional<Vec3> stop_on_way(std::size_t b, std::size_t i, const Vec3& start, const Vec3& end) const;
@@ -133,7 +134,8 @@ class Skin {
     std::vector<NearObstacle> further_;
     bool looked_further_ = false, overlooks_ = false;
     std::vector<Stopped> stopped_;  // the same
-    std::uint8_t abandoned_ = 0;    // panels that a post no longer dents, bit by bit
+    std::uint8_t dented_ = 0;       // panels that posts dented before the step, bit by bit
+    double furthest_ = infinite;    // that a node of these can follow its dent outwards within the step (m)
     alignas(64) Lanes second_gap_;  // of each node, to the second nearest of several obstacles (m)
     NodeFaces faces_;
     BlockContact contact_;

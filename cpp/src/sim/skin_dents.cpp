@@ -22,16 +22,12 @@ void Skin::find_dents() {
         const Dented dented = dents_of(k);
         if ((dented.panels | dented.passed) != 0) now_.dented.push_back(dented);
     }
-    find_abandoned_panels();
-}
-
-void Skin::find_abandoned_panels() {
-    for (const Dented& before : before_.dented) {
-        const auto now = std::find_if(now_.dented.begin(), now_.dented.end(),
-                                      [&](const Dented& d) { return d.obstacle == before.obstacle; });
-        const unsigned still = now != now_.dented.end() ? now->panels : 0U;
-        abandoned_ |= static_cast<std::uint8_t>(before.panels & ~still);
-    }
+    for (const Dented& before : before_.dented)
+        dented_ |= before.panels;
+    if (dented_ == 0) return;
+    furthest_ = 2.0 * margin_;
+    for (const DentedPanel& dented : dents_)
+        furthest_ = std::max(furthest_, dented.way);
 }
 
 // Which panels does the post dent? Those that it comes into from in front, until it has let go of them.

@@ -261,7 +261,7 @@ void Skin::press_plane(PlaneSums& plane, std::size_t b) {
     if (!plane_normal_ || *plane_normal_ != plane.surface.face.normal)
         contact_.set_normal(plane_normal_.emplace(plane.surface.face.normal));
     const bool ceased = crush_plane(plane, b, plane.sums);
-    if ((ceased || abandoned_ != 0) && find_stopped(b, &plane.surface)) {
+    if ((ceased || springs_off(b)) && find_stopped(b, &plane.surface)) {
         CrushSums undone;
         crush_plane(plane, b, undone);
         plane.sums -= undone;
@@ -302,7 +302,7 @@ void Skin::press_shapes(std::size_t b) {
     const std::size_t at = fixed ? where_met(from(b).force) : several;
     CrushSums& to = at != several ? obstacles_[at].sums : shared_;
     const bool ceased = crush_shapes(b, at, to);
-    if ((ceased || abandoned_ != 0) && find_stopped(b, nullptr)) {
+    if ((ceased || springs_off(b)) && find_stopped(b, nullptr)) {
         CrushSums undone;
         crush_shapes(b, at, undone);
         to -= undone;

@@ -14,6 +14,15 @@ namespace {
 // Of two points on the way this far apart, a surface between them is seen (m).
 constexpr double least_stride = 2e-3;
 
+// Greatest way of a node that pushed, along its truss (m).
+BIRM3D_LANE_LOOP double furthest_outwards(const TrussBlockState& last, const TrussBlockState& next) {
+    alignas(64) Lanes way;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i)
+        way[i] = last.force[i] > 0.0 ? last.deflection[i] - next.deflection[i] : 0.0;
+    return lane_max(way);
+}
+
 }  // namespace
 
 // The block at hand as the step finds it, to be altered.
@@ -83,24 +92,30 @@ std::optional<Vec3> Skin::stop_on_way(std::size_t b, std::size_t i, const Vec3& 
     return start + outside * way;
 }
 
-// Has a dent gone from under the node at once, as where a post has come to lie across the panel? No motion of the step
-// takes it as far outwards as it stands now.
-bool Skin::is_abandoned(std::size_t b, std::size_t i) const {
-    const double panel = mesh_.block[b].panel[i];
+// Has a dent gone from under the node at once, as where its post comes to lie across the panel or past its edge? No
+// motion of the step takes it as far outwards as it stands now.
+bool Skin::springs_off(std::size_t b, std::size_t i) const {
     const TrussBlockState &last = from(b), &next = now_.trusses.block[b];
-    if (!(panel >= 0.0) || (abandoned_ >> static_cast<unsigned>(panel) & 1U) == 0) return false;
-    const Vec3 way(next.x[i] - last.x[i], next.y[i] - last.y[i], next.z[i] - last.z[i]);
-    return last.force[i] > 0.0 && next.deflection[i] < last.deflection[i] && way.norm() > 2.0 * margin_;
+    if (!(last.force[i] > 0.0 && last.deflection[i] - next.deflection[i] > furthest_)) return false;
+    const double panel = mesh_.block[b].panel[i];
+    return panel >= 0.0 && (dented_ >> static_cast<unsigned>(panel) & 1U) != 0;
+}
+
+// Any node of the block?
+bool Skin::springs_off(std::size_t b) const {
+    if ((mesh_.panels_of[b] & dented_) == 0) return false;
+    const TrussBlockState &last = from(b), &next = now_.trusses.block[b];
+    return furthest_outwards(last, next) > furthest_;
 }
 
 // Nodes that `plane`, or where it is null the faces at hand, let go, and that other surfaces stop on their way; and those
-// that a dent has abandoned, where they stand now. Are there any?
+// that spring off a dent, where they stand now. Are there any?
 bool Skin::find_stopped(std::size_t b, const FlatContact* plane) {
     stopped_.clear();
     const TrussBlock& truss = mesh_.block[b];
     const TrussBlockState &last = from(b), &next = now_.trusses.block[b];
     for (std::size_t i = 0; i < lanes; ++i) {
-        if (abandoned_ != 0 && is_abandoned(b, i)) {
+        if (dented_ != 0 && springs_off(b, i)) {
             stopped_.push_back({i, Vec3(next.x[i], next.y[i], next.z[i]), next.deflection[i],
                                 next.residual[i], next.peak_deflection[i],
                                 std::max(0.0, next.unloading[i] * (next.deflection[i] - next.residual[i])),
