@@ -97,11 +97,9 @@ def check_fields(instance: Any, texts: Container[str] = ()) -> None:
 
     ``texts`` names the fields that may be text now, or a list of it.
     """
-    for name, kind in _kinds_of(type(instance).__init__).items():
-        if name == "self":
-            continue
+    for name, kind in _field_kinds(type(instance).__init__):
         value = getattr(instance, name)
-        if not (name in texts and (isinstance(value, str) or _is_list(value))):
+        if not kind.holds(value) and not (name in texts and (isinstance(value, str) or _is_list(value))):
             _check(name, kind, value)
 
 
@@ -112,6 +110,12 @@ def _check(name: str, kind: Kind | None, value: Any) -> None:
                 _check(f"{name}[{i}]", kind.item, item)
         got = type(value).__name__ if kind.by_type and value is not None else shown(value)
         raise WrongTypeError(f"{name} must be {kind.words}, got {got}")
+
+
+@functools.cache
+def _field_kinds(constructor: Callable[..., Any]) -> tuple[tuple[str, Kind], ...]:
+    kinds = _kinds_of(constructor).items()
+    return tuple((name, kind) for name, kind in kinds if name != "self" and kind is not None)
 
 
 @functools.cache
@@ -167,11 +171,13 @@ def _one_of(parts: tuple[Any, ...]) -> Kind | None:
     known = [kind for kind in kinds if kind is not None]
     if len(known) < len(kinds):
         return None
-    words = list(dict.fromkeys(kind.words for kind in known if kind is not _NONE))
+    others = [kind for kind in known if kind is not _NONE]
+    words = list(dict.fromkeys(kind.words for kind in others))
     return Kind(
         " or ".join(words),
         lambda value: any(kind.holds(value) for kind in known),
         by_type=any(kind.by_type for kind in known),
+        item=others[0].item if len(others) == 1 else None,
     )
 
 
@@ -193,7 +199,7 @@ def _container(origin: Any, parts: tuple[Any, ...]) -> Kind | None:
     if not issubclass(origin, abc.Iterable):
         return None
     item = _kind(parts[0])
-    once = origin in (abc.Iterable, abc.Iterator)  # what can be gone through but once is left alone
+    once = origin in (abc.Iterable, abc.Iterator)
     return Kind(
         f"a list of {_plural(item.words) if item else 'values'}",
         lambda found: _is_list(found) and (once or item is None or _all_hold(item, found)),
@@ -221,6 +227,8 @@ def _is_list(found: Any) -> bool:
 
 
 def _all_hold(item: Kind, found: Any) -> bool:
+    if not hasattr(found, "__len__"):  # what can be gone through but once is left to the function
+        return True
     if item is _NUMBER and isinstance(found, np.ndarray):
         return found.ndim == 1 and found.dtype.kind in "iuf"
     return all(map(item.holds, found))

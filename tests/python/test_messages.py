@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import birm3d
@@ -29,6 +29,7 @@ from birm3d import (
     study,
     units,
 )
+from birm3d.arguments import WrongTypeError, checked
 from birm3d.calibration import CurveTarget, Parameter, ScalarTarget
 from scipy import stats
 
@@ -237,6 +238,19 @@ def calls() -> dict[str, Call]:
     }.items():  # fmt: skip
         found[f"Channel.{method}"] = (getattr(force, method), given)
     return found
+
+
+def test_what_can_be_gone_through_once_is_left_to_the_function() -> None:
+    @checked
+    def total(values: Sequence[float], *, more: Sequence[float] | None = None) -> float:
+        return sum(values) + sum(more or ())
+
+    assert total(x for x in (1.0, 2.0)) == 3.0
+    assert total(np.ones(2), more=(1, np.float32(2.0))) == 5.0
+    with pytest.raises(WrongTypeError, match=r"more\[1\] must be a number, got 'b'"):
+        total([], more=[1.0, "b"])  # type: ignore[list-item]
+    with pytest.raises(TypeError, match=r"values must be a list of numbers, got \{1: 2\}"):
+        total({1: 2})  # type: ignore[arg-type]
 
 
 def leak(error: Exception) -> str | None:
