@@ -123,15 +123,17 @@ BIRM3D_IN_LANE_LOOP Row load_one_slope(const PressColumns& truss, Unloading& of,
     return compliance;
 }
 
-// A constant length is given back (truss_law.hpp). A truss may load and unload with one slope at first.
+// What is left of the truss gives back a constant share of its length (truss_law.hpp). A truss may load and unload with one
+// slope at first.
 BIRM3D_IN_LANE_LOOP Row load_recovery(const PressColumns& truss, Unloading& of, const Row& d, const Row& line,
                                       const Row& envelope, std::size_t i) {
     const Row zero = 0.0, one = 1.0;
     const auto where_loading = [&](const Row& now, const Row& else_) {
         return where_above(envelope, zero, where_above(envelope, line, else_, now), else_);
     };
-    const Row steepest =
-        greater(envelope * Row::load(truss.per_recovery + i), Row::load(truss.k_unloading + i));
+    const Row least = tolerance::truss_length, length = Row::load(truss.length + i);
+    const Row per_recovery = Row::load(truss.per_recovery + i) * length / greater(length - d, least);
+    const Row steepest = greater(envelope * per_recovery, Row::load(truss.k_unloading + i));
     of.slope = where_loading(steepest, of.slope);
     const Row compliance = where_above(of.slope, zero, one / of.slope, zero);
     of.residual = where_loading(d - envelope * compliance, of.residual);
