@@ -91,8 +91,8 @@ TEST("restitution falls with speed where a constant length is given back") {
             const double deep = v * std::sqrt(m / k);
             CHECK(deep > recovery);
             CHECK_CLOSE(deepest(simulation) / deep, 1.0, 1e-3, "default tolerance");
-            CHECK_CLOSE(-simulation.state().units[0].body.velocity.x() / v, std::sqrt(recovery / deep * (1.0 - 0.5 * deep)), 1e-3,
-                        "default tolerance");
+            CHECK_CLOSE(-simulation.state().units[0].body.velocity.x() / v,
+                        std::sqrt(recovery / deep * (1.0 - 0.5 * deep)), 1e-3, "default tolerance");
             const Energies& e = simulation.state().energies;
             CHECK_CLOSE(e.total() / (0.5 * m * v * v), 1.0, 1e-3, "default tolerance");
         }
