@@ -64,6 +64,22 @@ def test_the_left_front_goes_ahead_at_the_slanted_wall(page: ModuleType, truck: 
     assert row.own.impulse[0, 1] > 0.0
 
 
+def test_a_post_passes_below_the_platform_beside_the_frame(truck: ModuleType) -> None:
+    """It is lower than the platform: without dents nothing but the bumper's end and sheet is in its way."""
+    fitted = birm3d.Vehicle.from_file(truck.FITTED).with_dent_reach(0.0)
+    post = birm3d.Barrier.bollards(count=1, height=truck.POST_HEIGHT, origin=(0.0, 1.2, 0.0))
+    result = birm3d.Simulation(fitted, post, "50 mph", duration=0.25).run()
+    assert result.position[-1, 0] - result.position[0, 0] > 5.0
+    assert truck.figures(result).impulse[0] == pytest.approx([0.0, 0.0], abs=1e3)
+
+
+def test_the_saved_vehicle_has_the_numbers_that_were_found(truck: ModuleType) -> None:
+    fit = importlib.import_module("fit_truck")
+    first = fit.read()[0]
+    assert (first.variant, first.left_out) == ("all numbers", "")
+    assert first.vehicle == birm3d.Vehicle.from_file(truck.FITTED)
+
+
 def test_the_fitted_truck_runs_at_other_masses_speeds_and_places(truck: ModuleType) -> None:
     fitted = birm3d.Vehicle.from_file(truck.FITTED)
     heavy, light = fitted.with_gvw(8000.0), fitted.with_gvw(6000.0)

@@ -1,33 +1,34 @@
 """A truck's front, fitted to finite-element runs at walls and bollards, and what it then computes of them.
 
-    python tests/validation/fit_truck.py --variants --save
+    python tests/validation/fit_truck.py --save           # some minutes
+    python tests/validation/fit_truck.py --page --save    # from the numbers that were found, seconds
 
-Eleven numbers are fitted to five runs together, then each run is left out in turn. The table has the preset
-`cargo_truck` beside: its front and its law know nothing of these runs. --variants does the same with fewer
-numbers (no rate sensitivity, a front that is even across): the errors of the runs left out say what they are
-worth.
+Eleven numbers (truck_front.py) are fitted to five runs together, then each run is left out in turn. The same
+is done with fewer numbers: the errors of the runs left out say what they are worth. The table has the preset
+`cargo_truck` beside: its front and its law know nothing of these runs.
 
---save writes tests/data/finite_element/fitted_truck.toml and tests/validation/truck.md.
+--save writes tests/data/finite_element/truck_fits.csv and fitted_truck.toml, and tests/validation/truck.md.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from types import MappingProxyType
+from dataclasses import dataclass
 
 import birm3d
 import numpy as np
 import numpy.typing as npt
 from birm3d.filters import cfc
-from birm3d.scene_parameters import varied
 from scipy.optimize import least_squares
-from truck_runs import FITTED, STANDOFF, START, Run, figures, runs, scene, with_loaded_posts
+from truck_front import NUMBERS, VARIANTS, Variant, vehicle_with
+from truck_runs import DATA, FITTED, STANDOFF, START, Run, figures, runs, scene, with_loaded_posts
 
 Floats = npt.NDArray[np.float64]
 
+FITS = DATA / "truck_fits.csv"
 # What the runs' own repeats moved by (shares), and what the load on a post should be met to (N s).
 TRAVEL, FORCE, SIDEWAYS, FORWARD = 0.04, 0.05, 8e3, 15e3
 # Force curves count little: they have spikes of an engine that one rigid body can not follow. Of the peak.
@@ -40,151 +41,20 @@ STEP = 0.06
 SPREAD = 0.35  # of the logarithm, of further starts about the first
 # What is thought before the fit: the starts, each to a factor of two. A number that no run tells stays there.
 DOUBT = 0.7  # of the logarithm
-LEAST_RATE = 0.003  # s/m; fitted as a logarithm too
-
-
-@dataclass(frozen=True)
-class Number:
-    """What is fitted: numbers of the scene that share one value; start and bounds, SI."""
-
-    name: str
-    unit: str
-    names: tuple[str, ...]
-    start: float
-    lower: float
-    upper: float
-    why: str
-
-
-def stresses(*zones: str, points: Sequence[int]) -> tuple[str, ...]:
-    return tuple(f"zone.{zone}.stress[{i}]" for zone in zones for i in points)
-
-
-_FRONT = ("rails", "bumper_middle", "bumper_end", "engine", "hood")
-_SHEET = (
-    *stresses("bumper_end", "hood", "fender", points=(1, 2)),
-    *stresses("engine", points=(1, 2)),
-)
-NUMBERS = (
-    Number(
-        "brackets",
-        "Pa",
-        stresses("rails", points=(1, 2)),
-        1.5e6,
-        0.2e6,
-        5e6,
-        "plates that bend before the rails",
-    ),
-    Number(
-        "rails, squashed",
-        "Pa",
-        stresses("rails", points=(3, 4)),
-        8e6,
-        2e6,
-        20e6,
-        "two sections of 2.7e-3 m2 at 450 to 650 MPa on 0.18 m2: 14 to 20 MPa; less if they buckle first",
-    ),
-    Number(
-        "rails, folding",
-        "Pa",
-        stresses("rails", points=(5, 6)),
-        1e6,
-        0.3e6,
-        7e6,
-        "a twentieth to a third of that",
-    ),
-    Number(
-        "bumper between the rails",
-        "Pa",
-        stresses("bumper_middle", points=(1, 2)),
-        0.3e6,
-        0.1e6,
-        2e6,
-        "a channel of 6 mm that bends",
-    ),
-    Number(
-        "engine",
-        "Pa",
-        stresses("bumper_middle", "engine", points=(3, 4)),
-        1e6,
-        0.3e6,
-        8e6,
-        "accessories of the engine yield at 2 MPa, on a part of the area",
-    ),
-    Number(
-        "behind the engine",
-        "Pa",
-        stresses("bumper_middle", "engine", points=(5, 6)),
-        0.3e6,
-        0.1e6,
-        4e6,
-        "mounts, cross members, cab; less than the engine",
-    ),
-    Number("sheet", "Pa", _SHEET, 20e3, 10e3, 300e3, "sheet of 1 mm in bending: ten to some hundred kPa"),
-    Number(
-        "tail",
-        "Pa/m",
-        tuple(f"zone.{zone}.tail_slope" for zone in _FRONT),
-        3e6,
-        0.3e6,
-        50e6,
-        "megapascals within 0.2 to 0.5 m",
-    ),
-    Number(
-        "rate sensitivity",
-        "s/m",
-        ("vehicle.rate_sensitivity",),
-        0.045,
-        LEAST_RATE,
-        0.08,
-        "other finite-element vehicles: 0.05 to 0.07",
-    ),
-    Number(
-        "reach of dents", "m", ("vehicle.dent_reach",), 0.36, 0.15, 1.0, "half to three diameters of a post"
-    ),
-    Number("tyres", "", ("zone.tire.scale",), 2.5, 0.5, 6.0, "rims and hangers of 75 kN beside the rubber"),
-)
-
-
-@dataclass(frozen=True)
-class Variant:
-    """A front with fewer numbers: some held, or driven by another one."""
-
-    name: str
-    held: Mapping[str, float] = field(default_factory=dict)
-    same: Mapping[str, str] = field(default_factory=dict)
-
-
-VARIANTS = (
-    Variant("all numbers"),
-    Variant("no rate sensitivity", held=MappingProxyType({"rate sensitivity": 0.0})),
-    Variant(
-        "front even across",
-        same=MappingProxyType(
-            {
-                "bumper between the rails": "brackets",
-                "engine": "rails, squashed",
-                "behind the engine": "rails, folding",
-            }
-        ),
-    ),
-)
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Numbers that were found, by their names, the least cost, and the vehicle."""
+    """Numbers that were found, by their names; run that was left out, or none; least cost."""
 
+    variant: str
+    left_out: str
     values: Mapping[str, float]
     cost: float
-    vehicle: birm3d.Vehicle
 
-
-def vehicle_with(values: Mapping[str, float], base: birm3d.Vehicle) -> birm3d.Vehicle:
-    """The vehicle with the numbers' values, by their names."""
-    given = {name: values[number.name] for number in NUMBERS for name in number.names}
-    any_scene = scene(base, next(iter(runs().values())))
-    return varied(any_scene, given).scene.vehicle
+    @property
+    def vehicle(self) -> birm3d.Vehicle:
+        return vehicle_with(self.values, birm3d.Vehicle.from_file(START))
 
 
 def residuals(vehicle: birm3d.Vehicle, run: Run) -> Floats:
@@ -212,8 +82,10 @@ def smoothed(vehicle: birm3d.Vehicle, run: Run) -> Floats:
     return np.asarray(np.concatenate(several) / np.sqrt(len(several)))
 
 
-def fit(known: Sequence[Run], variant: Variant, starts: int, steps: int, base: birm3d.Vehicle) -> Fit:
-    """The numbers of least squares to some runs, the best of several starts."""
+def fit(variant: Variant, left_out: str, starts: int, steps: int) -> Fit:
+    """The numbers of least squares to all runs but one, the best of several starts."""
+    base = birm3d.Vehicle.from_file(START)
+    known = [run for name, run in runs().items() if name != left_out]
     free = [n for n in NUMBERS if n.name not in variant.held and n.name not in variant.same]
     low, high = (np.log([getattr(n, bound) for n in free]) for bound in ("lower", "upper"))
     first = np.log([n.start for n in free])
@@ -237,7 +109,38 @@ def fit(known: Sequence[Run], variant: Variant, starts: int, steps: int, base: b
             least_squares(rows, x, bounds=(low, high), diff_step=STEP, max_nfev=steps, x_scale=SPREAD)
         )
     best = min(found, key=lambda one: float(one.cost))
-    return Fit(values(best.x), float(best.cost), vehicle_with(values(best.x), base))
+    return Fit(variant.name, left_out, values(best.x), float(best.cost))
+
+
+def all_fits(options: argparse.Namespace) -> list[Fit]:
+    """The fit to all runs, then those of each variant with each run left out."""
+    found = [fit(VARIANTS[0], "", options.starts, options.steps)]
+    for variant in VARIANTS:
+        for name in runs():
+            found.append(fit(variant, name, options.left_out_starts, options.steps))
+            print(f"{variant.name}, without {name}: cost {found[-1].cost:.1f}", flush=True)
+    return found
+
+
+def write(found: Sequence[Fit]) -> None:
+    with FITS.open("w", encoding="utf-8", newline="") as file:
+        file.write("# What tests/validation/fit_truck.py found, SI: with all runs, and with one left out.\n")
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(("variant", "left_out", "cost", *(number.name for number in NUMBERS)))
+        for one in found:
+            values = (f"{one.values[number.name]:.6g}" for number in NUMBERS)
+            writer.writerow((one.variant, one.left_out, f"{one.cost:.3f}", *values))
+
+
+def read() -> list[Fit]:
+    """What was found before."""
+    with FITS.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    names = [number.name for number in NUMBERS]
+    return [
+        Fit(row["variant"], row["left_out"], {n: float(row[n]) for n in names}, float(row["cost"]))
+        for row in rows
+    ]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -246,33 +149,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--starts", type=int, default=6, help="of the fit to all runs")
-    parser.add_argument(
-        "--left-out-starts", type=int, default=2, help="of those with a run left out; 0: none"
-    )
-    parser.add_argument("--steps", type=int, default=12, help="of each start")
-    parser.add_argument("--variants", action="store_true", help="also those with fewer numbers")
-    parser.add_argument("--save", action="store_true", help="write the vehicle and the page")
+    parser.add_argument("--starts", type=int, default=4, help="of the fit to all runs")
+    parser.add_argument("--left-out-starts", type=int, default=1, help="of those with a run left out")
+    parser.add_argument("--steps", type=int, default=10, help="of each start")
+    parser.add_argument("--page", action="store_true", help="fit nothing: the numbers of truck_fits.csv")
+    parser.add_argument("--save", action="store_true", help="write numbers, vehicle and page")
     options = parser.parse_args(arguments)
 
-    base = birm3d.Vehicle.from_file(START)
-    every = list(runs().values())
-    found = fit(every, VARIANTS[0], options.starts, options.steps, base)
-    tables = {"before": truck_page.computed(birm3d.Vehicle.preset("cargo_truck"))}
-    tables["after"] = truck_page.computed(found.vehicle)
-    left_out: dict[str, list[tuple[Fit, truck_page.Row]]] = {}
-    for variant in VARIANTS[: None if options.variants else 1] if options.left_out_starts else ():
-        left_out[variant.name] = []
-        for run in every:
-            others = [other for other in every if other is not run]
-            without = fit(others, variant, options.left_out_starts, options.steps, base)
-            (row,) = truck_page.computed(without.vehicle, [run])
-            left_out[variant.name].append((without, row))
-    pitched = truck_page.pitches(lambda bare: vehicle_with(found.values, bare))
-    page = truck_page.page(found, NUMBERS, tables, left_out, pitched)
+    found = read() if options.page else all_fits(options)
+    if options.save:
+        write(found)
+        found = read()  # as many digits as are kept
+    page = truck_page.page(found)
     print(page)
     if options.save:
-        found.vehicle.save(FITTED)
+        found[0].vehicle.save(FITTED)
         truck_page.PAGE.write_text(page, encoding="utf-8", newline="\n")
     return 0
 

@@ -41,7 +41,7 @@ class Run:
     Impulses are on the posts from low to high y, or on the wall: along the path and to its left, (p, 2).
     Of parts that one rigid body does not have, see truck_runs.csv: momentum that the engine lacks and that
     the bed has beyond the frame's [N s], slip of the bed, way of the front axle [m]; impulses up on the
-    vehicle [N s] and height of the barrier's force [m].
+    vehicle [N s] and height of the barrier's force [m]; energy in all contacts, of the first kinetic energy.
     """
 
     name: str
@@ -64,6 +64,7 @@ class Run:
     barrier_up: float
     ground_up: float
     action_height: float
+    contact_share: float
     time: Floats
     force: Floats
     displacement: Floats
@@ -73,7 +74,8 @@ class Run:
 class Figures:
     """What is compared: travel [m], force over 50 ms [N], greatest pitch and yaw [deg], impulses [N s].
 
-    ``up``: impulse of the barrier on the vehicle, upwards [N s]. ``core_contact``: whether the rigid core met
+    ``up``: impulse of the barrier on the vehicle, upwards [N s]. ``friction``: energy lost by it at the
+    barrier, of the kinetic energy at first. ``core_contact``: whether the rigid core met
     the barrier.
     """
 
@@ -83,6 +85,7 @@ class Figures:
     yaw: float
     impulse: Floats
     up: float
+    friction: float
     core_contact: bool
 
 
@@ -120,6 +123,7 @@ def runs() -> Mapping[str, Run]:
             barrier_up=float(row["barrier_up_N_s"]),
             ground_up=float(row["ground_up_N_s"]),
             action_height=float(row["action_height_m"]),
+            contact_share=float(row["contact_share"]),
             time=curves[:, 0],
             force=curves[:, 1],
             displacement=curves[:, 2],
@@ -137,14 +141,14 @@ def with_loaded_posts(run: Run) -> Run:
     return dataclasses.replace(run, posts=posts, impulse=run.impulse[loaded])
 
 
-def barrier_of(run: Run, friction: float = FRICTION) -> birm3d.Barrier:
+def barrier_of(run: Run, friction: float, diameter: float) -> birm3d.Barrier:
     """The run's barrier: posts in a row of even spacing, or a wall."""
     if not run.posts:
         return birm3d.Barrier.rigid_wall(friction=friction)
     spacing = float(np.diff(run.posts)[0]) if len(run.posts) > 1 else 1.2
     return birm3d.Barrier.bollards(
         count=len(run.posts),
-        diameter=POST_DIAMETER,
+        diameter=diameter,
         height=POST_HEIGHT,
         spacing=spacing,
         origin=(0.0, float(np.mean(run.posts)), 0.0),
@@ -152,12 +156,14 @@ def barrier_of(run: Run, friction: float = FRICTION) -> birm3d.Barrier:
     )
 
 
-def scene(vehicle: birm3d.Vehicle, run: Run, friction: float = FRICTION) -> birm3d.Simulation:
+def scene(
+    vehicle: birm3d.Vehicle, run: Run, friction: float = FRICTION, diameter: float = POST_DIAMETER
+) -> birm3d.Simulation:
     """The run as a scene, as long as it was; the left side goes ahead at a wall that is not met head-on."""
     approach = run.speed * np.sin(np.radians(run.impact_angle))
     return birm3d.Simulation(
         vehicle,
-        barrier_of(run, friction),
+        barrier_of(run, friction, diameter),
         run.speed,
         180.0 - run.impact_angle,
         standoff=STANDOFF,
@@ -186,5 +192,6 @@ def figures(result: birm3d.Result) -> Figures:
         yaw=float(result.yaw[np.argmax(np.abs(result.yaw))]),
         impulse=np.array(impulse),
         up=float(result.barrier_force[1:, 2].sum()) * interval,
+        friction=float(result.energy["barrier_friction"][-1] / result.energy["kinetic"][0]),
         core_contact=result.statistics.body_steps > 0,
     )
