@@ -110,6 +110,18 @@ double least_thickness(const std::vector<PrismEdge>& all, const std::vector<bool
     return pairs < infinity || count < 2 ? pairs : wedge;
 }
 
+Box bounds_of(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double y_low, double y_high) {
+    const auto middle = [](double from, double to) {
+        const bool ends = std::isfinite(from) && std::isfinite(to);
+        return ends ? 0.5 * (from + to) : std::isfinite(from) ? from : std::isfinite(to) ? to : 0.0;
+    };
+    const auto half = [](double from, double to) {
+        return std::isfinite(to - from) ? 0.5 * (to - from) : infinity;
+    };
+    return {{middle(low.x(), high.x()), middle(y_low, y_high), middle(low.y(), high.y())},
+            {half(low.x(), high.x()), half(y_low, y_high), half(low.y(), high.y())}};
+}
+
 }  // namespace
 
 std::shared_ptr<const Prism::Outline> Prism::outline_of(const Profile& profile,
@@ -155,6 +167,7 @@ Prism::Prism(std::shared_ptr<const Outline> outline, double y_low, double y_high
         refuse("y_low, y_high", "a range with finite places", y_low);
     if (outline_->edges.empty() && !low_end_ && !high_end_)
         refuse("cover", "one that leaves a surface", "every face");
+    bounds_ = bounds_of(outline_->low, outline_->high, y_low_, y_high_);
 }
 
 Prism Prism::box(double thickness, double width, double height, double foot) {
@@ -236,19 +249,6 @@ double Prism::no_nearer(const Box& box) const {
         }
     }
     return side > 0.0 ? std::sqrt(least) : 0.0;
-}
-
-Box Prism::bounds() const {
-    const auto middle = [](double low, double high) {
-        const bool ends = std::isfinite(low) && std::isfinite(high);
-        return ends ? 0.5 * (low + high) : std::isfinite(low) ? low : std::isfinite(high) ? high : 0.0;
-    };
-    const auto half = [](double low, double high) {
-        return std::isfinite(high - low) ? 0.5 * (high - low) : infinity;
-    };
-    const Point &low = outline_->low, &high = outline_->high;
-    return {{middle(low.x(), high.x()), middle(y_low_, y_high_), middle(low.y(), high.y())},
-            {half(low.x(), high.x()), half(y_low_, y_high_), half(low.y(), high.y())}};
 }
 
 double Prism::thickness() const {

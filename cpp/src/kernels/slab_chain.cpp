@@ -76,7 +76,7 @@ bool SlabChain::is_held(const Part& part) {
 }
 
 // From slab `end` on: a quarter of the run, and one more. So all tries together cost a few times the last one.
-bool SlabChain::wake(const Run& run, std::size_t end, int direction) {
+void SlabChain::wake(const Run& run, std::size_t end, int direction) {
     const std::size_t wanted = 1 + (run.end - run.begin) / 4;
     auto i = static_cast<std::ptrdiff_t>(end);
     for (std::size_t count = 0; count < wanted; ++count, i += direction) {
@@ -85,15 +85,15 @@ bool SlabChain::wake(const Run& run, std::size_t end, int direction) {
         if (woken.awake) break;
         woken.awake = woken.fresh = true;
     }
-    return true;
 }
 
 // Are slabs to be taken in before or behind the run?
 bool SlabChain::wake_around(const Run& run) {
-    bool woken = false;
-    if (run.begin > 0 && !is_held(parts_[run.begin])) woken = wake(run, run.begin - 1, -1);
-    if (run.end < parts_.size() && !is_held(parts_[run.end - 1])) woken = wake(run, run.end, 1) || woken;
-    return woken;
+    const bool before = run.begin > 0 && !is_held(parts_[run.begin]);
+    const bool behind = run.end < parts_.size() && !is_held(parts_[run.end - 1]);
+    if (before) wake(run, run.begin - 1, -1);
+    if (behind) wake(run, run.end, 1);
+    return before || behind;
 }
 
 // Those beside slabs that move or are pushed may hold them.

@@ -41,6 +41,7 @@ int body_of_obstacle(const Scene& scene, std::size_t obstacle) {
 }
 
 double fastest_point(const Segment& segment, const BodyState& body) {
+    if (body.velocity.isZero(0.0) && body.angular_momentum.isZero(0.0)) return 0.0;
     const double reach = Vec3(segment.corner[0].x(), segment.corner[0].y(), 0.0).norm();
     return body.velocity.norm() + angular_velocity(segment.body, body).norm() * reach;
 }

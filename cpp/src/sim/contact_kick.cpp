@@ -107,8 +107,8 @@ void rub_units(const Scene& scene, const KickedBy& by, KickMemory& memory, State
                 tire_friction(unit, scene.settings, body, {motion[u], by.at_end[u]}, memory.tire[u]),
                 memory.bodies[u], motion_without(all, memory.bodies[u]));
         }
-        on_members[u] =
-            member_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u]);
+        on_members[u] = member_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u],
+                                        memory.bodies);
         kick(unit.body, difference(on_ground, kicked.on_ground[u]), body);
         kick(unit.body, difference(on_members[u], kicked.on_members[u]), body);
         kicked.on_ground[u] = on_ground;
@@ -237,10 +237,14 @@ void list_bodies(const Scene& scene, const State& state, std::vector<ContactBody
     bodies.clear();
     for (std::size_t b = 0; b < body_count(state); ++b) {
         const RigidBody& body = rigid_body(scene, b);
-        bodies.push_back({body.inverse_mass,
-                          inverse_inertia_in_world(body, body_state(state, b)),
-                          {},
-                          b >= state.units.size()});
+        const bool level = b >= state.units.size();
+        // What turns about the vertical only is the same however it has turned.
+        Mat3 inverse_inertia = Mat3::Zero();
+        if (level)
+            inverse_inertia(2, 2) = body.inverse_inertia(2, 2);
+        else
+            inverse_inertia = inverse_inertia_in_world(body, body_state(state, b));
+        bodies.push_back({body.inverse_mass, inverse_inertia, {}, level});
     }
     set_motions(state, bodies);
 }

@@ -48,8 +48,8 @@ class Prism {
     // inside. Of an endless prism: the part that its ends add is left out.
     double no_nearer(const Box& box) const;
 
-    Box bounds() const;        // as of a Shape
-    double thickness() const;  // as of a Shape
+    const Box& bounds() const { return bounds_; }  // as of a Shape
+    double thickness() const;                      // as of a Shape
 
     const std::vector<PrismEdge>& edges() const { return outline_->edges; }  // not covered
     const std::vector<PrismEdge>& covered_edges() const { return outline_->covered_edges; }
@@ -71,6 +71,7 @@ class Prism {
                                                      const std::vector<std::size_t>& covered);
 
     std::shared_ptr<const Outline> outline_;
+    Box bounds_;
     double y_low_, y_high_;    // m
     bool low_end_, high_end_;  // is there a surface?
 };

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "birm3d/kernels/impulse.hpp"
 #include "birm3d/model/vehicle.hpp"
 #include "birm3d/state/contacts.hpp"
 
@@ -10,8 +11,8 @@ namespace birm3d {
 
 // Coulomb friction (paper 5.4) that goes with the normal impulses of closed members: sets their friction impulses
 // and returns the sum, linear and angular about the mass centre, world axes (N s, N m s). `full_speed`: sliding speed
-// of full friction.
+// of full friction; `bodies`: what the contacts act on. Friction does not reverse a sliding, however light the other side.
 Wrench member_friction(std::span<RigidContact> contacts, std::size_t body, const RigidBody& model,
-                       double full_speed, const Twist& motion);
+                       double full_speed, const Twist& motion, std::span<const ContactBody> bodies);
 
 }  // namespace birm3d

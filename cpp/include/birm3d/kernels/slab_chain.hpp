@@ -87,7 +87,7 @@ class SlabChain {
     void set_up(std::span<const PinnedSlab> slabs, std::span<const SlabPin> pins, double drift);
     void find_runs();
     bool wake_around(const Run& run);
-    bool wake(const Run& run, std::size_t end, int direction);
+    void wake(const Run& run, std::size_t end, int direction);
     static bool is_held(const Part& part);
     void take_in_neighbours();
     Vec3 pull_on(std::size_t slab) const;
