@@ -4,28 +4,14 @@
 
 namespace birm3d {
 
-namespace {
-
-// Greatest speed along the ground that a unit impulse gives the other side there (1/kg).
-double give_of_other(const RigidContact& contact, std::span<const ContactBody> bodies) {
-    if (contact.other < 0) return 0.0;
-    const ContactBody& other = bodies[static_cast<std::size_t>(contact.other)];
-    return other.inverse_mass + other.inverse_inertia(2, 2) * contact.other_arm.head<2>().squaredNorm();
-}
-
-}  // namespace
-
 Wrench member_friction(std::span<RigidContact> contacts, std::size_t body, const RigidBody& model,
-                       double full_speed, const Twist& motion, std::span<const ContactBody> bodies) {
+                       double full_speed, const Twist& motion, double give) {
     const auto slides = [body](const RigidContact& contact) {
         return contact.source == ContactSource::member && contact.body == body && contact.impulse > 0.0;
     };
-    double total = 0.0, give = 0.0;
-    for (const RigidContact& contact : contacts) {
-        if (!slides(contact)) continue;
-        total += contact.friction * contact.impulse;
-        give = std::max(give, give_of_other(contact, bodies));
-    }
+    double total = 0.0;
+    for (const RigidContact& contact : contacts)
+        if (slides(contact)) total += contact.friction * contact.impulse;
     // Twice the speed that full friction would take from the mass centre, as the body also turns.
     const double slowest = std::max(full_speed, 2.0 * total * (model.inverse_mass + give));
     Wrench sum;

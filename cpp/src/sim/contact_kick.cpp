@@ -88,6 +88,20 @@ Twist motion_without(const Wrench& friction, const ContactBody& body) {
             body.motion.angular_velocity - body.inverse_inertia * friction.torque};
 }
 
+// Greatest speed along the ground that a unit impulse gives any segment that a unit pushes (1/kg).
+double greatest_give(const std::vector<RigidContact>& contacts, std::size_t unit,
+                     const std::vector<ContactBody>& bodies) {
+    double give = 0.0;
+    for (const RigidContact& contact : contacts) {
+        if (contact.source != ContactSource::member || contact.body != unit || contact.other < 0) continue;
+        if (!(contact.impulse > 0.0)) continue;
+        const ContactBody& other = bodies[static_cast<std::size_t>(contact.other)];
+        give = std::max(give, other.inverse_mass +
+                                  other.inverse_inertia(2, 2) * contact.other_arm.head<2>().squaredNorm());
+    }
+    return give;
+}
+
 // Friction of both sides of closed trusses and of tyres, by the present impulses; kicks the units by what has changed.
 void rub_units(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
     ContactKick& kicked = memory.kick;
@@ -108,7 +122,7 @@ void rub_units(const Scene& scene, const KickedBy& by, KickMemory& memory, State
                 memory.bodies[u], motion_without(all, memory.bodies[u]));
         }
         on_members[u] = member_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u],
-                                        memory.bodies);
+                                        greatest_give(kicked.contacts, u, memory.bodies));
         kick(unit.body, difference(on_ground, kicked.on_ground[u]), body);
         kick(unit.body, difference(on_members[u], kicked.on_members[u]), body);
         kicked.on_ground[u] = on_ground;

@@ -3,7 +3,6 @@
 
 #include <span>
 
-#include "birm3d/kernels/impulse.hpp"
 #include "birm3d/model/vehicle.hpp"
 #include "birm3d/state/contacts.hpp"
 
@@ -11,8 +10,9 @@ namespace birm3d {
 
 // Coulomb friction (paper 5.4) that goes with the normal impulses of closed members: sets their friction impulses
 // and returns the sum, linear and angular about the mass centre, world axes (N s, N m s). `full_speed`: sliding speed
-// of full friction; `bodies`: what the contacts act on. Friction does not reverse a sliding, however light the other side.
+// of full friction; `give`: greatest speed along the ground that a unit impulse gives any of the other sides (1/kg).
+// Friction does not reverse a sliding, however light the other side.
 Wrench member_friction(std::span<RigidContact> contacts, std::size_t body, const RigidBody& model,
-                       double full_speed, const Twist& motion, std::span<const ContactBody> bodies);
+                       double full_speed, const Twist& motion, double give);
 
 }  // namespace birm3d
