@@ -66,8 +66,10 @@ class Unknown:
 class Skin:
     """Where the zones of a vehicle are (m, file axes), and what is known of their numbers.
 
-    split: distance from the middle plane where the outer zone of the front begins. depths: of the points of
-    the outer and the inner envelope. fender: range of x.
+    split: distance from the middle plane where the outer zone of the front begins. outer, inner: depths of
+    the points of the envelopes. fender: range of x. start: stresses that a fit begins with, of the inner zone
+    and of the rest [Pa]. fit_density: relative number of elements while fitting. second: values in the order
+    of the unknowns where an earlier fit to all runs ended; fits begin there instead.
     """
 
     key: str
@@ -76,25 +78,33 @@ class Skin:
     outer: tuple[float, ...]
     inner: tuple[float, ...]
     fender: tuple[float, float]
+    start: tuple[float, float]
     others: tuple[Unknown, ...]
     structure: str
+    fit_density: float = 1.0
+    second: tuple[float, ...] = ()
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
         return (
-            *(Unknown(f"outer stress at {d:g} m", 1e4, 1e7, 5e5) for d in self.outer),
-            *(Unknown(f"inner stress at {d:g} m", 1e4, 1e7, 5e5) for d in self.inner),
+            *(Unknown(f"outer stress at {d:g} m", 1e4, 1e7, self.start[1]) for d in self.outer),
+            *(Unknown(f"inner stress at {d:g} m", 1e4, 1e7, self.start[0]) for d in self.inner),
+            Unknown("fender stress", 5e3, 2e6, self.start[1]),
             *self.others,
         )
 
     def values(self, shares: Floats) -> dict[str, float]:
         return {u.name: u.value(float(s)) for u, s in zip(self.unknowns, shares, strict=True)}
 
-    def roughness(self, shares: Floats) -> Floats:
-        """Logarithms of the ratios of neighbouring stresses."""
-        stresses = np.log([u.value(float(s)) for u, s in zip(self.unknowns, shares, strict=True)])
-        n, m = len(self.outer), len(self.outer) + len(self.inner)
-        return np.concatenate([np.diff(stresses[:n]), np.diff(stresses[n:m])])
+    def unevenness(self, shares: Floats) -> Floats:
+        """Logarithms of ratios of what is alike unless runs say otherwise: neighbouring stresses of an
+        envelope, mean stresses of the zones, and, with half the weight, slopes of the tails."""
+        values = self.values(shares)
+        outer = np.log([values[f"outer stress at {d:g} m"] for d in self.outer])
+        inner = np.log([values[f"inner stress at {d:g} m"] for d in self.inner])
+        tails = np.log(values["outer tail slope"] / values["inner tail slope"])
+        zones = [outer.mean() - inner.mean(), np.log(values["fender stress"]) - outer.mean(), 0.5 * tails]
+        return np.concatenate([np.diff(outer), np.diff(inner), zones])
 
 
 def _of_whole(tail_depths: tuple[float, float], depth: float, reach: float) -> tuple[Unknown, ...]:
@@ -103,7 +113,6 @@ def _of_whole(tail_depths: tuple[float, float], depth: float, reach: float) -> t
         Unknown("inner tail depth", *tail_depths, depth, "m", log=False),
         Unknown("outer tail slope", 3e5, 6e7, 5e6, "Pa/m"),
         Unknown("inner tail slope", 3e5, 6e7, 5e6, "Pa/m"),
-        Unknown("fender stress", 5e3, 2e6, 3e5),
         Unknown("elastic recovery", 1e-3, 0.04, 4e-3, "m"),
         Unknown("rate sensitivity", 0.0, 0.09, 0.05, "s/m", log=False),
         Unknown("dent reach", 0.1, 1.2, reach, "m", log=False),
@@ -118,20 +127,29 @@ SKINS = {
         outer=(0.03, 0.15, 0.35, 0.7, 1.0),
         inner=(0.1, 0.5, 1.0),
         fender=(-1.0, 0.9),
-        others=_of_whole((0.8, 1.15), 0.93, 0.5),
+        start=(3e5, 1e6),
+        others=_of_whole((0.8, 1.15), 0.93, 0.7),
         structure="""
 Bounds of the zones by the parts of the model: bumper (3 mm) over the whole width, 0.11 m deep, grille (1 mm)
 behind it; side panels (2 mm) from there on. The hood ends 1.0 m behind the front, where the tail may begin
 """,
+        fit_density=0.5,
+        second=(
+            *(3.9e6, 0.95e6, 0.41e6, 0.72e6, 3.0e6),
+            *(0.18e6, 0.23e6, 0.51e6),
+            *(0.58e6, 0.83, 0.84, 4.2e6, 3.6e6),
+            *(1.02e-3, 0.021, 0.65),
+        ),
     ),
     "s": Skin(
         "s",
         element_size=0.1,
-        split=0.38,
-        outer=(0.04, 0.12, 0.22, 0.32),
-        inner=(0.04, 0.12, 0.22, 0.32),
+        split=0.55,
+        outer=(0.05, 0.25),
+        inner=(0.05, 0.25),
         fender=(-0.4, 0.7),
-        others=_of_whole((0.2, 0.45), 0.3, 0.5),
+        start=(6e5, 6e5),
+        others=_of_whole((0.2, 0.45), 0.3, 0.75),
         structure="""
 Bounds of the zones by the parts of the model: bumper (1.5 mm), fenders from 0.1 to 1.1 m behind the front.
 A solid engine 0.76 m wide and wheels begin at 0.43 m; tails begin before, as what is between is packed
