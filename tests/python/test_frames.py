@@ -81,7 +81,7 @@ def test_between_frames_it_is_linear(result: Result) -> None:
         (1, "frames must be 2 to"),
         (10**6, "frames must be 2 to"),
         ([], "frames must be a number or a list"),
-        ([[0.1]], "frames must be a number or a list"),
+        ([[0.1]], "frames must be a whole number or a list of numbers"),
         ([0.1, 0.1], "frames must be finite and increase"),
         ([float("nan")], "frames must be finite and increase"),
         ([0.0, 99.0], "frames must be within 0 to"),

@@ -127,12 +127,12 @@ def test_wheels_in_the_air() -> None:
     floats = run(plates(wheels=True), None, duration=0.05, settings=Settings(gravity=0.0))
     assert floats.statistics.wheels_on_ground == 0
     steps = floats.statistics.steps
-    assert f"forces of tyres in all {4 * steps} wheel steps (in the air)" in left_out(floats)
+    assert f"forces of tyres in all {4 * steps:,} wheel steps (in the air)" in left_out(floats)
     # Half of them: a car that is rolled so far that it falls back on its wheels.
     tips = run(car(), None, 0.0, impact_roll=30.0, duration=0.1)
     steps, loaded = tips.statistics.steps, tips.statistics.wheels_on_ground
     assert 0 < loaded < 4 * steps
-    assert f"forces of tyres in {4 * steps - loaded} of {4 * steps} wheel steps" in left_out(tips)
+    assert f"forces of tyres in {4 * steps - loaded:,} of {4 * steps:,} wheel steps" in left_out(tips)
 
 
 def test_counts_are_part_of_a_checkpoint() -> None:
