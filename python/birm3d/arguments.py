@@ -38,9 +38,8 @@ class Kind(NamedTuple):
 def checked(public: Checked) -> Checked:
     """Check the arguments of a function, or of all public methods of a class, before each call.
 
-    Looked at is the kind alone, as the annotation says; limits are the function's own. Annotations that name
-    what no module has at run time, and the type ``Quantity``, which :func:`birm3d.units.si` reads, are not
-    looked at.
+    Only the type that an annotation names is checked; the function itself checks limits. Left out are
+    annotations that do not resolve at run time, and ``Quantity``, which :func:`birm3d.units.si` reads.
 
     Raises
     ------

@@ -17,7 +17,7 @@ from .arguments import checked
 __all__ = ["KNEE", "OPTIONAL", "TRUSS_LAW", "Zone", "positive"]
 
 KNEE = ("k_initial", "knee", "k_hardening", "f_max")
-"""Those of its loading envelope."""
+"""The numbers of the paper's loading envelope (Fig. 3)."""
 
 OPTIONAL = ("elastic_recovery", "tail_depth", "tail_slope")
 """Numbers that a law may have in addition."""

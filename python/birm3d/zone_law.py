@@ -1,4 +1,4 @@
-"""The stiffness of a zone as files have it: of a vehicle, and of what a saved one has in its stead."""
+"""A zone's stiffness as vehicle files have it, and as a saved vehicle has it where it was changed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Positive: TypeAlias = Annotated[float, Field(gt=0.0)]
 NonNegative: TypeAlias = Annotated[float, Field(ge=0.0)]
 EnvelopePoint: TypeAlias = tuple[NonNegative, NonNegative]
 
-# Of a file, and of a zone.
+# Key of the file: field of the zone.
 _KEYS = {
     "k_initial_Pa_per_m": "k_initial",
     "knee_m": "knee",
@@ -61,7 +61,7 @@ class ZoneLaw(Strict):
 
     @staticmethod
     def numbers_of(zone: Zone) -> dict[str, Any]:
-        """Return what a file has of a zone."""
+        """Return the entries of a file for a zone."""
         numbers = {key: getattr(zone, name) for key, name in _KEYS.items()}
         endless = numbers["f_max_Pa"] is not None and math.isinf(numbers["f_max_Pa"])
         return {**numbers, "f_max_Pa": None} if endless else numbers

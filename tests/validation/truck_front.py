@@ -107,7 +107,7 @@ NUMBERS = (
         0.045,
         LEAST_RATE,
         0.08,
-        "other finite-element vehicles: 0.05 to 0.07",
+        "vehicles N and S: 0.04 and 0.06",
     ),
     Number(
         "reach of dents", "m", ("vehicle.dent_reach",), 0.36, 0.15, 1.0, "half to three diameters of a post"

@@ -259,9 +259,9 @@ OpenRadioss on a generic truck of 6,810 kg: a finite-element code's answer for a
 12 % of the travel, 15 % of the force, 20 kN s sideways on a post, 5 deg of pitch.
 The preset has another mass, height and length than this truck, and is not meant to be it."""
 
-LEFT_OUT = """Fitted to the four others, from the same start. The tyres are told by the wall at 25 deg only,
-dents by posts only. Starts, and depths of the envelopes, were chosen with all runs in view: what is left
-out was not unknown."""
+LEFT_OUT = """Fitted to the four others, from the same start. Only the wall at 25 deg tells of the tyres,
+and only posts of the dents. Starts, and depths of the envelopes, were chosen with all runs in view: these rows
+are no blind predictions."""
 
 PARTS = """The vehicle is one rigid body. In the runs the engine stops in the barrier while the frame goes on,
 the bed slides on the frame, and the front axle is pushed back under it. From the runs:"""

@@ -9,7 +9,7 @@ namespace birm3d {
 namespace {
 
 // Cosine above which two normals are of one smooth surface.
-constexpr double sharp_turn = 0.5;
+constexpr double same_surface = 0.5;
 
 // Cosine above which two normals differ by rounding alone.
 constexpr double same_normal = 1.0 - 1e-12;
@@ -22,7 +22,7 @@ struct At {
     Nearest nearest{std::numeric_limits<double>::infinity(), Vec3::UnitX()};  // own axes
 };
 
-// The nearest surface of all to points, one for each obstacle in its own axes.
+// The nearest surface of all to a place. `point` gives the place in each obstacle's own axes.
 template <class Point>
 At nearest_of_all(const Scene& scene, std::span<const NearObstacle> near, std::span<const std::size_t> seen,
                   const Point& point) {
@@ -49,7 +49,7 @@ std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const Near
     At entry = nearest_of_all(scene, near, seen, on_way(outside));
     if (entry.nearest.gap < -shallow) return std::nullopt;
     const NearObstacle& present = near[seen[nearest_now]];
-    // Straight before a face and then straight behind it: it went in there.
+    // The node has crossed the face that is nearest now: there is no other to tell of.
     if (entry.seen == nearest_now && std::holds_alternative<Prism>(scene.obstacles[present.index].shape) &&
         entry.nearest.normal.dot(present.now.direction_to_own(normal_now)) > same_normal)
         return std::nullopt;
@@ -83,7 +83,7 @@ std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const Near
     if (flat)
         return EnteredFace{
             entry.seen, {depth, at.now.direction_from_own(n)}, at.before.direction_from_own(n)};
-    if (!(normal.dot(at.now.direction_from_own(n)) > sharp_turn)) return std::nullopt;
+    if (!(normal.dot(at.now.direction_from_own(n)) > same_surface)) return std::nullopt;
     const Vec3 surface = back - face.nearest.gap * normal;
     return EnteredFace{
         face.seen, {normal.dot(place - surface), normal}, of.before.direction_from_own(face.nearest.normal)};

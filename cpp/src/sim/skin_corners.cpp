@@ -31,7 +31,7 @@ BIRM3D_LANE_LOOP void move_out(const NodeFaces& faces, const BlockContact& conta
     }
 }
 
-// Nodes that came from inside one surface into another; returns how many.
+// Flags nodes that lie inside another surface once they have been moved out of theirs; returns the number of all flags.
 BIRM3D_LANE_LOOP double note_inside(const NodeFaces& faces, const Lanes& gap, Lanes& cornered) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i)

@@ -15,8 +15,8 @@
 // so that one loop without branches serves every curve; the paper's knee is its two-slope case.
 // Below the peak deflection d_p (force F_p) the member moves on  F = max(0, F_p - k (d_p - d)).
 //
-// Fig. 3 has one slope k = k_unloading. Metal structures give back a nearly constant length r instead, `recovery`, of which
-// what has been crushed has no part any more: of a truss of length L
+// Fig. 3 has one slope k = k_unloading. Metal structures spring back by a nearly constant length r instead, `recovery`. It is
+// less in proportion to what has been crushed: of a truss of length L
 //   k = max(k_unloading, F_p / (r (1 - d_p / L)))
 // so that restitution falls with speed. An infinite r leaves Fig. 3; of a curve by itself L is infinite.
 #pragma once

@@ -54,7 +54,7 @@ struct TrussInput {
     std::vector<std::size_t> curve_of;  // (n) index into curve
     std::vector<double> scale;          // (n) tributary area (m^2), or 1 for curves per truss
     // What is crushed has inertia and rate strength, which the law of Fig. 3 leaves out: the loading envelope
-    // grows by 1 + (this times the rate of deflection)^2 (s/m).
+    // is multiplied by 1 + (this times the rate of deflection)^2; in s/m.
     double rate_sensitivity = 0.0;
     // How far the dent that a post makes reaches beyond it (kernels/dent.hpp); zero: nodes know nothing of each other (m).
     double dent_reach = 0.0;
