@@ -260,8 +260,8 @@ OpenRadioss on a generic truck of 6,810 kg: a finite-element code's answer for a
 The preset has another mass, height and length than this truck, and is not meant to be it."""
 
 LEFT_OUT = """Fitted to the four others, from the same start. Only the wall at 25 deg tells of the tyres,
-and only posts of the dents. Starts, and depths of the envelopes, were chosen with all runs in view: these rows
-are no blind predictions."""
+and only posts of the dents. Starts, and depths of the envelopes, were chosen with all runs in view: these
+rows are no blind predictions."""
 
 PARTS = """The vehicle is one rigid body. In the runs the engine stops in the barrier while the frame goes on,
 the bed slides on the frame, and the front axle is pushed back under it. From the runs:"""
