@@ -95,8 +95,9 @@ EXECUTORS: dict[str, Callable[[], Any]] = {
 def test_executors_give_the_same_bits(kind: str, study: Study) -> None:
     with EXECUTORS[kind]() as executor:
         assert_same(grid(executor=executor), study)
-        if kind == "dask":  # a client; its executor is welcome too
-            assert_same(grid(executor=executor.get_executor()), study)
+        if kind == "dask":  # a client; its executor is welcome too, and the same study at once again
+            for _ in range(4):
+                assert_same(grid(executor=executor.get_executor()), study)
 
 
 def test_rows_are_runs_of_their_own(study: Study) -> None:
