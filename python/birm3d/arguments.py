@@ -68,9 +68,10 @@ def caller_level() -> int:
 
 
 def _checked_function(function: Callable[..., Any]) -> Callable[..., Any]:
-    places = [p.name for p in inspect.signature(function).parameters.values() if p.kind in _BY_PLACE]
-    if places[1:] == [] and not inspect.signature(function).parameters.keys() - {"self", "cls"}:
+    parameters = inspect.signature(function).parameters
+    if not parameters.keys() - {"self", "cls"}:
         return function
+    places = [p.name for p in parameters.values() if p.kind in _BY_PLACE]
     kinds: dict[str, Kind | None] | None = None
 
     @functools.wraps(function)

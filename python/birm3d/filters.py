@@ -38,11 +38,7 @@ def cfc(signal: npt.ArrayLike, channel_class: float, interval: float) -> Floats:
     """
     from scipy.signal import filtfilt  # imported when used: it takes longer to load than a crash to run
 
-    x = np.asarray(signal, float)
-    if x.ndim == 0 or len(x) == 0:
-        raise ValueError(f"signal must have shape (n,) or (n, k) and n > 0, got {x.shape}")
-    if not np.isfinite(x).all():
-        raise ValueError("signal must be finite, got a value that is not")
+    x = _rows(signal)
     if not channel_class > 0.0:
         raise ValueError(f"channel_class must be > 0, got {channel_class}")
     if not 0.0 < interval * channel_class <= 0.1:
@@ -70,11 +66,7 @@ def moving_average(signal: npt.ArrayLike, width: float, interval: float) -> Floa
     width, interval
         Of the window and of the sampling [s].
     """
-    x = np.asarray(signal, float)
-    if x.ndim == 0 or len(x) == 0:
-        raise ValueError(f"signal must have shape (n,) or (n, k) and n > 0, got {x.shape}")
-    if not np.isfinite(x).all():
-        raise ValueError("signal must be finite, got a value that is not")
+    x = _rows(signal)
     for name, value in (("width", width), ("interval", interval)):
         if not (math.isfinite(value) and value > 0.0):
             raise ValueError(f"{name} must be finite and > 0, got {value}")
@@ -82,3 +74,13 @@ def moving_average(signal: npt.ArrayLike, width: float, interval: float) -> Floa
     total = np.concatenate([np.zeros((n, *x.shape[1:])), np.cumsum(x, axis=0)])
     mean: Floats = (total[n:] - total[:-n]) / n
     return mean
+
+
+def _rows(signal: npt.ArrayLike) -> Floats:
+    """Return a signal as an array, or refuse one without rows or with values that are not finite."""
+    x = np.asarray(signal, float)
+    if x.ndim == 0 or len(x) == 0:
+        raise ValueError(f"signal must have shape (n,) or (n, k) and n > 0, got {x.shape}")
+    if not np.isfinite(x).all():
+        raise ValueError("signal must be finite, got a value that is not")
+    return x

@@ -186,20 +186,22 @@ void TrussMesh::find_tread(const TrussInput& input, const std::vector<Wheel>& wh
 void TrussMesh::find_panels(const TrussInput& input) {
     std::array<std::vector<Vec3>, panels> nodes, anchors_of;
     panels_of.fill().assign(blocks, 0);
-    for (std::size_t truss = 0; truss < shell; ++truss) {
-        const std::size_t source = input_index[truss];
-        const bool second = truss >= skin;
-        const std::size_t of = second ? static_cast<std::size_t>(input.along_of[source]) : source;
-        const std::size_t p = panel_of(input.anchor[of] - input.node[of]);
-        block.fill()[slot(truss) / lanes].panel[slot(truss) % lanes] = static_cast<double>(p);
-        panels_of.fill()[slot(truss) / lanes] |= static_cast<std::uint8_t>(1U << p);
-        if (second) continue;
-        nodes[p].push_back(node(truss));
-        anchors_of[p].push_back(anchor(truss));
+    for (std::size_t b = 0; b < shell_blocks; ++b) {
+        Lanes& panel_of_node = block.fill()[b].panel;
+        for (std::size_t i = 0; i < nodes_in(b); ++i) {
+            const std::size_t source = input_index[first[b] + i];
+            const bool second = b >= skin_blocks;
+            const std::size_t of = second ? static_cast<std::size_t>(input.along_of[source]) : source;
+            const std::size_t p = panel_of(input.anchor[of] - input.node[of]);
+            panel_of_node[i] = static_cast<double>(p);
+            panels_of.fill()[b] |= static_cast<std::uint8_t>(1U << p);
+            if (second) continue;
+            nodes[p].push_back(input.node[source]);
+            anchors_of[p].push_back(input.anchor[source]);
+        }
+        std::fill(panel_of_node.begin() + static_cast<std::ptrdiff_t>(nodes_in(b)), panel_of_node.end(),
+                  panel_of_node[nodes_in(b) - 1]);
     }
-    for (std::size_t b = 0; b < shell_blocks; ++b)
-        for (std::size_t i = nodes_in(b); i < lanes; ++i)
-            block.fill()[b].panel[i] = block[b].panel[nodes_in(b) - 1];
     for (std::size_t b = shell_blocks; b < blocks; ++b)
         block.fill()[b].panel.fill(static_cast<double>(panels)),
             panels_of.fill()[b] = 1U << panels;  // of none of these

@@ -49,8 +49,8 @@ Extremes::Attitude attitude_at_large(const History& history, double end) {
     return {roll.greatest(), pitch.greatest(), yaw.greatest()};
 }
 
-// The same of angles that all stay well below a quarter of a turn, if they do: their order is that of their tangents and
-// sines, so that few of them are worked out.
+// Greatest angles where all stay well below a quarter of a turn; none where they do not. Tangents and sines have the order
+// of the angles, so that few angles are worked out.
 std::optional<Extremes::Attitude> attitude_in_small(const History& history, double end) {
     constexpr double least_cosine = 0.1;
     const std::vector<Quat>& orientation = history.units.front().orientation;

@@ -8,8 +8,8 @@
 namespace birm3d {
 
 // The greatest value of f(x, y) over many pairs, where a key that is cheap orders the values: f is worked out only where
-// the key does not rule out that it is the greatest. The result is that of working out all of them, bit for bit, as long as
-// keys that are apart by more than the margin have values that are apart by more than f's rounding.
+// the key does not rule out that it is the greatest. The result has the bits that all values would give. For that, values
+// must differ by more than f's rounding wherever keys differ by more than the margin.
 template <class F>
 class GreatestOf {
   public:

@@ -69,7 +69,7 @@ struct OutputInstants {
         for (std::size_t i = 0, n = s.size(); i < n; ++i)
             to[i] = t[i] * (a + 0.5 * u[i] * (b - a)) + w[i] * bend + u[i] * impulse;
     }
-    // The same of an impulse alone.
+    // Impulse from the start of the step to each instant of one that is spread evenly (N s).
     void spread(const Span& s, double impulse, double* to) const {
         const double* u = share.data() + s.first;
         for (std::size_t i = 0, n = s.size(); i < n; ++i)

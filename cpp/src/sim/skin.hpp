@@ -87,7 +87,7 @@ class Skin {
     CornerFace face_at(std::size_t k, const Vec3& place, const Vec3& node) const;
     bool stood_on(std::size_t k, const Vec3& normal, const Vec3& node) const;
     bool was_on(const CornerFace& face, const Vec3& node) const;
-    void add_pushed(std::size_t b, const Vec3& node, const CornerFace& own, Corner& corner) const;
+    void add_pushed(std::size_t b, const Vec3& node, const CornerFace& own, bool stays, Corner& corner) const;
     void add_driving(std::size_t b, const Vec3& node, Corner& corner) const;
     void place(std::size_t b, const Corner& corner, const Vec3& to);
     void share_out_corners(std::size_t b, const TrussBlockState& next);

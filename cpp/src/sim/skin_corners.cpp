@@ -113,8 +113,8 @@ bool Skin::was_on(const CornerFace& face, const Vec3& node) const {
 
 // Adds the faces that a node which pushes has been on since an instant before. Where two segments of a wall meet, the
 // face at hand takes over from that of the other, and the node leaves that.
-void Skin::add_pushed(std::size_t b, const Vec3& node, const CornerFace& own, Corner& corner) const {
-    const bool stays = own.dented || stood_on(own.seen, own.normal, node);
+void Skin::add_pushed(std::size_t b, const Vec3& node, const CornerFace& own, bool stays,
+                      Corner& corner) const {
     for (std::size_t k = 0; k < seen_.size(); ++k) {
         if (k == own.seen || !is_solid_to(b, corner.lane, seen_[k])) continue;
         if (!stays && stood_on(k, own.normal, node)) {
@@ -151,9 +151,10 @@ void Skin::settle(std::size_t b, std::size_t i) {
     Corner corner;
     corner.lane = i;
     const CornerFace own = own_face(i);
-    if (own.gap < 0.0 || own.dented || was_on(own, node)) corner.add(own);
+    const bool stays = own.dented || stood_on(own.seen, own.normal, node);
+    if (stays || own.gap <= tolerance::touching_gap) corner.add(own);
     if (block.force[i] > 0.0) {
-        add_pushed(b, node, own, corner);
+        add_pushed(b, node, own, stays, corner);
         corner.share_out((anchor - node).normalized());
         corner.release();
     }

@@ -108,8 +108,8 @@ bool Skin::springs_off(std::size_t b) const {
     return furthest_outwards(last, next) > furthest_;
 }
 
-// Nodes that `plane`, or where it is null the faces at hand, let go, and that other surfaces stop on their way; and those
-// that spring off a dent, where they stand now. Are there any?
+// Finds the nodes that are let go and that another surface stops on their way. `plane` lets them go, or, where it is null,
+// the faces at hand. Nodes that spring off a dent stop where they stand now. Are there any of either?
 bool Skin::find_stopped(std::size_t b, const FlatContact* plane) {
     stopped_.clear();
     const TrussBlock& truss = mesh_.block[b];

@@ -60,7 +60,7 @@ struct TrussInput {
     double dent_reach = 0.0;
     // (n) Number of the wheel whose tread the node is on, -1 for the skin; empty: all skin.
     std::vector<int> wheel_of = {};
-    // (n) Number of the node of the skin whose second truss this is, -1 for all others; empty: there is none.
+    // (n) Number of the node of the skin whose second truss this is, -1 for others; empty: no second ones.
     std::vector<int> along_of = {};
 };
 
