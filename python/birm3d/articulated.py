@@ -245,6 +245,17 @@ class ArticulatedVehicle(Vehicle):
         raise ValueError(f"truss law must be asked of one of the units, got {self.name!r} of two")
 
     @property
+    def kind(self) -> str | None:
+        """``"tractor_semitrailer"`` where its units are a tractor and a semi-trailer, else ``None``."""
+        kinds = tuple(unit.kind for unit in self._units)
+        return "tractor_semitrailer" if kinds == ("tractor", "semi_trailer") else None
+
+    @property
+    def points(self) -> Mapping[str, tuple[float, float, float]]:
+        """Refused: each unit has points in its own axes."""
+        raise ValueError(f"points must be asked of one of the units, got {self.name!r} of two")
+
+    @property
     def has_file(self) -> bool:
         """Whether both units come from files, so that they can be meshed anew."""
         return all(unit.has_file for unit in self._units)

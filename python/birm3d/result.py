@@ -21,7 +21,9 @@ from .frames import Frames, capture, pose
 from .free_standing import is_pinned, overturning_ratio
 from .frozen_mapping import FrozenMapping
 from .report import report
+from .sensor import Sensor, place_sensor
 from .unit_result import UnitResult, read_only
+from .units import Quantity
 
 if TYPE_CHECKING:
     from .result_file import Stored, StoredHistory
@@ -406,6 +408,26 @@ class Result:
         """
         rows = self._history.unit(place("unit", unit, len(self._units), "units"))
         return pose(self.time, rows.position, rows.roll_pitch_yaw, time)
+
+    def sensor(self, point: str | Sequence[Quantity], part: str | int | None = None) -> Sensor:
+        """Return the motion of a point that is fixed to the vehicle, as a gauge there would record it.
+
+        Parameters
+        ----------
+        point
+            Name of a point (:attr:`birm3d.Vehicle.points`), as ``"load_bed_leading_edge"``, or its place
+            (x, y, z) in the axes of the vehicle's file: forward, left, up, origin on the ground below the
+            front axle [m].
+        part
+            Of a vehicle of two units: the name of one of them, or its number. ``None``: the unit that has
+            a point of this name, else the leading one.
+
+        Raises
+        ------
+        ValueError
+            If there is no such point or part; the message names those that there are.
+        """
+        return place_sensor(self, point, part)
 
     def with_frames(self, frames: int | Sequence[float] = 61) -> Result:
         """Return the same result with places of the shell nodes over time, for pictures.

@@ -643,6 +643,18 @@ class Vehicle:
         return self._mesh_density
 
     @property
+    def kind(self) -> str | None:
+        """What standards of testing call it, as ``"pickup"``; ``None`` where its file does not say."""
+        return None if self._file is None else self._file.kind
+
+    @property
+    def points(self) -> Mapping[str, tuple[float, float, float]]:
+        """Named points in the axes of the vehicle's file [m]: those of its file, and ``mass_center``."""
+        x, y, z = self.center_of_mass.tolist()
+        named = () if self._file is None else self._file.points
+        return FrozenMapping({"mass_center": (x, y, z), **{point.name: point.at_m for point in named}})
+
+    @property
     def is_skin(self) -> npt.NDArray[np.bool_]:
         """Which nodes are tied to the rigid body by their first truss, shape (n,)."""
         return (self.wheel_of_node < 0) & (self.along_of_node < 0)

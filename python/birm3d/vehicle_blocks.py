@@ -23,7 +23,9 @@ __all__ = [
     "Dimensions",
     "End",
     "Exterior",
+    "Kind",
     "Name",
+    "NamedPoint",
     "Point",
     "Positive",
     "Solid",
@@ -44,6 +46,19 @@ Panel: TypeAlias = Literal["front", "rear", "side", "top", "bottom", "tire"]
 # Text that may be broken over several lines of the file.
 Text: TypeAlias = Annotated[str, Field(min_length=1), AfterValidator(lambda text: " ".join(text.split()))]
 Status: TypeAlias = Literal["measured", "published", "calibrated", "estimated"]
+# What standards of testing tell apart; a cab-over truck has its cab above the front axle.
+Kind: TypeAlias = Literal[
+    "car",
+    "minivan",
+    "pickup",
+    "van",
+    "bus",
+    "truck",
+    "cab_over_truck",
+    "tractor",
+    "semi_trailer",
+    "test_body",
+]
 
 # Relative slack of comparisons that decimal numbers typed by hand can miss by rounding only.
 _ROUNDING = 1e-9
@@ -310,6 +325,23 @@ class Exterior(Block):
             limit = f"for at most {_MOST_ELEMENTS:,} elements"
             box = f"{length:g} m by {width:g} m by {height:g} m"
             reject("element_size_m", f"must be {limit}, got {self.element_size_m} on a box of {box}")
+
+
+class NamedPoint(Block):
+    """A point of the rigid body that sensors and standards ask for by name; m, file axes.
+
+    Usual names: "a_pillar_base", "load_bed_leading_edge" (its lower leading edge, at the outer end),
+    "driver_head". "mass_center" follows from the solids and can not be given.
+    """
+
+    name: Name
+    at_m: Point
+
+    @model_validator(mode="after")
+    def _check(self) -> NamedPoint:
+        if self.name == "mass_center":
+            reject("name", "must be another one: the mass centre follows from the solids, got 'mass_center'")
+        return self
 
 
 class Dents(Block):

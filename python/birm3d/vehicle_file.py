@@ -26,7 +26,9 @@ from .vehicle_blocks import (
     Dimensions,
     End,
     Exterior,
+    Kind,
     Name,
+    NamedPoint,
     Positive,
     Solid,
     Source,
@@ -73,6 +75,7 @@ class VehicleFileError(DocumentError):
 class VehicleFile(Strict):
     """A vehicle as its file describes it: SI units, file axes, immutable.
 
+    kind: what standards call it, as "pickup"; they may not know a vehicle without one.
     zones_at_kg: mass of the vehicle that the stiffness of the zones holds for; without it, gvw_kg.
     changes: how the vehicle differs from what the rest describes, see :meth:`birm3d.Vehicle.save`.
     """
@@ -81,6 +84,7 @@ class VehicleFile(Strict):
     name: Name
     title: Text
     description: Text
+    kind: Kind | None = None
     gvw_kg: Positive
     zones_at_kg: Positive | None = None
     sources: Annotated[tuple[Source, ...], Field(alias="source", min_length=1)]
@@ -88,13 +92,14 @@ class VehicleFile(Strict):
     targets: Annotated[tuple[Target, ...], Field(alias="target")] = ()
     solids: Annotated[tuple[Solid, ...], Field(alias="solid", min_length=1)]
     wheels: Annotated[tuple[Wheel, ...], Field(alias="wheel")] = ()
+    points: Annotated[tuple[NamedPoint, ...], Field(alias="point")] = ()
     exterior: Exterior
     dents: Dents | None = None
     core: Annotated[tuple[CoreBox, ...], Field(min_length=1)]
     zones: Annotated[tuple[Zone, ...], Field(alias="zone", min_length=1)]
     changes: Changes | None = None
 
-    @field_validator("core", "solids", "wheels", "sources")
+    @field_validator("core", "solids", "wheels", "points", "sources")
     @classmethod
     def _names_differ(cls, items: tuple[Any, ...]) -> tuple[Any, ...]:
         names = [item.id if isinstance(item, Source) else item.name for item in items]
@@ -141,6 +146,7 @@ class VehicleFile(Strict):
             "target": self.targets,
             "solid": self.solids,
             "wheel": self.wheels,
+            "point": self.points,
             "core": self.core,
         }
         for key, items in groups.items():
