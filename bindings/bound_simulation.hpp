@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "birm3d/sim/simulation.hpp"
+#include "birm3d/simulation/simulation.hpp"
 
 namespace birm3d::bindings {
 

@@ -1,4 +1,4 @@
-#include "birm3d/sim/event.hpp"
+#include "birm3d/record/event.hpp"
 
 #include <pybind11/stl.h>
 

@@ -1,4 +1,4 @@
-#include "birm3d/sim/extremes.hpp"
+#include "birm3d/record/extremes.hpp"
 
 #include <pybind11/stl.h>
 

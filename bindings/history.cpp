@@ -4,7 +4,7 @@
 
 #include "arrays.hpp"
 #include "birm3d/base/rotation.hpp"
-#include "birm3d/sim/extremes.hpp"
+#include "birm3d/record/extremes.hpp"
 #include "register.hpp"
 
 namespace birm3d::bindings {

@@ -1,4 +1,4 @@
-#include "birm3d/sim/simulation.hpp"
+#include "birm3d/simulation/simulation.hpp"
 
 #include <pybind11/stl.h>
 #include <pybind11/typing.h>

@@ -3,7 +3,7 @@
 // Its crush, peak force and rebound are known exactly, so that the last lines show what the computation is
 // worth. SI units throughout; body axes are r (forward), s (left) and t (up) from the mass centre.
 #include <algorithm>
-#include <birm3d/sim/simulation.hpp>
+#include <birm3d/simulation/simulation.hpp>
 #include <cmath>
 #include <cstdio>
 #include <limits>

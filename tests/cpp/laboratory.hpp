@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "birm3d/sim/simulation.hpp"
+#include "birm3d/simulation/simulation.hpp"
 
 namespace laboratory {
 

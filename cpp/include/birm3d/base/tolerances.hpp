@@ -163,4 +163,7 @@ inline constexpr double flat_face = 1e-10;
 // Height of a triangle above its longest edge, relative to that edge, below which it has no normal.
 inline constexpr double triangle_height = 1e-9;
 
+// Most rows of a history: about two gigabytes.
+inline constexpr double most_rows = 2e6;
+
 }  // namespace birm3d::tolerance

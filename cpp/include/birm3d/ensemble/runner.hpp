@@ -4,8 +4,8 @@
 #include <functional>
 #include <optional>
 
-#include "birm3d/sim/extremes.hpp"
-#include "birm3d/sim/simulation.hpp"
+#include "birm3d/record/extremes.hpp"
+#include "birm3d/simulation/simulation.hpp"
 
 namespace birm3d {
 

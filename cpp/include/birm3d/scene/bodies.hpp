@@ -1,0 +1,29 @@
+// All that moves in a scene, one after the other: the vehicle's units, then the free-standing segments of the barrier.
+#pragma once
+
+#include <vector>
+
+#include "birm3d/scene/scene.hpp"
+
+namespace birm3d {
+
+inline std::size_t body_count(const State& state) {
+    return state.units.size() + state.segments.size();
+}
+const RigidBody& rigid_body(const Scene& scene, std::size_t body);
+const BodyState& body_state(const State& state, std::size_t body);
+BodyState& body_state(State& state, std::size_t body);
+// Of all of them.
+void list_body_states(const State& state, std::vector<BodyState>& bodies);
+
+// impulse: linear and angular about the body's mass centre, world axes (N s, N m s). What pushes a segment down or tips
+// it goes into the ground.
+void kick_body(const Scene& scene, std::size_t body, const Wrench& impulse, State& state);
+
+// Place of the body that an obstacle is, or -1 where it is fixed.
+int body_of_obstacle(const Scene& scene, std::size_t obstacle);
+
+// Fastest any point of a segment moves (m/s).
+double fastest_point(const Segment& segment, const BodyState& body);
+
+}  // namespace birm3d

@@ -1,0 +1,79 @@
+#include "contact/predicted_motion.hpp"
+
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/kernels/friction.hpp"
+#include "birm3d/kernels/integrate.hpp"
+#include "birm3d/kernels/tires.hpp"
+#include "birm3d/scene/bodies.hpp"
+
+namespace birm3d {
+
+namespace {
+
+// Of a body about its mass centre, world axes.
+Mat6 inertia_of(const RigidBody& body, const Mat3& R) {
+    Mat6 inertia = Mat6::Zero();
+    inertia.topLeftCorner<3, 3>().diagonal().array() = body.mass;
+    inertia.bottomRightCorner<3, 3>() = R * body.inertia * R.transpose();
+    return inertia;
+}
+
+// Of the wheels on the ground that would go into it but for its push in the second half, which `motion` takes to be that of
+// the first: see settled().
+Mat6 hold_of_ground(const Unit& unit, const BodyState& body, const Mat6& inertia, const Twist& motion,
+                    const std::vector<double>& tire_impulses, std::vector<RigidContact>& memory) {
+    memory.clear();
+    find_tire_contacts(unit, 0, body, memory);
+    const auto row_of = [](const RigidContact& contact) {
+        Vec6 row;
+        row << contact.normal, contact.arm.cross(contact.normal);
+        return row;
+    };
+    Vec6 unpushed, push = Vec6::Zero();
+    unpushed << motion.velocity, motion.angular_velocity;
+    for (const RigidContact& contact : memory)
+        push += tire_impulses[contact.index] * row_of(contact);
+    unpushed -= inertia.ldlt().solve(push);
+    Mat6 held = Mat6::Zero();
+    for (const RigidContact& contact : memory) {
+        const bool stands = tire_impulses[contact.index] > 0.0 || contact.gap <= tolerance::touching_gap;
+        const Vec6 row = row_of(contact);
+        if (stands && row.dot(unpushed) < 0.0)
+            held += tolerance::held_by_ground * unit.body.mass * row * row.transpose();
+    }
+    return held;
+}
+
+}  // namespace
+
+Twist predicted_motion(const Scene& scene, std::size_t u, const State& from, Trial& trial) {
+    const Unit& unit = scene.vehicle->units[u];
+    const BodyState& start = trial.at_start.happened ? trial.at_start.bodies[u] : from.units[u].body;
+    BodyState body = trial.state.units[u].body;
+    body.velocity += body.velocity - start.velocity;
+    body.angular_momentum += body.angular_momentum - start.angular_momentum;
+    Twist motion{body.velocity, angular_velocity(unit.body, body)};
+    const Mat3 R = body.orientation.toRotationMatrix();
+    const SkinForces& before = from.units[u].skin;
+    if (before.resistance.trace() > 0.0) {
+        const Mat6 inertia = inertia_of(unit.body, R);
+        Mat6 held = Mat6::Zero();
+        if (scene.settings.ground)
+            held = hold_of_ground(unit, body, inertia, motion, trial.impulses[u].tire, trial.memory.contacts);
+        motion = settled(motion, before.rubbed, before.resistance, trial.dt, inertia, held);
+    }
+    return {R.transpose() * motion.velocity, R.transpose() * motion.angular_velocity};
+}
+
+void predict_segments(const Scene& scene, const State& from, double dt, State& now) {
+    for (const UnitState& unit : from.units)
+        for (const Touch& touch : unit.touches) {
+            const int body = body_of_obstacle(scene, touch.obstacle);
+            if (body < 0) continue;
+            Load coming = scaled(touch.course.now, 0.5 * dt);
+            coming += scaled(touch.course.rate, dt * dt / 3.0);
+            kick_body(scene, static_cast<std::size_t>(body), reaction_of(coming), now);
+        }
+}
+
+}  // namespace birm3d

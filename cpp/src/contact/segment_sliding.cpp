@@ -1,0 +1,174 @@
+#include "contact/segment_sliding.hpp"
+
+#include <algorithm>
+
+#include "birm3d/kernels/ground_slide.hpp"
+#include "birm3d/kernels/joints.hpp"
+#include "birm3d/scene/bodies.hpp"
+
+namespace birm3d {
+
+namespace {
+
+bool pushes_segment(const RigidContact& contact) {
+    return contact.source == ContactSource::member && contact.other >= 0;
+}
+
+// Greatest friction impulse of the ground on each segment (N s).
+void find_limits(const Scene& scene, const Column& pressed, const ContactKick& kicked, Column& limits) {
+    limits = pressed;
+    for (const RigidContact& contact : kicked.contacts)
+        if (pushes_segment(contact))
+            limits[contact.obstacle] += contact.impulse * contact.normal.z() + contact.rubbing.z();
+    for (double& limit : limits)
+        limit = scene.barrier->free_standing->ground_friction * std::max(0.0, limit);
+}
+
+bool is_pinned(const Scene& scene) {
+    return scene.barrier->free_standing->joint == SegmentJoint::pinned;
+}
+
+Vec3 level_motion(const RigidBody& body, const Vec3& velocity, double spin_momentum) {
+    return {velocity.x(), velocity.y(), body.inverse_inertia(2, 2) * spin_momentum};
+}
+
+// First two axes of a body that turns about the vertical only.
+struct LevelAxes {
+    explicit LevelAxes(const Quat& turn)
+        : x(1.0 - 2.0 * turn.z() * turn.z(), 2.0 * turn.w() * turn.z()), y(-x.y(), x.x()) {}
+    Vec2 x, y;
+};
+
+// Without friction and pins, and with what they are thought to do.
+void list_slabs(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
+    const std::size_t units = state.units.size();
+    std::vector<PinnedSlab>& slabs = memory.slabs;
+    slabs.resize(state.segments.size());
+    for (std::size_t i = 0; i < slabs.size(); ++i) {
+        const Segment& segment = scene.barrier->segments[i];
+        const BodyState& body = state.segments[i];
+        PinnedSlab& slab = slabs[i];
+        slab.mass = segment.body.mass;
+        slab.inertia = segment.body.inertia(2, 2);
+        slab.limit = memory.limits[i];
+        const LevelAxes axes(body.orientation);
+        for (std::size_t c = 0; c < slab.arm.size(); ++c)
+            slab.arm[c] = segment.corner[c].x() * axes.x + segment.corner[c].y() * axes.y;
+        slab.motion = level_motion(segment.body, body.velocity, body.angular_momentum.z());
+        const Wrench& push = memory.kick.on_members[units + i];
+        slab.motion += segment.body.inverse_mass * Vec3(push.force.x(), push.force.y(), 0.0);
+        slab.motion.z() += segment.body.inverse_inertia(2, 2) * push.torque.z();
+        // What rested and is held still rests, and at rest its friction is easiest to find.
+        const Twist& from = by.from[units + i];
+        const bool rested = from.velocity.isZero(0.0) && from.angular_velocity.isZero(0.0);
+        const Twist& guess = by.at_end[units + i];
+        slab.guess.setZero();
+        if (!rested) slab.guess = {guess.velocity.x(), guess.velocity.y(), guess.angular_velocity.z()};
+    }
+    for (const RigidContact& contact : memory.kick.contacts) {
+        if (!pushes_segment(contact)) continue;
+        const Wrench push = wrench_on_other(contact);
+        const RigidBody& body = scene.barrier->segments[contact.obstacle].body;
+        Vec3& motion = slabs[contact.obstacle].motion;
+        motion.head<2>() += body.inverse_mass * push.force.head<2>();
+        motion.z() += body.inverse_inertia(2, 2) * push.torque.z();
+    }
+}
+
+void list_pins(const Scene& scene, const State& state, std::vector<SlabPin>& pins) {
+    pins.resize(state.segments.size() - 1);
+    for (std::size_t i = 0; i < pins.size(); ++i) {
+        const BodyState &first = state.segments[i], &next = state.segments[i + 1];
+        SlabPin& pin = pins[i];
+        pin.on_first = scene.barrier->segments[i].half_length * LevelAxes(first.orientation).y;
+        pin.on_next = -scene.barrier->segments[i + 1].half_length * LevelAxes(next.orientation).y;
+        pin.gap = (first.position - next.position).head<2>() + pin.on_first - pin.on_next;
+    }
+}
+
+Wrench wrench_along_ground(const Vec3& push) {
+    return {Vec3(push.x(), push.y(), 0.0), Vec3(0.0, 0.0, push.z())};
+}
+
+void rub_pinned(const KickedBy& by, KickMemory& memory) {
+    memory.chain.solve(memory.slabs, memory.pins, by.drift);
+    for (std::size_t i = 0; i < memory.slabs.size(); ++i) {
+        memory.segment_motions[i] = memory.chain.motions()[i];
+        memory.kick.on_base[i] = wrench_along_ground(memory.chain.frictions()[i]);
+        memory.kick.on_pins[i] = wrench_along_ground(memory.chain.pulls()[i]);
+    }
+}
+
+void rub_loose(const Scene& scene, KickMemory& memory) {
+    for (std::size_t i = 0; i < memory.slabs.size(); ++i) {
+        const PinnedSlab& slab = memory.slabs[i];
+        Wrench& friction = memory.kick.on_base[i];
+        friction = {};
+        memory.segment_motions[i] = slab.motion;
+        if (slab.motion.isZero(0.0)) continue;
+        const RigidBody& body = scene.barrier->segments[i].body;
+        std::array<Vec3, 4> arm;
+        for (std::size_t c = 0; c < arm.size(); ++c)
+            arm[c] = {slab.arm[c].x(), slab.arm[c].y(), 0.0};
+        const Vec3& v = slab.motion;
+        friction = slide_friction(body, arm, slab.limit, {Vec3(v.x(), v.y(), 0.0), Vec3(0.0, 0.0, v.z())});
+        memory.segment_motions[i].head<2>() += body.inverse_mass * friction.force.head<2>();
+        memory.segment_motions[i].z() += body.inverse_inertia(2, 2) * friction.torque.z();
+    }
+}
+
+}  // namespace
+
+bool meets_segments(const std::vector<RigidContact>& contacts) {
+    return std::any_of(contacts.begin(), contacts.end(), pushes_segment);
+}
+
+void rub_on_ground(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
+    find_limits(scene, by.pressed, memory.kick, memory.limits);
+    list_slabs(scene, by, state, memory);
+    memory.segment_motions.resize(state.segments.size());
+    memory.kick.on_base.resize(state.segments.size());
+    memory.kick.on_pins.assign(state.segments.size(), {});
+    if (!is_pinned(scene) || state.segments.size() == 1) return rub_loose(scene, memory);
+    list_pins(scene, state, memory.pins);
+    rub_pinned(by, memory);
+}
+
+void move_segments(const Scene& scene, const KickMemory& memory, State& state) {
+    // Share of the speed that friction can take from a segment which rounding may have left.
+    constexpr double left_over = 1e-4;
+    for (std::size_t i = 0; i < state.segments.size(); ++i) {
+        const Segment& segment = scene.barrier->segments[i];
+        const Vec3& motion = memory.segment_motions[i];
+        BodyState& body = state.segments[i];
+        const double fastest =
+            motion.head<2>().norm() + std::abs(motion.z()) * segment.corner[0].head<2>().norm();
+        const bool rests = fastest <= left_over * segment.body.inverse_mass * memory.limits[i];
+        body.velocity = body.angular_momentum = Vec3::Zero();
+        if (rests) continue;
+        body.velocity.head<2>() = motion.head<2>();
+        body.angular_momentum.z() = segment.body.inertia(2, 2) * motion.z();
+    }
+}
+
+std::size_t add_pin_rows(const Scene& scene, const State& state, const KickMemory& memory,
+                         std::vector<RigidContact>& rows) {
+    if (!is_pinned(scene) || state.segments.size() == 1) return 0;
+    const std::size_t before = rows.size(), first = scene.vehicle->joints.size();
+    const std::size_t units = state.units.size();
+    for (std::size_t i = 0; i + 1 < state.segments.size(); ++i) {
+        if (!memory.chain.is_awake(i) || !memory.chain.is_awake(i + 1)) continue;
+        const std::size_t row = rows.size();
+        find_joint_rows(scene.joints[first + i], first + i, state.segments[i], state.segments[i + 1], rows);
+        const auto motion_at = [&](std::size_t segment, const Vec3& arm) {
+            const Vec3& motion = memory.segment_motions[segment];
+            return Vec3(motion.x() - arm.y() * motion.z(), motion.y() + arm.x() * motion.z(), 0.0);
+        };
+        for (std::size_t r = row; r < rows.size(); ++r)
+            rows[r].target = rows[r].normal.dot(motion_at(rows[r].body - units, rows[r].arm) -
+                                                motion_at(rows[r].body + 1 - units, rows[r].other_arm));
+    }
+    return rows.size() - before;
+}
+
+}  // namespace birm3d

@@ -1,0 +1,163 @@
+#include "birm3d/control/end_of_event.hpp"
+
+#include <algorithm>
+
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/kernels/integrate.hpp"
+#include "birm3d/kernels/tires.hpp"
+#include "birm3d/scene/bodies.hpp"
+#include "birm3d/scene/obstacles.hpp"
+
+namespace birm3d {
+
+namespace {
+
+// From the nearest point of a convex body around the shape to `p`, own axes.
+Vec3 from_hull(const Shape& shape, const Box& box, const Vec3& p) {
+    if (const auto* plane = std::get_if<HalfSpace>(&shape))
+        return std::max(0.0, plane->gap(p)) * plane->normal;
+    const Vec3 from = p - box.center;
+    return from - from.cwiseMax(-box.half).cwiseMin(box.half);
+}
+
+// Around all that is joined to obstacle `i`, its own axes.
+Box box_of_structure(const Scene& scene, std::size_t i) {
+    const Obstacle& first = scene.obstacles[i];
+    Box box = bounds(first.shape);
+    for (std::size_t j = i + 1; j < scene.obstacles.size() && scene.obstacles[j].structure == i; ++j) {
+        // Segments follow each other along y.
+        const Box own = bounds(scene.obstacles[j].shape);
+        const double shift = first.rotation.col(1).dot(scene.obstacles[j].position - first.position);
+        const double low = std::min(box.center.y() - box.half.y(), shift + own.center.y() - own.half.y());
+        const double high = std::max(box.center.y() + box.half.y(), shift + own.center.y() + own.half.y());
+        box.center.y() = 0.5 * (low + high), box.half.y() = 0.5 * (high - low);
+    }
+    return box;
+}
+
+// Is the vehicle still lifting a wheel from the ground, or tipped over and not yet at rest?
+bool tips(const Scene& scene, const State& state) {
+    if (!scene.settings.ground || scene.settings.gravity == 0.0) return false;
+    constexpr double tipped = 0.7;  // cosine of the up axis to the vertical: about 45 degrees
+    std::vector<RigidContact> wheels;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const BodyState& body = state.units[u].body;
+        const Unit& unit = scene.vehicle->units[u];
+        if (unit.wheels.empty()) continue;
+        if ((body.orientation * Vec3::UnitZ()).z() < tipped) return true;
+        wheels.clear();
+        find_tire_contacts(unit, u, body, wheels);
+        const Twist motion = twist(unit.body, body);
+        for (const RigidContact& wheel : wheels)
+            if (wheel.gap > tolerance::lifted_wheel &&
+                (motion.velocity + motion.angular_velocity.cross(wheel.arm)).z() > 0.0)
+                return true;
+    }
+    return false;
+}
+
+// Segments that friction can stop have stopped.
+bool segments_rest(const Scene& scene, const State& state) {
+    if (state.segments.empty() || scene.settings.gravity == 0.0 ||
+        scene.barrier->free_standing->ground_friction == 0.0)
+        return true;
+    return fastest_segment(scene, state) == 0.0;
+}
+
+BodyState between(const BodyState& a, const BodyState& b, double share) {
+    BodyState body;
+    body.position = a.position + share * (b.position - a.position);
+    body.orientation = a.orientation.slerp(share, b.orientation);
+    body.velocity = a.velocity + share * (b.velocity - a.velocity);
+    body.angular_momentum = a.angular_momentum + share * (b.angular_momentum - a.angular_momentum);
+    return body;
+}
+
+}  // namespace
+
+bool touches(const State& state) {
+    return std::any_of(state.units.begin(), state.units.end(),
+                       [](const UnitState& unit) { return unit.skin.normal_force > 0.0; });
+}
+
+namespace {
+
+// Does the vehicle move away from every element? What `must_clear` says must be out of its reach too, else faster than any
+// turning will do.
+enum class Clear { forward_only, always };
+bool moves_away(const Scene& scene, const State& state, Clear must_clear) {
+    const Vec3 towards = scene.towards();
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const Unit& unit = scene.vehicle->units[u];
+        const BodyState& body = state.units[u].body;
+        const bool clear = must_clear == Clear::always || body.velocity.dot(towards) > 0.0;
+        const double turning = angular_velocity(unit.body, body).norm() * unit.trusses.reach;
+        for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
+            const Obstacle& element = scene.obstacles[i];
+            if (element.structure != i) continue;
+            const Pose pose = pose_of(scene, i, state);
+            const Placement seen = placement(pose, body);
+            const Vec3 from = from_hull(element.shape, box_of_structure(scene, i), seen.position);
+            const double distance = from.norm();
+            if (!(distance > 0.0)) return false;
+            const Vec3 direction = from / distance;
+            double away = (pose.rotation.transpose() * body.velocity).dot(from) / distance;
+            if (i < state.segments.size()) {
+                const Vec3 segment = pose.rotation.transpose() * state.segments[i].velocity;
+                away -= std::max(0.0, segment.dot(direction)) +
+                        fastest_point(scene.barrier->segments[i], state.segments[i]) - segment.norm();
+            }
+            const bool outruns = !clear && away >= turning;
+            if (!(away > 0.0 && (outruns || distance > unit.trusses.reach))) return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+bool has_left(const Scene& scene, const State& state) {
+    return moves_away(scene, state, Clear::forward_only);
+}
+
+bool is_out_of_reach(const Scene& scene, const State& state) {
+    return moves_away(scene, state, Clear::always);
+}
+
+double rest_energy(const Scene& scene) {
+    double start = 0.0;
+    for (const Unit& unit : scene.vehicle->units)
+        start += 0.5 * unit.body.mass * scene.approach.speed * scene.approach.speed;
+    return 1e-6 * start;
+}
+
+bool at_rest(const Scene& scene, const State& state) {
+    return state.energies.kinetic + state.energies.stored < rest_energy(scene);
+}
+
+bool is_over(const Scene& scene, const State& state) {
+    return has_left(scene, state) && !tips(scene, state) && segments_rest(scene, state);
+}
+
+double time_of_decision(const Scene& scene, std::span<const BodyState> before, double released, double dt,
+                        State& now) {
+    if (!is_over(scene, now)) return now.time;  // all came to rest
+    std::vector<BodyState> after;
+    list_body_states(now, after);
+    const auto is_over_at = [&](double share) {
+        for (std::size_t b = 0; b < after.size(); ++b)
+            body_state(now, b) = between(before[b], after[b], share);
+        return is_over(scene, now);
+    };
+    double open = released / dt, over = 1.0;
+    if (is_over_at(open)) over = open;
+    while ((over - open) * dt > tolerance::decision_resolution) {
+        const double share = 0.5 * (open + over);
+        (is_over_at(share) ? over : open) = share;
+    }
+    for (std::size_t b = 0; b < after.size(); ++b)
+        body_state(now, b) = after[b];
+    return now.time - (1.0 - over) * dt;
+}
+
+}  // namespace birm3d

@@ -1,0 +1,253 @@
+#include "birm3d/control/step_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/control/end_of_event.hpp"
+#include "birm3d/control/step_limits.hpp"
+#include "birm3d/kernels/integrate.hpp"
+#include "birm3d/scene/bodies.hpp"
+#include "birm3d/scene/obstacles.hpp"
+#include "birm3d/step/structure_load.hpp"
+
+namespace birm3d {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// What an error is divided into may be nil (m/s).
+constexpr double least_error = 1e-300;
+
+// Velocity error that a step may have (m/s).
+double allowed_error(const Scene& scene) {
+    return tolerance::step_error_per_tolerance * scene.settings.tolerance * scene.reference_speed();
+}
+
+// Mean velocity of the pushing nodes along their normals, weighted by their forces (m/s); negative =
+// approaching, zero where nothing pushes.
+double separation_speed(const Scene& scene, const State& state) {
+    double power = 0.0, force = 0.0;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const UnitState& unit = state.units[u];
+        const Twist motion = twist(scene.vehicle->units[u].body, unit.body);
+        power += unit.skin.contact.force.dot(motion.velocity) +
+                 unit.skin.contact.torque.dot(motion.angular_velocity);
+        for (const Touch& touch : unit.touches) {
+            const int other = body_of_obstacle(scene, touch.obstacle);
+            if (other < 0) continue;
+            const auto b = static_cast<std::size_t>(other);
+            const Twist of = twist(rigid_body(scene, b), body_state(state, b));
+            const Vec3 arm = unit.body.position - body_state(state, b).position;
+            power -= touch.contact.force.dot(of.velocity + of.angular_velocity.cross(arm)) +
+                     touch.contact.torque.dot(of.angular_velocity);
+        }
+        force += unit.skin.normal_force;
+    }
+    return force > 0.0 ? power / force : 0.0;
+}
+
+// Its rate of change by what the barrier does to the vehicle (m/s^2).
+double separation_rate(const Scene& scene, const State& state) {
+    double rate = 0.0, force = 0.0;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const UnitState& unit = state.units[u];
+        const RigidBody& body = scene.vehicle->units[u].body;
+        const Wrench& push = unit.skin.contact;
+        rate += body.inverse_mass * push.force.squaredNorm() +
+                push.torque.dot(inverse_inertia_in_world(body, unit.body) * push.torque);
+        force += unit.skin.normal_force;
+    }
+    return force > 0.0 ? rate / force : 0.0;
+}
+
+double greatest_stiffness(const State& state) {
+    double stiffness = 0.0;
+    for (const UnitState& unit : state.units)
+        stiffness = std::max(stiffness, unit.skin.stiffness);
+    return stiffness;
+}
+
+// Where the approach turns into separation within a step, the trusses' peak is passed unseen and unloading
+// begins late, by up to the way back in half the step: the error in velocity is the force of that way, half
+// a step long (m/s).
+double turn_error(double dt, double stiffness, double separation) {
+    return 0.25 * dt * dt * stiffness * separation;
+}
+
+// A located turn is no nearer to either end of the step that was to be taken.
+constexpr double least_share = 0.1;
+
+// A step that ends where the approach turns, or half way to there, if a longer one would miss the turn (s).
+double step_to_turn(const Scene& scene, const State& state, double approach, double dt) {
+    if (!(approach < 0.0)) return dt;
+    const double rate = separation_rate(scene, state);
+    if (!(rate > 0.0)) return dt;
+    const double turn = -approach / rate;
+    const double way = turn < dt ? dt : 2.0 * dt;
+    if (!(turn < way)) return dt;
+    if (turn_error(dt, greatest_stiffness(state), rate * (way - turn)) <= allowed_error(scene)) return dt;
+    return turn < dt ? std::max(turn, least_share * dt) : 0.5 * turn;
+}
+
+// A step to the turn that this one has gone beyond (s); infinite where it makes no error that counts.
+double located_turn(const Scene& scene, const Trial& tried, double approach, double separation) {
+    if (!(approach < 0.0 && separation > 0.0)) return infinity;
+    if (turn_error(tried.dt, greatest_stiffness(tried.state), separation) <= allowed_error(scene))
+        return infinity;
+    return tried.dt * std::clamp(approach / (approach - separation), least_share, 1.0 - least_share);
+}
+
+// Where the body turns, its nodes cease to approach one after the other. Those that do within the step pass their peak
+// unseen, by up to a dt^2/8, and begin to unload late: half a step long the force is greater by what that way makes along
+// the unloading slope (m/s).
+double error_of_turns(const Scene& scene, const Trial& tried, double separation) {
+    const double rate = separation_rate(scene, tried.state);
+    if (!(rate > 0.0)) return 0.0;
+    double spread = 0.0;
+    for (std::size_t u = 0; u < tried.state.units.size(); ++u) {
+        const Unit& unit = scene.vehicle->units[u];
+        const double spin = angular_velocity(unit.body, tried.state.units[u].body).norm();
+        spread = std::max(spread, spin * unit.trusses.reach);
+    }
+    // All together within a step is what located_turn() looks for.
+    const double change = rate * tried.dt, share = change / (2.0 * spread);
+    if (!(share < 1.0 && std::abs(separation) < spread + change)) return 0.0;
+    return share * change * tried.dt * tried.dt / 16.0 * greatest_stiffness(tried.state);
+}
+
+// When a load is gone, by its course so far (s); infinite where that does not tell.
+double time_to_release(const LoadCourse& course) {
+    const double force = course.now.normal_force, rate = course.rate.normal_force,
+                 bend = course.bend.normal_force, step = course.step;
+    if (!(force > 0.0)) return 0.0;
+    // Root of force + rate s + bend s (s + step), written for small bends.
+    const double slope = rate + bend * step;
+    const double square = slope * slope - 4.0 * bend * force;
+    const bool ends = square > 0.0 && slope < 0.0;
+    return ends ? 2.0 * force / (std::sqrt(square) - slope) : infinity;
+}
+
+// A step at whose end the next segment that slides straight on, untouched, comes to rest (s): its way is exact then.
+double time_to_stop(const Scene& scene, const State& state) {
+    double earliest = infinity;
+    if (state.segments.empty() || touches(state)) return earliest;
+    const double deceleration = scene.settings.gravity * scene.barrier->free_standing->ground_friction;
+    if (!(deceleration > 0.0)) return earliest;
+    for (const BodyState& segment : state.segments) {
+        const double time = segment.velocity.norm() / deceleration;
+        if (time > tolerance::shortest_stop) earliest = std::min(earliest, time);
+    }
+    return earliest;
+}
+
+// Steps that an estimate asks for are taken from a ladder of sixteen lengths an octave: estimates are made of
+// high differences of the load, and their rounding must not travel from step to step.
+double on_ladder(double dt) {
+    int octave = 0;
+    const double part = std::frexp(dt, &octave);  // 0.5 to 1
+    return std::ldexp(std::floor(part * 32.0) / 32.0, octave);
+}
+
+// The course of what carries the vehicle, of joints and of segments is followed to second order, which nothing
+// estimates: longest step at which it keeps up with the tolerance (s).
+double longest_step(const Scene& scene, const Trial& tried) {
+    if (!tried.body_rests() && scene.joints.empty() && tried.state.segments.empty())
+        return tolerance::longest_step;
+    return tolerance::longest_resting_step *
+           std::sqrt(std::min(1.0, scene.settings.tolerance / Settings{}.tolerance));
+}
+
+// The instant at which the last load ends is located within this (s): better than the usual tolerance needs nothing, and
+// four times as loosely at the most.
+double release_resolution(const Scene& scene) {
+    const double looser = std::sqrt(scene.settings.tolerance / Settings{}.tolerance);
+    return tolerance::release_resolution * std::clamp(looser, 1.0, 4.0);
+}
+
+double longest_stable(const Trial& tried) {
+    return 0.9 * tolerance::stable_fraction * tried.critical_step;
+}
+
+// The end of free flight: no further than to the first instant at which a node can be at the barrier. Before the first
+// load has a rate, the error is as the product of the step and of its share in touch.
+double landing_step(const Scene& scene, const State& from, const Trial& tried, StepSearch& search) {
+    const double dt = tried.dt;
+    search.lands = true;
+    const double free = untouched_step(scene, from, dt);
+    const double in_touch = allowed_error(scene) / std::max(tried.error, least_error) * (dt - free);
+    search.pressing = std::max(tolerance::first_contact_step,
+                               std::min(longest_stable(tried), 0.9 * std::sqrt(dt * in_touch)));
+    return free > tolerance::first_contact_step ? free : search.pressing;
+}
+
+}  // namespace
+
+double time_to_release(const Scene& scene, const State& state) {
+    double latest = 0.0;
+    for (const UnitState& unit : state.units)
+        for (std::size_t i = 0; i < unit.touches.size();) {
+            const std::size_t structure = scene.obstacles[unit.touches[i].obstacle].structure;
+            latest = std::max(latest, time_to_release(course_of_structure(scene, unit.touches, structure)));
+            i = end_of_structure(scene, unit.touches, i);
+        }
+    return latest;
+}
+
+StepSearch begin_search(const Scene& scene, const State& state, double longest) {
+    StepSearch search;
+    double& dt = search.first;
+    dt = passing_step(scene, state, std::min(state.next_step, longest));
+    dt = std::min(dt, time_to_stop(scene, state));
+    if (!touches(state)) return search;
+    dt = std::min(dt, std::max(time_to_release(scene, state), release_resolution(scene)));
+    search.approach = separation_speed(scene, state);
+    dt = step_to_turn(scene, state, search.approach, dt);
+    return search;
+}
+
+double shorter_step(const Scene& scene, const State& from, const Trial& tried, StepSearch& search) {
+    const double dt = tried.dt;
+    if (tried.impact_within()) {
+        search.cut = std::max(search.cut, dt);
+        return std::max(tried.impact_after, 2.0 * tolerance::shortest_step);
+    }
+    const double longest = longest_step(scene, tried);
+    if (dt > longest) return longest;
+    if (!search.lands && !touches(from) && touches(tried.state)) {
+        const double landing = landing_step(scene, from, tried, search);
+        if (landing < dt) return landing;
+    }
+    const double allowed = allowed_error(scene);
+    const double separation = separation_speed(scene, tried.state);
+    search.error = std::max(tried.error, error_of_turns(scene, tried, separation));
+    double wanted = dt;
+    if (dt > tolerance::stable_fraction * tried.critical_step) wanted = longest_stable(tried);
+    if (search.error > allowed && dt > tolerance::jump_resolution)
+        wanted = std::min(wanted, std::max(dt * std::max(0.2, 0.9 * std::sqrt(allowed / search.error)),
+                                           tolerance::jump_resolution));
+    double shorter = std::min(wanted < dt ? on_ladder(wanted) : infinity,
+                              located_turn(scene, tried, search.approach, separation));
+    const double resolution = release_resolution(scene);
+    if (dt > resolution && touches(from) && !touches(tried.state))
+        shorter = std::min(shorter, std::max(0.5 * dt, resolution));
+    return shorter < dt ? shorter : infinity;
+}
+
+double step_after(const Scene& scene, const Trial& accepted, const StepSearch& search) {
+    const double dt = accepted.dt;
+    const double room = allowed_error(scene) / std::max(search.error, least_error);
+    // The sixth root rather than the fourth, by which a smooth load's error grows: gentle changes of the step
+    // keep the estimates, which compare three steps, quiet. Far below what is allowed there is nothing to disturb.
+    const double growth =
+        0.9 * std::max(std::pow(room, 1.0 / 6.0), std::pow(room / tolerance::ample_room, 1.0 / 3.0));
+    const double longer = growth > 1.0
+                              ? std::max(dt * std::min(tolerance::fastest_growth, growth), search.cut)
+                              : std::max(dt * growth, tolerance::jump_resolution);
+    const double next =
+        std::min(on_ladder(std::min(longer, longest_stable(accepted))), longest_step(scene, accepted));
+    return touches(accepted.state) ? next : std::min(next, search.pressing);
+}
+
+}  // namespace birm3d

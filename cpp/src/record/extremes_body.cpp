@@ -1,0 +1,105 @@
+// How far the rigid bodies got past the barrier's line, and how high their wheels.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "birm3d/record/extremes.hpp"
+
+namespace birm3d {
+
+namespace {
+
+// The anchors of a skin, to be asked for the one that is furthest along a direction.
+//
+// Blocks hold neighbours, and a box tells how far any anchor of a block can be: those that can not hold the furthest are
+// left out. No hull is made, which anchors in a plane or on a line would not have.
+class Anchors {
+  public:
+    explicit Anchors(const TrussMesh& mesh) : mesh_(mesh) {}
+
+    // Distance of the furthest one along a unit vector, body axes (m).
+    double furthest(const Vec3& direction) {
+        double furthest = in_block(last_, direction);  // most likely the same as before
+        const Vec3 size = direction.cwiseAbs();
+        for (std::size_t b = 0; b < mesh_.skin_blocks; ++b) {
+            const Box& box = mesh_.anchor_box[b];
+            if (b == last_ || direction.dot(box.center) + size.dot(box.half) <= furthest) continue;
+            const double here = in_block(b, direction);
+            if (here > furthest) furthest = here, last_ = b;
+        }
+        return furthest;
+    }
+    double reach() const { return mesh_.reach; }
+
+  private:
+    double in_block(std::size_t b, const Vec3& direction) const {
+        const TrussBlock& block = mesh_.block[b];
+        Lanes along;
+        for (std::size_t i = 0; i < lanes; ++i)  // padding has an anchor of the skin
+            along[i] = block.anchor_x[i] * direction.x() + block.anchor_y[i] * direction.y() +
+                       block.anchor_z[i] * direction.z();
+        return *std::max_element(along.begin(), along.end());
+    }
+
+    const TrussMesh& mesh_;
+    std::size_t last_ = 0;
+};
+
+// Greatest distance of an anchor past the line over the rows, if it is above `least` (m).
+double penetration_of(const UnitHistory& unit, const TrussMesh& mesh, const Vec3& past, const Vec3& origin,
+                      double least) {
+    Anchors anchors(mesh);
+    double greatest = least;
+    // The last answer, and the direction it is of: for another direction it changes by no more than the reach times the
+    // distance of the two.
+    Vec3 known = Vec3::Zero();
+    double furthest = 0.0;
+    const auto look = [&](std::size_t k) {
+        const double center = past.dot(unit.position[k] - origin);
+        if (center + anchors.reach() <= greatest) return;
+        const Vec3 direction = unit.orientation[k].conjugate() * past;
+        if (known != Vec3::Zero() &&
+            center + furthest + anchors.reach() * (direction - known).norm() <= greatest)
+            return;
+        known = direction, furthest = anchors.furthest(direction);
+        greatest = std::max(greatest, center + furthest);
+    };
+    // The row where the mass centre is furthest leaves few others to look at.
+    std::size_t deepest = 0;
+    double way = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < unit.position.size(); ++k)
+        if (const double at = past.dot(unit.position[k]); at > way) way = at, deepest = k;
+    look(deepest);
+    for (std::size_t k = 0; k < unit.position.size(); ++k)
+        look(k);
+    return greatest;
+}
+
+}  // namespace
+
+double greatest_penetration(const History& history, const Vehicle& vehicle, const Barrier& barrier) {
+    double greatest = 0.0;
+    for (std::size_t u = 0; u < vehicle.units.size(); ++u)
+        greatest = penetration_of(history.units[u], vehicle.units[u].trusses, -barrier.normal(),
+                                  barrier.origin, greatest);
+    return greatest;
+}
+
+double greatest_wheel_climb(const History& history, const Vehicle& vehicle) {
+    double greatest = 0.0;
+    for (std::size_t u = 0; u < vehicle.units.size(); ++u) {
+        const std::vector<Wheel>& wheels = vehicle.units[u].wheels;
+        const UnitHistory& unit = history.units[u];
+        if (wheels.empty()) continue;
+        for (std::size_t k = 0; k < unit.position.size(); ++k) {
+            const Vec3 up = unit.orientation[k].conjugate() * Vec3::UnitZ();         // body axes
+            const double upright = std::sqrt(std::max(0.0, 1.0 - up.y() * up.y()));  // of the radius
+            for (const Wheel& wheel : wheels)
+                greatest =
+                    std::max(greatest, unit.position[k].z() + wheel.center.dot(up) - wheel.radius * upright);
+        }
+    }
+    return greatest;
+}
+
+}  // namespace birm3d

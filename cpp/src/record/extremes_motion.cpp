@@ -1,0 +1,123 @@
+// Extremes of how the first unit moves and turns.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "birm3d/base/rotation.hpp"
+#include "birm3d/record/extremes.hpp"
+#include "record/greatest.hpp"
+
+namespace birm3d {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// The last instant that counts where the separation does.
+double end_of(const Event& event) {
+    return event.separated ? event.released_at : infinity;
+}
+
+// Greatest magnitude of an angle that goes on beyond half a turn.
+class Turning {
+  public:
+    explicit Turning(double first, double zero) : zero_(zero), last_(first) {}
+
+    void add(double angle) {
+        turns_ -= std::round((angle - last_) / (2.0 * std::numbers::pi));
+        last_ = angle;
+        greatest_ = std::max(greatest_, std::abs(angle + 2.0 * std::numbers::pi * turns_ - zero_));
+    }
+    double greatest() const { return greatest_; }
+
+  private:
+    double zero_, last_, turns_ = 0.0, greatest_ = 0.0;
+};
+
+// Angles of any size.
+Extremes::Attitude attitude_at_large(const History& history, double end) {
+    const std::vector<Quat>& orientation = history.units.front().orientation;
+    const Angles first = roll_pitch_yaw(orientation[0]);
+    Turning roll(first.roll, 0.0), pitch(first.pitch, 0.0), yaw(first.yaw, first.yaw);
+    for (std::size_t k = 0; k < orientation.size(); ++k) {
+        const Angles angles = roll_pitch_yaw(orientation[k]);
+        roll.add(angles.roll), pitch.add(angles.pitch);
+        if (history.time[k] <= end) yaw.add(angles.yaw);
+    }
+    return {roll.greatest(), pitch.greatest(), yaw.greatest()};
+}
+
+// Greatest angles where all stay well below a quarter of a turn; none where they do not. Tangents and sines have the order
+// of the angles, so that few angles are worked out.
+std::optional<Extremes::Attitude> attitude_in_small(const History& history, double end) {
+    constexpr double least_cosine = 0.1;
+    const std::vector<Quat>& orientation = history.units.front().orientation;
+    const double zero = roll_pitch_yaw(orientation[0]).yaw;
+    const auto magnitude = [](double y, double x) { return std::abs(std::atan2(y, x)); };
+    const auto slope = [](double sine, double) { return std::asin(sine); };
+    const auto turned = [zero](double y, double x) { return std::abs(std::atan2(y, x) - zero); };
+    GreatestOf roll(magnitude);
+    GreatestOf pitch(slope);
+    GreatestOf left(turned, zero != 0.0 ? 1.0 : 0.0), right = left;
+    for (std::size_t k = 0; k < orientation.size(); ++k) {
+        const Mat3 R = orientation[k].toRotationMatrix();
+        const double sine = std::abs(R(2, 0));
+        if (!(R(2, 2) > least_cosine && R(0, 0) > least_cosine && sine < 1.0 - least_cosine))
+            return std::nullopt;
+        roll.add(std::abs(R(2, 1)) / R(2, 2), R(2, 1), R(2, 2));
+        pitch.add(sine, sine, 0.0);
+        if (history.time[k] > end) continue;
+        const double tangent = R(1, 0) / R(0, 0);
+        left.add(tangent, R(1, 0), R(0, 0)), right.add(-tangent, R(1, 0), R(0, 0));
+    }
+    // The first instant is not after the end.
+    return Extremes::Attitude{roll.value(), pitch.value(), std::max({0.0, left.value(), right.value()})};
+}
+
+}  // namespace
+
+Extremes::Motion greatest_motion(const History& history, const Event& event) {
+    const double end = end_of(event);
+    const UnitHistory& unit = history.units.front();
+    const Vec3 position = unit.position[0], velocity = unit.velocity[0], towards = history.towards;
+    Extremes::Motion found{towards, velocity.dot(towards), {}, -infinity, 0.0, -infinity};
+    double before = found.approach_speed;  // at the instant before
+    double change_squared = 0.0;
+    for (std::size_t k = 0; k < history.time.size(); ++k) {
+        const double speed = unit.velocity[k].dot(towards);
+        if (!found.turn_time && speed <= 0.0) {
+            const double last = history.time[k > 0 ? k - 1 : 0];
+            found.turn_time =
+                before > speed ? last + before / (before - speed) * (history.time[k] - last) : last;
+        }
+        before = speed;
+        found.way = std::max(found.way, (unit.position[k] - position).dot(towards));
+        if (history.time[k] <= end)
+            change_squared = std::max(change_squared, (unit.velocity[k] - velocity).squaredNorm());
+        found.deceleration = std::max(found.deceleration, -unit.acceleration[k].x());
+    }
+    found.velocity_change = std::sqrt(change_squared);
+    if (event.separated)
+        found.velocity_change = std::max(found.velocity_change, (event.released_velocity - velocity).norm());
+    return found;
+}
+
+Extremes::Attitude greatest_attitude(const History& history, const Event& event) {
+    const double end = end_of(event);
+    const std::optional<Extremes::Attitude> small = attitude_in_small(history, end);
+    return small ? *small : attitude_at_large(history, end);
+}
+
+Extremes::JointLoads greatest_joint_loads(const JointHistory& joint) {
+    Turning angle(joint.angles.front().yaw, 0.0);
+    double force = 0.0;
+    for (const JointAngles& angles : joint.angles)
+        angle.add(angles.yaw);
+    for (const Vec3& row : joint.force)
+        force = std::max(force, row.norm());
+    return {angle.greatest(), force};
+}
+
+}  // namespace birm3d

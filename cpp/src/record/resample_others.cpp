@@ -1,0 +1,160 @@
+// Resampling of what joints, elements of the barrier and free-standing segments do.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "birm3d/base/rotation.hpp"
+#include "record/resample_rows.hpp"
+
+namespace birm3d {
+
+void Recorder::resample_joints(const Scene& scene, const OutputInstants& output, History& history) const {
+    const std::vector<Joint>& joints = scene.vehicle->joints;
+    const std::size_t first = width_ - segment_width * scene.free_segments() - joint_width * joints.size(),
+                      count = history.time.size();
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        JointHistory joint;
+        joint.force.assign(count, Vec3::Zero());
+        joint.moment.assign(count, Vec3::Zero());
+        const auto& leading = history.units[joints[j].leading].orientation;
+        const auto& trailing = history.units[joints[j].trailing].orientation;
+        for (std::size_t k = 0; k < count; ++k)
+            joint.angles.push_back(joint_angles(leading[k], trailing[k]));
+
+        const auto add = [&](std::size_t row, double share, Wrench& sum) {
+            const double* impulse = output.view(row, first + j * joint_width).b;
+            sum += {share * vec(impulse), share * vec(impulse + 3)};
+        };
+        Wrench before_step, previous;
+        std::size_t row = 0;
+        for (const Span& span : output.span) {
+            for (; row < span.row; ++row)
+                add(row, 1.0, before_step);
+            for (std::size_t k = span.first; k < span.end; ++k) {
+                Wrench now = before_step;
+                add(row, output.share[k], now);
+                if (k > 0) {
+                    joint.force[k] = output.per[k] * (now.force - previous.force);
+                    joint.moment[k] = output.per[k] * (now.torque - previous.torque);
+                }
+                previous = now;
+            }
+        }
+        if (count > 1) joint.force[0] = joint.force[1], joint.moment[0] = joint.moment[1];
+        history.joints.push_back(std::move(joint));
+    }
+}
+
+// Forces and torques on the obstacles that were touched, as means over the output intervals.
+void Recorder::resample_obstacles(const Scene& scene, const OutputInstants& output, History& history) const {
+    std::map<std::size_t, std::vector<const ObstacleRow*>>
+        touched;  // obstacle -> (rows), null where untouched
+    for (const ObstacleRow& row : obstacles_) {
+        auto& rows_of = touched[row.obstacle];
+        rows_of.resize(rows(), nullptr);
+        rows_of[row.row] = &row;
+    }
+    static constexpr std::array<double, obstacle_width> nothing{};
+    for (const auto& [obstacle, rows_of] : touched) {
+        const auto view = [&](std::size_t r) {
+            const auto values = [&](std::size_t i) {
+                return rows_of[i] ? rows_of[i]->values.data() : nothing.data();
+            };
+            return StepView{values(r), values(r + 1), output.time_at(r + 1) - output.time_at(r)};
+        };
+        const std::size_t count = history.time.size();
+        ObstacleHistory of{obstacle, std::vector<Vec3>(count, Vec3::Zero()),
+                           std::vector<Vec3>(count, Vec3::Zero())};
+        std::array<double, 6> before_step{}, previous{};
+        std::array<SpanColumn, 6> now;
+        std::size_t row = 0;
+        for (const Span& span : output.span) {
+            for (; row < span.row; ++row) {
+                if (!rows_of[row] && !rows_of[row + 1]) continue;
+                const StepView whole = view(row);
+                for (std::size_t i = 0; i < 6; ++i)
+                    before_step[i] += whole.force_integral(at_load + i, at_load_bend + i, whole.dt) +
+                                      whole.impulse(at_load_impulse + i, whole.dt);
+            }
+            if (!rows_of[row] && !rows_of[row + 1] && previous == before_step) continue;
+            const StepView step = view(row);
+            for (std::size_t i = 0; i < 6; ++i) {
+                output.integrate(span, step.a[at_load + i], step.b[at_load + i], step.b[at_load_bend + i],
+                                 step.b[at_load_impulse + i], now[i].data());
+                for (std::size_t n = 0; n < span.size(); ++n)
+                    now[i][n] += before_step[i];
+            }
+            for (std::size_t i = 0; i < 6; ++i) {
+                std::vector<Vec3>& to = i < 3 ? of.force : of.moment;
+                for (std::size_t k = span.first; k < span.end; ++k) {
+                    const double sum = now[i][k - span.first];
+                    if (k > 0)
+                        to[k][static_cast<Eigen::Index>(i % 3)] = (sum - previous[i]) / output.interval[k];
+                    previous[i] = sum;
+                }
+            }
+        }
+        for (std::size_t k = 0; k < count; ++k)
+            of.moment[k] += scene.from_origin.cross(of.force[k]);
+        if (count > 1) of.force[0] = of.force[1], of.moment[0] = of.moment[1];
+        history.obstacles.push_back(std::move(of));
+    }
+}
+
+// Between rows a segment moves by what the vehicle does to it, as the record has it; what the ground and the pins do
+// within the step, the rest of its change of velocity, is spread evenly. So the momentum of all bodies adds up at every
+// instant.
+void Recorder::resample_segments(const Scene& scene, const OutputInstants& output, History& history) const {
+    const std::size_t segments = scene.free_segments(), count = history.time.size();
+    const std::size_t first = width_ - segment_width * segments;
+    static constexpr std::array<double, obstacle_width> nothing{};
+    for (std::size_t i = 0; i < segments; ++i) {
+        const RigidBody& body = scene.barrier->segments[i].body;
+        const double height = scene.barrier->segments[i].mass_center_height;
+        std::vector<const double*> loads(rows(), nothing.data());
+        for (const ObstacleRow& row : obstacles_)
+            if (row.obstacle == i) loads[row.row] = row.values.data();
+        const auto at = [&](std::size_t row) {
+            return values_.data() + row * width_ + first + i * segment_width;
+        };
+
+        SegmentHistory segment;
+        std::size_t span = 0;
+        double yaw = 0.0, last_angle = 0.0;
+        for (std::size_t k = 0; k < count; ++k) {
+            while (span + 1 < output.span.size() && output.span[span].end <= k)
+                ++span;
+            const std::size_t row = output.span.empty() ? 0 : output.span[span].row;
+            const std::size_t next = rows() > 1 ? row + 1 : row;
+            const double *a = at(row), *b = at(next), dt = output.time_at(next) - output.time_at(row);
+            const double t = output.within[k], s = output.share[k];
+            const StepView load{loads[row], loads[next], dt};
+            const auto pushed = [&](double until) -> Vec3 {
+                const Vec3 impulse = load.force_integral3(at_load, at_load_bend, until) +
+                                     load.share(until) * vec(load.b + at_load_impulse);
+                return body.inverse_mass * Vec3(impulse.x(), impulse.y(), 0.0);
+            };
+            const Vec3 v0 = vec(a + at_segment_velocity), v1 = vec(b + at_segment_velocity);
+            const Vec3 p0 = vec(a + at_segment_position), p1 = vec(b + at_segment_position);
+            const bool held = v0.isZero(0.0) && v1.isZero(0.0);  // throughout the step
+            segment.velocity.push_back(held || s == 1.0 ? v1
+                                                        : Vec3(v0 + pushed(t) + s * (v1 - v0 - pushed(dt))));
+            segment.position.push_back(p0 + (p1 - p0) * (s * s * (3.0 - 2.0 * s)) +
+                                       dt * s * (1.0 - s) * ((1.0 - s) * v0 - s * v1) + scene.base -
+                                       height * Vec3::UnitZ());
+            segment.yaw_rate.push_back((1.0 - s) * a[at_segment_spin] + s * b[at_segment_spin]);
+            const Eigen::Map<const Eigen::Vector4d> qa(a + at_segment_orientation),
+                qb(b + at_segment_orientation);
+            const Eigen::Vector4d q = (1.0 - s) * qa + s * (qa.dot(qb) < 0.0 ? -1.0 : 1.0) * qb;
+            const double angle = 2.0 * std::atan2(q[2], q[3]);
+            if (k > 0) yaw += std::remainder(angle - last_angle, 2.0 * std::numbers::pi);
+            last_angle = angle;
+            segment.yaw.push_back(yaw);
+        }
+        history.segments.push_back(std::move(segment));
+    }
+}
+
+}  // namespace birm3d

@@ -1,0 +1,288 @@
+// Evenly spaced output of the units.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "birm3d/base/tolerances.hpp"
+#include "record/span_impulses.hpp"
+
+namespace birm3d {
+
+namespace {
+
+// A force that stops the vehicle within this time is large enough to judge the momentum balance by (s). No crash lasts
+// as long, so that it counts only where next to nothing pushes.
+constexpr double stopping_time = 1.0;
+
+// The rows of one unit, span by span.
+class UnitRows {
+  public:
+    UnitRows(const OutputInstants& output, std::size_t offset, const Unit& model, double gravity,
+             const Channels& wanted, UnitHistory& unit)
+        : output_(output),
+          offset_(offset),
+          model_(model),
+          down_(0.0, 0.0, -gravity),
+          wanted_(wanted),
+          unit_(unit),
+          motion_(wanted.motion),
+          forces_(wanted.forces),
+          momentum_(wanted.momentum && wanted.motion) {
+        const double* start = output.values.data() + offset;
+        const double speed = std::max(vec(start + at_velocity).norm(), tolerance::slowest_reference_speed);
+        largest_ = model.body.mass * speed / stopping_time;
+        now_.tire.resize(model.wheels.size());
+        before_step_.tire.assign(model.wheels.size(), 0.0);
+        previous_ = before_step_;
+    }
+
+    void run(const Vec3& towards) {
+        make_columns();
+        std::size_t row = 0;
+        for (const Span& span : output_.span) {
+            for (; row < span.row; ++row)
+                pass(output_.view(row, offset_));
+            const StepView step = output_.view(row, offset_);
+            if (motion_ || forces_ || momentum_)
+                now_.set(output_, span, step);
+            else
+                SpanImpulses::integrate(output_, span, step, at_barrier_force, at_barrier_bend,
+                                        at_barrier_impulse, now_.barrier);
+            if (motion_) add_motion(span, step);
+            if (forces_ || momentum_)
+                now_.add(before_step_, span.size());
+            else if (wanted_.normal_force)
+                now_.barrier.add(before_step_.barrier, span.size());
+            if (wanted_.normal_force) add_normal_force(span, towards);
+            if (forces_) add_forces(span);
+            if (momentum_) look_at_momentum(span);
+            keep_last(span);
+        }
+        finish();
+    }
+    // Largest force of any row, at least that which stops the unit in `stopping_time`; and by which m a misses the sum
+    // of forces (N).
+    double largest() const { return largest_; }
+    double worst() const { return worst_; }
+
+  private:
+    void make_columns() {
+        const std::size_t count = output_.time.size();
+        if (wanted_.normal_force) unit_.barrier_normal_force.assign(count, 0.0);
+        if (motion_) {
+            for (auto* column : {&unit_.position, &unit_.velocity, &unit_.acceleration})
+                column->resize(count);
+            unit_.orientation.resize(count);
+            if (wanted_.angular_velocity) unit_.angular_velocity.resize(count);
+            unit_.acceleration[0] = Vec3::Zero();
+            if (output_.rows < 2) rest();
+        }
+        if (!forces_) return;
+        for (auto* column : force_columns())
+            column->assign(count, Vec3::Zero());
+        unit_.tire_reaction.assign(model_.wheels.size(), Column(count, 0.0));
+    }
+    std::array<std::vector<Vec3>*, 4> force_columns() {
+        return {&unit_.barrier_force, &unit_.ground_force, &unit_.tire_friction_force, &unit_.joint_force};
+    }
+
+    // Of a record without a step.
+    void rest() {
+        const double* a = output_.values.data() + offset_;
+        std::fill(unit_.position.begin(), unit_.position.end(), vec(a + at_position));
+        std::fill(unit_.orientation.begin(), unit_.orientation.end(),
+                  Quat(Eigen::Map<const Eigen::Vector4d>(a + at_orientation)));
+        std::fill(unit_.velocity.begin(), unit_.velocity.end(), vec(a + at_velocity));
+        std::fill(unit_.acceleration.begin(), unit_.acceleration.end(), Vec3::Zero());
+        if (wanted_.angular_velocity)
+            std::fill(unit_.angular_velocity.begin(), unit_.angular_velocity.end(),
+                      vec(a + at_angular_velocity));
+    }
+
+    // Over a whole step.
+    void pass(const StepView& whole) {
+        if (forces_ || momentum_) {
+            passed_.set(whole, whole.dt, model_.wheels.size());
+            before_step_ += passed_;
+        } else if (wanted_.normal_force) {
+            before_step_.barrier += whole.barrier_impulse(whole.dt);
+        }
+    }
+
+    void add_motion(const Span& span, const StepView& step) {
+        add_velocity(span, step);
+        // Cubic Hermite for the path; the chord of the unit sphere for the small turn.
+        const Vec3 a = vec(step.a + at_position), b = vec(step.b + at_position);
+        const Vec3 va = vec(step.a + at_velocity), vb = vec(step.b + at_velocity);
+        const Eigen::Map<const Eigen::Vector4d> qa(step.a + at_orientation), qb(step.b + at_orientation);
+        const double side = qa.dot(qb) < 0.0 ? -1.0 : 1.0;
+        for (std::size_t k = span.first; k < span.end; ++k) {
+            const double s = output_.share[k];
+            unit_.position[k] =
+                a + (b - a) * output_.smooth[k] + step.dt * s * (1.0 - s) * ((1.0 - s) * va - s * vb);
+            unit_.orientation[k] = Quat(Eigen::Vector4d((1.0 - s) * qa + s * side * qb)).normalized();
+        }
+        if (wanted_.angular_velocity)
+            for (std::size_t k = span.first; k < span.end; ++k)
+                unit_.angular_velocity[k] = (1.0 - output_.share[k]) * vec(step.a + at_angular_velocity) +
+                                            output_.share[k] * vec(step.b + at_angular_velocity);
+        for (std::size_t k = std::max<std::size_t>(span.first, 1); k < span.end; ++k) {
+            const Vec3 acceleration = output_.per[k] * (unit_.velocity[k] - unit_.velocity[k - 1]);
+            unit_.acceleration[k] = unit_.orientation[k].conjugate() * acceleration;
+        }
+    }
+    void add_velocity(const Span& span, const StepView& step) {
+        const Vec3 a = vec(step.a + at_velocity), b = vec(step.b + at_velocity);
+        const std::size_t n = span.size();
+        SpanVectors total;
+        for (std::size_t i = 0; i < n; ++i) {
+            total.x[i] = now_.barrier.x[i] + now_.ground.x[i] + now_.tire_friction.x[i] + now_.joints.x[i];
+            total.y[i] = now_.barrier.y[i] + now_.ground.y[i] + now_.tire_friction.y[i] + now_.joints.y[i];
+            total.z[i] = now_.barrier.z[i] + now_.ground.z[i] + now_.tire_friction.z[i] + now_.joints.z[i];
+        }
+        for (const SpanColumn& tire : now_.tire)
+            for (std::size_t i = 0; i < n; ++i)
+                total.z[i] += tire[i];
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::size_t k = span.first + i;
+            unit_.velocity[k] =
+                output_.share[k] < 1.0
+                    ? Vec3(a + model_.body.inverse_mass * total.at(i) + output_.within[k] * down_)
+                    : b;
+        }
+    }
+
+    void add_normal_force(const Span& span, const Vec3& towards) {
+        Vec3 previous = previous_.barrier;
+        for (std::size_t k = span.first; k < span.end; ++k) {
+            const Vec3 now = now_.barrier.at(k - span.first);
+            if (k > 0) unit_.barrier_normal_force[k] = output_.per[k] * (previous - now).dot(towards);
+            previous = now;
+        }
+    }
+
+    void add_forces(const Span& span) {
+        const auto add = [&](const SpanVectors& impulse, Vec3 previous, std::vector<Vec3>& to) {
+            for (std::size_t k = span.first; k < span.end; ++k) {
+                const Vec3 now = impulse.at(k - span.first);
+                if (k > 0) to[k] = output_.per[k] * (now - previous);
+                previous = now;
+            }
+        };
+        add(now_.barrier, previous_.barrier, unit_.barrier_force);
+        add(now_.ground, previous_.ground, unit_.ground_force);
+        add(now_.tire_friction, previous_.tire_friction, unit_.tire_friction_force);
+        add(now_.joints, previous_.joints, unit_.joint_force);
+        for (std::size_t w = 0; w < now_.tire.size(); ++w) {
+            double previous = previous_.tire[w];
+            for (std::size_t k = span.first; k < span.end; ++k) {
+                const double now = now_.tire[w][k - span.first];
+                if (k > 0) unit_.tire_reaction[w][k] = output_.per[k] * (now - previous);
+                previous = now;
+            }
+        }
+    }
+
+    // Means over the intervals that end at the instants, of one component.
+    void means(const Span& span, const SpanColumn& impulse, double previous, SpanColumn& to) const {
+        const double* per = output_.per.data() + span.first;
+        to[0] = per[0] * (impulse[0] - previous);
+        for (std::size_t i = 1, n = span.size(); i < n; ++i)
+            to[i] = per[i] * (impulse[i] - impulse[i - 1]);
+    }
+    void means(const Span& span, const SpanVectors& impulse, const Vec3& previous, SpanVectors& to) const {
+        means(span, impulse.x, previous.x(), to.x);
+        means(span, impulse.y, previous.y(), to.y);
+        means(span, impulse.z, previous.z(), to.z);
+    }
+
+    void look_at_momentum(const Span& span) {
+        const double mass = model_.body.mass;
+        const Vec3 weight = mass * down_;
+        SpanVectors barrier, force, part;
+        means(span, now_.barrier, previous_.barrier, barrier);
+        force = barrier;
+        const std::size_t n = span.size();
+        const auto add = [&](const SpanVectors& impulse, const Vec3& previous) {
+            means(span, impulse, previous, part);
+            for (std::size_t i = 0; i < n; ++i)
+                force.x[i] += part.x[i], force.y[i] += part.y[i], force.z[i] += part.z[i];
+        };
+        add(now_.ground, previous_.ground), add(now_.tire_friction, previous_.tire_friction);
+        add(now_.joints, previous_.joints);
+        force.add(weight, n);
+        for (std::size_t w = 0; w < now_.tire.size(); ++w) {
+            means(span, now_.tire[w], previous_.tire[w], part.z);
+            for (std::size_t i = 0; i < n; ++i)
+                force.z[i] += part.z[i];
+        }
+        double worst = 0.0, largest = 0.0;  // squared
+        for (std::size_t i = span.first == 0 ? 1 : 0; i < n; ++i) {
+            const std::size_t k = span.first + i;
+            const Vec3 acceleration = output_.per[k] * (unit_.velocity[k] - unit_.velocity[k - 1]);
+            worst = std::max(worst, (mass * acceleration - force.at(i)).squaredNorm());
+            largest = std::max({largest, force.at(i).squaredNorm(), barrier.at(i).squaredNorm()});
+        }
+        worst_ = std::max(worst_, std::sqrt(worst));
+        largest_ = std::max({largest_, std::sqrt(largest), weight.norm()});
+    }
+
+    void keep_last(const Span& span) {
+        const std::size_t last = span.size() - 1;
+        previous_.barrier = now_.barrier.at(last);
+        if (!forces_ && !momentum_) return;
+        previous_.ground = now_.ground.at(last);
+        previous_.tire_friction = now_.tire_friction.at(last), previous_.joints = now_.joints.at(last);
+        for (std::size_t w = 0; w < now_.tire.size(); ++w)
+            previous_.tire[w] = now_.tire[w][last];
+    }
+
+    void finish() {
+        if (wanted_.normal_force) show_first_mean(unit_.barrier_normal_force);
+        if (motion_ && output_.time.size() > 1)
+            unit_.acceleration[0] =
+                unit_.orientation[0].conjugate() * (unit_.orientation[1] * unit_.acceleration[1]);
+        if (!forces_) return;
+        for (auto* column : force_columns())
+            show_first_mean(*column);
+        for (Column& wheel : unit_.tire_reaction)
+            show_first_mean(wheel);
+    }
+
+    const OutputInstants& output_;
+    std::size_t offset_;
+    const Unit& model_;
+    Vec3 down_;  // acceleration of free fall (m/s^2)
+    const Channels& wanted_;
+    UnitHistory& unit_;
+    bool motion_, forces_, momentum_;
+    SpanImpulses now_;
+    Impulses before_step_;  // up to the start of the step that holds the span
+    Impulses passed_;       // of one step
+    Impulses previous_;     // up to the last instant of the span before
+    double largest_, worst_ = 0.0;
+};
+
+}  // namespace
+
+void Recorder::resample_units(const OutputInstants& output, const Scene& scene, const Channels& wanted,
+                              History& history) const {
+    std::size_t offset = at_units;
+    double worst = 0.0, largest = 0.0;
+    history.units.resize(scene.vehicle->units.size());
+    for (std::size_t u = 0; u < history.units.size(); ++u) {
+        const Unit& model = scene.vehicle->units[u];
+        UnitRows rows(output, offset, model, scene.settings.gravity, wanted, history.units[u]);
+        rows.run(history.towards);
+        if (wanted.motion)
+            for (Vec3& position : history.units[u].position)
+                position += scene.base;
+        if (wanted.contact_forces) resample_contact_forces(output, offset, history.units[u]);
+        if (wanted.momentum)
+            worst = std::max(worst, rows.worst()), largest = std::max(largest, rows.largest());
+        offset += unit_width(model);
+    }
+    history.momentum_residual = largest > 0.0 ? worst / largest : 0.0;
+}
+
+}  // namespace birm3d

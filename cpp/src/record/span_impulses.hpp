@@ -1,0 +1,54 @@
+// Impulses on a unit at some output instants within one step, worked out together.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "record/resample_rows.hpp"
+
+namespace birm3d {
+
+// A vector at each instant of a span, component by component: loops over it fill whole registers.
+struct SpanVectors {
+    SpanColumn x, y, z;
+    Vec3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
+    std::array<double*, 3> columns() { return {x.data(), y.data(), z.data()}; }
+    void add(const Vec3& by, std::size_t n) {
+        for (std::size_t i = 0; i < n; ++i)
+            x[i] += by.x(), y[i] += by.y(), z[i] += by.z();
+    }
+};
+
+// Impulses on a unit at the instants of a span: from the start of the step, then from the start of the run (N s).
+struct SpanImpulses {
+    SpanVectors barrier, ground, tire_friction, joints;
+    std::vector<SpanColumn> tire;
+
+    void set(const OutputInstants& output, const Span& span, const StepView& step) {
+        integrate(output, span, step, at_barrier_force, at_barrier_bend, at_barrier_impulse, barrier);
+        integrate(output, span, step, at_ground_force, at_ground_bend, at_ground_impulse, ground);
+        const auto spread = [&](std::size_t from, SpanVectors& to) {
+            for (std::size_t c = 0; c < 3; ++c)
+                output.spread(span, step.b[from + c], to.columns()[c]);
+        };
+        spread(at_tire_friction, tire_friction), spread(at_joint_impulse, joints);
+        for (std::size_t w = 0; w < tire.size(); ++w)
+            output.spread(span, step.b[at_tire_impulses + w], tire[w].data());
+    }
+    void add(const Impulses& by, std::size_t n) {
+        barrier.add(by.barrier, n), ground.add(by.ground, n);
+        tire_friction.add(by.tire_friction, n), joints.add(by.joints, n);
+        for (std::size_t w = 0; w < tire.size(); ++w)
+            for (std::size_t i = 0; i < n; ++i)
+                tire[w][i] += by.tire[w];
+    }
+    static void integrate(const OutputInstants& output, const Span& span, const StepView& step,
+                          std::size_t force, std::size_t bend, std::size_t impulse, SpanVectors& to) {
+        for (std::size_t c = 0; c < 3; ++c)
+            output.integrate(span, step.a[force + c], step.b[force + c], step.b[bend + c],
+                             step.b[impulse + c], to.columns()[c]);
+    }
+};
+
+}  // namespace birm3d

@@ -1,0 +1,49 @@
+#include "birm3d/scene/bodies.hpp"
+
+#include <cmath>
+
+#include "birm3d/kernels/integrate.hpp"
+
+namespace birm3d {
+
+const RigidBody& rigid_body(const Scene& scene, std::size_t body) {
+    const std::size_t units = scene.vehicle->units.size();
+    return body < units ? scene.vehicle->units[body].body : scene.barrier->segments[body - units].body;
+}
+
+const BodyState& body_state(const State& state, std::size_t body) {
+    const std::size_t units = state.units.size();
+    return body < units ? state.units[body].body : state.segments[body - units];
+}
+
+BodyState& body_state(State& state, std::size_t body) {
+    const std::size_t units = state.units.size();
+    return body < units ? state.units[body].body : state.segments[body - units];
+}
+
+void list_body_states(const State& state, std::vector<BodyState>& bodies) {
+    bodies.clear();
+    for (std::size_t b = 0; b < body_count(state); ++b)
+        bodies.push_back(body_state(state, b));
+}
+
+void kick_body(const Scene& scene, std::size_t body, const Wrench& impulse, State& state) {
+    Wrench part = impulse;
+    if (body >= state.units.size()) {
+        part.force.z() = 0.0;
+        part.torque.x() = part.torque.y() = 0.0;
+    }
+    kick(rigid_body(scene, body), part, body_state(state, body));
+}
+
+int body_of_obstacle(const Scene& scene, std::size_t obstacle) {
+    return obstacle < scene.free_segments() ? static_cast<int>(scene.vehicle->units.size() + obstacle) : -1;
+}
+
+double fastest_point(const Segment& segment, const BodyState& body) {
+    if (body.velocity.isZero(0.0) && body.angular_momentum.isZero(0.0)) return 0.0;
+    const double reach = Vec3(segment.corner[0].x(), segment.corner[0].y(), 0.0).norm();
+    return body.velocity.norm() + angular_velocity(segment.body, body).norm() * reach;
+}
+
+}  // namespace birm3d

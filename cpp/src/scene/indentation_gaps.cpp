@@ -1,0 +1,130 @@
+#include "birm3d/scene/indentation_gaps.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/scene/obstacles.hpp"
+
+namespace birm3d {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+namespace {
+
+// No node of a block, or of a group of them, is nearer than `gap`.
+struct Bound {
+    double gap;
+    std::size_t of;
+
+    bool operator<(const Bound& other) const { return gap < other.gap; }
+};
+
+// Of those groups that can come within `far`, the nearest first.
+std::vector<Bound> groups_by_gap(const Dent& dent, std::size_t panel, const TrussMesh& mesh,
+                                 const UnitState& unit, double far) {
+    std::vector<Bound> bounds;
+    for (std::size_t g = 0; g < unit.trusses.groups.size(); ++g) {
+        if ((mesh.panels_of_group[g] >> panel & 1U) == 0) continue;
+        const double gap = -most_inside(dent, unit.trusses.groups[g].box);
+        if (gap <= far) bounds.push_back({gap, g});
+    }
+    std::sort(bounds.begin(), bounds.end());
+    return bounds;
+}
+
+}  // namespace
+
+double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, const UnitState& unit,
+                    double far, double enough) {
+    double least = infinity;
+    std::vector<Bound> blocks;
+    for (const Bound& group : groups_by_gap(dent, panel, mesh, unit, far)) {
+        if (group.gap > least) break;
+        blocks.clear();
+        for (std::size_t b = group.of * TrussMesh::group_size; b < mesh.end_of_group(group.of); ++b) {
+            if ((mesh.panels_of[b] >> panel & 1U) == 0) continue;
+            const double bound = -most_inside(dent, unit.trusses.block[b].box);
+            if (bound <= std::min(far, least)) blocks.push_back({bound, b});
+        }
+        std::sort(blocks.begin(), blocks.end());
+        for (const Bound& block : blocks) {
+            if (block.gap > least) break;
+            least = std::min(least,
+                             gap_of(dent, unit.trusses.block[block.of], mesh.block[block.of].panel, panel));
+            if (least <= enough) return least;
+        }
+    }
+    return least;
+}
+
+namespace {
+
+// Calls `use` with each dent that a post makes or would make, and its panel's number. `about`: of the obstacles. `way`: by
+// which posts beside, before or below a panel count too, as if it had no ends (m).
+template <class Use>
+void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& mesh,
+                   const std::vector<std::size_t>& about, double way, const Use& use) {
+    for (const std::size_t i : about) {
+        const Obstacle& obstacle = scene.obstacles[i];
+        const Post* post = std::get_if<Post>(&obstacle.shape);
+        if (post == nullptr) continue;
+        const Placement seen =
+            placement({obstacle.rotation, obstacle.position}, unit.body);  // posts are fixed
+        for (std::size_t p = 0; p < panels; ++p) {
+            const Panel& panel = mesh.panel[p];
+            if (!panel.any || !stands_across(seen, panel, false)) continue;
+            Dent dent(*post, seen, panel, mesh.dent_reach);
+            if (!(dent.beside(panel) < way) || dent.is_beyond(panel)) continue;
+            if (way > 0.0) {
+                dent.low = -infinity;
+                dent.high = infinity;
+            }
+            use(dent, p);
+        }
+    }
+}
+
+}  // namespace
+
+double overlap_of_dents(const Scene& scene, const State& state, double deepest) {
+    double most = 0.0;
+    std::vector<std::size_t> about;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const TrussMesh& mesh = scene.vehicle->units[u].trusses;
+        if (mesh.dent_reach == 0.0) continue;
+        scene.map.find(state.units[u].body.position, state.units[u].trusses.around.radius(), about);
+        for_each_dent(scene, state.units[u], mesh, about, 0.0, [&](const Dent& dent, std::size_t panel) {
+            const double gap = gap_of_panel(dent, panel, mesh, state.units[u], 0.0, -infinity);
+            if (-gap < deepest) most = std::max(most, -gap);
+        });
+    }
+    return most;
+}
+
+namespace {
+
+// Nodes that a dent has just let go lie on it but for rounding: at this gap it has come already (m).
+constexpr double come = tolerance::touching_gap;
+
+}  // namespace
+
+double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
+                     double longest) {
+    std::vector<std::size_t> about;
+    const double way = longest * fastest;
+    scene.map.find(unit.body.position, unit.trusses.around.radius() + way, about);
+    for_each_dent(scene, unit, mesh, about, way, [&](const Dent& dent, std::size_t panel) {
+        // A post dents what it comes into.
+        const double grows = dent.fastest_growth(mesh.panel[panel]);
+        const double gap = gap_of_panel(dent, panel, mesh, unit, grows * way, come);
+        if (gap > come) longest = std::min(longest, (gap + tolerance::untouched_way) / (grows * fastest));
+    });
+    return longest;
+}
+
+}  // namespace birm3d

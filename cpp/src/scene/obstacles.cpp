@@ -1,0 +1,115 @@
+#include "birm3d/scene/obstacles.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "birm3d/kernels/detect.hpp"
+#include "birm3d/kernels/integrate.hpp"
+#include "birm3d/scene/bodies.hpp"
+
+namespace birm3d {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// The least of `least` and the gaps of some points, of which a box can be left out that is further away.
+template <class Blocks>
+double nearest_in_blocks(const Shape& shape, const Placement& seen, std::size_t blocks, const Blocks& block,
+                         double least) {
+    alignas(64) NearestLanes found;
+    for (std::size_t b = 0; b < blocks; ++b) {
+        const auto [box, x, y, z] = block(b);
+        if (!within_reach(shape, seen, box, least)) continue;
+        nearest_of(shape, seen, seen, *x, *y, *z, found);
+        least = std::min(least, *std::min_element(found.gap.begin(), found.gap.end()));
+    }
+    return least;
+}
+
+}  // namespace
+
+Pose pose_of(const Scene& scene, std::size_t i, const State& state) {
+    const Obstacle& obstacle = scene.obstacles[i];
+    if (i >= state.segments.size()) return {obstacle.rotation, obstacle.position};
+    const BodyState& segment = state.segments[i];
+    return {segment.orientation.toRotationMatrix(),
+            segment.position - scene.barrier->segments[i].mass_center_height * Vec3::UnitZ()};
+}
+
+Twist obstacle_motion(const Scene& scene, std::size_t i, const State& state, const BodyState& seen_from) {
+    if (i >= state.segments.size()) return {};
+    const BodyState& segment = state.segments[i];
+    const Mat3 R = seen_from.orientation.toRotationMatrix();
+    const Vec3 spin = angular_velocity(scene.barrier->segments[i].body, segment);
+    return {R.transpose() * (segment.velocity + spin.cross(seen_from.position - segment.position)),
+            R.transpose() * spin};
+}
+
+Placement placement(const Pose& obstacle, const BodyState& seen_from) {
+    const Mat3 to_own = obstacle.rotation.transpose();
+    return {to_own * seen_from.orientation.toRotationMatrix(),
+            to_own * (seen_from.position - obstacle.position)};
+}
+
+void find_near(const Scene& scene, std::size_t u, const State& before, const State& now, double margin,
+               std::vector<std::size_t>& about, std::vector<NearObstacle>& near) {
+    near.clear();
+    const Box& box = before.units[u].trusses.around;
+    scene.map.find(now.units[u].body.position, box.radius() + margin, about);
+    for (const std::size_t i : about) {
+        if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
+        const Placement seen = placement(pose_of(scene, i, now), now.units[u].body);
+        if (within_reach(scene.obstacles[i].shape, seen, box, margin))
+            near.push_back({i, seen, placement(pose_of(scene, i, before), before.units[u].body)});
+    }
+}
+
+double fastest_point(const Unit& unit, const BodyState& body) {
+    return body.velocity.norm() + angular_velocity(unit.body, body).norm() * unit.trusses.reach;
+}
+
+double fastest_segment(const Scene& scene, const State& state) {
+    double fastest = 0.0;
+    for (std::size_t i = 0; i < state.segments.size(); ++i)
+        fastest = std::max(fastest, fastest_point(scene.barrier->segments[i], state.segments[i]));
+    return fastest;
+}
+
+double nearest_gap(const Scene& scene, const State& state, const Nearness& what) {
+    double least = infinity;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const UnitState& unit = state.units[u];
+        const TrussMesh& mesh = scene.vehicle->units[u].trusses;
+        const Box& all = unit.trusses.around;
+        for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+            if (i == scene.ground && !(what.ground && scene.skin_meets_ground[u])) continue;
+            const Shape& shape = scene.obstacles[i].shape;
+            const Placement seen = placement(pose_of(scene, i, state), unit.body);
+            if (!within_reach(shape, seen, all, least)) continue;
+            struct Points {
+                Box box;
+                const Lanes *x, *y, *z;
+            };
+            if (what.nodes)
+                least = nearest_in_blocks(
+                    shape, seen, i == scene.ground ? mesh.shell_blocks : mesh.blocks,
+                    [&](std::size_t b) {
+                        const TrussBlockState& block = unit.trusses.block[b];
+                        return Points{block.box, &block.x, &block.y, &block.z};
+                    },
+                    least);
+            if (!what.anchors) continue;
+            least = nearest_in_blocks(
+                shape, seen, mesh.skin_blocks,
+                [&](std::size_t b) {
+                    const TrussBlock& block = mesh.block[b];
+                    return Points{mesh.anchor_box[b], &block.anchor_x, &block.anchor_y, &block.anchor_z};
+                },
+                least);
+        }
+    }
+    return least;
+}
+
+}  // namespace birm3d

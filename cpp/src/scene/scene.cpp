@@ -1,0 +1,156 @@
+#include "birm3d/scene/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "birm3d/base/error.hpp"
+#include "birm3d/base/tolerances.hpp"
+
+namespace birm3d {
+
+namespace {
+
+void add_to(Hash& hash, const HalfSpace& plane) {
+    hash.add(plane.normal);
+    hash.add(plane.offset);
+}
+void add_to(Hash& hash, const Post& post) {
+    hash.add(post.radius);
+    hash.add(post.height);
+}
+void add_to(Hash& hash, const Prism& prism) {
+    for (const auto* edges : {&prism.edges(), &prism.covered_edges()})
+        for (const PrismEdge& edge : *edges)
+            for (const double number : {edge.x, edge.z, edge.tx, edge.tz, edge.low, edge.high})
+                hash.add(number);
+    hash.add(prism.y_low());
+    hash.add(prism.y_high());
+    hash.add((prism.low_end_is_surface() ? 1.0 : 0.0) + (prism.high_end_is_surface() ? 2.0 : 0.0));
+}
+void add_to(Hash& hash, const TriangleMesh& mesh) {
+    for (std::size_t i = 0; i < mesh.triangle_count(); ++i)
+        for (const Vec3& corner : mesh.corners(i))
+            hash.add(corner);
+}
+
+// Does a segment of a wall go on where the one before it ends?
+bool continues(const Shape& shape) {
+    const auto* prism = std::get_if<Prism>(&shape);
+    return prism != nullptr && std::isfinite(prism->y_low()) && !prism->low_end_is_surface();
+}
+
+}  // namespace
+
+Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barrier> barrier_,
+             const Approach& approach_, const Settings& settings_, std::optional<double> duration_)
+    : vehicle(std::move(vehicle_)), barrier(std::move(barrier_)), settings(settings_), duration(duration_) {
+    require_valid(settings);
+    if (!vehicle || vehicle->units.empty()) refuse("vehicle", "at least one unit", 0.0);
+    set_approach(approach_);
+    if (duration) require_positive("duration", *duration);
+    if (duration && *duration > tolerance::most_rows * settings.output_interval)
+        refuse("output_interval",
+               ">= duration / " + to_text(tolerance::most_rows) + " = " +
+                   to_text(*duration / tolerance::most_rows, 3) + " s",
+               settings.output_interval);
+    if (!duration && !barrier) refuse("duration", "given (s) where there is no barrier", "none");
+    if (barrier)
+        for (const Element& element : barrier->elements)
+            obstacles.push_back(
+                {element.shape, Eigen::AngleAxisd(element.heading, Vec3::UnitZ()).toRotationMatrix(),
+                 element.position + barrier->origin.z() * Vec3::UnitZ(), barrier->friction, 0});
+    if (free_segments() > 0 && !settings.ground)
+        refuse("ground", "True where the barrier is free-standing", "False");
+    for (std::size_t i = 0; i < obstacles.size(); ++i)
+        obstacles[i].structure =
+            i > 0 && free_segments() == 0 && continues(obstacles[i].shape) ? obstacles[i - 1].structure : i;
+    joints = vehicle->joints;
+    if (free_segments() > 0 && barrier->free_standing->joint == SegmentJoint::pinned)
+        for (std::size_t i = 1; i < free_segments(); ++i) {
+            const Segment &one = barrier->segments[i - 1], &next = barrier->segments[i];
+            const std::size_t body = vehicle->units.size() + i;
+            joints.push_back({JointKind::pinned, body - 1, body, Vec3(0.0, one.half_length, 0.0),
+                              Vec3(0.0, -next.half_length, 0.0), 0.0});
+        }
+    ground = obstacles.size();
+    for (const Unit& unit : vehicle->units)
+        skin_meets_ground.push_back(settings.ground && stands_on_wheels(unit));
+    if (std::any_of(skin_meets_ground.begin(), skin_meets_ground.end(), [](char meets) { return meets; }))
+        obstacles.push_back(
+            {HalfSpace{Vec3::UnitZ(), 0.0}, Mat3::Identity(), Vec3::Zero(), settings.mu_body, ground});
+    map = ObstacleMap(obstacles, free_segments());
+    thinnest = std::numeric_limits<double>::infinity();
+    for (const Obstacle& obstacle : obstacles)
+        thinnest =
+            std::min({thinnest, thickness(obstacle.shape), 2.0 * bounds(obstacle.shape).half.minCoeff()});
+}
+
+double Scene::reference_speed() const {
+    return std::max(approach.speed, tolerance::slowest_reference_speed);
+}
+
+double Scene::full_friction_speed() const {
+    return tolerance::full_friction_speed * reference_speed();
+}
+
+std::uint64_t Scene::fingerprint() const {
+    Hash hash;
+    for (const Unit& unit : vehicle->units) {
+        hash.add(unit.body.mass);
+        for (int column = 0; column < 3; ++column)
+            hash.add(Vec3(unit.body.inertia.col(column)));
+        hash.add(unit.mass_center_height);
+        hash.add(unit.offset);
+        for (const TrussBlock& b : unit.trusses.block)
+            for (const Lanes* lane :
+                 {&b.node_x, &b.node_y, &b.node_z, &b.anchor_x, &b.anchor_y, &b.anchor_z, &b.k_unloading})
+                hash.add(*lane);
+        if (unit.trusses.recovers)
+            for (const TrussBlock& b : unit.trusses.block)
+                hash.add(b.per_recovery);
+        for (const Hinge& hinge : unit.trusses.hinge) {
+            hash.add(hinge.deflection);
+            hash.add(hinge.slope_change);
+        }
+        hash.add(unit.trusses.rate_sensitivity);
+        hash.add(unit.trusses.dent_reach);
+        for (const TreadNode& node : unit.trusses.tread) {
+            hash.add(node.turn_r);
+            hash.add(node.turn_t);
+            hash.add(static_cast<double>(node.wheel));
+        }
+        for (const Wheel& wheel : unit.wheels) {
+            hash.add(wheel.center);
+            hash.add(wheel.radius);
+        }
+    }
+    for (const Joint& joint : vehicle->joints) {
+        hash.add(static_cast<double>(joint.kind));
+        hash.add(static_cast<double>(joint.leading));
+        hash.add(static_cast<double>(joint.trailing));
+        hash.add(joint.place_on_leading);
+        hash.add(joint.place_on_trailing);
+        hash.add(joint.roll_limit);
+    }
+    if (barrier) {
+        hash.add(barrier->friction);
+        hash.add(barrier->origin);
+        hash.add(barrier->heading);
+        for (const Element& element : barrier->elements) {
+            hash.add(static_cast<double>(element.shape.index()));
+            std::visit([&](const auto& shape) { add_to(hash, shape); }, element.shape);
+            hash.add(element.position);
+            hash.add(element.heading);
+        }
+        if (barrier->free_standing) {
+            hash.add(barrier->free_standing->density);
+            hash.add(barrier->free_standing->ground_friction);
+            hash.add(static_cast<double>(barrier->free_standing->joint));
+        }
+    }
+    return hash.value();
+}
+
+}  // namespace birm3d

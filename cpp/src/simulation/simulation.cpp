@@ -1,0 +1,208 @@
+#include "birm3d/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "birm3d/base/error.hpp"
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/control/end_of_event.hpp"
+#include "birm3d/control/step_control.hpp"
+#include "birm3d/control/step_limits.hpp"
+#include "birm3d/kernels/integrate.hpp"
+#include "birm3d/scene/barrier_overlap.hpp"
+#include "birm3d/scene/bodies.hpp"
+#include "birm3d/scene/obstacles.hpp"
+#include "birm3d/step/energy_balance.hpp"
+
+namespace birm3d {
+
+Simulation::Simulation(Scene scene)
+    : scene_(std::move(scene)),
+      state_(scene_.initial_state()),
+      trial_(*scene_.vehicle),
+      recorder_(scene_, state_),
+      event_(begin_event(scene_, state_)) {}
+
+void Simulation::start(const Scene& scene) {
+    if (scene.vehicle != scene_.vehicle) {
+        *this = Simulation(scene);
+        return;
+    }
+    scene_ = scene;
+    start(Approach(scene_.approach));
+}
+
+void Simulation::start(const Approach& approach) {
+    scene_.set_approach(approach);
+    reset();
+}
+
+void Simulation::reset() {
+    scene_.start(state_);
+    trial_.restart(*scene_.vehicle, state_);
+    recorder_.restart(scene_, state_);
+    event_ = begin_event(scene_, state_);
+    failed_ = false;
+    replays_ = true;
+}
+
+Simulation::Snapshot Simulation::snapshot() const {
+    return {scene_.fingerprint(),
+            scene_.approach,
+            scene_.settings,
+            scene_.duration,
+            replays_,
+            state_,
+            recorder_,
+            event_};
+}
+
+void Simulation::restore(const Snapshot& snapshot) {
+    if (snapshot.scene != scene_.fingerprint())
+        refuse("snapshot", "of a simulation of the same vehicle and barrier", "one of others");
+    if (snapshot.approach != scene_.approach)
+        refuse("snapshot", "of a simulation with the same speed, angle, offset, standoff, yaw and roll",
+               "one with others");
+    if (snapshot.settings != scene_.settings)
+        refuse("snapshot", "of a simulation with the same settings", "one with others");
+    if (scene_.duration && snapshot.state.time > *scene_.duration)
+        refuse("snapshot", "within the duration of " + to_text(*scene_.duration) + " s",
+               to_text(snapshot.state.time) + " s");
+    state_ = snapshot.state;
+    trial_.restart(*scene_.vehicle, state_);
+    recorder_ = snapshot.recorder;
+    event_ = snapshot.event;
+    failed_ = false;
+    replays_ = snapshot.replays && snapshot.duration == scene_.duration;
+}
+
+EndReason Simulation::end_reason() const {
+    if (remaining() > 0.0) return EndReason::running;
+    if (scene_.duration) return EndReason::duration;
+    if (!state_.decided) return EndReason::longest;
+    if (event_.manner == Manner::slides_on) return EndReason::sliding;
+    return has_left(scene_, state_) ? EndReason::separated : EndReason::stopped;
+}
+
+double Simulation::deepest_node() const {
+    return std::max(0.0, -nearest_gap(scene_, state_, {}));
+}
+
+double Simulation::deepest_anchor() const {
+    return std::max(0.0, -nearest_gap(scene_, state_, {.nodes = false, .anchors = true}));
+}
+
+double Simulation::remaining() const {
+    double end = tolerance::longest_event;
+    if (scene_.duration)
+        end = *scene_.duration;
+    else if (state_.decided)
+        end = state_.decided_at + tolerance::tail_duration;
+    const double rest = end - state_.time;
+    return rest > tolerance::shortest_step ? rest : 0.0;  // no step for what rounding leaves over
+}
+
+void Simulation::take(Trial& trial) {
+    const bool open = scene_.barrier && !state_.decided;
+    if (open) list_body_states(state_, before_);
+    const double released =
+        open || event_.touching ? std::min(time_to_release(scene_, state_), trial.dt) : 0.0;
+    const double begin = state_.time;
+    if (!std::isfinite(trial.state.energies.total()))
+        throw std::runtime_error("the state is no longer finite at t = " + to_text(trial.state.time) +
+                                 " s, step " + to_text(trial.dt) + " s");
+    failed_ = true;  // unless all of what follows is done
+    check_ledger(scene_, state_, trial, state_.ledger);
+    accept(scene_, trial, state_);
+    note_overlap(scene_, about_, state_);
+    recorder_.add(scene_, trial);
+    follow_event(scene_, state_, {begin, released, trial.body_held_by_barrier()}, event_);
+    if (open && is_decided(scene_, state_, event_)) {
+        state_.decided = true;
+        state_.decided_at = time_of_decision(scene_, before_, released, trial.dt, trial.state);
+    }
+    failed_ = false;
+}
+
+void Simulation::fixed_step() {
+    const double step = *scene_.settings.time_step;
+    const double dt = std::min(step, remaining());
+    const double passing = passing_step(scene_, state_, dt);
+    if (passing < dt) refuse_step(dt, passing);
+    try_step(scene_, state_, dt, {}, trial_);
+    double critical = trial_.critical_step;
+    if (trial_.body_held()) {
+        // The rigid body was held: would the trusses have stopped it, had the step been short enough to see
+        // them? Look at them on the way there.
+        Trial free(*scene_.vehicle);
+        for (double part = dt; part > 1e-3 * dt; part *= 0.5) {
+            try_step(scene_, state_, part, {.hold_members = false}, free);
+            critical = std::min(critical, free.critical_step);
+        }
+    }
+    if (dt > critical) refuse_step(dt, critical);
+    take(trial_);
+}
+
+void Simulation::refuse_step(double dt, double critical) const {
+    Settings adaptive = scene_.settings;
+    adaptive.time_step.reset();
+    Simulation other(Scene(scene_.vehicle, scene_.barrier, scene_.approach, adaptive, scene_.duration));
+    other.run([] {});
+    const double would_do =
+        tolerance::advised_fraction * std::min(critical, other.state().statistics.least_critical_step);
+    throw UnstableError(dt, critical, state_.time,
+                        "a step of " + to_text(would_do, 3) + " s would do for the whole run");
+}
+
+void Simulation::adaptive_step() {
+    StepSearch search = begin_search(scene_, state_, remaining());
+    double dt = search.first;
+    for (;;) {
+        if (dt < tolerance::shortest_step)
+            throw UnstableError(dt, tolerance::shortest_step, state_.time,
+                                "the scene is too stiff for any step worth taking");
+        try_step(scene_, state_, dt, {.locate_impacts = true}, trial_);
+        const double shorter = shorter_step(scene_, state_, trial_, search);
+        if (!(shorter < dt)) break;
+        dt = shorter;
+        ++state_.statistics.rejected;
+        state_.statistics.node_evaluations = trial_.state.statistics.node_evaluations;
+    }
+    const double next = step_after(scene_, trial_, search);
+    take(trial_);
+    state_.next_step = next;
+}
+
+bool Simulation::step() {
+    if (failed_) throw std::runtime_error("the last step failed half way: reset the simulation");
+    if (finished()) return false;
+    if (recorder_.full())
+        refuse("duration",
+               "at most " + to_text(state_.time, 6) + " s, where the " +
+                   std::to_string(recorder_.rows() - 1) + " steps end that a record holds",
+               scene_.duration ? to_text(*scene_.duration) : "none");
+    if (scene_.settings.time_step)
+        fixed_step();
+    else
+        adaptive_step();
+    return true;
+}
+
+void Simulation::run(const std::function<void()>& poll) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::milliseconds between_polls(20);
+    constexpr int steps_between_polls = 256;
+    Clock::time_point last = Clock::now();
+    for (int i = 1; step(); ++i) {
+        const Clock::time_point now = Clock::now();
+        if (i % steps_between_polls != 0 && now - last < between_polls) continue;
+        poll();
+        last = now;
+    }
+}
+
+}  // namespace birm3d

@@ -1,0 +1,226 @@
+#include "birm3d/step/half_kick.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/contact/rigid_contacts.hpp"
+#include "birm3d/contact/rigid_impact.hpp"
+#include "birm3d/kernels/detect.hpp"
+#include "birm3d/kernels/detect_members.hpp"
+#include "birm3d/kernels/impulse.hpp"
+#include "birm3d/kernels/integrate.hpp"
+#include "birm3d/kernels/joints.hpp"
+#include "birm3d/kernels/tires.hpp"
+#include "birm3d/scene/bodies.hpp"
+#include "birm3d/scene/obstacles.hpp"
+
+namespace birm3d {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// To memory.contacts.
+void find_rigid_contacts(const Scene& scene, const State& state, double dt, const StepOptions& options,
+                         KickMemory& memory) {
+    std::vector<RigidContact>& contacts = memory.contacts;
+    std::vector<PlacedShape>& placed = memory.placed;
+    std::vector<std::size_t>& about = memory.about;
+    contacts.clear();
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const Unit& unit = scene.vehicle->units[u];
+        const BodyState& body = state.units[u].body;
+        if (scene.settings.ground) find_tire_contacts(unit, u, body, contacts);
+        if (scene.obstacles.empty() || !options.hold_members) continue;
+        const Mat3 R = body.orientation.toRotationMatrix();
+        const Twist motion{R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
+        placed.clear();
+        const Box& anchors = unit.trusses.anchors;
+        scene.map.find(body.position, unit.trusses.reach + member_margin(unit.trusses, motion, dt), about);
+        for (const std::size_t i : about) {
+            if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
+            const Obstacle& obstacle = scene.obstacles[i];
+            const Placement seen = placement(pose_of(scene, i, state), body);
+            const Twist other = obstacle_motion(scene, i, state, body);
+            const Twist relative{motion.velocity - other.velocity,
+                                 motion.angular_velocity - other.angular_velocity};
+            if (within_reach(obstacle.shape, seen, anchors, member_margin(unit.trusses, relative, dt)))
+                placed.push_back({&obstacle.shape, seen, i, obstacle.friction, other});
+        }
+        if (placed.empty()) continue;
+        const std::size_t first = contacts.size();
+        find_closed_members(unit.trusses, u, body, placed, motion, dt, contacts);
+        for (std::size_t i = first; i < contacts.size(); ++i) {
+            RigidContact& contact = contacts[i];
+            contact.other = body_of_obstacle(scene, contact.obstacle);
+            if (contact.other >= 0)
+                contact.other_arm = contact.arm + body.position -
+                                    body_state(state, static_cast<std::size_t>(contact.other)).position;
+        }
+    }
+    const std::vector<Joint>& joints = scene.vehicle->joints;
+    for (std::size_t j = 0; j < joints.size(); ++j)
+        find_joint_rows(joints[j], j, body_state(state, joints[j].leading),
+                        body_state(state, joints[j].trailing), contacts);
+}
+
+// Contacts that last: before the drift they let the body come to its surface and no further, after it they
+// end its approach. What joints hold comes together in the drift, and after it moves together.
+void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpulses>& before_drift,
+                         std::span<const ContactBody> bodies, std::vector<RigidContact>& contacts) {
+    if (stage == Stage::before_drift) {
+        for (RigidContact& contact : contacts) {
+            contact.target = -contact.gap / dt;
+            if (!contact.held)
+                contact.target =
+                    std::min(contact.target, std::clamp(-contact.gap / tolerance::recovery_time,
+                                                        tolerance::slow_recovery, tolerance::recovery_speed));
+        }
+        return;
+    }
+    std::erase_if(contacts, [&](const RigidContact& contact) {
+        if (contact.held) return false;
+        // A tyre that carried load before the drift still touches after it, whatever the turn did to its gap, and does not
+        // rebound from what the forces of the step press it with.
+        if (contact.source == ContactSource::tire && before_drift[contact.body].tire[contact.index] > 0.0)
+            return contact.comes_hard;
+        return contact.gap > tolerance::touching_gap || approaches_hard(contact, bodies);
+    });
+}
+
+// Time until the first contact that approaches hard reaches its surface (s). What the forces of the step alone press there
+// within `at_once` rests: an instant of its own for it would tell nothing.
+double time_to_impact(double at_once, std::span<const ContactBody> bodies,
+                      const std::vector<RigidContact>& contacts) {
+    double earliest = infinity;
+    for (const RigidContact& contact : contacts) {
+        if (!(contact.gap > tolerance::touching_gap) || !approaches_hard(contact, bodies)) continue;
+        const double time = -contact.gap / separation_velocity(contact, bodies);
+        if (contact.comes_hard || time > at_once) earliest = std::min(earliest, time);
+    }
+    return earliest;
+}
+
+// Returns with what impulse each free-standing segment presses on the ground: its weight and what pushes it down (N s).
+Column kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial) {
+    Column pressed(trial.state.segments.size());
+    for (std::size_t i = 0; i < pressed.size(); ++i)
+        pressed[i] = half * scene.barrier->segments[i].body.mass * scene.settings.gravity;
+    for (std::size_t u = 0; u < trial.state.units.size(); ++u) {
+        const RigidBody& body = scene.vehicle->units[u].body;
+        UnitState& unit = trial.state.units[u];
+        Wrench impulse;
+        for (const Touch& touch : unit.touches) {
+            Load load = scaled(touch.course.now, half);
+            load += stage == Stage::before_drift ? touch.extra.lead
+                                                 : difference(touch.extra.correction, touch.extra.lead);
+            impulse += load.wrench;
+            const int segment = body_of_obstacle(scene, touch.obstacle);
+            if (segment < 0) continue;
+            kick_body(scene, static_cast<std::size_t>(segment), reaction_of(load), trial.state);
+            pressed[touch.obstacle] += load.wrench.force.z();
+        }
+        impulse.force.z() -= half * body.mass * scene.settings.gravity;
+        kick(body, impulse, unit.body);
+    }
+    return pressed;
+}
+
+void book_forces(const Scene& scene, const std::vector<Twist>& before, const std::vector<Twist>& after,
+                 double half, State& state) {
+    for (std::size_t u = 0; u < state.units.size(); ++u)
+        for (const Touch& touch : state.units[u].touches)
+            friction_of(scene, touch.obstacle, state.energies) -=
+                half * power(touch.friction, relative_motion(scene, state, u, touch.obstacle, before, after));
+}
+
+// a + share b
+void combine(const std::vector<Twist>& a, double share, const std::vector<Twist>& b,
+             std::vector<Twist>& result) {
+    result = a;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        result[i].velocity += share * b[i].velocity;
+        result[i].angular_velocity += share * b[i].angular_velocity;
+    }
+}
+
+void note_depth(const std::vector<RigidContact>& contacts, StepStatistics& statistics) {
+    for (const RigidContact& contact : contacts)
+        if (contact.source == ContactSource::member)
+            statistics.deepest_point = std::max(statistics.deepest_point, -contact.gap);
+}
+
+// Where no rigid contact and no segment is about, forces are all there is.
+void push_freely(const Scene& scene, Stage stage, double half, Trial& trial) {
+    State& state = trial.state;
+    KickMemory& memory = trial.memory;
+    const bool rubs = std::any_of(state.units.begin(), state.units.end(), [](const UnitState& unit) {
+        return std::any_of(unit.touches.begin(), unit.touches.end(), [](const Touch& touch) {
+            return !touch.friction.force.isZero(0.0) || !touch.friction.torque.isZero(0.0);
+        });
+    });
+    if (rubs) {
+        list_bodies(scene, state, memory.bodies);
+        list_motions(state, memory.bodies, memory.before);
+    }
+    kick_by_forces(scene, stage, half, trial);
+    if (!rubs) return;
+    list_motions(state, memory.bodies, memory.pushed);
+    book_forces(scene, memory.before, memory.pushed, half, state);
+}
+
+}  // namespace
+
+void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Trial& trial) {
+    State& state = trial.state;
+    KickMemory& memory = trial.memory;
+    std::vector<ContactBody>& bodies = memory.bodies;
+    const double half = 0.5 * trial.dt;
+    const bool start = stage == Stage::before_drift;
+    find_rigid_contacts(scene, state, trial.dt, options, memory);
+    if (memory.contacts.empty() && state.segments.empty()) return push_freely(scene, stage, half, trial);
+
+    list_bodies(scene, state, bodies);
+    list_motions(state, bodies, memory.before);
+    if (start) {
+        // Where impacts are not located, those of the coming step happen now, before anything has passed.
+        impact_at_once(scene, stage, options.locate_impacts ? 0.0 : trial.dt, memory.before, memory.after,
+                       trial);
+        if (trial.at_start.happened) std::swap(memory.before, memory.after);
+    } else {
+        note_depth(memory.contacts, state.statistics);
+    }
+
+    for (RigidContact& contact : memory.contacts)
+        contact.comes_hard = approaches_hard(contact, bodies);
+    const Column pressed = kick_by_forces(scene, stage, half, trial);
+    list_motions(state, bodies, memory.pushed);
+    if (start && options.locate_impacts)
+        trial.impact_after = time_to_impact(tolerance::at_once * trial.dt, bodies, memory.contacts);
+    if (trial.impact_within()) return;
+    memory.kick.contacts = memory.contacts;
+    set_lasting_targets(stage, trial.dt, trial.impulses, bodies, memory.kick.contacts);
+    // Tyres roll as the body moves at the ends of the step: at the later one as contacts will have made it, taken to do
+    // what they did before the drift.
+    if (start) {
+        kick_towards_closed_joints(
+            scene, {.pressed = pressed, .at_end = memory.before, .from = memory.before, .drift = trial.dt},
+            memory, state);
+    } else {
+        combine(memory.pushed, 1.0, trial.by_contacts, memory.rolling);
+        kick_by_contacts(scene, {.pressed = pressed, .at_end = memory.rolling, .from = memory.before}, memory,
+                         state);
+    }
+    add_impulses(scene, state, memory.kick, trial.impulses, trial.joint_impulses);
+    list_motions(state, bodies, memory.after);
+    if (start) combine(memory.after, -1.0, memory.pushed, trial.by_contacts);
+    book_forces(scene, memory.before, memory.after, half, state);
+    book_contacts(scene, memory.kick, memory.before, memory.after, state);
+
+    if (!start) impact_at_once(scene, stage, 0.0, memory.after, memory.before, trial);
+}
+
+}  // namespace birm3d
