@@ -10,6 +10,7 @@ from . import calibration, filters, metrics, reference, scene_parameters, scenes
 from ._core import BusyError, UnstableError
 from ._version import __version__
 from .articulated import ArticulatedVehicle, Joint
+from .assessment import OccupantRisk, occupant_risk
 from .barrier import Barrier
 from .calibration import calibrate
 from .channel import Channel
@@ -49,6 +50,7 @@ __all__ = [
     "FreeStanding",
     "Joint",
     "LedgerWarning",
+    "OccupantRisk",
     "OverlapWarning",
     "Result",
     "Scene",
@@ -73,6 +75,7 @@ __all__ = [
     "load",
     "metrics",
     "monte_carlo",
+    "occupant_risk",
     "read_csv_channels",
     "read_iso_mme",
     "read_nhtsa",

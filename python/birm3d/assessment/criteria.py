@@ -1,0 +1,77 @@
+"""A value beside its limit, and tables of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from html import escape
+
+__all__ = ["Criterion", "criteria_html", "criteria_text"]
+
+_HEAD = ("criterion", "value", "limit", "verdict")
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """What a standard asks of one value.
+
+    Attributes
+    ----------
+    name : str
+        What is judged, and by which standard where there are several.
+    value : float or str
+        In `unit`; text where it is no number.
+    unit : str
+    limit : str
+        In the same unit, as text.
+    passed : bool or None
+        ``None``: the value is reported, no verdict hangs on it.
+    grade : str
+        Class that the value falls into, as ``"A"`` or ``"preferred"``; may be empty.
+    """
+
+    name: str
+    value: float | str
+    unit: str
+    limit: str
+    passed: bool | None
+    grade: str = ""
+
+    @property
+    def verdict(self) -> str:
+        """``"pass"``, ``"FAIL"`` or ``"reported"``, and the grade."""
+        word = "reported" if self.passed is None else "pass" if self.passed else "FAIL"
+        return f"{word}: {self.grade}" if self.grade else word
+
+    @property
+    def shown(self) -> str:
+        """The value with its unit, as a table shows it."""
+        number = self.value if isinstance(self.value, str) else f"{self.value:.2f}"
+        return f"{number} {self.unit}".strip()
+
+
+def _rows(criteria: Iterable[Criterion]) -> list[tuple[str, str, str, str]]:
+    return [(one.name, one.shown, one.limit, one.verdict) for one in criteria]
+
+
+def criteria_text(criteria: Iterable[Criterion]) -> str:
+    """Return criteria as a table of text, columns in line."""
+    rows = [_HEAD, *_rows(criteria)]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(_HEAD))]
+    lines = ["  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows]
+    return "\n".join([lines[0], "-" * max(map(len, lines)), *lines[1:]])
+
+
+def criteria_html(title: str, criteria: Iterable[Criterion], foot: str = "") -> str:
+    """Return criteria as a table that notebooks show; all texts are escaped."""
+    style = 'style="text-align:left;padding:1px 10px 1px 0"'
+
+    def line(cells: Iterable[str], tag: str) -> str:
+        return "<tr>" + "".join(f"<{tag} {style}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>"
+
+    body = "".join(line(row, "td") for row in _rows(criteria))
+    end = f'<div style="max-width:48em;opacity:0.8">{escape(foot)}</div>' if foot else ""
+    return (
+        f'<div><div style="font-weight:600;margin-bottom:4px">{escape(title)}</div>'
+        f"<table><thead>{line(_HEAD, 'th')}</thead><tbody>{body}</tbody></table>{end}</div>"
+    )
