@@ -6,37 +6,39 @@ SI units, angles in degrees, arrays read-only. Start with :class:`Vehicle`, :cla
 
 from __future__ import annotations
 
-from . import calibration, filters, metrics, reference, scene_parameters, scenes, study, units
+from . import _moved, calibration, study, units
 from ._core import BusyError, UnstableError
 from ._version import __version__
-from .articulated import ArticulatedVehicle, Joint
 from .assessment import OccupantRisk, occupant_risk
-from .barrier import Barrier
+from .barrier import Barrier, FreeStanding, lateral_load
 from .calibration import calibrate
-from .channel import Channel
-from .channel_checks import check_channel
-from .coarse_skin import CoarseSkinWarning
-from .comparison import CurveComparison, compare_curves
-from .element_loads import ElementLoad
-from .ensemble import ensemble
-from .file_format import FileFormatError
-from .fragility import fragility
-from .free_standing import FreeStanding
-from .impact_point import critical_impact_point
-from .ledger import LedgerWarning
-from .monte_carlo import monte_carlo
-from .overlap import OverlapWarning
-from .result import Result
-from .result_file import load
-from .runs import StudyInterrupted, StudyStoppedError
-from .settings import Settings
+from .io.file_format import FileFormatError
+from .result import Result, metrics
+from .result.element_loads import ElementLoad
+from .result.energy_balance import LedgerWarning
+from .result.overlap import OverlapWarning
+from .result.result_file import load
+from .scene.mesh_check import CoarseSkinWarning
+from .scene.settings import Settings
+from .signals import filters, reference
+from .signals import readers as test_data
+from .signals.channel import Channel
+from .signals.channel_checks import check_channel
+from .signals.compare import CurveComparison, compare_curves
+from .signals.readers import read_csv_channels, read_iso_mme, read_nhtsa
 from .simulation import Scene, Simulation
-from .sobol import sobol
+from .simulation import parameters as scene_parameters
+from .simulation import presets as scenes
 from .study import Study
-from .sweep import sweep
-from .test_data import read_csv_channels, read_iso_mme, read_nhtsa
+from .study.ensemble import ensemble
+from .study.fragility import fragility
+from .study.impact_point import critical_impact_point
+from .study.monte_carlo import monte_carlo
+from .study.runner import StudyInterrupted, StudyStoppedError
+from .study.sobol import sobol
+from .study.sweep import sweep
 from .unit_check import UnitWarning
-from .vehicle import Vehicle, Zone
+from .vehicle import ArticulatedVehicle, Joint, Vehicle, Zone
 
 __all__ = [
     "ArticulatedVehicle",
@@ -72,6 +74,7 @@ __all__ = [
     "ensemble",
     "filters",
     "fragility",
+    "lateral_load",
     "load",
     "metrics",
     "monte_carlo",
@@ -85,6 +88,7 @@ __all__ = [
     "sobol",
     "study",
     "sweep",
+    "test_data",
     "units",
 ]
 
@@ -92,3 +96,12 @@ __all__ = [
 def __dir__() -> list[str]:
     """Public names; modules that are loaded for them are not."""
     return sorted(__all__)
+
+
+_moved.keep_short_paths()
+_moved.keep_old_paths()
+
+
+def __getattr__(name: str) -> object:
+    """Return a module of an earlier version by its old name, see :mod:`birm3d._moved`."""
+    return _moved.old_module(name)

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from .arguments import caller_level
-from .checks import is_number
+from .base.arguments import caller_level
+from .base.checks import is_number
 from .units import Quantity, Stated, quantity_in, si
 
 __all__ = [

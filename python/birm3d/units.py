@@ -14,8 +14,8 @@ import math
 import re
 from typing import NamedTuple, TypeAlias
 
-from .arguments import checked
-from .checks import is_number, number, shown
+from .base.arguments import checked
+from .base.checks import is_number, number, shown
 
 __all__ = [
     "Measure",

@@ -28,8 +28,8 @@ from pathlib import Path
 
 from bench_birm3d import machine, use_one_core
 from birm3d import Simulation, scenes
+from birm3d.base.progress import progress_bar
 from birm3d.metrics import METRIC_UNITS
-from birm3d.progress import progress_bar
 from birm3d.study import PrecisionRow, WorkPrecision, work_precision
 from matplotlib.figure import Figure
 

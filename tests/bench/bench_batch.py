@@ -31,8 +31,8 @@ import birm3d
 import numpy as np
 from bench_birm3d import COMPARED, LAW, MASS, cpu_model, exact_crush
 from birm3d import Settings, Simulation, Study, scenes
-from birm3d.runs import checked_metrics
-from birm3d.study.errors import relative_errors
+from birm3d.study.runner import checked_metrics
+from birm3d.study.verification.errors import relative_errors
 
 RESULTS = Path(__file__).parent / "results/batch"
 MARK = 10_000.0  # W2 runs a second on two cores, N = 1,000

@@ -31,7 +31,7 @@ os.environ["OMP_NUM_THREADS"] = "1"
 import birm3d
 import numpy as np
 from birm3d import Result, Settings, Simulation, scenes
-from birm3d.study.errors import relative_errors
+from birm3d.study.verification.errors import relative_errors
 from numpy_reference import Answer, Block, Run
 
 SPEED = 22.352  # m/s

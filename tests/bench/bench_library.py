@@ -20,8 +20,8 @@ from itertools import product
 from pathlib import Path
 
 from birm3d import Barrier, Simulation, Vehicle
-from birm3d.progress import progress_bar
-from birm3d.study.watched import LIMITS, Watched, text, watch
+from birm3d.base.progress import progress_bar
+from birm3d.study.verification.watched import LIMITS, Watched, text, watch
 
 RESULTS = Path(__file__).parent / "results/robustness/library.csv"
 BARRIERS = {

@@ -25,8 +25,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle, scenes
-from birm3d.progress import progress_bar
-from birm3d.study.convergence import order_of, richardson
+from birm3d.base.progress import progress_bar
+from birm3d.study.verification.convergence import order_of, richardson
 
 RESULTS = Path(__file__).parent / "results/convergence/mesh.csv"
 BARRIERS = ("wall", "pole", "jersey")

@@ -33,7 +33,7 @@ import birm3d
 import numpy as np
 from bench_birm3d import cpu_model
 from birm3d import Barrier, Simulation, Study, Vehicle, units
-from birm3d.sobol import SobolIndices
+from birm3d.study.sobol import SobolIndices
 from scipy import stats
 
 # Spreads as an analyst may put them; they are no statistics of a fleet.

@@ -26,8 +26,8 @@ from pathlib import Path
 
 from bench_birm3d import machine, use_one_core
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle
-from birm3d.progress import progress_bar
-from birm3d.study.errors import relative_errors
+from birm3d.base.progress import progress_bar
+from birm3d.study.verification.errors import relative_errors
 
 RESULTS = Path(__file__).parent / "results/pairs"
 PAIRS = {

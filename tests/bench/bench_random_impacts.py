@@ -36,8 +36,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 from birm3d import Barrier, CoarseSkinWarning, Settings, Simulation, Vehicle, scenes
-from birm3d.progress import progress_bar
-from birm3d.study.watched import Watched, text, watch
+from birm3d.base.progress import progress_bar
+from birm3d.study.verification.watched import Watched, text, watch
 from random_scenes import run_many
 
 ANY_POSE = Path(__file__).parent / "results/robustness/random_scenes.csv"

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from birm3d.study import stability
-from birm3d.study.stability_cases import AXES
+from birm3d.study.verification.stability_cases import AXES
 
 RESULTS = Path(__file__).parent / "results/robustness"
 

@@ -20,9 +20,9 @@ from pathlib import Path
 
 import numpy as np
 from birm3d import Barrier, LedgerWarning, Settings, Simulation, Vehicle
-from birm3d.ledger import ENERGY_LIMIT, FALL_LIMIT, warn_if_open
+from birm3d.base.progress import progress_bar
 from birm3d.metrics import relative_to_start
-from birm3d.progress import progress_bar
+from birm3d.result.energy_balance import ENERGY_LIMIT, FALL_LIMIT, warn_if_open
 
 KINDS = ("low wall", "thin wall", "jersey", "bollards", "thin posts", "pole", "mesh", "wall")
 PRESETS = ("passenger_car", "minivan", "pickup", "cargo_truck", "semi_truck", "paper_pickup")

@@ -16,10 +16,10 @@ import numpy as np
 from birm3d.calibration import CurveTarget, Parameter, load
 from birm3d.calibration.fit_file import read_fit_file
 from birm3d.calibration.storage import as_plain
-from birm3d.combination_file import read_combination
-from birm3d.run_store import RunStore
-from birm3d.scene_file import read_scene_file
-from birm3d.vehicle_file import preset_path, unit_paths
+from birm3d.simulation.scene_file import read_scene_file
+from birm3d.study.store import RunStore
+from birm3d.vehicle.combination_file import read_combination
+from birm3d.vehicle.vehicle_file import preset_path, unit_paths
 from mutations import Change, damaged, damaged_member, damaged_store
 
 __all__ = ["READERS", "Reader"]
@@ -81,7 +81,7 @@ def result() -> birm3d.Result:
 @cache
 def result_file() -> dict[str, bytes]:
     stream = io.BytesIO()
-    from birm3d.result_file import write
+    from birm3d.result.result_file import write
 
     write(result(), stream)
     return {"result.npz": stream.getvalue()}
@@ -136,7 +136,7 @@ def open_store(path: Path) -> RunStore:
 
 @cache
 def store_file() -> dict[str, bytes]:
-    from birm3d.run_store import Outcome
+    from birm3d.study.store import Outcome
 
     def write(path: Path) -> None:
         store = open_store(path)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from birm3d import Barrier, Settings, Simulation, Vehicle
-from birm3d.vehicle_file import VehicleFileError
+from birm3d.vehicle.vehicle_file import VehicleFileError
 
 FILE = """
 extends = "passenger_car"

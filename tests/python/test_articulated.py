@@ -11,7 +11,7 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import ArticulatedVehicle, Barrier, Joint, Result, Settings, Simulation, Vehicle, scenes
-from birm3d.fingerprint import fingerprint
+from birm3d.base.fingerprint import fingerprint
 from birm3d.scene_parameters import parameter_names, value_of, varied
 
 G = 9.80665

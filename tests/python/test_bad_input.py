@@ -258,7 +258,7 @@ def test_with_zone_does_what_it_is_told_or_refuses(zone: dict[str, Any]) -> None
 
 
 def test_unknown_key_in_a_vehicle_file(tmp_path: Path) -> None:
-    from birm3d.vehicle_file import preset_path
+    from birm3d.vehicle.vehicle_file import preset_path
 
     file = tmp_path / "car.toml"
     text = Path(preset_path("passenger_car")).read_text(encoding="utf-8")
@@ -393,7 +393,7 @@ def test_fixed_steps_that_can_not_be_held() -> None:
 def test_a_run_that_takes_long_shows_a_bar(
     duration: float | None, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("birm3d.progress._FIRST", 1e-3)
+    monkeypatch.setattr("birm3d.base.progress._FIRST", 1e-3)
     settings = Settings(time_step=1e-5)
     block = scenes.elastic_block(400)
     simulation = Simulation(block, Barrier.rigid_wall(), 1.0, duration=duration, settings=settings)

@@ -12,11 +12,11 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, FreeStanding, Simulation, Vehicle
-from birm3d.barrier_surfaces import barrier_surfaces
-from birm3d.fingerprint import fingerprint
-from birm3d.scene_codec import decode, encode
-from birm3d.scene_file import read_scene_file
+from birm3d.barrier.surfaces import barrier_surfaces
+from birm3d.base.fingerprint import fingerprint
+from birm3d.scene.codec import decode, encode
 from birm3d.scene_parameters import parameter_names, unit_of, value_of, varied
+from birm3d.simulation.scene_file import read_scene_file
 
 WEDGE = np.array([[0, -1, 0], [1, -1, 0], [1, -1, 1], [0, 1, 0], [1, 1, 0], [1, 1, 1]], float)
 SIDES = np.array([[0, 1, 2], [3, 5, 4], [0, 4, 1], [0, 3, 4], [1, 5, 2], [1, 4, 5], [0, 2, 5], [0, 5, 3]])

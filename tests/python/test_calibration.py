@@ -13,7 +13,7 @@ from birm3d.calibration import CurveTarget, Parameter, ScalarTarget, load
 from birm3d.calibration.problem import independent_share
 from birm3d.filters import cfc
 from birm3d.scene_parameters import varied
-from birm3d.vehicle import TRUSS_LAW
+from birm3d.vehicle.vehicle import TRUSS_LAW
 from scipy import stats
 
 TRUTH = {"truss.k_initial": 3e6, "truss.k_hardening": 6e6, "truss.knee": 0.4, "truss.k_unloading": 60e6}

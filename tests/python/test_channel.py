@@ -8,7 +8,7 @@ import pickle
 import numpy as np
 import pytest
 from birm3d import Channel, check_channel, units
-from birm3d.channel import total
+from birm3d.signals.channel import total
 from hypothesis import given
 from hypothesis import strategies as st
 

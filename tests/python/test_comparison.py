@@ -9,9 +9,9 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Channel, compare_curves
-from birm3d.curve_metrics import residuals, sprague_geers
-from birm3d.iso18571 import ObjectiveRating, objective_rating, warping_path
 from birm3d.reference import nhtsa_10146
+from birm3d.signals.curve_metrics import residuals, sprague_geers
+from birm3d.signals.iso18571 import ObjectiveRating, objective_rating, warping_path
 from hypothesis import given
 from hypothesis import strategies as st
 

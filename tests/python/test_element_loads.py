@@ -9,7 +9,7 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle
-from birm3d.element_loads import LEAST_SHARE, resultant_height
+from birm3d.result.element_loads import LEAST_SHARE, resultant_height
 
 FREE = Settings(gravity=0.0, ground=False)
 

@@ -27,10 +27,10 @@ from birm3d import (
     scenes,
     sweep,
 )
+from birm3d.barrier.free_standing import lateral_movement
 from birm3d.filters import cfc, moving_average
-from birm3d.free_standing import lateral_movement
-from birm3d.laboratory import elastic_block
 from birm3d.metrics import METRIC_UNITS
+from birm3d.vehicle.test_bodies import elastic_block
 
 METRICS = ["dynamic_crush", "exit_speed"]
 WEIGHTLESS = Settings(gravity=0.0, ground=False)

@@ -11,7 +11,7 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle
-from birm3d.event import OUTCOMES
+from birm3d.result.event import OUTCOMES
 
 OLD = Path(__file__).parents[1] / "data" / "results" / "bollards_0_1_0.npz"
 AT_SEPARATION = (

@@ -165,7 +165,7 @@ def touch(instance: Any, folder: Path, pictures: bool = True) -> set[str]:
     return seen
 
 
-@pytest.mark.filterwarnings("ignore::birm3d.coarse_skin.CoarseSkinWarning")
+@pytest.mark.filterwarnings("ignore::birm3d.scene.mesh_check.CoarseSkinWarning")
 @pytest.mark.parametrize("name", KINDS)
 def test_every_public_name_works(name: str, tmp_path: Path) -> None:
     instance = KINDS[name]()

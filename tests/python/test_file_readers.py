@@ -19,9 +19,9 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import FileFormatError, Settings, StudyStoppedError, scenes
-from birm3d.file_format import depth
-from birm3d.run_store import RunStore
-from birm3d.toml_document import Document
+from birm3d.io.file_format import depth
+from birm3d.io.toml import Document
+from birm3d.study.store import RunStore
 
 FUZZ = Path(__file__).resolve().parents[1] / "fuzz"
 NAMES = [
@@ -153,7 +153,7 @@ def test_a_scene_says_where_the_block_stands_that_can_not_be_made(tmp_path: Path
         '[barrier]\nkind = "pole"\n'
     )
     path.write_text(scene)
-    from birm3d.scene_file import read_scene_file
+    from birm3d.simulation.scene_file import read_scene_file
 
     with pytest.raises(FileFormatError, match=r"scene\.toml:4: impact_angle must be within 0 and 180"):
         read_scene_file(path)
@@ -164,7 +164,7 @@ def test_a_scene_says_where_the_block_stands_that_can_not_be_made(tmp_path: Path
 
 @pytest.mark.parametrize("half_width", ["1_000", "1e300", "0.89e30"])
 def test_a_vehicle_of_a_million_elements_is_refused(tmp_path: Path, half_width: str) -> None:
-    from birm3d.vehicle_file import preset_path
+    from birm3d.vehicle.vehicle_file import preset_path
 
     text = preset_path("passenger_car").read_text(encoding="utf-8")
     assert "[0.60, 0.89, 0.20, 0.84]" in text

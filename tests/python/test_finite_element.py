@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from birm3d import Vehicle
-from birm3d.vehicle_file import read_vehicle_file
+from birm3d.vehicle.vehicle_file import read_vehicle_file
 
 TESTS = Path(__file__).resolve().parents[1]
 DATA = TESTS / "data/finite_element"

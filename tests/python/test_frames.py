@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle, scenes
-from birm3d.frames import pose
-from birm3d.skin import skins_at
+from birm3d.result.frames import pose
+from birm3d.result.skin import skins_at
 from scipy.spatial.transform import Rotation
 
 

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from birm3d import Barrier, LedgerWarning, Settings, Simulation, Vehicle, ensemble, scenes
-from birm3d.ledger import warn_if_open
+from birm3d.result.energy_balance import warn_if_open
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 

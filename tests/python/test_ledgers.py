@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle, scenes
-from birm3d.barrier_kinds import RigidWall
+from birm3d.barrier.kinds import RigidWall
 from scipy.spatial.transform import Rotation
 
 Orientation = Callable[[Result], Rotation]

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from birm3d import Vehicle, _core, scenes
-from birm3d.vehicle_file import unit_paths
+from birm3d.vehicle.vehicle_file import unit_paths
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp

@@ -6,8 +6,8 @@ import dataclasses
 
 import numpy as np
 import pytest
-from birm3d.mesher import ExteriorMesh, build_mesh, quad_areas, winding_number
-from birm3d.vehicle_file import VehicleFile, preset_path, read_vehicle_file, unit_paths
+from birm3d.vehicle.mesher import ExteriorMesh, build_mesh, quad_areas, winding_number
+from birm3d.vehicle.vehicle_file import VehicleFile, preset_path, read_vehicle_file, unit_paths
 
 BOX = """
 format_version = 1

@@ -29,7 +29,7 @@ from birm3d import (
     study,
     units,
 )
-from birm3d.arguments import WrongTypeError, checked
+from birm3d.base.arguments import WrongTypeError, checked
 from birm3d.calibration import CurveTarget, Parameter, ScalarTarget
 from scipy import stats
 

@@ -12,11 +12,11 @@ import nbformat
 import numpy as np
 import pytest
 from birm3d import Barrier, Simulation, Vehicle, scenes
-from birm3d.calibration.plots import smooth_profile
+from birm3d.base.progress import in_notebook, progress_bar
 from birm3d.calibration.profile import Profile
-from birm3d.progress import in_notebook, progress_bar
-from birm3d.sobol import SobolIndices
+from birm3d.plotting.calibration import smooth_profile
 from birm3d.study import Study
+from birm3d.study.sobol import SobolIndices
 from matplotlib.figure import Figure
 from nbclient import NotebookClient
 from scipy import stats

@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from birm3d import Barrier, Simulation, Study, Vehicle, ensemble, executors, monte_carlo, scenes
-from birm3d.float_rows import FloatRows
-from birm3d.outcome_table import OutcomeTable
-from birm3d.run_store import Outcome
+from birm3d import Barrier, Simulation, Study, Vehicle, ensemble, monte_carlo, scenes
+from birm3d.study import executors
+from birm3d.study.float_rows import FloatRows
+from birm3d.study.outcome_table import OutcomeTable
+from birm3d.study.store import Outcome
 from scipy import stats
 
 

@@ -6,7 +6,7 @@ import re
 
 import pytest
 from birm3d import Barrier, CoarseSkinWarning, OverlapWarning, Simulation, Vehicle
-from birm3d.overlap import OVERLAP_LIMIT
+from birm3d.result.overlap import OVERLAP_LIMIT
 
 
 def test_a_pole_that_passes_between_nodes_is_warned_of() -> None:

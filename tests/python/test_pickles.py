@@ -13,8 +13,8 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Channel, Settings, Simulation, Vehicle
+from birm3d.base.frozen_mapping import FrozenMapping
 from birm3d.calibration import CalibrationError, Parameter, ScalarTarget
-from birm3d.frozen_mapping import FrozenMapping
 from birm3d.study import stability, work_precision
 from scipy.stats import norm, uniform
 

@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 import shapely
 from birm3d import Barrier, Channel, Result, Settings, Simulation, Vehicle, compare_curves, scenes
-from birm3d.barrier_surfaces import barrier_surfaces
-from birm3d.barrier_text import barrier_text
-from birm3d.crush_profile import crush_map, crush_profile, crushed_sides
+from birm3d.barrier.surfaces import barrier_surfaces
+from birm3d.barrier.text import barrier_text
 from birm3d.filters import cfc
 from birm3d.plotting import plot_comparisons
 from birm3d.plotting.elements import _mark_peaks
 from birm3d.plotting.energies import energy_look
 from birm3d.plotting.style import prepare
-from birm3d.silhouette import rings, silhouette
-from birm3d.skin import skins_at
-from birm3d.unit_shapes import UnitShape, unit_shapes
+from birm3d.result.crush_profile import crush_map, crush_profile, crushed_sides
+from birm3d.result.skin import skins_at
+from birm3d.vehicle.silhouette import rings, silhouette
+from birm3d.vehicle.unit_shapes import UnitShape, unit_shapes
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Simulation, Vehicle, rendering, scenes
-from birm3d.barrier_kinds import RigidWall
+from birm3d.barrier.kinds import RigidWall
 from birm3d.rendering import stage as stage_module
 from birm3d.rendering.camera import VIEWS, driver_camera, outside_camera
 from birm3d.rendering.stills import with_slider
-from birm3d.skin import skins_at
+from birm3d.result.skin import skins_at
 from PIL import Image
 
 SIZE = (240, 136)

@@ -11,8 +11,8 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle, Zone, _core, scenes
-from birm3d.result_file import FORMAT_VERSION
-from birm3d.scene_codec import decode, encode
+from birm3d.result.result_file import FORMAT_VERSION
+from birm3d.scene.codec import decode, encode
 
 ARRAYS = (
     "time", "position", "velocity", "acceleration", "angular_velocity", "roll", "pitch", "yaw",
@@ -79,7 +79,7 @@ def test_scene_comes_back_and_runs_the_same_way(original: Result, path: Path) ->
 
 
 def test_metrics_are_those_of_the_file(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("birm3d.event.compute_metrics", lambda result: {"peak_deceleration": 0.0})
+    monkeypatch.setattr("birm3d.result.event.compute_metrics", lambda result: {"peak_deceleration": 0.0})
     assert birm3d.load(path).metrics["peak_deceleration"] > 1.0
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from birm3d import Barrier, Simulation, Vehicle, units
-from birm3d.combination_file import read_combination
-from birm3d.vehicle_file import VehicleFileError, preset_path, unit_paths
+from birm3d.vehicle.combination_file import read_combination
+from birm3d.vehicle.vehicle_file import VehicleFileError, preset_path, unit_paths
 
 GRAVITY = 9.80665
 

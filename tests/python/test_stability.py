@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from birm3d import Barrier, Settings, Simulation, Vehicle, scenes
 from birm3d.study import Stability, stability
-from birm3d.study.stability import _judged
-from birm3d.study.stability_cases import AXES, Case, laboratory_cases
-from birm3d.study.stability_result import FAULT, HELD, REFUSED
-from birm3d.study.watched import LIMITS, Limits
+from birm3d.study.verification.stability import _judged
+from birm3d.study.verification.stability_cases import AXES, Case, laboratory_cases
+from birm3d.study.verification.stability_result import FAULT, HELD, REFUSED
+from birm3d.study.verification.watched import LIMITS, Limits
 
 # With the scene's own, adaptive steps; fixed ones have a test of their own.
 USUAL = ("stiffness", "grazing angle", "unloading", "thin posts", "contact at t = 0")

@@ -26,8 +26,8 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Study, Vehicle, scenes
-from birm3d.fingerprint import fingerprint
-from birm3d.runs import run_study
+from birm3d.base.fingerprint import fingerprint
+from birm3d.study.runner import run_study
 
 SEDAN = scenes.nhtsa_10146(mesh_density=0.1)
 GRID: dict[str, Any] = {"impact_speed": [8, 12.0], "impact_angle": [30.0, 90.0, 190.0]}

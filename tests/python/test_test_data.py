@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from birm3d import read_csv_channels, read_iso_mme, read_nhtsa
-from birm3d.channel import total
-from birm3d.test_data.iso_mme import ChannelCode
+from birm3d.signals.channel import total
+from birm3d.signals.readers.iso_mme import ChannelCode
 
 CSV = """\
 # sled 12, filtered by the laboratory

@@ -7,10 +7,10 @@ from functools import cache
 import numpy as np
 import pytest
 from birm3d import Barrier, Settings, Simulation, Vehicle, units
-from birm3d.mesher import build_mesh
 from birm3d.result import Result
-from birm3d.tread import build_tread
-from birm3d.vehicle_file import VehicleFile, VehicleFileError, read_vehicle_file, unit_paths
+from birm3d.vehicle.mesher import build_mesh
+from birm3d.vehicle.tire_nodes import build_tread
+from birm3d.vehicle.vehicle_file import VehicleFile, VehicleFileError, read_vehicle_file, unit_paths
 
 
 @pytest.fixture(scope="module", params=unit_paths())

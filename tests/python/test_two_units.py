@@ -9,10 +9,10 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Simulation, Vehicle
-from birm3d.fingerprint import fingerprint
+from birm3d.base.fingerprint import fingerprint
 from birm3d.plotting import plot_plan
-from birm3d.skin import skins_at
-from birm3d.unit_shapes import unit_shapes
+from birm3d.result.skin import skins_at
+from birm3d.vehicle.unit_shapes import unit_shapes
 
 
 @pytest.fixture(scope="module")

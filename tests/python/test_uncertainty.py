@@ -15,9 +15,9 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Settings, Simulation, scenes
-from birm3d.distributions import sample, uniforms
-from birm3d.fragility import _stopped
-from birm3d.sobol import SobolDesign
+from birm3d.study.distributions import sample, uniforms
+from birm3d.study.fragility import _stopped
+from birm3d.study.sobol import SobolDesign
 from scipy.stats import ks_1samp, lognorm, norm, uniform
 
 SPEED, MASS, STIFFNESS = 22.352, 6804.0, 3e6
@@ -211,7 +211,7 @@ def test_probability_of_exceeding_a_crush(block: Simulation) -> None:
 
 def test_fit_has_the_errors_it_says() -> None:
     """200 draws of binomial counts: 95 % intervals of the median cover it 95 % of the time, give or take."""
-    from birm3d.lognormal_fit import fit_lognormal
+    from birm3d.study.lognormal_fit import fit_lognormal
 
     speeds = np.array([8.0, 9.0, 10.0, 11.0, 12.0])
     p = norm.cdf(np.log(speeds / 10.0) / 0.15)
@@ -227,7 +227,7 @@ def test_fit_has_the_errors_it_says() -> None:
 @pytest.mark.parametrize("noise", [0.0, 0.1])
 def test_fit_has_the_errors_it_says_where_speeds_share_their_draws(noise: float) -> None:
     """300 studies of 40 draws: as if all runs were independent, the interval covers 80 % instead of 95."""
-    from birm3d.lognormal_fit import Draws, fit_lognormal
+    from birm3d.study.lognormal_fit import Draws, fit_lognormal
 
     speeds = np.array([8.0, 9.0, 10.0, 11.0, 12.0])
     source = np.random.default_rng(4)
@@ -248,7 +248,7 @@ def test_fit_has_the_errors_it_says_where_speeds_share_their_draws(noise: float)
 
 def test_a_lack_of_fit_is_seen_where_speeds_share_their_draws() -> None:
     """Two kinds of cases, whose limits are far apart, are no lognormal curve."""
-    from birm3d.lognormal_fit import Draws, fit_lognormal
+    from birm3d.study.lognormal_fit import Draws, fit_lognormal
 
     speeds = np.array([6.0, 8.0, 10.0, 13.0, 16.0])
     limit = np.where(np.arange(200) % 2, 7.0, 15.0)[:, None] * np.exp(
@@ -263,7 +263,7 @@ def test_a_lack_of_fit_is_seen_where_speeds_share_their_draws() -> None:
 
 
 def test_a_flat_curve_has_no_median() -> None:
-    from birm3d.lognormal_fit import fit_lognormal
+    from birm3d.study.lognormal_fit import fit_lognormal
 
     fit, why = fit_lognormal(np.array([8.0, 10.0, 12.0]), np.array([30, 31, 30]), np.full(3, 60))
     assert fit is None
@@ -272,7 +272,7 @@ def test_a_flat_curve_has_no_median() -> None:
 
 def test_wilson_interval_is_the_published_one() -> None:
     """Newcombe (1998), table I: 81 of 263 has 0.2553 to 0.3662; 0 of 20 has 0 to 0.1611."""
-    from birm3d.fragility import _wilson
+    from birm3d.study.fragility import _wilson
 
     low, high = _wilson([81, 0], [263, 20], 0.95)
     assert low == pytest.approx([0.2553, 0.0], abs=5e-5)

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 from birm3d import Barrier, Simulation, UnitWarning, Vehicle, _core, scenes
-from birm3d.loading import solids_at
-from birm3d.scene_codec import decode, encode
+from birm3d.scene.codec import decode, encode
 from birm3d.scene_parameters import parameter_names, varied
-from birm3d.vehicle_file import VehicleFile
+from birm3d.vehicle.payload import solids_at
+from birm3d.vehicle.vehicle_file import VehicleFile
 
 CAR = Vehicle.preset("passenger_car", mesh_density=0.1)
 TRUCK = Vehicle.preset("cargo_truck", mesh_density=0.1)

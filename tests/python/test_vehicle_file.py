@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from birm3d import units
-from birm3d.combination_file import read_combination
-from birm3d.vehicle_file import (
+from birm3d.vehicle.combination_file import read_combination
+from birm3d.vehicle.vehicle_file import (
     Solid,
     VehicleFile,
     VehicleFileError,
@@ -424,7 +424,7 @@ def test_files_that_extend_each_other_are_refused(tmp_path):
 
 
 def test_every_value_of_the_presets_has_its_line():
-    from birm3d.toml_document import Locator
+    from birm3d.io.toml import Locator
 
     text = CAR.replace("mass_kg = ", "mass_kg=").replace("name = ", '"name" = ')
     lines = Locator(text).lines
@@ -456,7 +456,7 @@ def test_every_value_of_the_presets_has_its_line():
     ],
 )
 def test_lines_after_all_kinds_of_values(text):
-    from birm3d.toml_document import Locator
+    from birm3d.io.toml import Locator
 
     tomllib.loads(text)
     lines = Locator(text).lines

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from birm3d import Barrier, Joint, Simulation, Vehicle, Zone
-from birm3d.vehicle_file import VehicleFileError
+from birm3d.vehicle.vehicle_file import VehicleFileError
 
 Change = Callable[[Vehicle], Vehicle]
 

@@ -9,7 +9,7 @@ import pickle
 import numpy as np
 import pytest
 from birm3d import Barrier, Simulation, Vehicle
-from birm3d.vehicle_shape import VehicleShape
+from birm3d.vehicle.vehicle_shape import VehicleShape
 
 
 @pytest.fixture(scope="module")

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Settings, Simulation, Vehicle, scenes
 from birm3d.study import PrecisionRow, WorkPrecision, work_precision
-from birm3d.study.convergence import Limit, limit_of, order_of, richardson
-from birm3d.study.errors import BOOKKEEPING, LEDGERS, least_scales, relative_errors
-from birm3d.study.triangulated import triangulated
+from birm3d.study.verification.convergence import Limit, limit_of, order_of, richardson
+from birm3d.study.verification.errors import BOOKKEEPING, LEDGERS, least_scales, relative_errors
+from birm3d.study.verification.triangulated import triangulated
 
 PROGRAM = Path(__file__).resolve().parents[1] / "bench/bench_accuracy.py"
 QUICK = {"tolerances": (1e-1, 1e-3, 1e-5), "references": (1e-6, 1e-7), "repeats": 1}

@@ -20,7 +20,7 @@ import birm3d
 import numpy as np
 import numpy.typing as npt
 import tomlkit
-from birm3d.zone_law import ZoneLaw
+from birm3d.vehicle.zone_law import ZoneLaw
 
 Floats = npt.NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import checked
-from ..checks import check_runs
+from ..base.arguments import checked
+from ..base.checks import check_runs
 from .curve_target import CurveTarget
 from .errors import CalibrationError, CalibrationInterruptedError
 from .evaluator import Evaluator, Progress
@@ -25,7 +25,7 @@ from .result import CalibrationResult
 from .scalar_target import ScalarTarget
 
 if TYPE_CHECKING:
-    from ..simulation import Simulation
+    from ..simulation.simulation import Simulation
 
 __all__ = ["calibrate"]
 
@@ -144,7 +144,7 @@ def _paired(
     targets: Target | Sequence[Target] | Sequence[Sequence[Target]],
 ) -> tuple[tuple[Simulation, ...], tuple[tuple[Target, ...], ...]]:
     """Return simulations and the targets of each."""
-    from ..simulation import Simulation
+    from ..simulation.simulation import Simulation
 
     scenes = (simulations,) if isinstance(simulations, Simulation) else tuple(simulations)
     if not scenes:

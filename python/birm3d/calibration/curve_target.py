@@ -10,16 +10,16 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import units
-from ..arguments import checked
-from ..checks import is_number, pair
-from ..event import DECIDED
-from ..filters import cfc
+from ..base.arguments import checked
+from ..base.checks import is_number, pair
+from ..result.event import DECIDED
+from ..signals.filters import cfc
 from .quantities import QUANTITIES, computed_curve, touch_time
 from .scalar_target import check_positive
 
 if TYPE_CHECKING:
-    from ..channel import Channel
-    from ..result import Result
+    from ..result.result import Result
+    from ..signals.channel import Channel
 
 __all__ = ["CurveTarget"]
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from ..file_format import reads
-from ..scene_file import read_scene_file
-from ..test_data import read_csv_channels
-from ..toml_document import Document, DocumentError, KeyPath, Strict, frozen, reject
+from ..io.file_format import reads
+from ..io.toml import Document, DocumentError, KeyPath, Strict, frozen, reject
+from ..signals.readers import read_csv_channels
+from ..simulation.scene_file import read_scene_file
 from ..units import Quantity
 from .curve_target import CurveTarget
 from .parameters import Parameter
@@ -19,7 +19,7 @@ from .problem import Target
 from .scalar_target import ScalarTarget
 
 if TYPE_CHECKING:
-    from ..simulation import Simulation
+    from ..simulation.simulation import Simulation
 
 __all__ = ["Fit", "FitFileError", "read_fit_file"]
 

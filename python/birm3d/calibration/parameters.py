@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import check_fields
-from ..checks import number, pair
-from ..scene_parameters import quantity_of, value_of, varied
+from ..base.arguments import check_fields
+from ..base.checks import number, pair
+from ..simulation.parameters import quantity_of, value_of, varied
 from ..units import Quantity, si
 
 if TYPE_CHECKING:
-    from ..simulation import Simulation
+    from ..simulation.simulation import Simulation
 
 __all__ = ["Parameter", "ParameterSet"]
 

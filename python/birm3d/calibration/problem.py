@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..scene_parameters import varied
+from ..simulation.parameters import varied
 from .curve_target import CurveTarget
 from .parameters import Parameter, ParameterSet
 from .scalar_target import ScalarTarget
 
 if TYPE_CHECKING:
-    from ..simulation import Simulation
+    from ..simulation.simulation import Simulation
 
 __all__ = ["Noise", "Problem", "Target", "independent_share"]
 

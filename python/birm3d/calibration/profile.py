@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import checked
+from ..base.arguments import checked
 from .evaluator import Channel, Evaluator, NoRunError
 from .fit import descend
 from .identifiability import Spread

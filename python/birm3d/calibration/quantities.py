@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import numpy.typing as npt
 
-from ..filters import cfc
+from ..signals.filters import cfc
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..result.result import Result
 
 __all__ = ["QUANTITIES", "Quantity", "computed_curve", "touch_time"]
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import checked
+from ..base.arguments import checked
 from .evaluator import Evaluation, Evaluator
 from .fitted import FittedParameter, FittedTarget
 from .identifiability import Spread
@@ -23,9 +23,9 @@ from .profile import Profile, profile
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..comparison import CurveComparison
-    from ..simulation import Simulation
-    from ..vehicle import Vehicle
+    from ..signals.compare import CurveComparison
+    from ..simulation.simulation import Simulation
+    from ..vehicle.vehicle import Vehicle
 
 __all__ = ["CalibrationResult"]
 
@@ -160,8 +160,8 @@ class CalibrationResult:
 
         By the target's label, with the simulation's number where there are several.
         """
-        from ..channel import Channel
-        from ..comparison import compare_curves
+        from ..signals.channel import Channel
+        from ..signals.compare import compare_curves
 
         several = len({target.simulation for target in self.targets}) > 1
         found = {}
@@ -214,19 +214,19 @@ class CalibrationResult:
 
     def plot_fit(self) -> Figure:
         """Return a figure of measured and computed curves."""
-        from .plots import plot_fit
+        from ..plotting.calibration import plot_fit
 
         return plot_fit(self)
 
     def plot_residuals(self) -> Figure:
         """Return a figure of what the fit leaves, over the standard deviations."""
-        from .plots import plot_residuals
+        from ..plotting.calibration import plot_residuals
 
         return plot_residuals(self)
 
     def plot_profiles(self) -> Figure:
         """Return a figure of the profiles of all parameters; computes those that are missing."""
-        from .plots import plot_profiles
+        from ..plotting.calibration import plot_profiles
 
         for parameter in self.parameters:
             self.profile(parameter.label)
@@ -247,7 +247,7 @@ class CalibrationResult:
         return self._problem
 
     def _repr_html_(self) -> str:
-        from ..notebook_html import text_html
+        from ..html_page.notebook import text_html
 
         return text_html(self.summary(), self.plot_fit(), "measured and computed")
 

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from ..arguments import checked
-from ..metrics import METRIC_UNITS
+from ..base.arguments import checked
+from ..result.metrics import METRIC_UNITS
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..result.result import Result
 
 __all__ = ["ScalarTarget", "check_positive"]
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..file_format import check_sum, checksum, read_bytes, read_json, reads
-from ..whole_file import check_format, whole_file
+from ..io.atomic_write import check_format, whole_file
+from ..io.file_format import check_sum, checksum, read_bytes, read_json, reads
 from .evaluator import Evaluation
 from .fitted import FittedParameter, FittedTarget
 from .identifiability import Spread

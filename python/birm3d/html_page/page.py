@@ -10,20 +10,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .. import units
-from ..barrier_text import barrier_text
-from ..crush_profile import Side, crushed_sides
-from ..event import DECIDED
-from ..metrics import METRIC_UNITS
-from ..notebook_html import figure_html
-from ..outcome import ELEMENT_COLUMNS, element_rows, outcome_rows
-from ..report import END_REASONS
-from ..scene_text import scene_text
-from ..whole_file import whole_file
+from ..barrier.text import barrier_text
+from ..io.atomic_write import whole_file
+from ..result.crush_profile import Side, crushed_sides
+from ..result.event import DECIDED
+from ..result.metrics import METRIC_UNITS
+from ..result.report import END_REASONS
+from ..result.summary import ELEMENT_COLUMNS, element_rows, outcome_rows
+from ..scene.text import scene_text
+from .notebook import figure_html
 from .page_data import page_data
 
 if TYPE_CHECKING:
-    from ..barrier import Barrier
-    from ..result import Result
+    from ..barrier.base import Barrier
+    from ..result.result import Result
 
 __all__ = ["write_html"]
 

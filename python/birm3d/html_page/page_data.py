@@ -8,17 +8,17 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import units
-from ..element_loads import touched_elements
-from ..filters import moving_average
-from ..plan_axes import PlanAxes
 from ..plotting.energies import energy_look
+from ..plotting.plan_axes import PlanAxes
 from ..plotting.style import DASH_DOT, DASHED, DOTTED, LEAST_ANGLE, LEAST_RATE, SOLID, filtered
-from ..silhouette import rings, silhouette
-from ..skin import skins_at
-from ..unit_shapes import unit_shapes
+from ..result.element_loads import touched_elements
+from ..result.skin import skins_at
+from ..signals.filters import moving_average
+from ..vehicle.silhouette import rings, silhouette
+from ..vehicle.unit_shapes import unit_shapes
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..result.result import Result
 
 __all__ = ["page_data"]
 

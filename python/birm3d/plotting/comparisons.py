@@ -13,7 +13,7 @@ from .figure import new_figure
 from .style import BLUE, DASHED, RED, legend, prepare, shown_unit
 
 if TYPE_CHECKING:
-    from ..comparison import CurveComparison
+    from ..signals.compare import CurveComparison
 
 __all__ = ["plot_comparison", "plot_comparisons"]
 

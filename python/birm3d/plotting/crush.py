@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
-from ..crush_profile import Side, crush_map, crush_profile
+from ..result.crush_profile import Side, crush_map, crush_profile
 from .figure import new_figure
 from .style import BLUE, prepare, title
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..result.result import Result
 
 __all__ = ["plot_crush"]
 
@@ -33,7 +33,7 @@ def plot_crush(
     """Return a map of the residual crush of one side, and below it the crush profile with C1 to C6.
 
     Crush is counted square to the side. The six points are evenly spaced over the width of the side at one
-    height (CRASH3, NHTSA); see :func:`birm3d.crush_profile.crush_profile`.
+    height (CRASH3, NHTSA); see :func:`birm3d.result.crush_profile.crush_profile`.
 
     Parameters
     ----------

@@ -10,12 +10,12 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..element_loads import overturning, resultant_height, touched_elements
+from ..result.element_loads import overturning, resultant_height, touched_elements
 from .figure import new_figure
 from .style import CYCLE, STYLES, WIDTHS, filtered, legend, prepare, title
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..result.result import Result
 
 __all__ = ["plot_elements"]
 

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from .style import BLUE, DASH_DOT, DASHED, DOTTED, GREEN, ORANGE, RED, SOLID, Style, legend
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..result.result import Result
 
 __all__ = ["energy_look", "plot_energies", "shown_energies"]
 

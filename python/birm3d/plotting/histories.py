@@ -9,7 +9,7 @@ import numpy.typing as npt
 from matplotlib.figure import Figure
 
 from .. import units
-from ..filters import moving_average
+from ..signals.filters import moving_average
 from .figure import new_figure
 from .style import (
     BLUE,
@@ -28,7 +28,7 @@ from .style import (
 )
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..result.result import Result
 
 __all__ = ["plot_histories"]
 

@@ -26,7 +26,7 @@ from .style import (
 )
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..result.result import Result
 
 __all__ = ["plot_result"]
 

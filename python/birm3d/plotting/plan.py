@@ -14,17 +14,17 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from ..barrier_kinds import Jersey, RigidWall
-from ..free_standing import base_corners
-from ..plan_axes import PlanAxes, is_oblique
-from ..silhouette import rings, silhouette
-from ..skin import Skin, skins_at
-from ..unit_shapes import UnitShape, unit_shapes
+from ..barrier.free_standing import base_corners
+from ..barrier.kinds import Jersey, RigidWall
+from ..result.skin import Skin, skins_at
+from ..vehicle.silhouette import rings, silhouette
+from ..vehicle.unit_shapes import UnitShape, unit_shapes
 from .figure import new_figure
+from .plan_axes import PlanAxes, is_oblique
 from .style import BLUE, RED, prepare, title
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..result.result import Result
 
 __all__ = ["Instant", "draw_barrier", "draw_vehicle", "fit_to", "plot_plan"]
 

@@ -10,11 +10,11 @@ import numpy.typing as npt
 from cycler import cycler
 from matplotlib.axes import Axes
 
-from ..filters import cfc
-from ..scene_text import scene_text
+from ..scene.text import scene_text
+from ..signals.filters import cfc
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..result.result import Result
 
 __all__ = [
     "BLUE",

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
-from ..plan_axes import PlanAxes
-from ..skin import Skin
-from ..unit_shapes import unit_shapes
+from ..result.skin import Skin
+from ..vehicle.unit_shapes import unit_shapes
 from .figure import new_figure
 from .plan import Instant, draw_barrier, draw_vehicle, fit_to
+from .plan_axes import PlanAxes
 from .style import BLUE, prepare
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..result.result import Result
 
 __all__ = ["plot_thumbnail"]
 

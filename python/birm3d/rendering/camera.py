@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, NamedTuple, get_args
 import numpy as np
 import numpy.typing as npt
 
-from ..barrier_kinds import Bollards, Pole
-from ..barrier_surfaces import barrier_axes
-from ..pictures import View
-from ..plan_axes import is_oblique
-from ..skin import Skin
-from ..unit_shapes import unit_shapes
+from ..barrier.kinds import Bollards, Pole
+from ..barrier.surfaces import barrier_axes
+from ..plotting.plan_axes import is_oblique
+from ..result.pictures import View
+from ..result.skin import Skin
+from ..vehicle.unit_shapes import unit_shapes
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..result.result import Result
 
 __all__ = ["VIEWS", "Camera", "View", "check_view", "crushed_direction", "driver_camera", "outside_camera"]
 

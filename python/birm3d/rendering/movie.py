@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ..progress import progress_bar
-from ..whole_file import whole_file
+from ..base.progress import progress_bar
+from ..io.atomic_write import whole_file
 from .camera import View
 from .stage import Color, Stage, check_drawing
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..result.result import Result
 
 __all__ = ["animate", "check_movie"]
 

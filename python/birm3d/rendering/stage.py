@@ -13,17 +13,17 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import units
-from ..barrier_kinds import Bollards, Pole
-from ..barrier_surfaces import Surface, barrier_axes, barrier_surfaces
+from ..barrier.kinds import Bollards, Pole
+from ..barrier.surfaces import Surface, barrier_axes, barrier_surfaces
 from ..plotting.style import title
-from ..skin import Skin, skins_at
-from ..unit_shapes import unit_shapes
+from ..result.skin import Skin, skins_at
+from ..vehicle.unit_shapes import unit_shapes
 from .camera import Camera, View, check_view, crushed_direction, driver_camera, outside_camera
 from .unit_on_stage import Color, UnitOnStage, polygons
 
 if TYPE_CHECKING:
-    from ..barrier import Barrier
-    from ..result import Result
+    from ..barrier.base import Barrier
+    from ..result.result import Result
 
 __all__ = ["Color", "Stage"]
 

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ..checks import shown
-from ..whole_file import whole_file
+from ..base.checks import shown
+from ..io.atomic_write import whole_file
 from .camera import View
 from .stage import Color, Stage
 
 if TYPE_CHECKING:
-    from ..result import Result
+    from ..result.result import Result
 
 __all__ = ["render", "show"]
 

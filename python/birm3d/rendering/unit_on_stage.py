@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..pictures import Color
-from ..skin import Skin
-from ..unit_shapes import UnitShape
+from ..result.pictures import Color
+from ..result.skin import Skin
+from ..vehicle.unit_shapes import UnitShape
 
 __all__ = ["Color", "UnitOnStage", "polygons"]
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from .precision_result import PrecisionRow, WorkPrecision
-from .recommendation import Recommendation
-from .stability import stability
-from .stability_result import Stability, StabilityRow
 from .table import Study, Summary
-from .work_precision import work_precision
+from .verification.precision_result import PrecisionRow, WorkPrecision
+from .verification.recommendation import Recommendation
+from .verification.stability import stability
+from .verification.stability_result import Stability, StabilityRow
+from .verification.work_precision import work_precision
 
 __all__ = [
     "PrecisionRow",

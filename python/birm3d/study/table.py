@@ -13,20 +13,20 @@ import numpy as np
 import numpy.typing as npt
 
 from .._version import __version__
-from ..arguments import checked
-from ..barrier_text import varied_barrier_text
-from ..event import OUTCOMES
-from ..float_rows import FloatRows
-from ..frozen_mapping import FrozenMapping
-from ..scene_parameters import unit_of
+from ..barrier.text import varied_barrier_text
+from ..base.arguments import checked
+from ..base.frozen_mapping import FrozenMapping
+from ..result.event import OUTCOMES
+from ..simulation.parameters import unit_of
+from .float_rows import FloatRows
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from ..outcome_table import OutcomeTable
-    from ..simulation import Scene, Simulation
+    from ..simulation.simulation import Scene, Simulation
+    from .outcome_table import OutcomeTable
 
 __all__ = ["Study", "Summary"]
 
@@ -66,8 +66,8 @@ class Study:
         SI and degrees. NaN: the run failed (then ``error`` says why) or does not have this metric, as an exit
         angle of a vehicle that stands.
     outcome, end_reason, state_hash, error : tuple of str
-        ``outcome`` is a word of :data:`birm3d.event.OUTCOMES`, empty for a run that failed. ``error`` is
-        empty for a run that did not fail, else the type and message of the exception.
+        ``outcome`` is a word of :data:`birm3d.result.event.OUTCOMES`, empty for a run that failed. ``error``
+        is empty for a run that did not fail, else the type and message of the exception.
     units : mapping of str to str
         Of parameters and metrics; ``""`` for pure numbers.
     grid : mapping of str to tuple, or None
@@ -196,7 +196,7 @@ class Study:
 
     @property
     def outcomes(self) -> Mapping[str, int]:
-        """Each outcome that runs have -> how many have it, in the order of ``birm3d.event.OUTCOMES``."""
+        """Each outcome that runs have -> how many, ordered as :data:`birm3d.result.event.OUTCOMES`."""
         return {word: n for word in OUTCOMES if (n := self.outcome.count(word))}
 
     def simulation(self, row: int, base: Simulation | None = None) -> Simulation:
@@ -215,8 +215,8 @@ class Study:
             If there is no such row, if the study needs a base and has none, or if the row's scene can not be
             made (``error`` says so too).
         """
-        from ..scene_parameters import varied
-        from ..simulation import Simulation
+        from ..simulation.parameters import varied
+        from ..simulation.simulation import Simulation
 
         if isinstance(row, bool) or not isinstance(row, (int, np.integer)) or not 0 <= row < len(self):
             raise ValueError(f"row must be a whole number from 0 to {len(self) - 1}, got {row!r}")
@@ -296,8 +296,8 @@ class Study:
 
         Numbers are written with all their digits; a metric that a run does not have is an empty cell.
         """
-        from ..file_format import checksum
-        from ..whole_file import whole_file
+        from ..io.atomic_write import whole_file
+        from ..io.file_format import checksum
 
         columns = self.columns()
         head = {
@@ -338,13 +338,13 @@ class Study:
         for axis, name in (("x", x), ("y", y), ("by", by)):
             if name is not None and name not in known:
                 raise ValueError(f"{axis} must be one of {', '.join(known)}; got {name!r}")
-        from .plots import plot_study
+        from ..plotting.studies import plot_study
 
         return plot_study(self, x, y, by)
 
     def _repr_html_(self) -> str:
         """Return what notebooks show: outcomes, parameters, the spread of the metrics, a scatter."""
-        from ..notebook_html import study_html
+        from ..html_page.notebook import study_html
 
         return study_html(self)
 

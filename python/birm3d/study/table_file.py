@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..file_format import FileFormatError, check_sum, read_bytes, read_json, reads, received
+from ..io.file_format import FileFormatError, check_sum, read_bytes, read_json, reads, received
 
 __all__ = ["read_table"]
 

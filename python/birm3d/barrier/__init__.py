@@ -1,0 +1,8 @@
+"""Barriers: what a vehicle runs into."""
+
+from __future__ import annotations
+
+from .base import Barrier
+from .free_standing import FreeStanding
+
+__all__ = ["Barrier", "FreeStanding"]

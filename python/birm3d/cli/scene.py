@@ -1,0 +1,184 @@
+"""Command line: the options that say what is run, shared by all commands that run something."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from .. import units
+
+if TYPE_CHECKING:
+    from ..simulation.simulation import Simulation
+
+__all__ = ["QuantityOption", "scene_options", "simulation_of"]
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+class QuantityOption(click.ParamType):  # type: ignore[type-arg,unused-ignore]
+    """A number with a unit, such as 50mph; without one SI, angles in degrees. A speed must have its unit."""
+
+    def __init__(self, quantity: str) -> None:
+        self.name = quantity
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Return the value in SI; degrees for angles."""
+        if isinstance(value, float):
+            return value
+        try:
+            return units.parse(value, self.name, plain=self.name != "speed")
+        except ValueError as error:
+            self.fail(str(error), param, ctx)
+
+
+# Kind of barrier -> the options that give its sizes.
+_SIZES = {
+    "rigid_wall": ("width", "height", "thickness", "segments"),
+    "pole": ("diameter",),
+    "bollards": ("count", "diameter", "height", "spacing", "rows", "row_spacing", "row_offset"),
+    "jersey": ("profile", "height", "length", "segments", "free_standing", "density"),
+}
+
+_OPTIONS = (
+    click.argument("scene", required=False, type=click.Path(exists=True, dir_okay=False, path_type=Path)),
+    click.option("--vehicle", help="Preset (see `birm3d vehicles`) or vehicle file (.toml)."),
+    click.option(
+        "--gvw", type=QuantityOption("mass"), help="Gross vehicle weight: 4500lb, 7.5t or 1719 (kg)."
+    ),
+    click.option(
+        "--mesh-density", type=float, default=1.0, show_default=True, help="Elements relative to the file's."
+    ),
+    click.option(
+        "--barrier",
+        type=click.Choice([*_SIZES, "none"]),
+        default="rigid_wall",
+        show_default=True,
+    ),
+    click.option("--width", type=QuantityOption("length"), help="Of the wall.  [default: without end]"),
+    click.option("--height", type=QuantityOption("length"), help="Of wall, bollards or Jersey barrier."),
+    click.option("--thickness", type=QuantityOption("length"), help="Of a wall with an end or a top."),
+    click.option("--diameter", type=QuantityOption("length"), help="Of pole or bollards."),
+    click.option("--count", type=int, help="Bollards in a row."),
+    click.option("--spacing", type=QuantityOption("length"), help="Of bollards, centre to centre."),
+    click.option("--rows", type=int, help="Of bollards."),
+    click.option("--row-spacing", type=QuantityOption("length"), help="Of rows of bollards, axis to axis."),
+    click.option(
+        "--row-offset", type=QuantityOption("length"), help="Shift of each row from the one before it."
+    ),
+    click.option(
+        "--profile", type=click.Choice(["new_jersey", "f_shape", "single_slope"]), help="Of a Jersey barrier."
+    ),
+    click.option(
+        "--length", type=QuantityOption("length"), help="Of a Jersey barrier.  [default: without end]"
+    ),
+    click.option("--segments", type=int, help="Of a wall or Jersey barrier that has ends."),
+    click.option(
+        "--free-standing",
+        is_flag=True,
+        default=None,
+        help="Segments of a Jersey barrier slide on the ground, pinned end to end.",
+    ),
+    click.option(
+        "--density",
+        type=QuantityOption("density"),
+        help="Of a free-standing Jersey barrier, kg/m^3.  [default: 2400]",
+    ),
+    click.option("--friction", type=float, default=0.2, show_default=True, help="Vehicle on barrier."),
+    click.option("--speed", type=QuantityOption("speed"), help="With its unit: 50mph, 57.09km/h or 15.9m/s."),
+    click.option(
+        "--angle",
+        type=QuantityOption("angle"),
+        default=90.0,
+        show_default=True,
+        help="Path to barrier line, deg.",
+    ),
+    click.option(
+        "--offset",
+        type=QuantityOption("length"),
+        default=0.0,
+        show_default=True,
+        help="Along the barrier, m; at angle 0 behind its line.",
+    ),
+    click.option(
+        "--yaw",
+        type=QuantityOption("angle"),
+        default=0.0,
+        show_default=True,
+        help="Nose to the left of the path, deg.",
+    ),
+    click.option(
+        "--roll",
+        type=QuantityOption("angle"),
+        default=0.0,
+        show_default=True,
+        help="To the right at impact, deg.",
+    ),
+    click.option("--duration", type=QuantityOption("time"), help="Default: until the outcome is decided."),
+    click.option(
+        "--output-interval", type=QuantityOption("time"), help="Between rows of histories.  [default: 0.1ms]"
+    ),
+    click.option("--tolerance", type=float, help="Wanted relative error.  [default: 0.001]"),
+    click.option("--time-step", type=QuantityOption("time"), help="Fixed step.  [default: adaptive]"),
+)
+
+
+def scene_options(command: Command) -> Command:
+    """Give a command the argument SCENE and the options that can take its place."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
+    """Return the simulation of a scene file, or of the options of :func:`scene_options`."""
+    from ..barrier.base import Barrier
+    from ..scene.settings import Settings
+    from ..simulation.simulation import Simulation
+    from ..vehicle.vehicle import Vehicle
+
+    context = click.get_current_context()
+    given = [
+        f"--{name.replace('_', '-')}"
+        for name in options
+        if context.get_parameter_source(name) is not click.core.ParameterSource.DEFAULT
+    ]
+    if scene is not None:
+        if given:
+            raise click.UsageError(f"{', '.join(given)}: a scene file states everything itself")
+        from ..simulation.scene_file import read_scene_file
+
+        return read_scene_file(scene)
+    for name in ("vehicle", "speed"):
+        if options[name] is None:
+            raise click.UsageError(f"give a scene file, or --vehicle and --speed: --{name} is missing")
+    make = Vehicle.from_file if options["vehicle"].endswith(".toml") else Vehicle.preset
+    vehicle = make(options["vehicle"], gvw=options["gvw"], mesh_density=options["mesh_density"])
+    kind = options["barrier"]
+    known = dict.fromkeys(name for names in _SIZES.values() for name in names)
+    sizes = {name: options[name] for name in known if options[name] is not None}
+    for name in sizes:
+        if name not in _SIZES.get(kind, ()):
+            kinds = " or ".join(other for other, names in _SIZES.items() if name in names)
+            raise click.UsageError(f"--{name.replace('_', '-')}: of {kinds}, not of {kind}")
+    barrier = None
+    if kind != "none":
+        barrier = getattr(Barrier, kind)(friction=options["friction"], **sizes)
+    settings = {
+        name: options[name]
+        for name in ("tolerance", "time_step", "output_interval")
+        if options[name] is not None
+    }
+    return Simulation(
+        vehicle,
+        barrier,
+        options["speed"],
+        options["angle"],
+        options["offset"],
+        impact_yaw=options["yaw"],
+        impact_roll=options["roll"],
+        duration=options["duration"],
+        settings=Settings(**settings),
+    )

@@ -1,0 +1,185 @@
+"""Loads on the elements of a barrier: each post, each segment of a wall."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from ..barrier.kinds import Jersey, RigidWall
+from ..signals.filters import moving_average
+from .unit_result import read_only
+
+if TYPE_CHECKING:
+    from .result import Result
+
+__all__ = [
+    "LEAST_SHARE",
+    "ElementLoad",
+    "element_loads",
+    "overturning",
+    "resultant_height",
+    "touched_elements",
+]
+
+Floats = npt.NDArray[np.float64]
+
+LEAST_SHARE = 0.01
+"""Below this share of its greatest value a horizontal force has no height that means anything."""
+
+_WINDOW = 0.05  # s
+
+
+@dataclass(frozen=True, eq=False)
+class ElementLoad:
+    """What one element of a barrier feels, n rows; interval means.
+
+    Forces are those of the vehicle on the element, in world axes (z up): the sum over all elements is
+    ``-result.barrier_force``. Moments are about the element's foot: the foot of a post's axis, of a wall's
+    segment the middle of its face's foot, of a Jersey segment the middle of its base, of a mesh the barrier's
+    origin. A free-standing segment takes its foot along; its line is that at the start.
+    A moment follows the right-hand rule: a force along +x at a height has a moment about +y.
+
+    Peaks are magnitudes of resultants: of the sum of the force vectors of all nodes on the element, and for
+    50-ms values of the mean of that vector.
+
+    Unfiltered peaks have the blow of the rigid body in one interval where a crush zone is used up; compare
+    50-ms means, or filter the histories, where that happens.
+
+    Attributes
+    ----------
+    index, name
+        Place among ``barrier.element_names``, and what it says there.
+    force
+        Shape (n, 3) [N].
+    moment
+        About the foot, shape (n, 3) [N m].
+    interval
+        Between rows [s].
+    line
+        Of a wall or a Jersey barrier the unit vector along its line, about which it overturns, shape (3,);
+        ``None`` for posts and meshes, which may overturn any way.
+    """
+
+    index: int
+    name: str
+    force: Floats
+    moment: Floats
+    interval: float
+    line: Floats | None = None
+
+    @cached_property
+    def resultant_height(self) -> Floats:
+        """Of the horizontal force above the foot, shape (n,) [m]; see :func:`resultant_height`."""
+        return read_only(resultant_height(self.force, self.moment, self.line))
+
+    @cached_property
+    def overturning_moment(self) -> Floats:
+        """Magnitude of the horizontal moment, of a wall of its part about the line, shape (n,) [N m]."""
+        return read_only(overturning(self.moment, self.line))
+
+    @cached_property
+    def touched(self) -> bool:
+        """Whether there was any force."""
+        return bool(self.force.any())
+
+    @cached_property
+    def peak_force(self) -> float:
+        """Greatest magnitude of the force, unfiltered [N]."""
+        return float(np.linalg.norm(self.force, axis=1).max())
+
+    @cached_property
+    def peak_force_50ms(self) -> float:
+        """Greatest magnitude of the mean force vector over 50 ms [N]."""
+        return float(np.linalg.norm(self._mean[0], axis=1).max())
+
+    @cached_property
+    def height_at_peak(self) -> float:
+        """Height of the resultant of the 50-ms mean where its horizontal force is greatest, else 0 [m]."""
+        force, moment = self._mean
+        row = int(np.argmax(np.hypot(force[:, 0], force[:, 1])))
+        return float(resultant_height(force, moment, self.line)[row])
+
+    @cached_property
+    def peak_overturning_moment(self) -> float:
+        """Greatest overturning moment, unfiltered [N m]."""
+        return float(self.overturning_moment.max())
+
+    @cached_property
+    def peak_overturning_moment_50ms(self) -> float:
+        """Greatest overturning moment of the mean over 50 ms [N m]."""
+        return float(overturning(self._mean[1], self.line).max())
+
+    @cached_property
+    def _mean(self) -> tuple[Floats, Floats]:
+        """Force and moment as means over 50 ms that end at each row."""
+        return (
+            moving_average(self.force, _WINDOW, self.interval),
+            moving_average(self.moment, _WINDOW, self.interval),
+        )
+
+    def __repr__(self) -> str:
+        force, moment = self.peak_force_50ms, self.peak_overturning_moment_50ms
+        return f"ElementLoad({self.name!r}, {force:.4g} N, {moment:.4g} N m)"
+
+
+def overturning(moment: Floats, line: Floats | None = None) -> Floats:
+    """Return the magnitude of the horizontal moment, of a wall of its part about the line, shape (n,)."""
+    if line is None:
+        return np.asarray(np.hypot(moment[:, 0], moment[:, 1]))
+    return np.abs(moment @ line)
+
+
+def resultant_height(force: Floats, moment: Floats, line: Floats | None = None) -> Floats:
+    """Return the height at which the horizontal force alone makes its overturning moment, shape (n,) [m].
+
+    With F_h the horizontal force and z up: height = M . (z x F_h) / |F_h|^2. It is the height of the point of
+    application where the force has no vertical part, or meets the vertical through the foot; else the moment
+    of the vertical force is in it, as it is in the overturning moment. 0 in rows where the size of F_h is
+    below ``LEAST_SHARE`` of its greatest value, and where there is none.
+
+    Parameters
+    ----------
+    force, moment
+        Shape (n, 3) [N, N m]; z up.
+    line
+        Of a wall: only the force across its line and the moment about it count, shape (3,).
+    """
+    if line is not None:
+        across = np.array([line[1], -line[0], 0.0])
+        force, moment = np.outer(force @ across, across), np.outer(moment @ line, line)
+    x, y = force[:, 0], force[:, 1]
+    size = np.hypot(x, y)
+    height = np.zeros(len(force))
+    enough = size > LEAST_SHARE * size.max(initial=0.0)
+    turning = moment[:, 1] * x - moment[:, 0] * y
+    height[enough] = turning[enough] / size[enough] ** 2
+    return height
+
+
+def element_loads(result: Result) -> tuple[ElementLoad, ...]:
+    """Return the loads on every element of the barrier in their order, zeros where one was not touched."""
+    barrier = result.scene.barrier
+    if barrier is None:
+        return ()
+    touched = {one.element: one for one in result._history.elements}
+    nothing = read_only(np.zeros((len(result.time), 3)))
+    interval = result.scene.settings.output_interval
+    line = None
+    if isinstance(barrier, (RigidWall, Jersey)):
+        angle = np.radians(barrier.heading)
+        line = read_only(np.array([-np.sin(angle), np.cos(angle), 0.0]))
+    return tuple(
+        ElementLoad(i, name, touched[i].force, touched[i].moment, interval, line)
+        if i in touched
+        else ElementLoad(i, name, nothing, nothing, interval, line)
+        for i, name in enumerate(barrier.element_names)
+    )
+
+
+def touched_elements(result: Result) -> list[ElementLoad]:
+    """Return the loads on the elements that were touched."""
+    return [load for load in result.element_loads if load.touched]

@@ -1,0 +1,128 @@
+"""What became of the vehicle at the barrier: one of six words, and a sentence that says how.
+
+The core finds it while the run goes on (:class:`birm3d._core.Event`), so it depends neither on the duration,
+once that is long enough, nor on histories. The vehicle *has left for good* when it moves away from every
+element of the barrier so that no rotation brings it back; a vehicle that goes on past the barrier must be
+out of reach of it. What it does then decides, except for rolling over, which counts over the whole run:
+
+``overridden``
+    It left past the barrier's line, or rests there, and while its mass centre was past the line the top of an
+    element stood under its rigid body.
+``passed``
+    It left past the line, or towards it beyond the barrier's end, or rests behind the barrier out of reach.
+``rolled_over``
+    Neither of these, and an up axis was beyond 90 degrees from the vertical at some step. Vehicles that start
+    more than 45 degrees from upright are not judged.
+``redirected``
+    Contained, and it leaves along the barrier: within 45 degrees of the line, in the direction in which it
+    came, with more than a tenth of its impact speed; or it slides on along a straight barrier, at rest
+    sideways.
+``stopped``
+    Contained, and its motion into the barrier ended: it rebounds or rests.
+``undecided``
+    The run ended before, or there is no barrier.
+
+The line is that of :func:`birm3d.metrics.compute_metrics`; of free-standing barriers it moves with their
+segments, of meshes it is where they end. On paths along the line it is where the barrier begins.
+The mass centre is that of the leading unit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from .metrics import METRIC_UNITS, compute_metrics
+
+if TYPE_CHECKING:
+    from .result import Result
+
+__all__ = ["DECIDED", "OUTCOMES", "Metrics", "metrics_of", "outcome_detail"]
+
+OUTCOMES = ("stopped", "redirected", "passed", "overridden", "rolled_over", "undecided")
+"""All words that :attr:`birm3d.Result.outcome` may be."""
+
+DECIDED = ("separated", "stopped", "sliding")
+"""Ends of a run at which nothing can change any more; see :data:`birm3d.result.report.END_REASONS`."""
+
+_MANNERS = {
+    "rests_untouched": "it came to rest before it reached the barrier",
+    "rests": "it came to rest at the barrier",
+    "rebounds": "it rebounded from the barrier",
+    "leaves": "it left along the barrier",
+    "slides_to_end": "it slid along the barrier to its end and left",
+    "slides_on": "it slides on along the barrier, at rest sideways",
+    "rests_beyond": "it came to rest behind the barrier",
+    "over": "it went over the top of the barrier",
+}
+_AT_SEPARATION = ("time_of_separation", "exit_speed", "exit_angle", "restitution")
+
+
+def outcome_detail(result: Result) -> str:
+    """Return how the outcome came about: one sentence."""
+    event = result._event
+    if event is None:
+        return (
+            f"birm3d {result.version}, which made the result, did not find the outcome: run its scene again"
+        )
+    rolled = " and rolled over" if event.rolled_over else ""
+    if event.manner == "no_barrier":
+        return f"there is no barrier{': it rolled over' if rolled else ''}"
+    touched = bool(result._history.elements)
+    if event.manner == "moving":
+        where = "in contact with" if event.touching else "clear of" if touched else "not yet at"
+        return f"it was still moving when the run ended, {where} the barrier{rolled}"
+    if event.manner in ("between", "beside"):
+        past = "between two elements of the barrier" if event.manner == "between" else "the barrier's end"
+        return f"it passed {past}, {'touching it' if touched else 'untouched'}{rolled}"
+    return _MANNERS[event.manner] + rolled
+
+
+class Metrics(Mapping[str, Any]):
+    """Scalars of a run by name: numbers in SI, angles in degrees; a name that is absent says why.
+
+    ``outcome`` and ``outcome_detail``, which are text, can be asked for; they are not among the numbers that
+    iteration gives.
+    """
+
+    def __init__(self, result: Result, values: Mapping[str, float]) -> None:
+        self._result = result
+        self._values = dict(values)
+
+    def __getitem__(self, name: str) -> Any:
+        if name in self._values:
+            return self._values[name]
+        if name in ("outcome", "outcome_detail"):
+            return getattr(self._result, name)
+        raise KeyError(_why_absent(self._result, name))
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._values or name in ("outcome", "outcome_detail")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __repr__(self) -> str:
+        return f"Metrics({self._values!r})"
+
+
+def metrics_of(result: Result) -> Metrics:
+    """Return all scalars of a run."""
+    return Metrics(result, compute_metrics(result))
+
+
+def _why_absent(result: Result, name: str) -> str:
+    if name not in METRIC_UNITS:
+        return f"metric must be one of {', '.join(METRIC_UNITS)}, outcome or outcome_detail; got {name!r}"
+    scene, event = result.scene, result._event
+    if scene.barrier is None:
+        return f"{name}: there is no barrier"
+    if name in _AT_SEPARATION and event is not None:
+        if event.time_of_separation is None:
+            return f"{name}: the vehicle did not separate from the barrier for good: {result.outcome_detail}"
+        if name == "exit_angle":
+            return f"{name}: the vehicle does not leave on the traffic side: {result.outcome_detail}"
+    return f"{name}: the run does not have it, see birm3d.metrics.compute_metrics"

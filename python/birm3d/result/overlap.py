@@ -1,0 +1,43 @@
+"""What tells a user that the rigid body got into a barrier."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING
+
+from ..base.arguments import caller_level
+
+if TYPE_CHECKING:
+    from .. import _core
+    from ..simulation.simulation import Scene
+
+__all__ = ["OVERLAP_LIMIT", "OverlapWarning", "warn_if_overlapping"]
+
+OVERLAP_LIMIT = 0.1
+"""Overlap of the rigid body with a barrier beyond which a run is not to be believed [m]."""
+
+
+class OverlapWarning(UserWarning):
+    """The rigid body got into the barrier: loads and travel of the run are not to be believed.
+
+    Trusses hold the rigid body at the barrier where they are closed, and only there. Between their anchors
+    an edge of a wall or a post can enter the body: by a few centimetres with the usual meshes, right through
+    with very coarse ones. The overlap is measured on the core boxes of the vehicle's file, whatever the mesh:
+    how far body and barrier would have to be moved apart. Vehicles from arrays have no boxes, and are
+    measured at their anchors alone.
+    """
+
+
+def warn_if_overlapping(scene: Scene, statistics: _core.StepStatistics) -> None:
+    """Warn with :class:`OverlapWarning` if the overlap was beyond :data:`OVERLAP_LIMIT`."""
+    overlap = statistics.greatest_overlap
+    if not overlap > OVERLAP_LIMIT or scene.barrier is None:
+        return
+    element = scene.barrier.element_names[statistics.greatest_overlap_element]
+    warnings.warn(
+        f"contact_overlap must be at most {OVERLAP_LIMIT:g} m, got {overlap:.2f} m: at "
+        f"{statistics.greatest_overlap_time:.3f} s the rigid body of {scene.vehicle.name!r} was inside "
+        f"{element!r}; a finer mesh (with_mesh_density) or with_dent_reach holds it",
+        OverlapWarning,
+        stacklevel=caller_level(),
+    )

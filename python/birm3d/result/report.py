@@ -1,0 +1,86 @@
+"""What was computed and what was left out, in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .. import units
+from .element_loads import touched_elements
+from .omitted import left_out
+
+if TYPE_CHECKING:
+    from ..barrier.base import Barrier
+    from .result import Result
+
+__all__ = ["END_REASONS", "report"]
+
+END_REASONS = {
+    "separated": "the vehicle has left the barrier and can not come back",
+    "stopped": "the vehicle stands still at the barrier",
+    "sliding": "the vehicle slides along the barrier, where nothing can change any more",
+    "duration": "the duration asked for is over",
+    "longest": "the longest event without a duration is over; the outcome is not decided",
+    "running": "the run is not over yet",
+}
+"""Why a run ended, in words."""
+
+
+def report(result: Result) -> str:
+    """Return the report of a run as text."""
+    scene, settings, statistics = result.scene, result.scene.settings, result.statistics
+    vehicle, metrics = scene.vehicle, result.metrics
+    lines = [
+        f"{result.outcome}: {result.outcome_detail}",
+        f"{vehicle.name}, {vehicle.mass:.1f} kg, {vehicle.n_nodes} shell nodes, {len(vehicle.wheels)} wheels",
+        f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph) "
+        f"at {scene.impact_angle:g} deg "
+        + (_barrier(scene.barrier) if scene.barrier else "without a barrier"),
+        f"ended at {result.time[-1]:.4f} s: {END_REASONS[result.end_reason]}",
+        "",
+        "computed",
+        f"  {statistics.steps} steps of {statistics.shortest_step:.2e} to {statistics.longest_step:.2e} s "
+        + (
+            f"(fixed at {settings.time_step:g} s)"
+            if settings.time_step
+            else f"(tolerance {settings.tolerance:g}, {statistics.rejected} redone)"
+        ),
+    ]
+    if statistics.least_critical_step < float("inf"):
+        lines.append(
+            f"  critical step of the trusses in contact: at least {statistics.least_critical_step:.2e} s"
+        )
+    lines += [
+        f"  contact model: {settings.contact_model}; energy residual {metrics['energy_residual']:.1e} of the "
+        f"initial kinetic energy, momentum residual {metrics['momentum_residual']:.1e}",
+    ]
+    if vehicle.joint is not None:
+        lines.append(
+            f"  {vehicle.joint.kind}: peak force {metrics['peak_joint_force']:.3g} N, greatest articulation "
+            f"angle {metrics['max_articulation_angle']:.1f} deg"
+        )
+    if "barrier_deflection" in metrics:
+        lines.append(
+            f"  the barrier moves by {metrics['barrier_deflection']:.3f} m at the most, "
+            f"{metrics['residual_barrier_deflection']:.3f} m at the end"
+        )
+    for load in touched_elements(result):
+        lines.append(
+            f"  {load.name}: peak 50-ms mean of the force {load.peak_force_50ms / 1e3:.3g} kN at "
+            f"{load.height_at_peak:.2f} m, of the overturning moment "
+            f"{load.peak_overturning_moment_50ms / 1e3:.3g} kN m"
+        )
+    lines += [
+        "",
+        "left out",
+        *(f"  {line}" for line in left_out(result)),
+    ]
+    return "\n".join(lines)
+
+
+def _barrier(barrier: Barrier) -> str:
+    names = barrier.element_names
+    count = f"{len(names)} elements" if len(names) > 1 else names[0]
+    segments = barrier.core.segments
+    if segments:
+        count += f", free-standing, {segments[0].mass:.0f} kg each"
+    return f"to the line of a {type(barrier).__name__} ({count}), friction {barrier.friction:g}"

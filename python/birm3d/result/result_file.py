@@ -1,0 +1,256 @@
+"""Results as files: NumPy's npz with a JSON header, readable without this package.
+
+``numpy.load(path)`` has every array by name: ``history/...`` (rows at the output interval; angles in rad),
+``history/0/...`` (of unit 0), ``history/joint/0/...``, ``history/element/2/...`` (of element 2 of the
+barrier, if it was touched), ``final/0/...`` (unit 0 at the end), ``scene/...`` and ``frames/...``; and a text
+``header``: JSON with format and versions, the scene (see :mod:`birm3d.scene.codec`), scalars, metrics and
+report.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import platform
+from collections.abc import Mapping
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _core
+from ..base.fingerprint import fingerprint
+from ..io.atomic_write import check_format, whole_file
+from ..io.file_format import FileFormatError, checksum, read_json, reading, reads, received
+from ..io.npz_arrays import read_arrays
+from ..scene.codec import decode, encode
+from .event import Metrics
+from .frames import Frames
+from .metrics import ALONG_LINE
+from .unit_result import UnitResult, read_only
+
+if TYPE_CHECKING:
+    from ..simulation.simulation import Scene
+    from .result import Result
+
+__all__ = ["FORMAT_VERSION", "StoredHistory", "load", "save"]
+
+FORMAT_VERSION = 3
+_FORMAT = "birm3d result"
+_LISTED = "elements"  # of the history: records of their own
+_FINAL = ("nodes", "deflection", "peak_deflection", "final_velocity")
+
+
+class Stored:
+    """Named values of a record of the core, read from a file; immutable."""
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        self._values = values
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name not in self._values:
+            raise AttributeError(name)
+        return self._values[name]
+
+
+class StoredHistory(Stored):
+    """The history of a run, read from a file; reads like the core's."""
+
+    def __init__(
+        self,
+        values: Mapping[str, Any],
+        units: list[Stored],
+        joints: list[Stored],
+        elements: list[Stored],
+    ) -> None:
+        super().__init__(values)
+        self.elements = elements
+        self._units = units
+        self._joints = joints
+
+    def unit(self, index: int) -> Stored:
+        """Return the history of one unit of the vehicle."""
+        return self._units[index]
+
+    def joint(self, index: int) -> Stored:
+        """Return the history of one joint of the vehicle."""
+        return self._joints[index]
+
+
+def save(result: Result, path: str | Path) -> None:
+    """Write a result, every array bit for bit. The file is complete or is not there."""
+    with whole_file(path) as part, part.open("wb") as stream:
+        write(result, stream)
+
+
+def write(result: Result, stream: IO[bytes]) -> None:
+    """Write a result to an open binary file."""
+    arrays: dict[str, npt.NDArray[Any]] = {}
+    scene = encode(result.scene, arrays, "scene")
+    history = _parts(result._history, _core.History, arrays, "history")
+    vehicle = result.scene.vehicle
+    units = [
+        _parts(result._history.unit(i), _core.UnitHistory, arrays, f"history/{i}")
+        for i in range(len(vehicle.units))
+    ]
+    joints = [
+        _parts(result._history.joint(i), _core.JointHistory, arrays, f"history/joint/{i}")
+        for i in range(0 if vehicle.joint is None else 1)
+    ]
+    elements = [
+        _parts(one, _core.ObstacleHistory, arrays, f"history/element/{one.element}")
+        for one in result._history.elements
+    ]
+    for i in range(len(vehicle.units)):
+        for name in _FINAL:
+            arrays[f"final/{i}/{name}"] = getattr(result.unit(i), name)
+    if result.frames is not None:
+        arrays["frames/time"] = result.frames.time
+        for i, displacement in enumerate(result.frames.displacement):
+            arrays[f"frames/{i}/displacement"] = displacement
+    long_enough = len(result.time) > 1  # else metrics do not exist, see compute_metrics()
+    header = {
+        "format": _FORMAT,
+        "format_version": FORMAT_VERSION,
+        "made_with": {
+            "birm3d": result.version,
+            "python": platform.python_version(),
+            "numpy": np.__version__,
+            "machine": platform.machine(),
+        },
+        "scene": scene,
+        "history": history,
+        "units": units,
+        "joints": joints,
+        "elements": elements,
+        "statistics": _parts(result.statistics, _core.StepStatistics, arrays, "statistics"),
+        "event": None if result._event is None else _parts(result._event, _core.Event, arrays, "event"),
+        "end_reason": result.end_reason,
+        "state_hash": f"{result.state_hash:016x}",
+        "run_time": result.run_time,
+        "metrics": dict(result.metrics) if long_enough else None,
+        "report": result.report() if long_enough else None,
+    }
+    header["checksum"] = _checksum(json.loads(json.dumps(header, allow_nan=False)), arrays)
+    arrays["header"] = np.array(json.dumps(header, allow_nan=False))
+    # numpy's stub takes a keyword for allow_pickle where ours are names of arrays
+    np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
+
+
+def to_bytes(result: Result) -> bytes:
+    """Return a result as the bytes of its file."""
+    stream = io.BytesIO()
+    write(result, stream)
+    return stream.getvalue()
+
+
+def from_bytes(content: bytes) -> Result:
+    """Return the result that :func:`to_bytes` was given."""
+    return read(io.BytesIO(content), Path("result"))
+
+
+@reads("must be a file of Result.save(), npz")
+def load(path: str | Path) -> Result:
+    """Read a result that :meth:`Result.save` wrote; its scene can be run again.
+
+    Raises
+    ------
+    FileFormatError
+        If the file can not be read, is no result, is damaged or was changed, or is of a version that this one
+        does not know.
+    """
+    path = Path(path)
+    with path.open("rb") as stream:
+        return read(stream, path)
+
+
+def read(stream: IO[bytes], path: Path) -> Result:
+    """Read a result from an open binary file; `path` is for messages."""
+    with reading(path, "must be a file of Result.save(), npz"):
+        arrays = read_arrays(stream, path)
+    if "header" not in arrays:
+        raise FileFormatError.at(path, None, "must have a header in JSON, got none")
+    header = read_json(path, str(arrays.pop("header")))
+    check_format(path, header, _FORMAT, 2, FORMAT_VERSION)
+    with reading(path, "must be a complete result"):
+        result = _result(header, arrays)
+        found = header.pop("checksum", None)
+        if found is not None or header["format_version"] != 2:  # that had none
+            expected = _checksum(header, arrays)
+            if found != expected:
+                reason = f"checksum must be {expected}, got {received(found)}: the file was changed"
+                raise FileFormatError.at(path, None, reason)
+    return result
+
+
+def _checksum(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -> str:
+    """Of all that a file has, however it is packed."""
+    return fingerprint(checksum(header), *(part for name in sorted(arrays) for part in (name, arrays[name])))
+
+
+def _result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -> Result:
+    from .result import Result
+
+    units, joints, elements = (
+        [Stored(_values(one, arrays)) for one in header[name]] for name in ("units", "joints", "elements")
+    )
+    scene = decode(header["scene"], arrays)
+    units = [_with_normal_force(unit, scene) for unit in units]
+    frames = None
+    if "frames/time" in arrays:
+        moved = tuple(arrays[f"frames/{i}/displacement"] for i in range(len(units)))
+        frames = Frames(arrays["frames/time"], moved)
+    event = header.get("event")  # files of 0.1.0 have none
+    result = Result(
+        scene=scene,
+        history=StoredHistory(_values(header["history"], arrays), units, joints, elements),
+        statistics=Stored(_values(header["statistics"], arrays)),
+        end_reason=header["end_reason"],
+        state_hash=int(header["state_hash"], 16),
+        run_time=header["run_time"],
+        units=tuple(
+            UnitResult(unit, **{name: arrays[f"final/{i}/{name}"] for name in _FINAL})
+            for i, unit in enumerate(units)
+        ),
+        event=None if event is None else Stored(_values(event, arrays)),
+        frames=frames,
+        version=header["made_with"]["birm3d"],
+    )
+    if header["metrics"] is not None:
+        # As they were then: a later version may compute them in another way.
+        result.__dict__["metrics"] = Metrics(result, header["metrics"])
+        result.__dict__["_report"] = header["report"]
+    return result
+
+
+def _with_normal_force(unit: Stored, scene: Scene) -> Stored:
+    """Return the history of a unit with the force along the normal, as files of 0.1.0 do not have it.
+
+    What they call ``barrier_normal_force`` is the sum of the magnitudes over all nodes.
+    """
+    if "sum_of_contact_forces" in unit._values:
+        return unit
+    component = read_only(-unit.barrier_force @ _towards(scene))
+    sums = unit.barrier_normal_force
+    return Stored({**unit._values, "barrier_normal_force": component, "sum_of_contact_forces": sums})
+
+
+def _towards(scene: Scene) -> npt.NDArray[np.float64]:
+    """Return the direction along which the normal force pushes back, as ``Scene::towards`` of the core."""
+    angle = math.radians(scene.impact_angle)
+    if scene.barrier is not None and abs(math.sin(angle)) >= ALONG_LINE:
+        return -np.asarray(scene.barrier.core.normal)
+    yaw = 0.5 * math.pi - angle + math.radians(scene.barrier.heading if scene.barrier else 0.0)
+    return np.array([math.cos(yaw), math.sin(yaw), 0.0])
+
+
+def _parts(record: Any, kind: type, arrays: dict[str, npt.NDArray[Any]], name: str) -> dict[str, Any]:
+    """Return all properties that a record of the core has, for JSON."""
+    properties = [key for key, value in vars(kind).items() if isinstance(value, property) and key != _LISTED]
+    return {key: encode(getattr(record, key), arrays, f"{name}/{key}") for key in properties}
+
+
+def _values(parts: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -> dict[str, Any]:
+    return {key: decode(value, arrays) for key, value in parts.items()}

@@ -1,0 +1,140 @@
+"""What tells a user that a barrier can pass between the nodes of a skin."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from ..barrier.kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
+from ..base.arguments import caller_level
+
+if TYPE_CHECKING:
+    from ..barrier.base import Barrier
+    from ..simulation.simulation import Scene
+    from ..vehicle.vehicle import Vehicle
+
+__all__ = ["CoarseSkinWarning", "node_spacing", "warn_if_coarse"]
+
+Floats = npt.NDArray[np.float64]
+
+# Neighbours among which the nearest beside a node is looked for, and nodes for which it is.
+_NEIGHBOURS = 16
+_SAMPLE = 4096
+
+
+class CoarseSkinWarning(UserWarning):
+    """A barrier is narrower than the distance between nodes of the skin, and can pass between them.
+
+    Nodes are points: what finds room between two of them meets nothing until it is at the rigid body, and how
+    many it meets is chance. The ledgers close all the same. Two lengths decide, both level:
+
+    - the distance of a node from its nearest neighbour beside it (further to the side than up or down), of
+      which the median over the skin is taken. Up and down there is no way through: what stands on the ground
+      and reaches the skin crosses its lowest row.
+    - how wide the barrier is, seen along the vehicle's path. Seen so, a wall or a concrete barrier is as wide
+      as it is long, but for a path along it: its thickness, and the joints between its segments, are no
+      way through. Parts of a mesh that touch each other are one.
+
+    Posts (poles, bollards) are left out where the vehicle has ``dent_reach``: they press the skin between
+    nodes too. What triangles hold up in the air, clear of the ground, is judged by its width alone.
+    """
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Of a barrier: its width seen along the path, and between which heights it is [m]."""
+
+    name: str
+    width: float
+    low: float
+    high: float
+
+
+def node_spacing(nodes: Floats) -> float:
+    """Return the median distance of nodes (n, 3) from the nearest other beside them [m].
+
+    Beside: further away along the ground than up or down. Infinite where most nodes have none, as one node
+    or one column.
+    """
+    from scipy.spatial import cKDTree
+
+    if len(nodes) == 1:
+        return math.inf
+    some = nodes[:: max(1, len(nodes) // _SAMPLE)]
+    distance, which = cKDTree(nodes).query(some, k=min(len(nodes), _NEIGHBOURS + 1))
+    way = np.abs(nodes[which] - some[:, None])
+    beside = np.hypot(way[..., 0], way[..., 1]) > way[..., 2]
+    return float(np.median(np.where(beside, distance, np.inf).min(axis=1)))
+
+
+def warn_if_coarse(scene: Scene) -> None:
+    """Warn with :class:`CoarseSkinWarning` of the narrowest part of the barrier that can pass through."""
+    if scene.barrier is None:
+        return
+    units = scene.vehicle.units
+    if isinstance(scene.barrier, Pole | Bollards):
+        units = tuple(unit for unit in units if unit.dent_reach == 0.0)
+    parts = [
+        part for part in _parts(scene.barrier, math.radians(scene.impact_angle)) if part.width < math.inf
+    ]
+    for unit in units if parts else ():
+        low, high = unit.skin_bounds
+        bottom, top = low[2] + unit.mass_center_height, high[2] + unit.mass_center_height
+        met = [part for part in parts if part.low <= top and part.high >= bottom]
+        if not met:
+            continue
+        narrowest = min(met, key=lambda part: part.width)
+        # Nothing passes between nodes that is wider than all of the skin: no spacing is asked for at walls.
+        if narrowest.width < (high - low).max() and narrowest.width < unit.node_spacing:
+            warnings.warn(_told(scene, unit, narrowest), CoarseSkinWarning, stacklevel=caller_level())
+            return
+
+
+def _parts(barrier: Barrier, angle: float) -> Iterator[_Part]:
+    """Of a path at this angle to the barrier's line [rad]."""
+    base, sine, cosine = barrier.origin[2], abs(math.sin(angle)), abs(math.cos(angle))
+
+    def drawn(name: str, thickness: float, length: float, height: float) -> _Part:
+        width = math.inf if math.isinf(length) else thickness * cosine + length * sine
+        return _Part(name, width, -math.inf, base + height)
+
+    if isinstance(barrier, Pole):
+        yield _Part("pole", barrier.diameter, -math.inf, math.inf)
+    elif isinstance(barrier, Bollards):
+        yield _Part("bollards", barrier.diameter, -math.inf, base + barrier.height)
+    elif isinstance(barrier, RigidWall):
+        yield drawn("wall", barrier.thickness, barrier.width, barrier.height)
+    elif isinstance(barrier, Jersey):
+        half, height = barrier.half_profile().T
+        yield drawn("barrier", 2.0 * half.max(), barrier.length, height.max())
+    elif isinstance(barrier, MeshBarrier):
+        for points in barrier.parts:
+            across = points[:, 0] * math.cos(angle) - points[:, 1] * math.sin(angle)
+            low, high = points[:, 2].min(), points[:, 2].max()
+            yield _Part("mesh", float(np.ptp(across)), base + low, base + high)
+
+
+def _told(scene: Scene, unit: Vehicle, part: _Part) -> str:
+    remedies = []
+    if unit.has_file:
+        # Elements along an edge are whole ones: half as many more than in proportion are enough.
+        enough = 1.5 * unit.mesh_density * (unit.node_spacing / part.width) ** 2
+        remedies.append(f"a mesh_density of {enough:.2g}")
+    else:
+        remedies.append("nodes that are nearer to each other")
+    if part.name == "mesh":
+        remedies.append("where it is a post, Barrier.pole or bollards in its place, which dent the skin")
+    elif isinstance(scene.barrier, Pole | Bollards):
+        remedies.append("with_dent_reach(0.65), by which posts dent the skin between nodes too")
+    apart = "no neighbours beside them" if math.isinf(unit.node_spacing) else f"{unit.node_spacing:.3g} m"
+    return (
+        f"width of the {part.name} seen along the path must be above the distance between neighbouring nodes "
+        f"of {unit.name!r} ({apart}), or it can pass between them; got {part.width:.3g} m. "
+        f"What helps: {'; or '.join(remedies)}"
+    )

@@ -1,0 +1,137 @@
+"""How a scene is computed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+from .. import _core
+from ..base.arguments import check_fields
+from ..units import Quantity, si
+
+__all__ = ["MU_TIRE_BARRIER", "Settings"]
+
+MU_TIRE_BARRIER = 0.6
+"""Friction coefficient of tyres on a barrier where none is asked for, see :class:`Settings`."""
+
+_QUANTITIES = {"time_step": "time", "output_interval": "time", "gravity": "acceleration"}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a scene is computed: SI units, immutable, checked when made.
+
+    Times and gravity are also taken as text with a unit, as ``time_step="10 us"``.
+
+    Parameters
+    ----------
+    time_step
+        Fixed step [s]; ``None`` chooses steps by an error estimate (adaptive).
+    tolerance
+        Wanted relative error of the metrics with adaptive steps, 1e-9 to 1.
+    output_interval
+        Interval of the result's rows [s]; costs nothing while stepping and does not bound the step.
+    gravity
+        [m/s^2].
+    ground
+        Whether tyres and body meet the ground z = 0. The body of a vehicle without wheels, or with skin below
+        the ground from the start, does not.
+    mu_tire
+        Tyre-pavement friction coefficient.
+    mu_body
+        Friction coefficient of the vehicle's body sliding on the ground.
+    mu_tire_barrier
+        Friction coefficient of tyres on a barrier, apart from that of the vehicle's body, which is the
+        barrier's own ``friction``. ``None``: 0.6, which is what rubber that slides on dry concrete has at
+        some speed (tests at walking pace give up to 0.8; no vehicle was tested for it); and 0 at a barrier
+        whose ``friction`` is 0, which is frictionless for all that meets it. A number holds at every barrier.
+        See :attr:`birm3d.simulation.Scene.mu_tire_barrier`.
+    braking
+        Share of the tyre-pavement friction that brakes, 0 to 1: 0 wheels roll, 1 they are locked and slide.
+    cornering_stiffness
+        Lateral tyre force per normal load and radian of slip, at small slip [1/rad].
+    restitution
+        Of rigid contacts: tyres on the ground, the rigid body at the barrier (paper 5.2).
+    contact_model
+        ``"projected"``: the truss force projected on the surface's normal, which keeps the energy;
+        ``"along_truss"``: the paper's rule, for comparison.
+    tire_model
+        ``"slip"``: lateral force continuous in the slip angle; ``"skid"``: the paper's rule.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, its limit and the value received.
+    """
+
+    time_step: float | None = None
+    tolerance: float = 1e-3
+    output_interval: float = 1e-4
+    gravity: float = 9.80665
+    ground: bool = True
+    mu_tire: float = 0.8
+    mu_body: float = 0.4
+    mu_tire_barrier: float | None = None
+    braking: float = 0.0
+    cornering_stiffness: float = 10.0
+    restitution: float = 0.1
+    contact_model: Literal["projected", "along_truss"] = "projected"
+    tire_model: Literal["slip", "skid"] = "slip"
+
+    if TYPE_CHECKING:  # what dataclass makes, and the text that __post_init__ reads
+
+        def __init__(
+            self,
+            time_step: Quantity | None = None,
+            tolerance: float = 1e-3,
+            output_interval: Quantity = 1e-4,
+            gravity: Quantity = 9.80665,
+            ground: bool = True,
+            mu_tire: float = 0.8,
+            mu_body: float = 0.4,
+            mu_tire_barrier: float | None = None,
+            braking: float = 0.0,
+            cornering_stiffness: float = 10.0,
+            restitution: float = 0.1,
+            contact_model: Literal["projected", "along_truss"] = "projected",
+            tire_model: Literal["slip", "skid"] = "slip",
+        ) -> None: ...
+
+    def __post_init__(self) -> None:
+        for name, quantity in _QUANTITIES.items():
+            value: object = getattr(self, name)
+            if isinstance(value, str):
+                object.__setattr__(self, name, si(name, value, quantity))
+        check_fields(self)
+        _ = self.core
+
+    @cached_property
+    def core(self) -> _core.Settings:
+        """The same settings for the core."""
+        contact_models = _core.ContactModel.__members__
+        tire_models = _core.TireModel.__members__
+        for name, value, known in (
+            ("contact_model", self.contact_model, contact_models),
+            ("tire_model", self.tire_model, tire_models),
+        ):
+            if value not in known:
+                raise ValueError(f"{name} must be one of {', '.join(known)}; got {value!r}")
+        return _core.Settings(
+            time_step=self.time_step,
+            tolerance=self.tolerance,
+            output_interval=self.output_interval,
+            gravity=self.gravity,
+            ground=self.ground,
+            mu_tire=self.mu_tire,
+            mu_body=self.mu_body,
+            mu_tire_barrier=MU_TIRE_BARRIER if self.mu_tire_barrier is None else self.mu_tire_barrier,
+            braking=self.braking,
+            cornering_stiffness=self.cornering_stiffness,
+            restitution=self.restitution,
+            contact_model=contact_models[self.contact_model],
+            tire_model=tire_models[self.tire_model],
+        )
+
+    def __getstate__(self) -> dict[str, object]:
+        return {name: value for name, value in self.__dict__.items() if name != "core"}

@@ -1,0 +1,22 @@
+"""A scene in one line: vehicle, speed, angle, barrier."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .. import units
+from ..barrier.text import barrier_text
+
+if TYPE_CHECKING:
+    from ..simulation.simulation import Scene
+
+__all__ = ["scene_text"]
+
+
+def scene_text(scene: Scene, separator: str = ": ") -> str:
+    """Return vehicle, mass, speed and angle, and after the separator kind, count and sizes of the barrier."""
+    speed = f"{scene.impact_speed:.2f} m/s ({scene.impact_speed / units.mph:.1f} mph)"
+    head = f"{scene.vehicle.name}, {scene.vehicle.mass:,.0f} kg, {speed}"
+    if scene.barrier is None:
+        return f"{head}, no barrier"
+    return f"{head} at {scene.impact_angle:g}°{separator}{barrier_text(scene.barrier)}"

@@ -1,0 +1,328 @@
+"""Names for everything a scene has, so that sweeps, studies and calibrations can vary it.
+
+=============================  ========================================================================
+name                           value
+=============================  ========================================================================
+``impact_speed`` ...           an argument of :class:`birm3d.Simulation` (``impact_angle``, ``impact_offset``,
+                               ``standoff``, ``duration``, ``vehicle``, ``barrier``, ``settings``)
+``barrier.<field>``            a field of the barrier, as ``barrier.friction`` or ``barrier.spacing``
+``settings.<field>``           a field of :class:`birm3d.Settings`, as ``settings.tolerance``
+``vehicle.gvw``                mass [kg], see :meth:`birm3d.Vehicle.with_gvw`
+``vehicle.mass_center_height`` above the ground at rest [m]
+``vehicle.mesh_density``       relative number of shell elements
+``vehicle.rate_sensitivity``   [s/m], see :meth:`birm3d.Vehicle.with_rate_sensitivity`
+``vehicle.dent_reach``         see :meth:`birm3d.Vehicle.with_dent_reach`
+``zone.<zone>.<number>``       ``k_initial``, ``knee``, ``k_hardening``, ``f_max``, ``k_unloading``, or
+                               ``elastic_recovery``, ``tail_depth``, ``tail_slope`` where it has them, of
+                               :class:`birm3d.Zone`
+``zone.<zone>.stress[i]``      stress of point i of the zone's envelope [N per m^2]
+``zone.<zone>.deflection[i]``  its deflection [m]
+``zone.<zone>.scale``          factor on all stresses and slopes of the zone (now 1)
+``truss.<number>``             the same five numbers of a vehicle made from arrays: sums over all trusses
+                               [N/m, N], shared as they are now
+=============================  ========================================================================
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Mapping
+from difflib import get_close_matches
+from functools import lru_cache
+from typing import Any
+
+from ..base.arguments import checked
+from ..scene.settings import Settings
+from ..units import quantity_in, si
+from ..vehicle.vehicle import TRUSS_LAW, Vehicle, Zone
+from ..vehicle.zone import positive
+from .simulation import APPROACH, Scene, Simulation
+
+__all__ = [
+    "in_si",
+    "parameter_names",
+    "quantity_of",
+    "unit_of",
+    "value_of",
+    "varied",
+    "varied_scene",
+]
+
+_VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity", "dent_reach")
+_UNITS = {
+    "impact_speed": "m/s",
+    "impact_angle": "deg",
+    "impact_offset": "m",
+    "standoff": "m",
+    "impact_yaw": "deg",
+    "impact_roll": "deg",
+    "duration": "s",
+    "barrier.origin": "m",
+    "barrier.heading": "deg",
+    "barrier.width": "m",
+    "barrier.height": "m",
+    "barrier.diameter": "m",
+    "barrier.thickness": "m",
+    "barrier.spacing": "m",
+    "barrier.row_spacing": "m",
+    "barrier.row_offset": "m",
+    "barrier.length": "m",
+    "settings.time_step": "s",
+    "settings.output_interval": "s",
+    "settings.gravity": "m/s^2",
+    "settings.cornering_stiffness": "1/rad",
+    "vehicle.gvw": "kg",
+    "vehicle.mass_center_height": "m",
+    "vehicle.rate_sensitivity": "s/m",
+    "vehicle.dent_reach": "m",
+}
+_ZONE_UNITS = {
+    "k_initial": "N/m",
+    "knee": "m",
+    "k_hardening": "N/m",
+    "f_max": "N",
+    "k_unloading": "N/m",
+    "elastic_recovery": "m",
+    "tail_depth": "m",
+    "tail_slope": "N/m",
+    "stress": "N",
+    "deflection": "m",
+}
+# Per area of the skin.
+_PER_AREA = {"N/m per m^2": "pressure per length", "N per m^2": "pressure"}
+_POINT = re.compile(r"(stress|deflection)\[(\d+)\]")
+
+
+@checked
+def parameter_names(simulation: Simulation) -> tuple[str, ...]:
+    """Return the names of all numbers that the scene has; see the table above."""
+    return _names(simulation.scene)
+
+
+@checked
+def unit_of(name: str) -> str:
+    """Return the unit of a parameter, ``""`` for one that is a pure number or none."""
+    if name.startswith("zone.") or name.startswith("truss."):
+        per_area = " per m^2" if name.startswith("zone.") else ""
+        number = name.rsplit(".", 1)[1].split("[")[0]
+        unit = _ZONE_UNITS.get(number, "")
+        return unit if unit in ("m", "") else unit + per_area
+    return _UNITS.get(name, "")
+
+
+@checked
+def in_si(name: str, value: Any) -> Any:
+    """Return the value of a parameter with text such as ``"30 mph"`` as a number in SI (angles: deg).
+
+    Raises
+    ------
+    ValueError
+        If the parameter has a unit and the text is no number with a unit of the same quantity.
+    """
+    quantity = quantity_of(name)
+    if quantity is not None and (isinstance(value, str) or name in APPROACH):
+        return si(name, value, quantity)
+    return value
+
+
+@checked
+def quantity_of(name: str) -> str | None:
+    """Return the quantity of a parameter, as "speed"; ``None`` for a pure number."""
+    unit = unit_of(name)
+    return _PER_AREA.get(unit) or quantity_in(unit)
+
+
+def _names(scene: Scene) -> tuple[str, ...]:
+    names = [f.name for f in dataclasses.fields(Scene) if f.name not in ("vehicle", "barrier", "settings")]
+    if scene.barrier is not None:
+        names += [f"barrier.{f.name}" for f in dataclasses.fields(scene.barrier)]
+    names += [f"settings.{f.name}" for f in dataclasses.fields(Settings)]
+    vehicle = scene.vehicle
+    no_effect = set() if vehicle.has_file else {"mesh_density"}
+    if not vehicle.mass_center_height > 0.0:  # on the ground, as of laboratories: no ratio leads away
+        no_effect.add("mass_center_height")
+    names += [f"vehicle.{name}" for name in _VEHICLE if name not in no_effect]
+    if not vehicle.zones and vehicle.joint is None:
+        names += [f"truss.{name}" for name in TRUSS_LAW]
+    for zone in vehicle.zones_met:
+        names += [f"zone.{zone}.{number}" for number in _zone_numbers(vehicle.zones[zone])]
+    return tuple(names)
+
+
+@checked
+def value_of(simulation: Simulation, name: str) -> Any:
+    """Return the present value of a parameter.
+
+    Raises
+    ------
+    ValueError
+        If the scene has no such parameter; the message names those it has.
+    """
+    scene = simulation.scene
+    group, _, rest = name.partition(".")
+    if not rest and name in (field.name for field in dataclasses.fields(Scene)):
+        return getattr(scene, name)
+    if name not in parameter_names(simulation):
+        raise _unknown(scene, name)
+    if group == "barrier":
+        return getattr(scene.barrier, rest)
+    if group == "settings":
+        return getattr(scene.settings, rest)
+    if group == "truss":
+        return scene.vehicle.truss_law[rest]
+    if group == "vehicle":
+        return scene.vehicle.mass if rest == "gvw" else getattr(scene.vehicle, rest)
+    zone, number = rest.rsplit(".", 1)
+    return _zone_value(scene.vehicle.zones[zone], number)
+
+
+@checked
+def varied(simulation: Simulation, changes: Mapping[str, Any]) -> Simulation:
+    """Return a new simulation of the same scene with some parameters changed.
+
+    Raises
+    ------
+    ValueError
+        If a name is unknown or a value is out of range; the message names it.
+    """
+    return Simulation.from_scene(varied_scene(simulation.scene, changes))
+
+
+@checked
+def varied_scene(base: Scene, changes: Mapping[str, Any]) -> Scene:
+    """Return a scene with some parameters changed, for :meth:`Simulation.from_scene` or a runner.
+
+    Raises
+    ------
+    ValueError
+        If a name is unknown or a part can not be made; numbers of the scene itself are not checked yet.
+    """
+    changes = {name: in_si(name, value) for name, value in changes.items()}
+    given = {field.name: getattr(base, field.name) for field in dataclasses.fields(Scene)}
+    whole = {name: value for name, value in changes.items() if name in given}
+    given.update(whole)
+    if isinstance(given["vehicle"], str):
+        given["vehicle"] = _preset(given["vehicle"])
+    scene = Scene(**given)
+    if len(whole) == len(changes):
+        return scene
+    if not whole.keys().isdisjoint(("vehicle", "barrier", "settings")):
+        scene.core_scene()  # refuses what is none, before its parts are looked at
+        known = frozenset(_names(scene))
+    else:
+        known = _known(base)
+    groups: dict[str, dict[str, Any]] = {}
+    for name, value in changes.items():
+        if name in whole:
+            continue
+        if name not in known:
+            raise _unknown(scene, name)
+        group, rest = name.split(".", 1)
+        groups.setdefault(group, {})[rest] = value
+    if "barrier" in groups:
+        given["barrier"] = dataclasses.replace(given["barrier"], **groups["barrier"])
+    if "settings" in groups:
+        given["settings"] = dataclasses.replace(given["settings"], **groups["settings"])
+    given["vehicle"] = _varied_vehicle(given["vehicle"], groups)
+    return Scene(**given)
+
+
+_last_known: list[tuple[Scene, frozenset[str]]] = []
+
+
+def _known(base: Scene) -> frozenset[str]:
+    """Names of the scene's numbers; those of the last scene are remembered, as a study asks for every run."""
+    for scene, names in _last_known[:1]:
+        if scene is base:
+            return names
+    names = frozenset(_names(base))
+    _last_known[:1] = [(base, names)]
+    return names
+
+
+# Reading and meshing a file takes longer than many a run; vehicles are immutable.
+_preset = lru_cache(maxsize=16)(Vehicle.preset)
+
+
+def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -> Vehicle:
+    if groups.keys().isdisjoint(("zone", "truss", "vehicle")):
+        return vehicle
+    numbers = groups.get("vehicle", {})
+    if tuple(numbers) == ("gvw",) and groups.keys().isdisjoint(("zone", "truss")) and vehicle.joint is None:
+        return vehicle._with_mass(
+            positive("gvw", si("gvw", numbers["gvw"], "mass"))
+        )  # one change needs no draft
+    changed = vehicle.draft()
+    zones: dict[str, dict[str, Any]] = {}
+    for rest, value in groups.get("zone", {}).items():
+        zone, number = rest.rsplit(".", 1)
+        zones.setdefault(zone, {})[number] = value
+    if zones:
+        changed = changed.with_zones({name: _zone(changed.zones[name], new) for name, new in zones.items()})
+    if "truss" in groups:
+        changed = changed.with_truss_law(**groups["truss"])
+    if "mesh_density" in numbers:
+        changed = changed.with_mesh_density(numbers["mesh_density"])
+    if "rate_sensitivity" in numbers:
+        changed = changed.with_rate_sensitivity(numbers["rate_sensitivity"])
+    if "dent_reach" in numbers:
+        changed = changed.with_dent_reach(numbers["dent_reach"])
+    if "gvw" in numbers:
+        changed = changed.with_gvw(numbers["gvw"])
+    if "mass_center_height" in numbers:
+        changed = changed.with_mass_center_height(numbers["mass_center_height"])
+    return changed.finished()
+
+
+def _zone_numbers(zone: Zone) -> tuple[str, ...]:
+    if zone.envelope is None:
+        return (*zone, "scale")
+    points = range(1, len(zone.envelope))
+    return (
+        *(f"{axis}[{i}]" for i in points for axis in ("deflection", "stress")),
+        *(name for name in zone if name != "envelope"),
+        "scale",
+    )
+
+
+def _zone_value(zone: Zone, number: str) -> float:
+    if number == "scale":
+        return 1.0
+    point = _POINT.fullmatch(number)
+    if point is None:
+        return float(zone[number])
+    assert zone.envelope is not None  # else the name would be unknown
+    return zone.envelope[int(point[2])][0 if point[1] == "deflection" else 1]
+
+
+def _zone(zone: Zone, numbers: Mapping[str, float]) -> Zone:
+    """Return the zone with other numbers; a scale comes last."""
+    changes: dict[str, Any] = {}
+    points = [list(point) for point in zone.envelope or ()]
+    for number, value in numbers.items():
+        point = _POINT.fullmatch(number)
+        if point is not None:
+            points[int(point[2])][0 if point[1] == "deflection" else 1] = float(value)
+            changes["envelope"] = tuple((d, s) for d, s in points)
+        elif number != "scale":
+            changes[number] = float(value)
+    return dataclasses.replace(zone, **changes).scaled(numbers.get("scale", 1.0))
+
+
+def _unknown(scene: Scene, name: str) -> ValueError:
+    known = _names(scene)
+    group, _, rest = name.partition(".")
+    zone = rest.rpartition(".")[0]
+    if group == "zone" and zone in scene.vehicle.zones and zone not in scene.vehicle.zones_met:
+        return ValueError(
+            f"parameter must be of a zone that trusses belong to ({', '.join(scene.vehicle.zones_met)}), "
+            f"or it has no effect; got {name!r}"
+        )
+    near = get_close_matches(name, known, n=5) or [
+        known_ for known_ in known if not known_.startswith("zone.")
+    ]
+    return ValueError(
+        f"parameter must be one of the {len(known)} that birm3d.scene_parameters.parameter_names() lists "
+        f"(near: {', '.join(near)}); got {name!r}"
+    )

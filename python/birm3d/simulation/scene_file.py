@@ -1,0 +1,240 @@
+"""Scene files (TOML): what ``birm3d run scene.toml`` runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+
+from .. import units
+from ..barrier.base import Barrier
+from ..barrier.free_standing import FreeStanding
+from ..io.file_format import reads
+from ..io.toml import Document, DocumentError, Strict, frozen, reject
+from ..scene.settings import Settings
+from ..vehicle.vehicle import Vehicle
+from .simulation import Simulation
+
+__all__ = ["SceneFileError", "read_scene_file"]
+
+
+class SceneFileError(DocumentError):
+    """A scene file that can not be used; the message gives file, line, key, limit and value."""
+
+
+class _Vehicle(Strict):
+    """Either a preset or a vehicle file (relative to the scene file)."""
+
+    preset: str | None = None
+    file: str | None = None
+    gvw: str | None = None
+    mesh_density: Annotated[float, Field(gt=0.0)] = 1.0
+
+    @model_validator(mode="after")
+    def _check(self) -> _Vehicle:
+        if (self.preset is None) == (self.file is None):
+            reject("", "must have either preset or file")
+        return self
+
+
+# Kind of barrier -> keys of the file and the arguments of Barrier.<kind> that they are.
+_BARRIERS: dict[str, dict[str, str]] = {
+    "rigid_wall": {
+        "width_m": "width",
+        "height_m": "height",
+        "thickness_m": "thickness",
+        "segments": "segments",
+    },
+    "pole": {"diameter_m": "diameter"},
+    "bollards": {
+        "count": "count",
+        "diameter_m": "diameter",
+        "height_m": "height",
+        "spacing_m": "spacing",
+        "rows": "rows",
+        "row_spacing_m": "row_spacing",
+        "row_offset_m": "row_offset",
+    },
+    "jersey": {
+        "profile": "profile",
+        "height_m": "height",
+        "length_m": "length",
+        "segments": "segments",
+        "free_standing": "free_standing",
+        "density_kg_m3": "density",
+    },
+}
+
+
+class _FreeStanding(Strict):
+    """A table in place of ``free_standing = true``; see :class:`birm3d.FreeStanding`."""
+
+    density_kg_m3: float | None = None
+    mass_per_length_kg_m: float | None = None
+    ground_friction: float = FreeStanding.ground_friction
+    joint: Literal["pinned", "loose"] = "pinned"
+
+    def made(self) -> FreeStanding:
+        """Return how the segments stand."""
+        return FreeStanding(
+            density=self.density_kg_m3,
+            mass_per_length=self.mass_per_length_kg_m,
+            ground_friction=self.ground_friction,
+            joint=self.joint,
+        )
+
+
+class _Barrier(Strict):
+    """One of the kinds of :class:`birm3d.Barrier`; what is not given has that kind's default."""
+
+    kind: Literal["rigid_wall", "pole", "bollards", "jersey"]
+    friction: Annotated[float, Field(ge=0.0)] = 0.2
+    origin_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    heading_deg: float = 0.0
+    width_m: float | None = None
+    height_m: float | None = None
+    thickness_m: float | None = None
+    segments: int | None = None
+    diameter_m: float | None = None
+    count: int | None = None
+    spacing_m: float | None = None
+    rows: int | None = None
+    row_spacing_m: float | None = None
+    row_offset_m: float | None = None
+    profile: str | tuple[tuple[float, float], ...] | None = None
+    length_m: float | None = None
+    free_standing: bool | _FreeStanding = False
+    density_kg_m3: float | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> _Barrier:
+        for key in self.model_fields_set - {"kind", "friction", "origin_m", "heading_deg"}:
+            if key not in _BARRIERS[self.kind]:
+                kinds = [kind for kind, keys in _BARRIERS.items() if key in keys]
+                reject(key, f"belongs to {' or '.join(kinds)}, not to {self.kind}")
+        self.made()  # refuses what the kind can not have
+        return self
+
+    def made(self) -> Barrier:
+        """Return the barrier."""
+        given = {
+            argument: getattr(self, key)
+            for key, argument in _BARRIERS[self.kind].items()
+            if key in self.model_fields_set
+        }
+        if isinstance(self.free_standing, _FreeStanding):
+            given["free_standing"] = self.free_standing.made()
+        barrier: Barrier = getattr(Barrier, self.kind)(
+            friction=self.friction, origin=self.origin_m, heading=self.heading_deg, **given
+        )
+        return barrier
+
+
+class _Impact(Strict):
+    """Quantities are text with a unit: "50 mph", "1.2 m", "24 deg"."""
+
+    speed: str
+    angle: str = "90 deg"
+    offset: str = "0 m"
+    standoff: str = "0 m"
+    yaw: str = "0 deg"
+    roll: str = "0 deg"
+    duration: str | None = None
+
+    @field_validator("*")
+    @classmethod
+    def _readable(cls, value: str | None, info: ValidationInfo) -> str | None:
+        if value is not None:
+            _parsed(value, str(info.field_name))
+        return value
+
+    def si(self, name: str) -> float:
+        """Return a quantity in SI, angles in degrees."""
+        return _parsed(getattr(self, name), name)
+
+
+_QUANTITY = {
+    "speed": "speed",
+    "angle": "angle",
+    "offset": "length",
+    "standoff": "length",
+    "yaw": "angle",
+    "roll": "angle",
+    "duration": "time",
+}
+
+
+def _parsed(text: str, name: str) -> float:
+    """Read a quantity of an impact; a speed must have its unit, others without one are SI and degrees."""
+    quantity = _QUANTITY[name]
+    return units.parse(text, quantity, plain=quantity != "speed")
+
+
+class _Settings(Strict):
+    time_step: float | None = None
+    tolerance: float = Settings.tolerance
+    output_interval: float = Settings.output_interval
+    gravity: float = Settings.gravity
+    ground: bool = Settings.ground
+    mu_tire: float = Settings.mu_tire
+    mu_body: float = Settings.mu_body
+    mu_tire_barrier: float | None = Settings.mu_tire_barrier
+    braking: float = Settings.braking
+    cornering_stiffness: float = Settings.cornering_stiffness
+    restitution: float = Settings.restitution
+    contact_model: Literal["projected", "along_truss"] = Settings.contact_model
+    tire_model: Literal["slip", "skid"] = Settings.tire_model
+
+
+class _Scene(Strict):
+    vehicle: _Vehicle
+    barrier: _Barrier | None = None
+    impact: _Impact
+    settings: _Settings = _Settings()
+
+
+class _SceneDocument(Document):
+    error = SceneFileError
+
+
+@reads("must be a scene file", SceneFileError)
+def read_scene_file(path: str | Path) -> Simulation:
+    """Read a scene file and return its simulation.
+
+    Raises
+    ------
+    FileFormatError
+        Naming file, line, key, limit and value of everything that is wrong.
+    """
+    path = Path(path)
+    document = _SceneDocument(path)
+    scene = document.validate(_Scene, frozen(document.data))
+    with document.placed(("vehicle",)):
+        vehicle = _vehicle(path, scene.vehicle)
+    with document.placed(("barrier",)):
+        barrier = None if scene.barrier is None else scene.barrier.made()
+    with document.placed(("settings",)):
+        settings = Settings(**dict(scene.settings))
+    impact = scene.impact
+    with document.placed(("impact",)):
+        return Simulation(
+            vehicle,
+            barrier,
+            impact.si("speed"),
+            impact.si("angle"),
+            impact.si("offset"),
+            standoff=impact.si("standoff"),
+            impact_yaw=impact.si("yaw"),
+            impact_roll=impact.si("roll"),
+            duration=None if impact.duration is None else impact.si("duration"),
+            settings=settings,
+        )
+
+
+def _vehicle(path: Path, block: _Vehicle) -> Vehicle:
+    gvw = None if block.gvw is None else units.parse(block.gvw, "mass")
+    if block.preset is not None:
+        return Vehicle.preset(block.preset, gvw=gvw, mesh_density=block.mesh_density)
+    assert block.file is not None  # one of the two is given, see _Vehicle
+    return Vehicle.from_file(path.parent / block.file, gvw=gvw, mesh_density=block.mesh_density)

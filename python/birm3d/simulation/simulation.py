@@ -1,0 +1,343 @@
+"""A run: a vehicle, a barrier, a speed and an angle."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+from .. import _core
+from .._version import __version__
+from ..barrier.base import Barrier
+from ..base.arguments import checked
+from ..base.progress import run_bar
+from ..result.result import Result
+from ..result.run_warnings import warn_of_run
+from ..scene.mesh_check import warn_if_coarse
+from ..scene.settings import MU_TIRE_BARRIER, Settings
+from ..unit_check import given
+from ..units import Quantity, si
+from ..vehicle.vehicle import Vehicle
+
+__all__ = ["APPROACH", "Scene", "Simulation"]
+
+APPROACH = ("impact_speed", "impact_angle", "impact_offset", "standoff", "impact_yaw", "impact_roll")
+"""Numbers of a scene that say how the vehicle comes; nothing has to be made anew for others."""
+
+
+@checked
+@dataclass(frozen=True)
+class Scene:
+    """What a run is about; the arguments of :class:`Simulation`."""
+
+    vehicle: Vehicle
+    barrier: Barrier | None
+    impact_speed: float
+    impact_angle: float
+    impact_offset: float
+    standoff: float
+    impact_yaw: float
+    impact_roll: float
+    duration: float | None
+    settings: Settings
+
+    @property
+    def mu_tire_barrier(self) -> float:
+        """Friction coefficient of tyres at the barrier: what the settings ask for, or their default rule."""
+        asked = self.settings.mu_tire_barrier
+        if asked is not None:
+            return asked
+        return 0.0 if self.barrier is not None and self.barrier.friction == 0.0 else MU_TIRE_BARRIER
+
+    def approached(self, numbers: Mapping[str, float]) -> Scene:
+        """Return the same scene with other numbers of ``APPROACH``; not checked."""
+        scene = object.__new__(Scene)  # dataclasses.replace() takes longer than a metric
+        scene.__dict__.update(self.__dict__)
+        scene.__dict__.update(numbers)
+        return scene
+
+    def start(self) -> _core.Simulation:
+        """Return the run of the core at t = 0, checked."""
+        return _core.Simulation(self.core_scene())
+
+    def core_scene(self) -> _core.Scene:
+        """Return the same scene for the core, checked but for its start."""
+        if not isinstance(self.vehicle, Vehicle):
+            raise TypeError(f"vehicle must be a birm3d.Vehicle, got {type(self.vehicle).__name__}")
+        if self.barrier is not None and not isinstance(self.barrier, Barrier):
+            raise TypeError(f"barrier must be a birm3d.Barrier or None, got {type(self.barrier).__name__}")
+        return _core.Scene(
+            vehicle=self.vehicle.core,
+            barriers=[] if self.barrier is None else [self.barrier.core],
+            approach=self.approach,
+            settings=_with_tire_friction(self.settings, self.mu_tire_barrier).core,
+            duration=self.duration,
+        )
+
+    @property
+    def approach(self) -> _core.Approach:
+        """How the vehicle comes, for the core."""
+        return _core.Approach(
+            speed=self.impact_speed,
+            angle=math.radians(self.impact_angle),
+            offset=self.impact_offset,
+            standoff=self.standoff,
+            yaw=math.radians(self.impact_yaw),
+            roll=math.radians(self.impact_roll),
+        )
+
+
+@lru_cache(maxsize=16)
+def _with_tire_friction(settings: Settings, mu_tire_barrier: float) -> Settings:
+    return replace(settings, mu_tire_barrier=mu_tire_barrier)
+
+
+@checked
+class Simulation:
+    """A vehicle that runs into a barrier.
+
+    The vehicle comes along a straight path, its nose ahead unless stated, and stands before the barrier at
+    t = 0.
+
+    Seen from above, the barrier's line is a ruler whose zero is its point nearest to the world's origin; at
+    heading 0 it is the line x = origin[0], and its marks are y. The path crosses the ruler at the mark
+    ``impact_offset``. Where the barrier stands along the ruler is its ``origin``: a pole at origin
+    (0, 0.6, 0) is met 0.6 m beside the vehicle's middle. A barrier that is moved across its line takes its
+    ruler along, and the vehicle still starts ``standoff`` before it. To move a whole scene, or to aim at a
+    point of a site plan, give ``impact_offset=barrier.station(point)``, see
+    :meth:`birm3d.Barrier.station`.
+
+    Numbers are SI and degrees; text with a unit says another, as ``impact_speed="30 mph"``.
+
+    One thread uses a simulation at a time; any other gets a :class:`birm3d.BusyError`. A copy
+    (``copy.copy``) has the same state and is independent. A pickle keeps the state too: it holds the scene
+    and the number of steps. They are taken again when it is read, and the hash of the state is compared.
+
+    Parameters
+    ----------
+    vehicle
+        See :class:`birm3d.Vehicle`.
+    barrier
+        See :class:`birm3d.Barrier`; ``None`` for a vehicle on its own (then give ``duration``).
+    impact_speed
+        [m/s], >= 0.
+    impact_angle
+        Between the vehicle's path and the barrier's line [deg], 0 to 180; 90 is head-on. At 0 and 180 the
+        barrier must have an end to meet.
+    impact_offset
+        Where the path of the mass centre (of the leading unit) meets the barrier's line [m], counted from the
+        line's point nearest to the world's origin. At angles 0 and 180 the distance of the path from the
+        line, positive behind it: half the thickness leads to the middle of a wall's end.
+    standoff
+        Distance of the nearest node from the barrier at t = 0 [m], >= 0.
+    impact_yaw
+        By which the nose points to the left of the path at t = 0 [deg]; at 90 the right side goes ahead.
+    impact_roll
+        At t = 0 [deg], positive to the right.
+    duration
+        [s]; ``None``: until the outcome is decided.
+    settings
+        See :class:`birm3d.Settings`.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, its limit and the value received.
+    UnitWarning
+        As a warning, if a number is most likely in another unit, as an impact_speed of 300.
+    CoarseSkinWarning
+        As a warning, if the barrier is so narrow that it can pass between the nodes of the skin.
+    """
+
+    def __init__(
+        self,
+        vehicle: Vehicle,
+        barrier: Barrier | None,
+        impact_speed: Quantity,
+        impact_angle: Quantity = 90.0,
+        impact_offset: Quantity = 0.0,
+        *,
+        standoff: Quantity = 0.0,
+        impact_yaw: Quantity = 0.0,
+        impact_roll: Quantity = 0.0,
+        duration: Quantity | None = None,
+        settings: Settings | None = None,
+    ) -> None:
+        scene = Scene(
+            vehicle,
+            barrier,
+            given("impact_speed", impact_speed),
+            given("impact_angle", impact_angle),
+            si("impact_offset", impact_offset, "length"),
+            given("standoff", standoff),
+            given("impact_yaw", impact_yaw),
+            given("impact_roll", impact_roll),
+            None if duration is None else given("duration", duration),
+            settings if settings is not None else Settings(),
+        )
+        self._begin(scene)
+
+    def _begin(self, scene: Scene) -> None:
+        self._scene = scene
+        self._core = scene.start()
+        self._run_time = 0.0
+        warn_if_coarse(self._scene)
+
+    @staticmethod
+    def from_scene(scene: Scene) -> Simulation:
+        """Return the simulation of a scene, such as that of a loaded result."""
+        simulation = object.__new__(Simulation)  # its numbers are known: nobody is told of their unit again
+        simulation._begin(scene)
+        return simulation
+
+    @property
+    def scene(self) -> Scene:
+        """What the run is about."""
+        return self._scene
+
+    @property
+    def time(self) -> float:
+        """Present time of the state [s]."""
+        with self._core:
+            return self._core.time
+
+    def run(self, *, frames: int | Sequence[float] | None = None, progress: bool | None = False) -> Result:
+        """Run from the present state to the end; a run that is over starts anew.
+
+        Ctrl-C stops it between two steps; called again, it goes on from there.
+
+        Parameters
+        ----------
+        frames
+            Number or instants [s] of the skin's positions that the result keeps for pictures, see
+            :meth:`birm3d.Result.with_frames`; ``None``: none, at no cost.
+        progress
+            Whether a run of more than a second shows a bar on stderr; ``None``: if that is a terminal, and in
+            notebooks.
+
+        Raises
+        ------
+        UnstableError
+            If a fixed time step is beyond what the scene allows; the message names one that would do.
+        BusyError
+            If another thread uses the simulation.
+        OverlapWarning
+            As a warning, if the rigid body got into the barrier.
+        LedgerWarning
+            As a warning, if a ledger of the run does not close: energy, momentum, or dissipation that falls;
+            see :func:`birm3d.result.energy_balance.warn_if_open`.
+        ValueError
+            If the frames are more than the result's rows or outside the run, or if the run takes more steps
+            than a record holds; :meth:`result` has those that were taken.
+        """
+        with self._core:
+            if self._core.failed or self._core.end_reason != _core.EndReason.running:
+                self._reset()
+            start = time.perf_counter()
+            try:
+                with run_bar(progress, self._scene.duration) as tick:
+                    self._core.run(tick)
+            finally:
+                self._run_time += time.perf_counter() - start
+            result = self._result()
+            ledger, statistics = self._core.ledger, self._core.statistics
+        warn_of_run(result.scene, statistics, ledger)
+        return result if frames is None else result.with_frames(frames)
+
+    def step(self) -> bool:
+        """Take one accepted step; return ``False`` when the run is over and nothing was done."""
+        with self._core:
+            start = time.perf_counter()
+            moved = self._core.step()
+            self._run_time += time.perf_counter() - start
+        return moved
+
+    def result(self) -> Result:
+        """Return the result so far."""
+        with self._core:
+            return self._result()
+
+    def _result(self) -> Result:
+        return Result._of(self._scene, self._core, self._run_time)
+
+    def reset(self) -> None:
+        """Go back to t = 0."""
+        with self._core:
+            self._reset()
+
+    def _reset(self) -> None:
+        self._core.reset()
+        self._run_time = 0.0
+
+    def state_hash(self) -> int:
+        """Return a 64-bit hash of the state: equal hashes mean equal bits."""
+        with self._core:
+            return self._core.state_hash
+
+    def snapshot(self) -> _core.Snapshot:
+        """Return a checkpoint: the whole state and the record so far."""
+        with self._core:
+            return self._core.snapshot()
+
+    def restore(self, snapshot: _core.Snapshot) -> None:
+        """Go back to a checkpoint of the same scene; its duration may differ.
+
+        Raises
+        ------
+        ValueError
+            If the snapshot is of another vehicle or barrier, of another approach, of other settings, or of an
+            instant beyond the duration of this run.
+        """
+        with self._core:
+            self._core.restore(snapshot)
+
+    def __copy__(self) -> Simulation:
+        """Return a simulation of the same scene in the same state, for another thread or another end."""
+        twin = self._at_start()
+        with self._core:
+            twin._core.restore(self._core.snapshot())
+            twin._run_time = self._run_time
+        return twin
+
+    def _at_start(self) -> Simulation:
+        """Return another one of the same scene, at t = 0; what the first one warned of is not said again."""
+        twin = object.__new__(Simulation)
+        twin._scene, twin._core, twin._run_time = self._scene, self._scene.start(), 0.0
+        return twin
+
+    def __deepcopy__(self, memo: dict[int, object]) -> Simulation:
+        return self.__copy__()  # a scene is immutable
+
+    def __reduce__(self) -> tuple[object, ...]:
+        with self._core:
+            steps = self._core.statistics.steps
+            if steps == 0:
+                return (Simulation.from_scene, (self._scene,))
+            if not self._core.replays:
+                raise ValueError(
+                    "simulation must have come to its state by steps of its own to be pickled, got one "
+                    "restored from a run of another duration; copy.copy() keeps the state"
+                )
+            return (_stepped, (self._scene, steps, self._core.state_hash, __version__))
+
+    def __repr__(self) -> str:
+        scene = self._scene
+        return (
+            f"Simulation({scene.vehicle.name}, {scene.barrier}, {scene.impact_speed:g} m/s, "
+            f"{scene.impact_angle:g} deg)"
+        )
+
+
+def _stepped(scene: Scene, steps: int, state_hash: int, version: str) -> Simulation:
+    """Return a simulation in the state that it was pickled in: as many steps lead to the same bits."""
+    simulation = Simulation.from_scene(scene)
+    while simulation._core.statistics.steps < steps and simulation.step():
+        pass
+    if simulation.state_hash() != state_hash:
+        raise ValueError(
+            f"simulation must be unpickled by the version that pickled it (birm3d {version}) to come to the "
+            f"same state after {steps} steps, got birm3d {__version__}"
+        )
+    return simulation

@@ -1,0 +1,307 @@
+"""Strict reader of the vehicle file format (TOML).
+
+A vehicle file holds dimensions, mass-carrying solids, wheels, the profile of the exterior shell, the rigid
+core and the stiffness of the named zones. Everything is in SI, in file axes: x forward, y left, z up, origin
+on the ground below the middle of the front axle. Every numeric block cites the sources of its numbers.
+
+What is wrong in a file is reported with file, line, key, limit and the value received. Nothing is defaulted
+silently: unknown keys, NaN and text where a number belongs are errors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from ..io.file_format import reading
+from ..io.toml import Document, DocumentError, KeyPath, Strict, frozen, received, reject
+from .file_schema import (
+    Block,
+    CoreBox,
+    Dents,
+    Dimensions,
+    End,
+    Exterior,
+    Kind,
+    Name,
+    NamedPoint,
+    Positive,
+    Solid,
+    Source,
+    Target,
+    Text,
+    Upper,
+    Wheel,
+    Zone,
+    check_known,
+    check_unique,
+)
+from .vehicle_changes import Changes
+from .zone import Zone as LawOfZone
+
+__all__ = [
+    "Block",
+    "CoreBox",
+    "Dimensions",
+    "End",
+    "Exterior",
+    "Solid",
+    "Source",
+    "Target",
+    "Upper",
+    "VehicleFile",
+    "VehicleFileError",
+    "Wheel",
+    "Zone",
+    "ZonesInOrder",
+    "preset_names",
+    "preset_path",
+    "read_vehicle_file",
+    "unit_paths",
+]
+
+# The solids must add up to the stated vehicle weight within this share; the rest is a typing error.
+_MASS = 0.01
+
+
+class VehicleFileError(DocumentError):
+    """A vehicle file that can not be used; the message gives file, line, key, limit and value."""
+
+
+class VehicleFile(Strict):
+    """A vehicle as its file describes it: SI units, file axes, immutable.
+
+    kind: what standards call it, as "pickup"; they may not know a vehicle without one.
+    zones_at_kg: mass of the vehicle that the stiffness of the zones holds for; without it, gvw_kg.
+    changes: how the vehicle differs from what the rest describes, see :meth:`birm3d.Vehicle.save`.
+    """
+
+    format_version: Literal[1]
+    name: Name
+    title: Text
+    description: Text
+    kind: Kind | None = None
+    gvw_kg: Positive
+    zones_at_kg: Positive | None = None
+    sources: Annotated[tuple[Source, ...], Field(alias="source", min_length=1)]
+    dimensions: Dimensions
+    targets: Annotated[tuple[Target, ...], Field(alias="target")] = ()
+    solids: Annotated[tuple[Solid, ...], Field(alias="solid", min_length=1)]
+    wheels: Annotated[tuple[Wheel, ...], Field(alias="wheel")] = ()
+    points: Annotated[tuple[NamedPoint, ...], Field(alias="point")] = ()
+    exterior: Exterior
+    dents: Dents | None = None
+    core: Annotated[tuple[CoreBox, ...], Field(min_length=1)]
+    zones: Annotated[tuple[Zone, ...], Field(alias="zone", min_length=1)]
+    changes: Changes | None = None
+
+    @field_validator("core", "solids", "wheels", "points", "sources")
+    @classmethod
+    def _names_differ(cls, items: tuple[Any, ...]) -> tuple[Any, ...]:
+        names = [item.id if isinstance(item, Source) else item.name for item in items]
+        check_unique("", names)
+        return items
+
+    @model_validator(mode="after")
+    def _check(self) -> VehicleFile:
+        if abs(self.solids_mass - self.gvw_kg) > _MASS * self.gvw_kg:
+            limit = f"within {_MASS:.0%} of the solids' mass, {self.solids_mass:.2f}"
+            reject("gvw_kg", f"must be {limit}, got {self.gvw_kg}")
+        blocks = {"body", *(upper.name for upper in self.exterior.upper)}
+        boxes = {box.name for box in self.core}
+        for zone in self.zones:
+            check_known(f"zone.{zone.name}.blocks", zone.blocks, blocks)
+            check_known(f"zone.{zone.name}.core", zone.core, boxes)
+        self._check_cores()
+        for name in () if self.changes is None else self.changes.zone:
+            check_known(f"changes.zone.{name}", (name,), set(self.laws))
+        known = {source.id for source in self.sources}
+        for key, block in self._blocks():
+            check_known(f"{key}.source", block.source, known)
+        return self
+
+    def _check_cores(self) -> None:
+        """Require a truss to start from every box: a zone lists it, or lists none."""
+        zones = [zone for zone in self.zones if "tire" not in zone.panels]
+        if any(not zone.core for zone in zones):
+            return
+        listed = {name for zone in zones for name in zone.core}
+        for i, box in enumerate(self.core):
+            if box.name not in listed:
+                reject(
+                    f"core.{i}.name",
+                    f"must be in the list 'core' of a zone, or the box has no effect; got '{box.name}'",
+                )
+
+    def _blocks(self) -> Iterator[tuple[str, Block]]:
+        yield "dimensions", self.dimensions
+        yield "exterior", self.exterior
+        if self.dents is not None:
+            yield "dents", self.dents
+        groups: Mapping[str, tuple[Block, ...]] = {
+            "target": self.targets,
+            "solid": self.solids,
+            "wheel": self.wheels,
+            "point": self.points,
+            "core": self.core,
+        }
+        for key, items in groups.items():
+            for i, item in enumerate(items):
+                yield f"{key}.{i}", item
+        for zone in self.zones:
+            yield f"zone.{zone.name}", zone
+            if zone.along is not None:
+                yield f"zone.{zone.along_name}", zone.along
+
+    @property
+    def solids_mass(self) -> float:
+        """Sum of the solids' masses in kg, before they are scaled to a gross vehicle weight."""
+        return sum(solid.mass for solid in self.solids)
+
+    @property
+    def zones_mass(self) -> float:
+        """Mass of the vehicle that the zones' stiffness holds for [kg]."""
+        return self.gvw_kg if self.zones_at_kg is None else self.zones_at_kg
+
+    def scaled_to(self, mass: float) -> VehicleFile:
+        """Return the file of a vehicle of another mass [kg]: solids and zones heavier in proportion."""
+        weight, strength = mass / self.gvw_kg, mass / self.zones_mass
+        solids = tuple(
+            solid.model_copy(update={"mass_kg": weight * solid.mass, "density_kg_per_m3": None})
+            for solid in self.solids
+        )
+        zones = tuple(zone.scaled(strength) for zone in self.zones)
+        changes = {"gvw_kg": mass, "zones_at_kg": mass, "solids": solids, "zones": zones, "targets": ()}
+        return self.model_copy(update=changes)
+
+    @property
+    def laws(self) -> dict[str, LawOfZone]:
+        """Laws of the zones by their names, in order, then those along their panels: ``door.along``."""
+        along = {zone.along_name: zone.along.law for zone in self.zones if zone.along is not None}
+        return {**{zone.name: zone.law for zone in self.zones}, **along}
+
+    @property
+    def zone_names(self) -> tuple[str, ...]:
+        """Names of the zones in the order in which they are matched."""
+        return tuple(zone.name for zone in self.zones)
+
+
+class ZonesInOrder(Document):
+    """A file whose zones are a table, at its top or in each of its units; as a model they are a sequence."""
+
+    error = VehicleFileError
+
+    def zones_in_order(self, at: KeyPath = ()) -> Any:
+        """Return the data of a block with the table of zones as a sequence, each with its name."""
+        data = frozen(self._at(at))
+        if isinstance(table := data.get("zone"), dict):
+            for name, block in table.items():
+                if not isinstance(block, dict) or "name" in block:
+                    place = self.place((*at, "zone", name, "name"))
+                    message = f"must be a table without the key 'name', got {received(block)}"
+                    raise VehicleFileError(f"{place}: zone.{name}: {message}")
+            data["zone"] = tuple({"name": name, **block} for name, block in table.items())
+        return data
+
+    def written_key(self, key: KeyPath) -> KeyPath:
+        """Zones are a table in the file: their place in the sequence is their name there."""
+        for i, part in enumerate(key[:-1]):
+            number = key[i + 1]
+            if part == "zone" and isinstance(number, int):
+                return (*key[: i + 1], list(self._at(key[: i + 1]))[number], *key[i + 2 :])
+        return key
+
+    def _at(self, key: KeyPath) -> Any:
+        block: Any = self.data
+        for part in key:
+            block = block[part]
+        return block
+
+
+class _VehicleDocument(ZonesInOrder):
+    """A vehicle file with what it extends merged in."""
+
+    def __init__(self, path: Path, parents: tuple[Path, ...] = ()) -> None:
+        if path.resolve() in parents:
+            raise VehicleFileError.at(path, None, "extends: the files extend each other in a circle")
+        super().__init__(path)
+        if "extends" in self.data:
+            self._extend(parents)
+
+    def _extend(self, parents: tuple[Path, ...]) -> None:
+        name = self.data.pop("extends")
+        if not isinstance(name, str):
+            reason = f"extends: must be a preset or a file name, got {received(name)}"
+            raise self.fault(("extends",), reason)
+        target = preset_path(name) if name in preset_names() else self.path.parent / name
+        base = _VehicleDocument(target, (*parents, self.path.resolve()))
+        own = self.data
+        merged = {**base.data, **own}
+        shift = 0
+        zones: dict[str, Any] = {}
+        if isinstance(own.get("source"), list) and isinstance(base.data.get("source"), list):
+            shift = len(own["source"])
+            merged["source"] = own["source"] + base.data["source"]
+        if isinstance(own.get("zone"), dict) and isinstance(base.data.get("zone"), dict):
+            zones = own["zone"]
+            new = {key: value for key, value in zones.items() if key not in base.data["zone"]}
+            merged["zone"] = {**new, **base.data["zone"], **zones}  # new zones are matched first
+        for key, where in base._places.items():
+            if key[:1] == ("source",) and shift and len(key) > 1 and isinstance(key[1], int):
+                moved = ("source", key[1] + shift, *key[2:])
+                self._places[moved] = where
+            elif key[:1] == ("zone",) and zones:
+                if len(key) > 1 and key[1] not in zones:
+                    self._places[key] = where
+            elif key and key[0] not in own:
+                self._places[key] = where
+        self.data = merged
+
+
+def read_vehicle_file(path: str | Path) -> VehicleFile:
+    """Read and check a vehicle file.
+
+    Parameters
+    ----------
+    path
+        TOML file. With ``extends = "pickup"`` (a preset, or a file beside it) it states only what differs:
+        whole top-level keys are replaced, zones one by one, sources are added; new zones are matched first.
+
+    Raises
+    ------
+    VehicleFileError
+        With file, line, key, limit and value of everything that is wrong.
+    """
+    document = _VehicleDocument(Path(path))
+    with reading(path, "must be a vehicle file", VehicleFileError):
+        return document.validate(VehicleFile, document.zones_in_order())
+
+
+# By weight, then the replication target.
+_ORDER = ("passenger_car", "minivan", "pickup", "cargo_truck", "semi_truck", "paper_pickup")
+
+
+def preset_names() -> tuple[str, ...]:
+    """Names of the vehicle files that come with the package, the library's five first, by weight."""
+    folder = resources.files("birm3d") / "data"
+    names = {f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")}
+    return (*(name for name in _ORDER if name in names), *sorted(names.difference(_ORDER)))
+
+
+def preset_path(name: str) -> Path:
+    """Path of the vehicle file of a preset."""
+    if name not in preset_names():
+        raise ValueError(f"preset must be one of {', '.join(preset_names())}; got {name!r}")
+    return Path(str(resources.files("birm3d") / "data" / f"{name}.toml"))
+
+
+def unit_paths() -> dict[str, Path]:
+    """Files of one unit that come with the package, by their names: presets, and the units of the others."""
+    folder = Path(str(resources.files("birm3d") / "data"))
+    units = {path.stem: path for path in sorted((folder / "units").glob("*.toml"))}
+    single = {name: preset_path(name) for name in preset_names() if name != "semi_truck"}
+    return {**single, **units}

@@ -1,0 +1,137 @@
+"""Crush stiffness of a part of a vehicle's skin."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from ..base.arguments import checked
+
+__all__ = ["KNEE", "OPTIONAL", "TRUSS_LAW", "Zone", "positive"]
+
+KNEE = ("k_initial", "knee", "k_hardening", "f_max")
+"""The numbers of the paper's loading envelope (Fig. 3)."""
+
+OPTIONAL = ("elastic_recovery", "tail_depth", "tail_slope")
+"""Numbers that a law may have in addition."""
+
+TRUSS_LAW = ("k_initial", "knee", "k_hardening", "f_max", "k_unloading")
+"""The numbers of the paper's law (Fig. 3)."""
+
+
+@checked
+@dataclass(frozen=True)
+class Zone(Mapping[str, Any]):
+    """Crush stiffness of a part of the skin per unit of area (paper Fig. 3); also a read-only mapping.
+
+    A truss has this curve times its node's tributary area. Either the first four numbers, or ``envelope``.
+
+    Parameters
+    ----------
+    k_initial, k_hardening
+        Slopes before and after the knee [N/m per m^2].
+    knee
+        Deflection at the knee [m].
+    f_max
+        Stress of the plateau [N per m^2]; ``None`` beside a knee: without end.
+    k_unloading
+        Slope of unloading and reloading [N/m per m^2], not below any slope of the envelope.
+    envelope
+        Points (deflection [m], stress [N per m^2]) from (0, 0); constant after the last.
+    elastic_recovery
+        Length that the structure gives back [m], less in proportion to what has been crushed: it unloads with
+        the slope stress / (elastic_recovery * (1 - deflection / length of the truss)), at least
+        ``k_unloading``, so that restitution falls with speed. ``None``: the one slope of Fig. 3.
+    tail_depth, tail_slope
+        From this deflection on [m] the envelope is steeper by this [N/m per m^2], as what has been crushed is
+        packed together. ``None``: no tail.
+    """
+
+    k_initial: float | None = None
+    knee: float | None = None
+    k_hardening: float | None = None
+    f_max: float | None = None
+    k_unloading: float = math.nan
+    envelope: tuple[tuple[float, float], ...] | None = None
+    elastic_recovery: float | None = None
+    tail_depth: float | None = None
+    tail_slope: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.envelope is None:
+            if self.f_max is None:
+                object.__setattr__(self, "f_max", math.inf)
+        else:
+            rows = tuple(tuple(row) for row in self.envelope)  # lists have no hash
+            object.__setattr__(self, "envelope", rows)
+            for name in KNEE:
+                if getattr(self, name) is not None:
+                    raise ValueError(f"{name} must be None beside an envelope, got {getattr(self, name)}")
+        if (self.tail_depth is None) != (self.tail_slope is None):
+            given, other = ("tail_slope", "depth") if self.tail_depth is None else ("tail_depth", "slope")
+            raise ValueError(f"tail_{other} must be given beside {given}, got None")
+        _ = self.curve
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._names:
+            raise KeyError(name)
+        return getattr(self, name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    @property
+    def _names(self) -> tuple[str, ...]:
+        law = ("envelope",) if self.envelope is not None else KNEE
+        return (*law, "k_unloading", *self._optional)
+
+    @property
+    def _optional(self) -> dict[str, float]:
+        given = {name: getattr(self, name) for name in OPTIONAL}
+        return {name: value for name, value in given.items() if value is not None}
+
+    @cached_property
+    def curve(self) -> _core.TrussCurve:
+        """The law of 1 m^2 for the core."""
+        if self.envelope is not None:
+            points = np.asarray(self.envelope, float)
+            if points.ndim != 2 or points.shape[1] != 2:
+                raise ValueError(f"envelope must have shape (n, 2), got {points.shape}")
+            return _core.point_curve(
+                points[:, 0].tolist(), points[:, 1].tolist(), self.k_unloading, **self._optional
+            )
+        numbers = {name: getattr(self, name) for name in KNEE}
+        for name, value in numbers.items():
+            if value is None:
+                raise ValueError(f"{name} must be given where there is no envelope, got None")
+        return _core.knee_curve(**numbers, k_unloading=self.k_unloading, **self._optional)
+
+    def scaled(self, factor: float) -> Zone:
+        """Return the zone with all its stresses and slopes times a factor > 0; deflections stay."""
+        factor = positive("scale", factor)
+        stresses = ("k_initial", "k_hardening", "f_max", "k_unloading", "tail_slope")
+        given = {name: getattr(self, name) for name in stresses}
+        changes: dict[str, Any] = {name: factor * value for name, value in given.items() if value is not None}
+        if self.envelope is not None:
+            changes["envelope"] = tuple((d, factor * stress) for d, stress in self.envelope)
+        return dataclasses.replace(self, **changes)
+
+    def __getstate__(self) -> dict[str, object]:
+        return {name: value for name, value in self.__dict__.items() if name != "curve"}
+
+
+def positive(name: str, value: float) -> float:
+    """Return a number that is finite and > 0, or refuse it by name."""
+    if not (math.isfinite(value) and value > 0.0):
+        raise ValueError(f"{name} must be finite and > 0, got {value}")
+    return float(value)
