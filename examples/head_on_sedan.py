@@ -52,7 +52,7 @@ def main() -> None:
     parser.add_argument("--output", type=Path, help="folder for the figures")
     options = parser.parse_args()
 
-    # birm3d/simulation/presets.py has the scene written out: a preset at its test mass, a rigid wall, 57.09 km/h.
+    # birm3d/simulation/presets.py has the scene: a preset at its test mass, a rigid wall, 57.09 km/h.
     simulation = birm3d.scenes.nhtsa_10146()
     result = simulation.run()
     print(result.scene.vehicle)

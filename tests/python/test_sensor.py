@@ -8,7 +8,7 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle, units
-from birm3d.vehicle_file import VehicleFileError
+from birm3d.vehicle.vehicle_file import VehicleFileError
 from scipy.spatial.transform import Rotation
 
 POINTS = ((1.0, 0.0, 0.5), (-2.3, 0.9, 1.4), (0.4, -0.8, 0.0))

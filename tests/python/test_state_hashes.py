@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from birm3d import Barrier, Simulation, Vehicle, scenes
-from birm3d.study.triangulated import triangulated
+from birm3d.study.verification.triangulated import triangulated
 
 FITTED = Path(__file__).parents[1] / "data/finite_element"
 

@@ -17,6 +17,7 @@ from ..barrier.free_standing import is_pinned, overturning_ratio
 from ..base.arguments import checked
 from ..base.checks import index as place
 from ..base.frozen_mapping import FrozenMapping
+from ..units import Quantity
 from . import pictures
 from . import table as result_table
 from .element_loads import ElementLoad, element_loads
@@ -25,7 +26,6 @@ from .frames import Frames, capture, pose
 from .report import report
 from .sensor import Sensor, place_sensor
 from .unit_result import UnitResult, read_only
-from .units import Quantity
 
 if TYPE_CHECKING:
     from ..simulation.simulation import Scene

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from .arguments import checked
-from .channel import Channel
-from .checks import index
+from ..base.arguments import checked
+from ..base.checks import index
+from ..signals.channel import Channel
+from ..units import Quantity, si
 from .unit_result import read_only
-from .units import Quantity, si
 
 if TYPE_CHECKING:
+    from ..vehicle.vehicle import Vehicle
     from .result import Result
-    from .vehicle import Vehicle
 
 __all__ = ["Sensor", "place_sensor"]
 
