@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+import importlib
 import pickle
 import signal
 import subprocess
@@ -19,7 +20,7 @@ from typing import Any
 import birm3d
 import numpy as np
 import pytest
-from birm3d import Barrier, Result, Settings, Simulation, Vehicle, Zone, scenes, units
+from birm3d import Barrier, Result, Settings, Simulation, Vehicle, Zone, _moved, scenes, units
 from birm3d.metrics import METRIC_UNITS, compute_metrics
 from matplotlib.figure import Figure
 
@@ -335,3 +336,23 @@ def test_each_metric_alone_is_what_all_together_give() -> None:
     for name in METRIC_UNITS:
         alone = {name: together[name]} if name in together else {}
         assert compute_metrics(result, (name,)) == alone
+
+
+def test_short_module_paths_lead_to_the_modules_themselves() -> None:
+    for short, place in _moved._SHORT.items():
+        module = importlib.import_module(f"birm3d.{short}")  # a warning would be an error
+        assert module is importlib.import_module(f"birm3d.{place}")
+
+
+def test_module_paths_of_earlier_versions_work_and_say_what_to_write() -> None:
+    for old, place in _moved._OLD.items():
+        module, moved = importlib.import_module(f"birm3d.{old}"), importlib.import_module(f"birm3d.{place}")
+        name = moved.__all__[0]
+        with pytest.warns(DeprecationWarning, match=f"birm3d.{old} has moved: write birm3d.{place}$") as told:
+            assert getattr(module, name) is getattr(moved, name)
+        assert told[0].filename == __file__  # it points at the caller
+    with pytest.warns(DeprecationWarning, match="write birm3d.signals.channel"):
+        from birm3d.channel import Channel
+    assert Channel is birm3d.Channel
+    with pytest.raises(AttributeError, match="no attribute 'chanel'"):
+        _ = birm3d.chanel
