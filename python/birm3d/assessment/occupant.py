@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from functools import cached_property
 
 from .. import units
-from ..arguments import checked
-from ..channel import Channel
+from ..base.arguments import checked
 from ..result import Result
+from ..signals.channel import Channel
 from ..units import Quantity, si
 from .criteria import Criterion, criteria_html, criteria_text
 from .flail import FlailSpace, HeadImpact, flail_space, head_impact, occupant_load

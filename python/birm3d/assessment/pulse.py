@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import units
-from ..channel import Channel
+from ..signals.channel import Channel
 
 if TYPE_CHECKING:
     from ..result import Result

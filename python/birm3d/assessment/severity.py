@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import units
-from ..filters import cfc
+from ..signals.filters import cfc
 from .pulse import Pulse
 
 __all__ = ["severity_index"]
