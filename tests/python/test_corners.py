@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import functools
+from pathlib import Path
 
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle
+
+FITTED = Path(__file__).parents[1] / "data/finite_element"
 
 
 @functools.cache
@@ -85,3 +88,15 @@ def test_a_stricter_tolerance_closes_the_ledger_better(
     assert residual[0] < 2e-3
     assert residual[1] < max(0.7 * residual[0], 1e-4)
     assert np.abs(speeds[0] - speeds[1]).max() < 0.02 * speed
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.4])
+def test_skin_that_a_pole_draws_in_along_the_ground_keeps_the_ledger_closed(offset: float) -> None:
+    """The underside of this vehicle lies on the ground. Once 1.6 % of the energy were lost, in 2,300 steps.
+
+    The bound is the default tolerance of a step, relative to the approach.
+    """
+    vehicle = Vehicle.from_file(FITTED / "fitted_n.toml")
+    result = Simulation(vehicle, Barrier.pole(), 10.0, impact_offset=offset).run()
+    assert result.metrics["energy_residual"] < Settings().tolerance
+    assert result.metrics["steps"] < 1000

@@ -58,8 +58,8 @@ HASHES = {
     "semi, wall": "8859d12124b4068d",
     "truck, pole of triangles": "2efc061d6b4aef2e",
     "free-standing": "a56ce8b1abaf1076",
-    "minivan on its side": "83e8ef2743757a1a",
-    "finite-element car, wall": "b30b8e987a514cbe",
+    "minivan on its side": "564dd133bb1c65e0",
+    "finite-element car, wall": "e9706df525d671c7",
     "finite-element truck, wall": "c65c968a05f94273",
 }
 

@@ -1,9 +1,10 @@
 // A node that two or three surfaces hold at once. It stands on all of them, and the force of its truss is shared out so
 // that its work is the work on the truss, whichever way the surfaces come:
-//   place   u = sum of a_j h_j,        q_k . u = -g_k          for each face k
-//   force   F sum of lambda_k q_k,     sum of lambda_k q_k . h_j = b . h_j  for each face j that the truss pushes on
-// with b the unit vector from the node to its anchor, g the gaps, q the gradients of the gaps and h the ways of the node
-// (q = h = n at a face; at a dent they differ, see kernels/dent.hpp). For any motion of the faces
+//   place   u = sum of a_j h_j,             q_k . u = -g_k          for each face k
+//   force   F sum of lambda_k p_k n_k,      sum of lambda_k q_k . h_j = b . h_j  for each face j that the truss pushes on
+// with b the unit vector from the node to its anchor, g the gaps, q their gradients by the node's place, -p n those by
+// the obstacle's place and h the ways of the node (q = p n = h = n at a face; at a dent, which widens as the post goes
+// deeper, they differ, see kernels/dent.hpp). For any motion of the faces
 //   F sum of lambda_k (-dg_k) = F b . du.
 // A truss pulls on no face: lambda >= 0. Where a face drives the node and the truss does not push on it, the node moves
 // freely there, and no work is done.
@@ -20,7 +21,8 @@ struct CornerFace {
     std::size_t seen = 0;           // place in Skin::seen_ of the obstacle
     double gap = 0.0;               // of the node where it was (m)
     Vec3 normal = Vec3::UnitX();    // of the surface there
-    Vec3 gradient = Vec3::UnitX();  // q: along the normal
+    Vec3 gradient = Vec3::UnitX();  // q: of the gap, by the node's place
+    double per_force = 1.0;         // of the gap, by the obstacle's place along the normal: its size
     Vec3 way = Vec3::UnitX();       // h
     Vec3 place = Vec3::Zero();      // where the force acts (m), and the torque of a unit of normal force (m)
     Vec3 torque = Vec3::Zero();

@@ -80,8 +80,11 @@ CornerFace Skin::own_face(std::size_t i) const {
     face.normal = face.gradient = face.way = contact_.normal(i);
     if (faces_.per_force[i] > 0.0) {
         face.dented = true;
-        face.gradient *= faces_.per_force[i];
         face.way = {faces_.bx[i], faces_.by[i], faces_.bz[i]};
+        face.per_force = faces_.per_force[i];
+        // The gap follows the node's own way in full, but the post's motion there only in part: the dent widens.
+        face.gradient = face.per_force * face.normal;
+        face.gradient += (1.0 - face.gradient.dot(face.way)) * face.way;
         face.place = {contact_.px[i], contact_.py[i], contact_.pz[i]};
         face.torque = contact_.torque(i);
     }
@@ -213,7 +216,7 @@ void Skin::share_out_corners(std::size_t b, const TrussBlockState& next) {
                 const Vec3 node(next.x[i], next.y[i], next.z[i]);
                 const Vec3 at = face.dented ? face.place : node;
                 const Vec3 torque = face.dented ? face.torque : Vec3(node.cross(face.normal));
-                const double pressure = force[c] * face.share * face.gradient.norm();
+                const double pressure = force[c] * face.share * face.per_force;
                 part.pressure[i] = pressure;
                 part.nx[i] = face.normal.x(), part.ny[i] = face.normal.y(), part.nz[i] = face.normal.z();
                 part.px[i] = at.x(), part.py[i] = at.y(), part.pz[i] = at.z();

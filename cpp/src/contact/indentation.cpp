@@ -134,6 +134,13 @@ BIRM3D_LANE_LOOP void note_nearest(const Lanes& hangs, std::size_t seen,
         nearest[i] = hangs[i] > 0.0 ? seen : nearest[i];
 }
 
+// What a node stood at before it came to hang on a dent can hold it as well: the ground below a bumper.
+BIRM3D_LANE_LOOP void note_second(const Lanes& hangs, const Lanes& gap, Lanes& second) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i)
+        second[i] = hangs[i] > 0.0 && gap[i] < second[i] ? gap[i] : second[i];
+}
+
 }  // namespace
 
 void Skin::draw_in(std::size_t b, const TrussBlockState& block) {
@@ -144,7 +151,9 @@ void Skin::draw_in(std::size_t b, const TrussBlockState& block) {
         if (reached.dent != block_dents_.front().dent &&
             reached.gap > furthest_off(block, panel_of, dented.panel, faces_.gap))
             continue;
+        alignas(64) const Lanes gap = faces_.gap;
         hang_on(dented.dent, block, panel_of, dented.panel, faces_, contact_, hangs);
+        note_second(hangs, gap, second_gap_);
         const auto seen = std::find(seen_.begin(), seen_.end(), dented.near) - seen_.begin();
         if (seen_.size() > 1) note_nearest(hangs, static_cast<std::size_t>(seen), nearest_);
     }
