@@ -12,7 +12,7 @@ from pathlib import Path
 
 import birm3d
 from birm3d import Barrier, FreeStanding, Simulation, Vehicle, units
-from birm3d.barrier.free_standing import lateral_movement
+from birm3d.result.segment_motion import lateral_movement
 from matplotlib.figure import Figure
 
 CASES = {

@@ -17,7 +17,7 @@ from .result import Result, metrics
 from .result.element_loads import ElementLoad
 from .result.energy_balance import LedgerWarning
 from .result.overlap import OverlapWarning
-from .result.result_file import load
+from .result.result import load
 from .scene.mesh_check import CoarseSkinWarning
 from .scene.settings import Settings
 from .signals import filters, reference

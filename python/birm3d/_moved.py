@@ -75,7 +75,6 @@ _OLD = {
     "outcome": "result.summary",
     "outcome_table": "study.outcome_table",
     "overlap": "result.overlap",
-    "pictures": "result.pictures",
     "plan_axes": "plotting.plan_axes",
     "progress": "base.progress",
     "report": "result.report",
@@ -122,6 +121,16 @@ _OLD = {
 }
 """Path of an earlier version -> where the module is."""
 
+_OLD_NAMES = {
+    "coarse_skin.node_spacing": "vehicle.node_spacing",
+    "frames.capture": "result.capture",
+    "free_standing.base_corners": "result.segment_motion",
+    "free_standing.lateral_movement": "result.segment_motion",
+    "free_standing.overturning_ratio": "result.segment_motion",
+    "result_file.load": "result.result",
+}
+"""Names that are in another module than the rest of theirs."""
+
 
 class _OldModule(ModuleType):
     """Stands at the path of an earlier version; its names are those of the module that has moved."""
@@ -133,9 +142,11 @@ class _OldModule(ModuleType):
     def __getattr__(self, name: str) -> object:
         if name.startswith("__"):  # asked by the import system and by whoever looks at all modules
             raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
-        value: object = getattr(import_module(f"birm3d.{self._new}"), name)
+        old = self.__name__.removeprefix("birm3d.")
+        place = _OLD_NAMES.get(f"{old}.{name}", self._new)
+        value: object = getattr(import_module(f"birm3d.{place}"), name)
         warnings.warn(
-            f"{self.__name__} has moved: write birm3d.{self._new}",
+            f"{self.__name__} has moved: write birm3d.{place}",
             DeprecationWarning,
             stacklevel=caller_level(),
         )

@@ -83,7 +83,7 @@ def result_file() -> dict[str, bytes]:
     stream = io.BytesIO()
     from birm3d.result.result_file import write
 
-    write(result(), stream)
+    write(result(), result().report(), stream)
     return {"result.npz": stream.getvalue()}
 
 

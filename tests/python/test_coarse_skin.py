@@ -9,12 +9,12 @@ from functools import cache
 import numpy as np
 import pytest
 from birm3d import Barrier, CoarseSkinWarning, Settings, Simulation, Vehicle, scenes
-from birm3d.scene.mesh_check import node_spacing
 from birm3d.study.verification.stability import _judged
 from birm3d.study.verification.stability_cases import Case, thin_posts
 from birm3d.study.verification.stability_result import FAULT, HELD, WARNED
 from birm3d.study.verification.triangulated import triangulated
 from birm3d.study.verification.watched import LIMITS
+from birm3d.vehicle.node_spacing import node_spacing
 
 WEIGHTLESS = Settings(gravity=0.0, ground=False)
 BLOCK = scenes.laboratory_block(100, k_initial=3e6, knee=0.4, k_hardening=6e6, k_unloading=60e6)

@@ -27,9 +27,9 @@ from birm3d import (
     scenes,
     sweep,
 )
-from birm3d.barrier.free_standing import lateral_movement
 from birm3d.filters import cfc, moving_average
 from birm3d.metrics import METRIC_UNITS
+from birm3d.result.segment_motion import lateral_movement
 from birm3d.vehicle.test_bodies import elastic_block
 
 METRICS = ["dynamic_crush", "exit_speed"]

@@ -13,7 +13,7 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, FreeStanding, Settings, Simulation, Vehicle, scenes, units
-from birm3d.barrier.free_standing import base_corners
+from birm3d.result.segment_motion import base_corners
 
 MASS, SPEED = 6804.0, 10.0  # of the laboratory block
 BOX = ((0.3, 0.0), (0.3, 2.0))  # vertical faces: nothing is pushed down

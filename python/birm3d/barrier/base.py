@@ -337,6 +337,11 @@ class Barrier:
         """Return how its elements stand free, for the core; ``None`` where they are fixed."""
         return None
 
+    @property
+    def is_pinned(self) -> bool:
+        """Whether it has free-standing segments that are pinned to each other."""
+        return False
+
     def place(self, across: float, along: float) -> npt.NDArray[np.float64]:
         """Return a point at the foot of the barrier, world axes, shape (3,) [m].
 

@@ -1,4 +1,4 @@
-"""Barriers that stand free on the ground: what their segments are, and how far they move."""
+"""Barriers that stand free on the ground: what their segments are."""
 
 from __future__ import annotations
 
@@ -6,24 +6,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-import numpy.typing as npt
-
 from .. import _core
 from ..base.arguments import check_fields
-from ..signals.filters import moving_average
 from ..units import Quantity, si
 
-if TYPE_CHECKING:
-    from ..result.result import Result
-    from .base import Barrier
-
-__all__ = ["FreeStanding", "base_corners", "is_pinned", "lateral_movement", "overturning_ratio"]
-
-Floats = npt.NDArray[np.float64]
+__all__ = ["FreeStanding"]
 
 _CONCRETE = 2400.0  # kg/m^3
-_WINDOW = 0.05  # s
 
 
 @dataclass(frozen=True)
@@ -97,70 +86,3 @@ class FreeStanding:
             ground_friction=self.ground_friction,
             joint=_core.SegmentJoint.__members__[self.joint],
         )
-
-
-def is_pinned(barrier: Barrier | None) -> bool:
-    """Whether a barrier has segments that are pinned to each other."""
-    free = getattr(barrier, "free_standing", None)
-    return free is not None and free.joint == "pinned"
-
-
-def base_corners(result: Result) -> Floats:
-    """Return the four corners of each segment's base over time, around it, world, shape (n, k, 4, 2) [m]."""
-    barrier = result.scene.barrier
-    segments = [] if barrier is None else barrier.core.segments
-    own = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-    half = np.array([[segment.half_base, segment.half_length] for segment in segments]).reshape(-1, 1, 2)
-    heading = 0.0 if barrier is None else barrier.heading
-    angle = np.radians(heading + result.segment_yaw)[..., None]
-    x, y = np.moveaxis(own * half, -1, 0)
-    turned = np.stack([np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y], axis=-1)
-    return np.asarray(result.segment_position[:, :, None] + turned)
-
-
-def lateral_movement(result: Result) -> Floats:
-    """Return how far the furthest corner moved square to the line, away from the traffic, (n,) [m]."""
-    assert result.scene.barrier is not None  # asked for with a free-standing barrier only
-    past = -np.asarray(result.scene.barrier.core.normal)[:2]
-    corners = base_corners(result) @ past
-    return np.asarray((corners - corners[0]).max(axis=(1, 2), initial=0.0))
-
-
-def overturning_ratio(result: Result) -> Floats:
-    """Return the overturning moment over the restoring one of each segment, shape (n, k).
-
-    With M the moment of the vehicle's force about the middle of the base less that of the segment's own
-    inertia, both about its long axis, F_z the vertical force on it (negative downwards) and b half its base:
-    (|M| + F_z b) / (m g b), at least 0. Means over 50 ms that end at each row. Above 1 it begins to tip about
-    its toe, which the model leaves out. Friction and pins are taken to act at the ground.
-
-    Raises
-    ------
-    ValueError
-        If there is no gravity.
-    """
-    scene = result.scene
-    assert scene.barrier is not None
-    gravity, interval = scene.settings.gravity, scene.settings.output_interval
-    if not gravity > 0.0:
-        raise ValueError(f"gravity must be > 0 m/s^2 for a restoring moment, got {gravity}")
-    yaw, velocity = result.segment_yaw, result.segment_velocity
-    ratio = np.zeros(yaw.shape)
-    speed = np.abs(velocity).max(axis=(0, 2), initial=0.0)
-    for i, (load, segment) in enumerate(zip(result.element_loads, scene.barrier.core.segments, strict=True)):
-        if speed[i] == 0.0 and not load.touched:
-            continue
-        force, moment = (moving_average(mean, _WINDOW, interval) for mean in (load.force, load.moment))
-        change = np.diff(velocity[:, i], axis=0, prepend=velocity[:1, i])
-        acceleration = moving_average(change / interval, _WINDOW, interval)
-        angle = np.radians(scene.barrier.heading + yaw[:, i])
-        across, along = (
-            np.stack([np.cos(angle), np.sin(angle)], 1),
-            np.stack([-np.sin(angle), np.cos(angle)], 1),
-        )
-        inertia = segment.mass * segment.mass_center_height * (acceleration * across).sum(axis=1)
-        turning = (moment[:, :2] * along).sum(axis=1) - inertia
-        half = segment.half_base
-        over = np.abs(turning) + force[:, 2] * half
-        ratio[:, i] = np.maximum(0.0, over / (segment.mass * gravity * half))
-    return ratio

@@ -227,6 +227,11 @@ class Jersey(Barrier):
         fixed = self.free_standing is None
         return _along_line(self, corners, base, self.length, self.segments, abutting=fixed)
 
+    @property
+    def is_pinned(self) -> bool:
+        """Whether it has free-standing segments that are pinned to each other."""
+        return self.free_standing is not None and self.free_standing.joint == "pinned"
+
     def stands_free(self) -> _core.FreeStanding | None:
         """Return how its segments stand free, for the core; ``None`` where they are fixed."""
         if self.free_standing is None:

@@ -248,7 +248,9 @@ def _is_array(value: Any) -> bool:
 def _named(kind: type) -> str:
     package = __name__.partition(".")[0]
     public = kind.__module__.partition(".")[0] == package
-    return f"a {package}.{kind.__name__}" if public else f"a {kind.__name__}"
+    # A class may stand for the public one that is made of it.
+    name: str = getattr(kind, "_public_name", kind.__name__)
+    return f"a {package}.{name}" if public else f"a {name}"
 
 
 def _plural(words: str) -> str:

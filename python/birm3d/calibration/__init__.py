@@ -8,15 +8,14 @@ from __future__ import annotations
 from .calibrate import calibrate
 from .curve_target import CurveTarget
 from .errors import CalibrationError, CalibrationInterruptedError
-from .evaluator import Evaluation
+from .evaluation import Evaluation
 from .fitted import FittedParameter, FittedTarget
 from .parameters import Parameter
 from .problem import Target
 from .profile import Profile
 from .quantities import QUANTITIES
-from .result import CalibrationResult
+from .result import CalibrationResult, load
 from .scalar_target import ScalarTarget
-from .storage import load
 
 __all__ = [
     "QUANTITIES",

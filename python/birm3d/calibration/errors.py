@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .evaluator import Evaluation
+    from .evaluation import Evaluation
 
 __all__ = ["CalibrationError", "CalibrationInterruptedError"]
 

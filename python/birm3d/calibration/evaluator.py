@@ -13,10 +13,11 @@ import numpy.typing as npt
 
 from .._core import UnstableError
 from .errors import CalibrationError
+from .evaluation import Evaluation
 from .packed import PackedProblem
 from .problem import Noise, Problem
 
-__all__ = ["Channel", "Evaluation", "Evaluator", "NoRunError", "Progress"]
+__all__ = ["Channel", "Evaluator", "NoRunError", "Progress"]
 
 Floats = npt.NDArray[np.float64]
 Progress: TypeAlias = Callable[[int, "float | None"], None]
@@ -24,28 +25,6 @@ Progress: TypeAlias = Callable[[int, "float | None"], None]
 
 # What a scene or the solver says of numbers it can not compute; everything else is a fault in a program.
 RUN_FAILURES = (ValueError, UnstableError, ArithmeticError)
-
-
-@dataclass(frozen=True)
-class Evaluation:
-    """One run of all simulations.
-
-    Attributes
-    ----------
-    stage : str
-        ``"start 0"``, ``"global"``, ``"profile of <parameter>"`` ...
-    values : tuple of float
-        Of the parameters.
-    cost : float or None
-        Half the sum of squared residuals, with the weights of the moment; ``None`` where the run failed.
-    failure : str or None
-        Why it failed.
-    """
-
-    stage: str
-    values: tuple[float, ...]
-    cost: float | None
-    failure: str | None = None
 
 
 class NoRunError(CalibrationError):

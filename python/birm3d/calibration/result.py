@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from .. import pictures
 from ..base.arguments import checked
-from .evaluator import Evaluation, Evaluator
-from .fitted import FittedParameter, FittedTarget
-from .identifiability import Spread
+from .evaluator import Evaluator
 from .parameters import applied
 from .pool import threads_unless
-from .problem import Noise, Problem
+from .problem import Problem
 from .profile import Profile, profile
+from .record import CalibrationRecord
+from .storage import read, save
+from .summary import summary
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,14 +28,14 @@ if TYPE_CHECKING:
     from ..simulation.simulation import Simulation
     from ..vehicle.vehicle import Vehicle
 
-__all__ = ["CalibrationResult"]
+__all__ = ["CalibrationResult", "load"]
 
 Floats = npt.NDArray[np.float64]
 
 
 @checked
 @dataclass(eq=False)
-class CalibrationResult:
+class CalibrationResult(CalibrationRecord):
     """Fitted values and how far they can be trusted.
 
     Attributes
@@ -67,60 +68,6 @@ class CalibrationResult:
     settings : dict
         Arguments of the fit.
     """
-
-    parameters: tuple[FittedParameter, ...]
-    targets: tuple[FittedTarget, ...]
-    chi_square: float
-    spread: Spread
-    confidence: float
-    covariance: Floats
-    correlation: Floats
-    condition_number: float | None
-    notes: tuple[str, ...]
-    starts: tuple[Mapping[str, Any], ...]
-    history: tuple[Evaluation, ...]
-    settings: Mapping[str, Any]
-    profiles: dict[str, Profile] = field(default_factory=dict)
-    doubts: tuple[str, ...] = ()
-    _problem: Problem | None = None
-    _noise: Noise | None = None
-
-    @property
-    def values(self) -> dict[str, float]:
-        """Fitted value of every parameter."""
-        return {parameter.label: parameter.value for parameter in self.parameters}
-
-    @property
-    def intervals(self) -> dict[str, tuple[float, float] | None]:
-        """Interval of every parameter; ``None`` where the data do not tell it."""
-        return {parameter.label: parameter.interval for parameter in self.parameters}
-
-    @property
-    def identified(self) -> tuple[str, ...]:
-        """Parameters that the data tell: those with an interval."""
-        return tuple(parameter.label for parameter in self.parameters if parameter.reason is None)
-
-    @property
-    def verdict(self) -> str:
-        """What the data can and can not tell, in plain words."""
-        missing = [f"{p.label}: {p.reason}" for p in self.parameters if p.reason is not None]
-        if not missing and not self.doubts:
-            return "every parameter is identified"
-        if not missing:
-            return _listed("every parameter has an interval, NOT all are identified by the data", self.doubts)
-        lines = _listed("NOT identified, no interval is given", missing)
-        return f"{lines}\n{_listed('intervals with doubts', self.doubts)}" if self.doubts else lines
-
-    @property
-    def failed_runs(self) -> int:
-        """Runs that failed; their reasons are in the history."""
-        return sum(evaluation.cost is None for evaluation in self.history)
-
-    def __getitem__(self, label: str) -> FittedParameter:
-        for parameter in self.parameters:
-            if parameter.label == label:
-                return parameter
-        raise KeyError(f"parameter must be one of {', '.join(self.values)}; got {label!r}")
 
     # ---- what was fitted ----------------------------------------------------------------------------------
 
@@ -208,34 +155,24 @@ class CalibrationResult:
 
     def summary(self) -> str:
         """Return values, intervals and the verdict as text."""
-        from .summary import summary
-
         return summary(self)
 
     def plot_fit(self) -> Figure:
         """Return a figure of measured and computed curves."""
-        from ..plotting.calibration import plot_fit
-
-        return plot_fit(self)
+        return pictures.plot_fit(self)
 
     def plot_residuals(self) -> Figure:
         """Return a figure of what the fit leaves, over the standard deviations."""
-        from ..plotting.calibration import plot_residuals
-
-        return plot_residuals(self)
+        return pictures.plot_residuals(self)
 
     def plot_profiles(self) -> Figure:
         """Return a figure of the profiles of all parameters; computes those that are missing."""
-        from ..plotting.calibration import plot_profiles
-
         for parameter in self.parameters:
             self.profile(parameter.label)
-        return plot_profiles(self)
+        return pictures.plot_profiles(self)
 
     def save(self, path: str | Path) -> None:
         """Write everything but the simulations to a JSON file; see :func:`birm3d.calibration.load`."""
-        from .storage import save
-
         save(self, path)
 
     def _loaded(self, what: str) -> Problem:
@@ -247,14 +184,20 @@ class CalibrationResult:
         return self._problem
 
     def _repr_html_(self) -> str:
-        from ..html_page.notebook import text_html
-
-        return text_html(self.summary(), self.plot_fit(), "measured and computed")
+        return pictures.text_html(self.summary(), self.plot_fit(), "measured and computed")
 
     def __repr__(self) -> str:
         told = ", ".join(f"{label}={value:.4g}" for label, value in self.values.items())
         return f"CalibrationResult({told}; {len(self.identified)} of {len(self.parameters)} identified)"
 
 
-def _listed(head: str, lines: Sequence[str]) -> str:
-    return "\n".join([head, *(f"  {line}" for line in lines)])
+def load(path: str | Path) -> CalibrationResult:
+    """Read a result that :meth:`CalibrationResult.save` wrote; it has no simulations.
+
+    Raises
+    ------
+    FileFormatError
+        If the file is none of these, is damaged or was changed, or is of a version that this one does not
+        know.
+    """
+    return CalibrationResult(**read(path))

@@ -11,19 +11,19 @@ import numpy as np
 
 from ..io.atomic_write import check_format, whole_file
 from ..io.file_format import check_sum, checksum, read_bytes, read_json, reads
-from .evaluator import Evaluation
+from .evaluation import Evaluation
 from .fitted import FittedParameter, FittedTarget
 from .identifiability import Spread
 from .profile import Profile
-from .result import CalibrationResult
+from .record import CalibrationRecord
 
-__all__ = ["FORMAT_VERSION", "load", "save"]
+__all__ = ["FORMAT_VERSION", "read", "save"]
 
 FORMAT_VERSION = 2
 _FORMAT = "birm3d calibration"
 
 
-def save(result: CalibrationResult, path: str | Path) -> None:
+def save(result: CalibrationRecord, path: str | Path) -> None:
     """Write a result; floats keep all their digits. The file is complete or is not there."""
     document = as_plain(result)
     text = json.dumps({**document, "checksum": checksum(document)}, indent=1, allow_nan=False)
@@ -31,27 +31,20 @@ def save(result: CalibrationResult, path: str | Path) -> None:
         part.write_text(text, encoding="utf-8")
 
 
-def as_plain(result: CalibrationResult) -> dict[str, Any]:
+def as_plain(result: CalibrationRecord) -> dict[str, Any]:
     """Return a result as numbers, texts, lists and mappings."""
     document: dict[str, Any] = {"format": _FORMAT, "format_version": FORMAT_VERSION}
-    for field in dataclasses.fields(CalibrationResult):
+    for field in dataclasses.fields(CalibrationRecord):
         if not field.name.startswith("_"):
             document[field.name] = _plain(getattr(result, field.name))
     return document
 
 
 @reads("must be a complete calibration")
-def load(path: str | Path) -> CalibrationResult:
-    """Read a result that :meth:`CalibrationResult.save` wrote; it has no simulations.
-
-    Raises
-    ------
-    FileFormatError
-        If the file is none of these, is damaged or was changed, or is of a version that this one does not
-        know.
-    """
+def read(path: str | Path) -> dict[str, Any]:
+    """Return what a result is made of, see :func:`birm3d.calibration.load`."""
     document = _document(Path(path))
-    return CalibrationResult(
+    return dict(
         parameters=tuple(_parameter(item) for item in document["parameters"]),
         targets=tuple(FittedTarget(**_arrays(item, FittedTarget)) for item in document["targets"]),
         chi_square=document["chi_square"],

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from .result import CalibrationResult
+from .record import CalibrationRecord
 
 __all__ = ["summary"]
 
 
-def summary(result: CalibrationResult) -> str:
+def summary(result: CalibrationRecord) -> str:
     """Return targets, values, intervals, verdict and notes; no interval where there is none."""
     lines = [_head(result), ""]
     lines += _targets(result)
@@ -33,7 +31,7 @@ def summary(result: CalibrationResult) -> str:
     return "\n".join(lines)
 
 
-def _head(result: CalibrationResult) -> str:
+def _head(result: CalibrationRecord) -> str:
     scenes = 1 + max(target.simulation for target in result.targets)
     return (
         f"Calibration of {_count(len(result.parameters), 'parameter')} on {_count(scenes, 'simulation')}, "
@@ -42,7 +40,7 @@ def _head(result: CalibrationResult) -> str:
     )
 
 
-def _targets(result: CalibrationResult) -> list[str]:
+def _targets(result: CalibrationRecord) -> list[str]:
     rows = [("target", "points", "independent", "sigma", "rms left", "unit")]
     for target in result.targets:
         low, high = target.sigma.min(), target.sigma.max()
@@ -61,7 +59,7 @@ def _targets(result: CalibrationResult) -> list[str]:
     return _table(rows)
 
 
-def _parameters(result: CalibrationResult) -> list[str]:
+def _parameters(result: CalibrationRecord) -> list[str]:
     rows = [("parameter", "start", "value", f"{100 * result.confidence:g} % interval", "")]
     for parameter in result.parameters:
         interval = "none"
@@ -72,7 +70,7 @@ def _parameters(result: CalibrationResult) -> list[str]:
     return _table(rows)
 
 
-def _starts(result: CalibrationResult) -> str:
+def _starts(result: CalibrationRecord) -> str:
     best = result.chi_square
     ends = [start["chi_square"] for start in result.starts]
     near = sum(end is not None and end - best <= 1e-2 * max(best, 1.0) for end in ends)

@@ -88,7 +88,7 @@ def _panels(result: Result) -> list[tuple[str, str, Curves]]:
         ]
         forces.append(("along the normal, unfiltered", normal))
         panels.append(("Barrier force", "kN", forces))
-        loads = touched_elements(result)
+        loads = touched_elements(result.element_loads)
         if len(loads) > 1:
             on_each = [
                 (load.name, np.linalg.norm(filtered(load.force / 1e3, 60, interval)[0], axis=1))

@@ -48,7 +48,7 @@ def plot_elements(result: Result) -> Figure:
     ValueError
         If nothing was touched.
     """
-    loads = touched_elements(result)
+    loads = touched_elements(result.element_loads)
     if not loads:
         raise ValueError("elements must have been touched to be drawn, got none that was")
     figure = new_figure(10.0, 9.6)

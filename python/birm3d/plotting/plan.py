@@ -14,8 +14,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from ..barrier.free_standing import base_corners
 from ..barrier.kinds import Jersey, RigidWall
+from ..result.segment_motion import base_corners
 from ..result.skin import Skin, skins_at
 from ..vehicle.silhouette import rings, silhouette
 from ..vehicle.unit_shapes import UnitShape, unit_shapes

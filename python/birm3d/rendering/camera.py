@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from ..barrier.kinds import Bollards, Pole
 from ..barrier.surfaces import barrier_axes
+from ..pictures import View
 from ..plotting.plan_axes import is_oblique
-from ..result.pictures import View
 from ..result.skin import Skin
 from ..vehicle.unit_shapes import unit_shapes
 

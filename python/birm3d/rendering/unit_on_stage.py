@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..result.pictures import Color
+from ..pictures import Color
 from ..result.skin import Skin
 from ..vehicle.unit_shapes import UnitShape
 

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from ..base.checks import index as place
+from ..pictures import Side
 from ..vehicle.unit_shapes import UnitShape, unit_shapes
 
 if TYPE_CHECKING:
-    from .result import Result
+    from .record import RunRecord
 
 __all__ = ["CrushMap", "CrushProfile", "Side", "crush_map", "crush_profile", "crushed_sides"]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
-Side: TypeAlias = Literal["front", "rear", "left", "right"]
 
 # Outward direction of each side and its lateral axis, body axes.
 _SIDES: Mapping[Side, tuple[int, float, int]] = {
@@ -91,7 +91,7 @@ class CrushProfile:
     mean: float
 
 
-def crush_map(result: Result, side: Side | None = None, *, unit: int = 0) -> CrushMap:
+def crush_map(result: RunRecord, side: Side | None = None, *, unit: int = 0) -> CrushMap:
     """Return the residual crush of one side: uncrushed less final place, square to the side, of every node.
 
     Parameters
@@ -126,7 +126,7 @@ def crush_map(result: Result, side: Side | None = None, *, unit: int = 0) -> Cru
 
 
 def crush_profile(
-    result: Result, side: Side | None = None, *, height: float | None = None, unit: int = 0
+    result: RunRecord, side: Side | None = None, *, height: float | None = None, unit: int = 0
 ) -> CrushProfile:
     """Return the crush of one side along a level line, with the six points of a CRASH3 (NHTSA) measurement.
 
@@ -170,17 +170,17 @@ def crush_profile(
     )
 
 
-def crushed_sides(result: Result, least: float = 0.01, *, unit: int = 0) -> tuple[Side, ...]:
+def crushed_sides(result: RunRecord, least: float = 0.01, *, unit: int = 0) -> tuple[Side, ...]:
     """Return the sides that are crushed by more than `least` [m] somewhere, greatest crush first."""
     return tuple(field.side for field in _all_sides(result, unit) if _greatest(field) > least)
 
 
-def _shape(result: Result, unit: int) -> UnitShape:
+def _shape(result: RunRecord, unit: int) -> UnitShape:
     shapes = unit_shapes(result.scene.vehicle)
     return shapes[place("unit", unit, len(shapes), "units")]
 
 
-def _all_sides(result: Result, unit: int) -> list[CrushMap]:
+def _all_sides(result: RunRecord, unit: int) -> list[CrushMap]:
     """Return the maps of all sides that have a skin, that of the greatest crush first."""
     shape = _shape(result, unit)
     fields = [
@@ -193,7 +193,7 @@ def _greatest(field: CrushMap) -> float:
     return float(field.crush[np.unique(field.triangles)].max())
 
 
-def _struck(result: Result, unit: int) -> CrushMap:
+def _struck(result: RunRecord, unit: int) -> CrushMap:
     fields = _all_sides(result, unit)
     if not fields:
         raise ValueError(f"unit must be one that has a skin on some side, got {unit}")

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from ..barrier.kinds import Jersey, RigidWall
 from ..signals.filters import moving_average
+from .record import RunRecord
 from .unit_result import read_only
-
-if TYPE_CHECKING:
-    from .result import Result
 
 __all__ = [
     "LEAST_SHARE",
@@ -160,7 +158,7 @@ def resultant_height(force: Floats, moment: Floats, line: Floats | None = None) 
     return height
 
 
-def element_loads(result: Result) -> tuple[ElementLoad, ...]:
+def element_loads(result: RunRecord) -> tuple[ElementLoad, ...]:
     """Return the loads on every element of the barrier in their order, zeros where one was not touched."""
     barrier = result.scene.barrier
     if barrier is None:
@@ -180,6 +178,6 @@ def element_loads(result: Result) -> tuple[ElementLoad, ...]:
     )
 
 
-def touched_elements(result: Result) -> list[ElementLoad]:
+def touched_elements(loads: Iterable[ElementLoad]) -> list[ElementLoad]:
     """Return the loads on the elements that were touched."""
-    return [load for load in result.element_loads if load.touched]
+    return [load for load in loads if load.touched]

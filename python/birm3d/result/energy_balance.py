@@ -10,7 +10,7 @@ from .metrics import relative_to_start
 
 if TYPE_CHECKING:
     from .. import _core
-    from ..simulation.simulation import Scene
+    from ..scene.scene import Scene
 
 __all__ = ["ENERGY_LIMIT", "FALL_LIMIT", "MOMENTUM_LIMIT", "LedgerWarning", "warn_if_open"]
 

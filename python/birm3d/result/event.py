@@ -30,12 +30,10 @@ The mass centre is that of the leading unit.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .metrics import METRIC_UNITS, compute_metrics
-
-if TYPE_CHECKING:
-    from .result import Result
+from .record import RunRecord
 
 __all__ = ["DECIDED", "OUTCOMES", "Metrics", "metrics_of", "outcome_detail"]
 
@@ -58,7 +56,7 @@ _MANNERS = {
 _AT_SEPARATION = ("time_of_separation", "exit_speed", "exit_angle", "restitution")
 
 
-def outcome_detail(result: Result) -> str:
+def outcome_detail(result: RunRecord) -> str:
     """Return how the outcome came about: one sentence."""
     event = result._event
     if event is None:
@@ -85,15 +83,17 @@ class Metrics(Mapping[str, Any]):
     iteration gives.
     """
 
-    def __init__(self, result: Result, values: Mapping[str, float]) -> None:
+    def __init__(self, result: RunRecord, values: Mapping[str, float]) -> None:
         self._result = result
         self._values = dict(values)
 
     def __getitem__(self, name: str) -> Any:
         if name in self._values:
             return self._values[name]
-        if name in ("outcome", "outcome_detail"):
-            return getattr(self._result, name)
+        if name == "outcome":
+            return self._result.outcome
+        if name == "outcome_detail":
+            return outcome_detail(self._result)
         raise KeyError(_why_absent(self._result, name))
 
     def __contains__(self, name: object) -> bool:
@@ -109,12 +109,13 @@ class Metrics(Mapping[str, Any]):
         return f"Metrics({self._values!r})"
 
 
-def metrics_of(result: Result) -> Metrics:
-    """Return all scalars of a run."""
-    return Metrics(result, compute_metrics(result))
+def metrics_of(result: RunRecord) -> Metrics:
+    """Return all scalars of a run; of one that was read from a file, those that it was saved with."""
+    saved = result.saved_metrics
+    return Metrics(result, compute_metrics(result) if saved is None else saved)
 
 
-def _why_absent(result: Result, name: str) -> str:
+def _why_absent(result: RunRecord, name: str) -> str:
     if name not in METRIC_UNITS:
         return f"metric must be one of {', '.join(METRIC_UNITS)}, outcome or outcome_detail; got {name!r}"
     scene, event = result.scene, result._event
@@ -122,7 +123,7 @@ def _why_absent(result: Result, name: str) -> str:
         return f"{name}: there is no barrier"
     if name in _AT_SEPARATION and event is not None:
         if event.time_of_separation is None:
-            return f"{name}: the vehicle did not separate from the barrier for good: {result.outcome_detail}"
+            return f"{name}: the vehicle did not separate from the barrier for good: {outcome_detail(result)}"
         if name == "exit_angle":
-            return f"{name}: the vehicle does not leave on the traffic side: {result.outcome_detail}"
+            return f"{name}: the vehicle does not leave on the traffic side: {outcome_detail(result)}"
     return f"{name}: the run does not have it, see birm3d.metrics.compute_metrics"

@@ -1,24 +1,17 @@
 """The skin of the vehicle over time, for pictures.
 
-A run keeps no frames: it pays nothing for pictures that nobody asked for. The core is deterministic, so the
-frames of a finished run are taken by running its scene once more; that both end in the same bits is checked.
+A run keeps no frames: it pays nothing for pictures that nobody asked for; see :mod:`birm3d.result.capture`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from ..vehicle.unit_shapes import unit_shapes
-
-if TYPE_CHECKING:
-    from .result import Result
-
-__all__ = ["Frames", "capture", "frame_times", "pose"]
+__all__ = ["Frames", "frame_times", "pose"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -95,43 +88,6 @@ def frame_times(time: Floats, frames: int | Sequence[float] | npt.NDArray[np.flo
             f"frames must be within {time[0]:g} to {time[-1]:g} s, got {instants[0]:g} to {instants[-1]:g} s"
         )
     return instants
-
-
-def capture(result: Result, frames: int | Sequence[float] | npt.NDArray[np.float64]) -> Frames:
-    """Run the scene of a result once more and return its frames, linear between the ends of steps.
-
-    Raises
-    ------
-    ValueError
-        If the frames are outside the run, or the scene does not end in the same bits as the result did: then
-        another version of the package made it.
-    """
-    from ..simulation.simulation import Simulation
-
-    times = frame_times(result.time, frames)
-    core = Simulation.from_scene(result.scene)._core
-    rest = [shape.nodes for shape in unit_shapes(result.scene.vehicle)]
-    taken = [np.empty((len(times), len(nodes), 3), np.float32) for nodes in rest]
-    before = [core.nodes(unit) for unit in range(len(rest))]
-    began, k = core.time, 0
-    for _ in range(result.statistics.steps):
-        core.step()
-        now = [core.nodes(unit) for unit in range(len(rest))]
-        while k < len(times) and times[k] <= core.time:
-            share = (times[k] - began) / (core.time - began)
-            for unit, nodes in enumerate(rest):
-                taken[unit][k] = before[unit] + share * (now[unit] - before[unit]) - nodes
-            k += 1
-        before, began = now, core.time
-    if core.state_hash != result.state_hash:
-        raise ValueError(
-            f"frames need a scene that runs the same way again: the result ended in state "
-            f"{result.state_hash:016x}, its scene now in {core.state_hash:016x} "
-            f"(result of birm3d {result.version})"
-        )
-    for unit, nodes in enumerate(rest):  # rows that the clock's rounding puts after the last step
-        taken[unit][k:] = before[unit] - nodes
-    return Frames(times, tuple(taken))
 
 
 def pose(

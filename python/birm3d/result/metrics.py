@@ -14,18 +14,16 @@ import math
 from collections.abc import Callable, Collection, Mapping
 from functools import cached_property, partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _core
 from ..base.arguments import checked
-
-if TYPE_CHECKING:
-    from ..simulation.simulation import Scene
-    from .result import Result
-    from .result_file import Stored
+from ..scene.scene import Scene
+from .record import RunRecord
+from .stored import Stored
 
 __all__ = [
     "ALONG_LINE",
@@ -99,7 +97,7 @@ _STANDSTILL = 0.1
 
 
 @checked
-def compute_metrics(result: Result, names: Collection[str] | None = None) -> dict[str, float]:
+def compute_metrics(result: RunRecord, names: Collection[str] | None = None) -> dict[str, float]:
     """Return the scalars of a run, SI units and degrees: all that it has, or those among `names`.
 
     Always: ``peak_deceleration`` (along r, unfiltered) [m/s^2], ``max_roll``, ``max_pitch``, ``max_yaw``
@@ -158,7 +156,7 @@ def compute_metrics(result: Result, names: Collection[str] | None = None) -> dic
     """
     _require_rows(result.scene, len(result.time))
     if not isinstance(result._history, _core.History):
-        saved = result.metrics
+        saved = result.saved_metrics or {}
         return {name: saved[name] for name in saved if names is None or name in names}
     wanted = tuple(_METRICS) if names is None else names
     return _found(_Run(result.scene, _ResultOutcome(result, result._extremes(extremes_for(wanted)))), wanted)
@@ -197,7 +195,7 @@ def _found(run: _Run, names: Collection[str]) -> dict[str, float]:
 class _ResultOutcome:
     """What a result has in common with the outcome of a run without histories."""
 
-    def __init__(self, result: Result, extremes: _core.Extremes) -> None:
+    def __init__(self, result: RunRecord, extremes: _core.Extremes) -> None:
         self.extremes = extremes
         x, y, z = result.final_velocity.tolist()
         self.final_velocity: _Vector = (x, y, z)
@@ -347,7 +345,7 @@ def _vehicle_penetration(run: _Run) -> float | None:
     return None if run.along else run.extremes.penetration
 
 
-def _greatest(result: Result, name: str) -> float:
+def _greatest(result: RunRecord, name: str) -> float:
     """Greatest deflection of all units [m]."""
     units = range(len(result.scene.vehicle.units))
     return max(float(getattr(result.unit(u), name).max()) for u in units)

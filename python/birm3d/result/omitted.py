@@ -12,12 +12,12 @@ from .metrics import METRIC_UNITS
 
 if TYPE_CHECKING:
     from ..barrier.base import Barrier
-    from .result import Result
+    from .analysis import RunAnalysis
 
 __all__ = ["left_out"]
 
 
-def left_out(result: Result) -> list[str]:
+def left_out(result: RunAnalysis) -> list[str]:
     """Return what was left out, in groups: a line for each thing, how many of how many, and (why).
 
     Nodes, elements, steps and tyres are counted by the core in the steps that were accepted
@@ -41,7 +41,7 @@ def _of(count: int, total: int) -> str:
     return f"all {total:,}" if count == total else f"{count:,} of {total:,}"
 
 
-def _never_met(result: Result) -> str:
+def _never_met(result: RunAnalysis) -> str:
     """Return why a node of the skin met nothing."""
     scene = result.scene
     ground = scene.settings.ground and any(scene.vehicle.core.stands_on_wheels)
@@ -49,7 +49,7 @@ def _never_met(result: Result) -> str:
     return "never met by " + " or ".join(met) if met else "there is nothing to meet"
 
 
-def _nodes(result: Result) -> Iterator[str]:
+def _nodes(result: RunAnalysis) -> Iterator[str]:
     scene, statistics = result.scene, result.statistics
     treads = int((scene.vehicle.wheel_of_node >= 0).sum())
     skin = scene.vehicle.n_nodes - treads
@@ -70,7 +70,7 @@ def _nodes(result: Result) -> Iterator[str]:
         yield f"the crush of {_of(idle, trusses)} trusses (never pressed)"
 
 
-def _body(result: Result) -> Iterator[str]:
+def _body(result: RunAnalysis) -> Iterator[str]:
     statistics = result.statistics
     if statistics.body_steps < statistics.steps:
         left = _of(statistics.steps - statistics.body_steps, statistics.steps)
@@ -81,7 +81,7 @@ def _body(result: Result) -> Iterator[str]:
         yield "contact of the two units with each other, but through their joint"
 
 
-def _barrier(result: Result) -> Iterator[str]:
+def _barrier(result: RunAnalysis) -> Iterator[str]:
     scene = result.scene
     barrier = scene.barrier
     if barrier is None:
@@ -113,7 +113,7 @@ def _barrier(result: Result) -> Iterator[str]:
         yield "friction of tyres at the barrier (its coefficient is 0)"
 
 
-def _skin(result: Result) -> Iterator[str]:
+def _skin(result: RunAnalysis) -> Iterator[str]:
     vehicle, barrier, statistics = result.scene.vehicle, result.scene.barrier, result.statistics
     if statistics.free_steps:
         yield (
@@ -135,7 +135,7 @@ def _dents(barrier: Barrier, reaches: list[float]) -> Iterator[str]:
         yield f"dents beside posts{units} (dent_reach is 0)"
 
 
-def _ground(result: Result) -> Iterator[str]:
+def _ground(result: RunAnalysis) -> Iterator[str]:
     scene, settings, statistics = result.scene, result.scene.settings, result.statistics
     vehicle = scene.vehicle
     wheels = len(vehicle.wheels)
@@ -163,7 +163,7 @@ def _ground(result: Result) -> Iterator[str]:
         yield "brakes (braking is 0: wheels roll)"
 
 
-def _output(result: Result) -> Iterator[str]:
+def _output(result: RunAnalysis) -> Iterator[str]:
     if result.frames is None:
         yield "places of the skin over time (no frames were asked for)"
     absent = [name for name in METRIC_UNITS if name not in result.metrics]
@@ -172,7 +172,7 @@ def _output(result: Result) -> Iterator[str]:
         yield f"{_of(len(absent), len(METRIC_UNITS))} metrics (the run does not have them): {names}"
 
 
-def _end(result: Result) -> Iterator[str]:
+def _end(result: RunAnalysis) -> Iterator[str]:
     end = f"all that comes after {result.time[-1]:.4f} s"
     if result.end_reason in DECIDED:
         tail = _core.tail_duration

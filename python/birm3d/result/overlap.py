@@ -9,7 +9,7 @@ from ..base.arguments import caller_level
 
 if TYPE_CHECKING:
     from .. import _core
-    from ..simulation.simulation import Scene
+    from ..scene.scene import Scene
 
 __all__ = ["OVERLAP_LIMIT", "OverlapWarning", "warn_if_overlapping"]
 

@@ -10,7 +10,7 @@ from .omitted import left_out
 
 if TYPE_CHECKING:
     from ..barrier.base import Barrier
-    from .result import Result
+    from .analysis import RunAnalysis
 
 __all__ = ["END_REASONS", "report"]
 
@@ -25,7 +25,7 @@ END_REASONS = {
 """Why a run ended, in words."""
 
 
-def report(result: Result) -> str:
+def report(result: RunAnalysis) -> str:
     """Return the report of a run as text."""
     scene, settings, statistics = result.scene, result.scene.settings, result.statistics
     vehicle, metrics = scene.vehicle, result.metrics
@@ -63,7 +63,7 @@ def report(result: Result) -> str:
             f"  the barrier moves by {metrics['barrier_deflection']:.3f} m at the most, "
             f"{metrics['residual_barrier_deflection']:.3f} m at the end"
         )
-    for load in touched_elements(result):
+    for load in touched_elements(result.element_loads):
         lines.append(
             f"  {load.name}: peak 50-ms mean of the force {load.peak_force_50ms / 1e3:.3g} kN at "
             f"{load.height_at_peak:.2f} m, of the overturning moment "

@@ -1,54 +1,33 @@
-"""The outcome of a run: histories, scalars, a report, a table and a plot."""
+"""The result of a run: histories, scalars, a report, a table, pictures and a file."""
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping, Sequence
+import io
+from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
-from .. import _core
+from .. import _core, pictures
 from .._version import __version__
-from ..barrier.free_standing import is_pinned, overturning_ratio
 from ..base.arguments import checked
-from ..base.checks import index as place
-from ..base.frozen_mapping import FrozenMapping
+from ..io.file_format import reads
+from ..scene.scene import Scene
 from ..units import Quantity
-from . import pictures
+from . import result_file
 from . import table as result_table
-from .element_loads import ElementLoad, element_loads
-from .event import Metrics, metrics_of, outcome_detail
-from .frames import Frames, capture, pose
+from .analysis import RunAnalysis
+from .capture import capture
 from .report import report
 from .sensor import Sensor, place_sensor
-from .unit_result import UnitResult, read_only
+from .unit_result import UnitResult
 
-if TYPE_CHECKING:
-    from ..simulation.simulation import Scene
-    from .result_file import Stored, StoredHistory
-
-__all__ = ["Result"]
-
-Floats = npt.NDArray[np.float64]
-
-_ENERGIES = (
-    "kinetic",
-    "potential",
-    "stored",
-    "crushed",
-    "barrier_friction",
-    "tire_friction",
-    "ground_friction",
-    "impacts",
-)
+__all__ = ["Result", "load"]
 
 
 @checked
-class Result:
+class Result(RunAnalysis):
     """Histories of n rows at the output interval, and what follows from them.
 
     Arrays are read-only views, SI, angles in degrees. Positions and velocities hold at the row's instant;
@@ -88,35 +67,6 @@ class Result:
     write_html = pictures.write_html
     to_dataframe = result_table.to_dataframe
 
-    def __init__(
-        self,
-        *,
-        scene: Scene,
-        history: _core.History | StoredHistory,
-        statistics: _core.StepStatistics | Stored,
-        end_reason: str,
-        state_hash: int,
-        run_time: float,
-        units: tuple[UnitResult, ...],
-        event: _core.Event | Stored | None,
-        frames: Frames | None = None,
-        version: str = __version__,
-    ) -> None:
-        self.scene = scene
-        self.statistics = statistics
-        self.end_reason = end_reason
-        self.state_hash = state_hash
-        self.run_time = run_time
-        self.nodes = units[0].nodes
-        self.deflection = units[0].deflection
-        self.peak_deflection = units[0].peak_deflection
-        self.final_velocity = units[0].final_velocity
-        self.frames = frames
-        self.version = version
-        self._history = history
-        self._units = units
-        self._event = event  # None of a file of version 0.1.0
-
     @classmethod
     def _of(cls, scene: Scene, simulation: _core.Simulation, run_time: float) -> Result:
         history = simulation.history()
@@ -141,256 +91,6 @@ class Result:
             event=simulation.event,
         )
 
-    @property
-    def outcome(self) -> str:
-        """What became of the vehicle: one of :data:`birm3d.result.event.OUTCOMES`."""
-        outcome: str = "undecided" if self._event is None else self._event.outcome
-        return outcome
-
-    @property
-    def outcome_detail(self) -> str:
-        """How the outcome came about: one sentence."""
-        return outcome_detail(self)
-
-    @property
-    def time(self) -> Floats:
-        """Shape (n,) [s]."""
-        return self._history.time
-
-    def unit(self, index: int) -> UnitResult:
-        """Return the histories of one rigid body: 0 the leading one (or the only one), 1 the trailing one.
-
-        Raises
-        ------
-        ValueError
-            If the vehicle has no such unit.
-        """
-        return self._units[place("index", index, len(self._units), "units")]
-
-    @property
-    def position(self) -> Floats:
-        """Mass centre of unit 0, world axes, shape (n, 3) [m]."""
-        return self._units[0].position
-
-    @property
-    def velocity(self) -> Floats:
-        """Of the mass centre of unit 0, world axes, shape (n, 3) [m/s]."""
-        return self._units[0].velocity
-
-    @property
-    def acceleration(self) -> Floats:
-        """Of the mass centre of unit 0, body axes r, s, t, shape (n, 3) [m/s^2]; interval means."""
-        return self._units[0].acceleration
-
-    @property
-    def angular_velocity(self) -> Floats:
-        """Of unit 0, body axes r, s, t, shape (n, 3) [deg/s]."""
-        return self._units[0].angular_velocity
-
-    @property
-    def roll(self) -> Floats:
-        """Of unit 0 about r, shape (n,) [deg]."""
-        return self._units[0].roll
-
-    @property
-    def pitch(self) -> Floats:
-        """Of unit 0 about s, positive nose-down, shape (n,) [deg]."""
-        return self._units[0].pitch
-
-    @property
-    def yaw(self) -> Floats:
-        """Of unit 0 about t, from the initial heading, positive to the left, shape (n,) [deg]."""
-        return self._units[0].yaw
-
-    @cached_property
-    def barrier_force(self) -> Floats:
-        """Of the barrier on the vehicle, all units, world axes, shape (n, 3) [N]; interval means."""
-        return self._sum("barrier_force")
-
-    @cached_property
-    def barrier_normal_force(self) -> Floats:
-        """Component of ``barrier_force`` along the barrier's normal, shape (n,) [N]; interval means.
-
-        F_n = -F . n with n the horizontal unit vector square to the barrier's line, away from the traffic; on
-        paths along the line (angles 0 and 180) n is the path's direction. Compression is positive. It is the
-        load in this direction: forces of two posts, or of two faces of one post, that oppose each other
-        across n do not add to it; friction with a component along n, as on a slope, is in it.
-        """
-        return self._sum("barrier_normal_force")
-
-    @cached_property
-    def sum_of_contact_forces(self) -> Floats:
-        """Sum of the magnitudes of the normal forces of all nodes, all units, shape (n,) [N]; interval means.
-
-        No load: opposed forces add up in it. It bounds the friction on the barrier, and is above zero exactly
-        where there is contact.
-        """
-        return self._sum("sum_of_contact_forces")
-
-    @cached_property
-    def element_loads(self) -> tuple[ElementLoad, ...]:
-        """Force, moment and resultant height of every element of the barrier; () without a barrier.
-
-        See :class:`birm3d.result.element_loads.ElementLoad` for frames and signs.
-        """
-        return element_loads(self)
-
-    @property
-    def _segments(self) -> int:
-        """How many free-standing segments the barrier has."""
-        barrier = self.scene.barrier
-        return 0 if barrier is None else len(barrier.core.segments)
-
-    @property
-    def segment_position(self) -> Floats:
-        """Foot of the middle of each free-standing segment, world x and y, shape (n, k, 2) [m].
-
-        Segments are those of ``scene.barrier.element_names``; k is 0 where the barrier is fixed.
-        """
-        return self._of_segments("segment_position", (2,))
-
-    @property
-    def segment_velocity(self) -> Floats:
-        """Of the mass centre of each free-standing segment, world x and y, shape (n, k, 2) [m/s]."""
-        return self._of_segments("segment_velocity", (2,))
-
-    @cached_property
-    def segment_yaw(self) -> Floats:
-        """Turn of each free-standing segment since the start, positive to the left, shape (n, k) [deg]."""
-        return read_only(np.degrees(self._of_segments("segment_yaw", ())))
-
-    @cached_property
-    def segment_yaw_rate(self) -> Floats:
-        """Of each free-standing segment, shape (n, k) [deg/s]."""
-        return read_only(np.degrees(self._of_segments("segment_yaw_rate", ())))
-
-    @cached_property
-    def overturning_ratio(self) -> Floats:
-        """Overturning over restoring moment of each free-standing segment, 50-ms means, shape (n, k).
-
-        Above 1 it would begin to tip, which the model leaves out; see
-        :func:`birm3d.barrier.free_standing.overturning_ratio`.
-        """
-        if self._segments == 0:
-            return read_only(np.zeros((len(self.time), 0)))
-        return read_only(overturning_ratio(self))
-
-    def _of_segments(self, name: str, more: tuple[int, ...]) -> Floats:
-        if self._segments == 0:  # files of earlier versions have none
-            return read_only(np.zeros((len(self.time), 0, *more)))
-        values: Floats = getattr(self._history, name)
-        return values
-
-    @cached_property
-    def tire_reaction(self) -> Floats:
-        """Normal force under each wheel of all units, shape (n, wheels) [N]; interval means."""
-        if len(self._units) == 1:
-            return self._units[0].tire_reaction
-        return read_only(np.concatenate([unit.tire_reaction for unit in self._units], axis=1))
-
-    @cached_property
-    def ground_force(self) -> Floats:
-        """Of the ground on the bodies, not the tyres, world axes, shape (n, 3) [N]; interval means."""
-        return self._sum("ground_force")
-
-    @cached_property
-    def tire_friction_force(self) -> Floats:
-        """Of the ground on the vehicle, tangential, world axes, shape (n, 3) [N]; interval means."""
-        return self._sum("tire_friction_force")
-
-    def _sum(self, name: str) -> Floats:
-        if len(self._units) == 1:
-            values: Floats = getattr(self._units[0], name)
-            return values
-        return read_only(np.sum([getattr(unit, name) for unit in self._units], axis=0))
-
-    @property
-    def joint_force(self) -> Floats:
-        """Of the joint on the leading unit, world axes, shape (n, 3) [N]; interval means."""
-        return self._joint.force
-
-    @property
-    def joint_moment(self) -> Floats:
-        """Of the joint on the leading unit about the joint, world axes, shape (n, 3) [N m]; means."""
-        return self._joint.moment
-
-    @property
-    def articulation_angle(self) -> Floats:
-        """Yaw of the trailing unit from the leading one, positive to the left, shape (n,) [deg].
-
-        The jackknife angle: the turn of the kingpin in the fifth wheel. Pitch, roll and this yaw follow each
-        other as in a Cardan joint, see ``joint_pitch`` and ``joint_roll``.
-        """
-        return self._joint_angles[:, 2]
-
-    @property
-    def joint_roll(self) -> Floats:
-        """Roll of the trailing unit from the leading one, shape (n,) [deg]."""
-        return self._joint_angles[:, 0]
-
-    @property
-    def joint_pitch(self) -> Floats:
-        """Pitch of the trailing unit from the leading one, positive nose-down, shape (n,) [deg]."""
-        return self._joint_angles[:, 1]
-
-    @property
-    def _joint(self) -> _core.JointHistory | Stored:
-        if self.scene.vehicle.joint is None:
-            raise ValueError(f"a joint needs a vehicle of two units, got {self.scene.vehicle.name!r} of one")
-        return self._history.joint(0)
-
-    @cached_property
-    def _joint_angles(self) -> Floats:
-        return read_only(np.degrees(np.unwrap(self._joint.roll_pitch_yaw, axis=0)))
-
-    @cached_property
-    def energy(self) -> Mapping[str, Floats]:
-        """Energy ledger, name -> shape (n,) [J].
-
-        ``kinetic`` and ``potential`` of the body, ``stored`` (elastic) and ``crushed`` (plastic) in trusses,
-        ``barrier_friction``, ``tire_friction``, ``ground_friction`` (of the body on the ground) and
-        ``impacts`` (lost in rigid contacts); their ``total``; and ``residual``, total now less total at the
-        start: no work enters from outside.
-        ``kinetic`` is that of all bodies. Where the barrier is free-standing also
-        ``barrier_ground_friction``, what its segments lost to friction on the ground.
-        Where units or segments are joined also ``joints``: what the held directions took, zero but for the
-        error of the steps; it has a term of its own so that this error shows and is not mistaken for a loss.
-        What the stops of a fifth wheel take is in ``impacts``.
-        """
-        terms = {name: getattr(self._history, name) for name in _ENERGIES}
-        if self._segments:
-            terms["barrier_ground_friction"] = self._history.segment_friction
-        if self.scene.vehicle.joint is not None or is_pinned(self.scene.barrier):
-            terms["joints"] = self._history.joint_work
-        total = np.sum(list(terms.values()), axis=0)
-        return FrozenMapping({**terms, "total": read_only(total), "residual": read_only(total - total[0])})
-
-    @property
-    def momentum_residual(self) -> float:
-        """Greatest |m a - sum of forces| over the greatest force, of all rows.
-
-        The greatest force is at least the weight, and that which stops the vehicle from its speed at the
-        start (at least 0.1 m/s) within 1 s: where nothing pushes, rounding is not measured by itself.
-        """
-        return self._history.momentum_residual
-
-    @cached_property
-    def metrics(self) -> Metrics:
-        """Scalars in SI, angles in degrees; see :mod:`birm3d.metrics`. Only those that the run has.
-
-        A name that is absent raises a KeyError that says why.
-        """
-        return metrics_of(self)
-
-    def _extremes(self, groups: _core.ExtremeGroups) -> _core.Extremes:
-        """Extremes of the histories, of a result that was not read from a file."""
-        assert isinstance(self._history, _core.History)
-        assert isinstance(self._event, _core.Event)
-        barrier = self.scene.barrier
-        return self._history.extremes(
-            groups, self._event, self.scene.vehicle.core, [] if barrier is None else [barrier.core]
-        )
-
     def report(self) -> str:
         """Return what was computed, what was left out, and how the ledgers close, as text."""
         return self._report
@@ -398,18 +98,6 @@ class Result:
     @cached_property
     def _report(self) -> str:
         return report(self)
-
-    def final_nodes(self, unit: int = 0) -> Floats:
-        """Return the shell nodes of one unit at the end, body axes, shape (k, 3) [m]."""
-        return self.unit(unit).nodes
-
-    def pose(self, time: npt.ArrayLike, unit: int = 0) -> tuple[Floats, Floats]:
-        """Return mass centres (k, 3) [m] and rotation matrices body to world (k, 3, 3) at instants (k,) [s].
-
-        Positions are linear between the rows, orientations turn at a constant rate.
-        """
-        rows = self._history.unit(place("unit", unit, len(self._units), "units"))
-        return pose(self.time, rows.position, rows.roll_pitch_yaw, time)
 
     def sensor(self, point: str | Sequence[Quantity], part: str | int | None = None) -> Sensor:
         """Return the motion of a point that is fixed to the vehicle, as a gauge there would record it.
@@ -460,21 +148,48 @@ class Result:
         ValueError
             If the path is a folder or lies in none.
         """
-        from .result_file import save
-
-        save(self, path)
+        result_file.save(self, self._text_of_file(), path)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        from .result_file import from_bytes, to_bytes
+        stream = io.BytesIO()
+        result_file.write(self, self._text_of_file(), stream)
+        return (_from_bytes, (stream.getvalue(),))
 
-        return (from_bytes, (to_bytes(self),))
+    def _text_of_file(self) -> str | None:
+        """Report for the file; a run of one row has no metrics, so it has none."""
+        return self.report() if len(self.time) > 1 else None
 
     def _repr_html_(self) -> str:
         """Return what notebooks show: outcome, headline numbers, a small plan view."""
-        from ..html_page.notebook import result_html
-
-        return result_html(self)
+        return pictures.result_html(self)
 
     def __repr__(self) -> str:
         rows, steps = len(self.time), self.statistics.steps
         return f"Result({self.outcome}, {rows} rows to {self.time[-1]:g} s, {self.end_reason}, {steps} steps)"
+
+
+@reads("must be a file of Result.save(), npz")
+def load(path: str | Path) -> Result:
+    """Read a result that :meth:`Result.save` wrote; its scene can be run again.
+
+    Raises
+    ------
+    FileFormatError
+        If the file can not be read, is no result, is damaged or was changed, or is of a version that this one
+        does not know.
+    """
+    path = Path(path)
+    with path.open("rb") as stream:
+        return _of_file(*result_file.read(stream, path))
+
+
+def _from_bytes(content: bytes) -> Result:
+    """Return the result of a file that is in memory; a pickle is such a file."""
+    return _of_file(*result_file.read(io.BytesIO(content), Path("result")))
+
+
+def _of_file(parts: dict[str, Any], report: str | None) -> Result:
+    result = Result(**parts)
+    if report is not None:
+        result.__dict__["_report"] = report  # as it was then
+    return result

@@ -9,7 +9,6 @@ report.
 
 from __future__ import annotations
 
-import io
 import json
 import math
 import platform
@@ -23,19 +22,19 @@ import numpy.typing as npt
 from .. import _core
 from ..base.fingerprint import fingerprint
 from ..io.atomic_write import check_format, whole_file
-from ..io.file_format import FileFormatError, checksum, read_json, reading, reads, received
+from ..io.file_format import FileFormatError, checksum, read_json, reading, received
 from ..io.npz_arrays import read_arrays
 from ..scene.codec import decode, encode
-from .event import Metrics
 from .frames import Frames
 from .metrics import ALONG_LINE
+from .stored import Stored, StoredHistory
 from .unit_result import UnitResult, read_only
 
 if TYPE_CHECKING:
-    from ..simulation.simulation import Scene
-    from .result import Result
+    from ..scene.scene import Scene
+    from .analysis import RunAnalysis
 
-__all__ = ["FORMAT_VERSION", "StoredHistory", "load", "save"]
+__all__ = ["FORMAT_VERSION", "read", "save", "write"]
 
 FORMAT_VERSION = 3
 _FORMAT = "birm3d result"
@@ -43,50 +42,14 @@ _LISTED = "elements"  # of the history: records of their own
 _FINAL = ("nodes", "deflection", "peak_deflection", "final_velocity")
 
 
-class Stored:
-    """Named values of a record of the core, read from a file; immutable."""
-
-    def __init__(self, values: Mapping[str, Any]) -> None:
-        self._values = values
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_") or name not in self._values:
-            raise AttributeError(name)
-        return self._values[name]
-
-
-class StoredHistory(Stored):
-    """The history of a run, read from a file; reads like the core's."""
-
-    def __init__(
-        self,
-        values: Mapping[str, Any],
-        units: list[Stored],
-        joints: list[Stored],
-        elements: list[Stored],
-    ) -> None:
-        super().__init__(values)
-        self.elements = elements
-        self._units = units
-        self._joints = joints
-
-    def unit(self, index: int) -> Stored:
-        """Return the history of one unit of the vehicle."""
-        return self._units[index]
-
-    def joint(self, index: int) -> Stored:
-        """Return the history of one joint of the vehicle."""
-        return self._joints[index]
-
-
-def save(result: Result, path: str | Path) -> None:
-    """Write a result, every array bit for bit. The file is complete or is not there."""
+def save(result: RunAnalysis, report: str | None, path: str | Path) -> None:
+    """Write a result and its report, every array bit for bit. The file is complete or is not there."""
     with whole_file(path) as part, part.open("wb") as stream:
-        write(result, stream)
+        write(result, report, stream)
 
 
-def write(result: Result, stream: IO[bytes]) -> None:
-    """Write a result to an open binary file."""
+def write(result: RunAnalysis, report: str | None, stream: IO[bytes]) -> None:
+    """Write a result and its report to an open binary file."""
     arrays: dict[str, npt.NDArray[Any]] = {}
     scene = encode(result.scene, arrays, "scene")
     history = _parts(result._history, _core.History, arrays, "history")
@@ -131,7 +94,7 @@ def write(result: Result, stream: IO[bytes]) -> None:
         "state_hash": f"{result.state_hash:016x}",
         "run_time": result.run_time,
         "metrics": dict(result.metrics) if long_enough else None,
-        "report": result.report() if long_enough else None,
+        "report": report,
     }
     header["checksum"] = _checksum(json.loads(json.dumps(header, allow_nan=False)), arrays)
     arrays["header"] = np.array(json.dumps(header, allow_nan=False))
@@ -139,35 +102,8 @@ def write(result: Result, stream: IO[bytes]) -> None:
     np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
 
 
-def to_bytes(result: Result) -> bytes:
-    """Return a result as the bytes of its file."""
-    stream = io.BytesIO()
-    write(result, stream)
-    return stream.getvalue()
-
-
-def from_bytes(content: bytes) -> Result:
-    """Return the result that :func:`to_bytes` was given."""
-    return read(io.BytesIO(content), Path("result"))
-
-
-@reads("must be a file of Result.save(), npz")
-def load(path: str | Path) -> Result:
-    """Read a result that :meth:`Result.save` wrote; its scene can be run again.
-
-    Raises
-    ------
-    FileFormatError
-        If the file can not be read, is no result, is damaged or was changed, or is of a version that this one
-        does not know.
-    """
-    path = Path(path)
-    with path.open("rb") as stream:
-        return read(stream, path)
-
-
-def read(stream: IO[bytes], path: Path) -> Result:
-    """Read a result from an open binary file; `path` is for messages."""
+def read(stream: IO[bytes], path: Path) -> tuple[dict[str, Any], str | None]:
+    """Return what a result is made of, and its report, from an open binary file; `path` is for messages."""
     with reading(path, "must be a file of Result.save(), npz"):
         arrays = read_arrays(stream, path)
     if "header" not in arrays:
@@ -175,14 +111,14 @@ def read(stream: IO[bytes], path: Path) -> Result:
     header = read_json(path, str(arrays.pop("header")))
     check_format(path, header, _FORMAT, 2, FORMAT_VERSION)
     with reading(path, "must be a complete result"):
-        result = _result(header, arrays)
+        parts = _parts_of_result(header, arrays)
         found = header.pop("checksum", None)
         if found is not None or header["format_version"] != 2:  # that had none
             expected = _checksum(header, arrays)
             if found != expected:
                 reason = f"checksum must be {expected}, got {received(found)}: the file was changed"
                 raise FileFormatError.at(path, None, reason)
-    return result
+    return parts, header["report"]
 
 
 def _checksum(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -> str:
@@ -190,9 +126,7 @@ def _checksum(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]])
     return fingerprint(checksum(header), *(part for name in sorted(arrays) for part in (name, arrays[name])))
 
 
-def _result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -> Result:
-    from .result import Result
-
+def _parts_of_result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -> dict[str, Any]:
     units, joints, elements = (
         [Stored(_values(one, arrays)) for one in header[name]] for name in ("units", "joints", "elements")
     )
@@ -203,7 +137,7 @@ def _result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -
         moved = tuple(arrays[f"frames/{i}/displacement"] for i in range(len(units)))
         frames = Frames(arrays["frames/time"], moved)
     event = header.get("event")  # files of 0.1.0 have none
-    result = Result(
+    return dict(
         scene=scene,
         history=StoredHistory(_values(header["history"], arrays), units, joints, elements),
         statistics=Stored(_values(header["statistics"], arrays)),
@@ -217,12 +151,8 @@ def _result(header: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -
         event=None if event is None else Stored(_values(event, arrays)),
         frames=frames,
         version=header["made_with"]["birm3d"],
+        saved_metrics=header["metrics"],
     )
-    if header["metrics"] is not None:
-        # As they were then: a later version may compute them in another way.
-        result.__dict__["metrics"] = Metrics(result, header["metrics"])
-        result.__dict__["_report"] = header["report"]
-    return result
 
 
 def _with_normal_force(unit: Stored, scene: Scene) -> Stored:

@@ -9,7 +9,7 @@ from .overlap import warn_if_overlapping
 
 if TYPE_CHECKING:
     from .. import _core
-    from ..simulation.simulation import Scene
+    from ..scene.scene import Scene
 
 __all__ = ["warn_of_run"]
 

@@ -17,7 +17,7 @@ from .unit_result import read_only
 
 if TYPE_CHECKING:
     from ..vehicle.vehicle import Vehicle
-    from .result import Result
+    from .record import RunRecord
 
 __all__ = ["Sensor", "place_sensor"]
 
@@ -49,7 +49,7 @@ class Sensor:
         From the unit's mass centre, body axes r, s, t (forward, left, up) [m].
     """
 
-    def __init__(self, result: Result, name: str, point: npt.ArrayLike, unit: int = 0) -> None:
+    def __init__(self, result: RunRecord, name: str, point: npt.ArrayLike, unit: int = 0) -> None:
         vehicle = result.scene.vehicle.units[index("unit", unit, len(result.scene.vehicle.units), "units")]
         self.name = name
         self.part = vehicle.name
@@ -160,7 +160,7 @@ class Sensor:
         return f"Sensor({self.name!r} of {self.part} at ({x:g}, {y:g}, {z:g}) m, {len(self.time)} rows)"
 
 
-def place_sensor(result: Result, point: str | Sequence[Quantity], part: str | int | None) -> Sensor:
+def place_sensor(result: RunRecord, point: str | Sequence[Quantity], part: str | int | None) -> Sensor:
     """Return the sensor at a point; see :meth:`birm3d.Result.sensor`."""
     units = result.scene.vehicle.units
     which = None if part is None else _unit_of(units, part)

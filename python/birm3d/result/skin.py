@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ..vehicle.unit_shapes import unit_shapes
-from .frames import capture
+from .capture import capture
 
 if TYPE_CHECKING:
-    from .result import Result
+    from .record import RunRecord
 
 __all__ = ["Skin", "skins_at"]
 
@@ -47,7 +47,7 @@ class Skin(NamedTuple):
         return np.asarray(np.linalg.norm(self.displacement, axis=1))
 
 
-def skins_at(result: Result, instants: npt.ArrayLike) -> list[tuple[Skin, ...]]:
+def skins_at(result: RunRecord, instants: npt.ArrayLike) -> list[tuple[Skin, ...]]:
     """Return the skins of all units at some instants: a list over instants of tuples over units.
 
     From the result's frames, linear between them; a result without frames is run once more.

@@ -8,7 +8,7 @@ from .. import units
 from .element_loads import touched_elements
 
 if TYPE_CHECKING:
-    from .result import Result
+    from .analysis import RunAnalysis
 
 __all__ = ["ELEMENT_COLUMNS", "HEADLINES", "element_rows", "elements_in_si", "headline_rows", "outcome_rows"]
 
@@ -73,7 +73,7 @@ HEADLINES = tuple(row.metric for row in _ROWS if row.headline)
 """Metrics by which a run or a study is judged first."""
 
 
-def outcome_rows(result: Result) -> list[tuple[str, str, str]]:
+def outcome_rows(result: RunAnalysis) -> list[tuple[str, str, str]]:
     """Return label, value and unit: the outcome, then the scalars that a run has."""
     metrics = result.metrics
     return [
@@ -87,7 +87,7 @@ def outcome_rows(result: Result) -> list[tuple[str, str, str]]:
     ]
 
 
-def element_rows(result: Result) -> list[tuple[str, ...]]:
+def element_rows(result: RunAnalysis) -> list[tuple[str, ...]]:
     """Return the loads on the elements that were touched, one row each; see ``ELEMENT_COLUMNS``."""
     return [
         (
@@ -97,11 +97,11 @@ def element_rows(result: Result) -> list[tuple[str, ...]]:
             f"{load.height_at_peak:.2f}",
             f"{load.peak_overturning_moment_50ms / 1e3:.0f}",
         )
-        for load in touched_elements(result)
+        for load in touched_elements(result.element_loads)
     ]
 
 
-def elements_in_si(result: Result) -> list[dict[str, str | float]]:
+def elements_in_si(result: RunAnalysis) -> list[dict[str, str | float]]:
     """Return the loads on the elements that were touched by name, SI."""
     numbers = (
         *("peak_force", "peak_force_50ms", "height_at_peak"),
@@ -109,11 +109,11 @@ def elements_in_si(result: Result) -> list[dict[str, str | float]]:
     )
     return [
         {"name": load.name, **{number: getattr(load, number) for number in numbers}}
-        for load in touched_elements(result)
+        for load in touched_elements(result.element_loads)
     ]
 
 
-def headline_rows(result: Result) -> list[tuple[str, str, str]]:
+def headline_rows(result: RunAnalysis) -> list[tuple[str, str, str]]:
     """Return :func:`outcome_rows` without the metrics that are no headlines."""
     others = {row.label for row in _ROWS if not row.headline}
     return [row for row in outcome_rows(result) if row[0] not in others]

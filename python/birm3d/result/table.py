@@ -12,12 +12,12 @@ from .element_loads import touched_elements
 if TYPE_CHECKING:
     import pandas as pd
 
-    from .result import Result
+    from .analysis import RunAnalysis
 
 __all__ = ["to_dataframe"]
 
 
-def to_dataframe(self: Result) -> pd.DataFrame:
+def to_dataframe(self: RunAnalysis) -> pd.DataFrame:
     """Return the histories as a table, one row an output instant, indexed by time [s].
 
     Of the elements of the barrier those that were touched have columns.
@@ -38,7 +38,7 @@ def to_dataframe(self: Result) -> pd.DataFrame:
     for name in ("roll", "pitch", "yaw"):
         columns[f"{name} [deg]"] = getattr(self, name)
     columns["barrier_normal_force [N]"] = self.barrier_normal_force
-    for load in touched_elements(self):
+    for load in touched_elements(self.element_loads):
         for i, axis in enumerate("xyz"):
             columns[f"{load.name}: force_{axis} [N]"] = load.force[:, i]
         for i, axis in enumerate("xyz"):

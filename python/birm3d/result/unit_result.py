@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _core
 from ..base.arguments import checked
-
-if TYPE_CHECKING:
-    from .result_file import Stored
+from .stored import Stored
 
 __all__ = ["UnitResult", "read_only"]
 

@@ -26,11 +26,11 @@ def _classes() -> Mapping[str, type[Any]]:
     """Return the classes that scenes are made of by the names they have in files."""
     from ..barrier.free_standing import FreeStanding
     from ..barrier.kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
-    from ..simulation.simulation import Scene
     from ..vehicle.articulated import ArticulatedVehicle, Joint
     from ..vehicle.mesher import ExteriorMesh
     from ..vehicle.vehicle import Vehicle, Zone
     from ..vehicle.vehicle_file import VehicleFile
+    from .scene import Scene
     from .settings import Settings
 
     known: tuple[type[Any], ...] = (

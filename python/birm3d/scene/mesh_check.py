@@ -9,23 +9,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from ..barrier.kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
 from ..base.arguments import caller_level
 
 if TYPE_CHECKING:
     from ..barrier.base import Barrier
-    from ..simulation.simulation import Scene
     from ..vehicle.vehicle import Vehicle
+    from .scene import Scene
 
-__all__ = ["CoarseSkinWarning", "node_spacing", "warn_if_coarse"]
-
-Floats = npt.NDArray[np.float64]
-
-# Neighbours among which the nearest beside a node is looked for, and nodes for which it is.
-_NEIGHBOURS = 16
-_SAMPLE = 4096
+__all__ = ["CoarseSkinWarning", "warn_if_coarse"]
 
 
 class CoarseSkinWarning(UserWarning):
@@ -54,23 +47,6 @@ class _Part:
     width: float
     low: float
     high: float
-
-
-def node_spacing(nodes: Floats) -> float:
-    """Return the median distance of nodes (n, 3) from the nearest other beside them [m].
-
-    Beside: further away along the ground than up or down. Infinite where most nodes have none, as one node
-    or one column.
-    """
-    from scipy.spatial import cKDTree
-
-    if len(nodes) == 1:
-        return math.inf
-    some = nodes[:: max(1, len(nodes) // _SAMPLE)]
-    distance, which = cKDTree(nodes).query(some, k=min(len(nodes), _NEIGHBOURS + 1))
-    way = np.abs(nodes[which] - some[:, None])
-    beside = np.hypot(way[..., 0], way[..., 1]) > way[..., 2]
-    return float(np.median(np.where(beside, distance, np.inf).min(axis=1)))
 
 
 def warn_if_coarse(scene: Scene) -> None:

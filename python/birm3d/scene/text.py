@@ -8,7 +8,7 @@ from .. import units
 from ..barrier.text import barrier_text
 
 if TYPE_CHECKING:
-    from ..simulation.simulation import Scene
+    from .scene import Scene
 
 __all__ = ["scene_text"]
 

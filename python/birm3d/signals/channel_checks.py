@@ -6,15 +6,13 @@ Nothing is mended here: a finding names the method of :class:`birm3d.Channel` th
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from ..base.arguments import checked
-
-if TYPE_CHECKING:
-    from .channel import Channel
+from .samples import Samples
 
 __all__ = ["Finding", "Findings", "check_channel"]
 
@@ -77,7 +75,7 @@ class Findings(tuple[Finding, ...]):
 
 @checked
 def check_channel(
-    channel: Channel,
+    channel: Samples,
     *,
     impact_speed: float | None = None,
     mass: float | None = None,
@@ -126,7 +124,7 @@ def check_channel(
     return Findings(found)
 
 
-def _sampling(channel: Channel, cfc: float | None) -> Finding:
+def _sampling(channel: Samples, cfc: float | None) -> Finding:
     if not channel.is_even:
         steps = np.diff(channel.time)
         return Finding(
@@ -142,7 +140,7 @@ def _sampling(channel: Channel, cfc: float | None) -> Finding:
     return Finding("note", "sampling", f"rows every {interval:g} s, from {channel.time[0]:g} s")
 
 
-def _onset(channel: Channel) -> float:
+def _onset(channel: Samples) -> float:
     """Instant at which the record rises [s]."""
     time, values = channel.time, channel.values
     rows = max(1, round(_ONSET_WINDOW / float(np.median(np.diff(time)))))
@@ -156,7 +154,7 @@ def _onset(channel: Channel) -> float:
     return float(time[np.argmax(away >= limit)])
 
 
-def _time_zero(channel: Channel, onset: float, within: float) -> Finding:
+def _time_zero(channel: Samples, onset: float, within: float) -> Finding:
     if not channel.time[0] <= 0.0 < channel.time[-1]:
         return Finding(
             "warning", "time zero",
@@ -170,7 +168,7 @@ def _time_zero(channel: Channel, onset: float, within: float) -> Finding:
     return Finding("note", "time zero", f"the record rises at {1e3 * onset:.1f} ms")
 
 
-def _bias(channel: Channel, before: float) -> Finding:
+def _bias(channel: Samples, before: float) -> Finding:
     rows = channel.values[channel.time < before]
     if len(rows) < _FEWEST_BEFORE:
         return Finding("note", "bias", "not checked: the record has too few rows before the impact")
@@ -182,7 +180,7 @@ def _bias(channel: Channel, before: float) -> Finding:
 
 
 def _sign_and_unit(
-    channel: Channel, start: float, unit: str, speed: float | None, mass: float | None
+    channel: Samples, start: float, unit: str, speed: float | None, mass: float | None
 ) -> Finding:
     quantity = channel.quantity
     if speed is None or (quantity == "force" and mass is None):

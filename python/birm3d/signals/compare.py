@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .. import pictures
 from ..base.arguments import checked
 from .channel import Channel
 from .curve_metrics import Residuals, SpragueGeers, residuals, sprague_geers
@@ -133,9 +134,7 @@ class CurveComparison:
 
     def plot(self) -> Figure:
         """Return a figure of both curves and of the residuals with their band."""
-        from ..plotting import plot_comparison
-
-        return plot_comparison(self)
+        return pictures.plot_comparison(self)
 
     def __repr__(self) -> str:
         m, p, _ = self.sprague_geers

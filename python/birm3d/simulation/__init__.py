@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
-from .simulation import Scene, Simulation
+from ..scene.scene import Scene
+from .simulation import Simulation
 
 __all__ = ["Scene", "Simulation"]

@@ -33,11 +33,12 @@ from functools import lru_cache
 from typing import Any
 
 from ..base.arguments import checked
+from ..scene.scene import APPROACH, Scene
 from ..scene.settings import Settings
 from ..units import quantity_in, si
 from ..vehicle.vehicle import TRUSS_LAW, Vehicle, Zone
 from ..vehicle.zone import positive
-from .simulation import APPROACH, Scene, Simulation
+from .simulation import Simulation
 
 __all__ = [
     "in_si",

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import lru_cache
+from collections.abc import Sequence
 
 from .. import _core
 from .._version import __version__
@@ -16,82 +13,13 @@ from ..base.progress import run_bar
 from ..result.result import Result
 from ..result.run_warnings import warn_of_run
 from ..scene.mesh_check import warn_if_coarse
-from ..scene.settings import MU_TIRE_BARRIER, Settings
+from ..scene.scene import Scene
+from ..scene.settings import Settings
 from ..unit_check import given
 from ..units import Quantity, si
 from ..vehicle.vehicle import Vehicle
 
-__all__ = ["APPROACH", "Scene", "Simulation"]
-
-APPROACH = ("impact_speed", "impact_angle", "impact_offset", "standoff", "impact_yaw", "impact_roll")
-"""Numbers of a scene that say how the vehicle comes; nothing has to be made anew for others."""
-
-
-@checked
-@dataclass(frozen=True)
-class Scene:
-    """What a run is about; the arguments of :class:`Simulation`."""
-
-    vehicle: Vehicle
-    barrier: Barrier | None
-    impact_speed: float
-    impact_angle: float
-    impact_offset: float
-    standoff: float
-    impact_yaw: float
-    impact_roll: float
-    duration: float | None
-    settings: Settings
-
-    @property
-    def mu_tire_barrier(self) -> float:
-        """Friction coefficient of tyres at the barrier: what the settings ask for, or their default rule."""
-        asked = self.settings.mu_tire_barrier
-        if asked is not None:
-            return asked
-        return 0.0 if self.barrier is not None and self.barrier.friction == 0.0 else MU_TIRE_BARRIER
-
-    def approached(self, numbers: Mapping[str, float]) -> Scene:
-        """Return the same scene with other numbers of ``APPROACH``; not checked."""
-        scene = object.__new__(Scene)  # dataclasses.replace() takes longer than a metric
-        scene.__dict__.update(self.__dict__)
-        scene.__dict__.update(numbers)
-        return scene
-
-    def start(self) -> _core.Simulation:
-        """Return the run of the core at t = 0, checked."""
-        return _core.Simulation(self.core_scene())
-
-    def core_scene(self) -> _core.Scene:
-        """Return the same scene for the core, checked but for its start."""
-        if not isinstance(self.vehicle, Vehicle):
-            raise TypeError(f"vehicle must be a birm3d.Vehicle, got {type(self.vehicle).__name__}")
-        if self.barrier is not None and not isinstance(self.barrier, Barrier):
-            raise TypeError(f"barrier must be a birm3d.Barrier or None, got {type(self.barrier).__name__}")
-        return _core.Scene(
-            vehicle=self.vehicle.core,
-            barriers=[] if self.barrier is None else [self.barrier.core],
-            approach=self.approach,
-            settings=_with_tire_friction(self.settings, self.mu_tire_barrier).core,
-            duration=self.duration,
-        )
-
-    @property
-    def approach(self) -> _core.Approach:
-        """How the vehicle comes, for the core."""
-        return _core.Approach(
-            speed=self.impact_speed,
-            angle=math.radians(self.impact_angle),
-            offset=self.impact_offset,
-            standoff=self.standoff,
-            yaw=math.radians(self.impact_yaw),
-            roll=math.radians(self.impact_roll),
-        )
-
-
-@lru_cache(maxsize=16)
-def _with_tire_friction(settings: Settings, mu_tire_barrier: float) -> Settings:
-    return replace(settings, mu_tire_barrier=mu_tire_barrier)
+__all__ = ["Simulation"]
 
 
 @checked

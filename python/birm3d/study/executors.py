@@ -33,8 +33,9 @@ from .. import _core
 from ..result.metrics import extremes_for, metrics_of_outcome
 from ..result.run_warnings import warn_of_run
 from ..scene.mesh_check import warn_if_coarse
+from ..scene.scene import APPROACH, Scene
 from ..simulation.parameters import varied_scene
-from ..simulation.simulation import APPROACH, Scene, Simulation
+from ..simulation.simulation import Simulation
 from .store import Outcome
 
 __all__ = ["ExecutorError", "Finished", "run_all"]

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from .. import pictures
 from ..base.arguments import checked
 from ..result.metrics import METRIC_UNITS
 from ..simulation.simulation import Simulation
@@ -83,14 +84,10 @@ class Fragility:
 
     def plot(self) -> Figure:
         """Return a figure of counted probabilities with their intervals, and the fit with its band."""
-        from ..plotting.studies import plot_fragility
-
-        return plot_fragility(self)
+        return pictures.plot_fragility(self)
 
     def _repr_html_(self) -> str:
-        from ..html_page.notebook import text_html
-
-        return text_html(repr(self), self.plot(), "fragility curve")
+        return pictures.text_html(repr(self), self.plot(), "fragility curve")
 
     def __repr__(self) -> str:
         if self.fit is None:

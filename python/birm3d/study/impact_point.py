@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from .. import pictures
 from ..base.arguments import checked
 from ..simulation.parameters import in_si, unit_of, value_of
 from ..simulation.simulation import Simulation
@@ -65,14 +66,10 @@ class CriticalImpactPoint:
 
     def plot(self) -> Figure:
         """Return the metric over the ranges that were searched, with the critical point."""
-        from ..plotting.uncertainty import plot_critical_point
-
-        return plot_critical_point(self)
+        return pictures.plot_critical_point(self)
 
     def _repr_html_(self) -> str:
-        from ..html_page.notebook import text_html
-
-        return text_html(repr(self), self.plot(), "critical impact point")
+        return pictures.text_html(repr(self), self.plot(), "critical impact point")
 
     def __repr__(self) -> str:
         notes = {name: ", no effect" for name in self.no_effect}

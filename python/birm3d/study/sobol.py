@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .. import pictures
 from ..base.arguments import checked
 from ..base.frozen_mapping import FrozenMapping
 from ..simulation.simulation import Simulation
@@ -138,14 +139,10 @@ class SobolIndices:
 
     def plot(self, metrics: Sequence[str] | None = None) -> Figure:
         """Return bars of first and total order, a panel a metric; ``None``: of the first six."""
-        from ..plotting.uncertainty import plot_sobol
-
-        return plot_sobol(self, metrics)
+        return pictures.plot_sobol(self, metrics)
 
     def _repr_html_(self) -> str:
-        from ..html_page.notebook import text_html
-
-        return text_html(repr(self), self.plot() if self.metrics else None, "Sobol indices")
+        return pictures.text_html(repr(self), self.plot() if self.metrics else None, "Sobol indices")
 
     def __repr__(self) -> str:
         left_out = "".join(f"; {name}: {reason}" for name, reason in self.left_out.items())

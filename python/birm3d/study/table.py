@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .. import pictures
 from .._version import __version__
 from ..barrier.text import varied_barrier_text
 from ..base.arguments import checked
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from ..simulation.simulation import Scene, Simulation
+    from ..scene.scene import Scene
+    from ..simulation.simulation import Simulation
     from .outcome_table import OutcomeTable
 
 __all__ = ["Study", "Summary"]
@@ -338,15 +340,11 @@ class Study:
         for axis, name in (("x", x), ("y", y), ("by", by)):
             if name is not None and name not in known:
                 raise ValueError(f"{axis} must be one of {', '.join(known)}; got {name!r}")
-        from ..plotting.studies import plot_study
-
-        return plot_study(self, x, y, by)
+        return pictures.plot_study(self, x, y, by)
 
     def _repr_html_(self) -> str:
         """Return what notebooks show: outcomes, parameters, the spread of the metrics, a scatter."""
-        from ..html_page.notebook import study_html
-
-        return study_html(self)
+        return pictures.study_html(self)
 
     def __repr__(self) -> str:
         failed = len(self.failed)

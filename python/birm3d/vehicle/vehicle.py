@@ -726,8 +726,8 @@ class Vehicle:
 
     @cached_property
     def node_spacing(self) -> float:
-        """Distance between neighbours of the skin [m], see :func:`birm3d.scene.mesh_check.node_spacing`."""
-        from ..scene.mesh_check import node_spacing
+        """Distance between neighbours of the skin [m]: the median, see :mod:`birm3d.vehicle.node_spacing`."""
+        from .node_spacing import node_spacing
 
         if self._shape is not None and self._is_shape():
             return self._shape.node_spacing

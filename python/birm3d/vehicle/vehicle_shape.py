@@ -82,8 +82,8 @@ class VehicleShape:
 
     @cached_property
     def node_spacing(self) -> float:
-        """Distance between neighbours of the skin [m], see :func:`birm3d.scene.mesh_check.node_spacing`."""
-        from ..scene.mesh_check import node_spacing
+        """Distance between neighbours of the skin [m]: the median, see :mod:`birm3d.vehicle.node_spacing`."""
+        from .node_spacing import node_spacing
 
         return node_spacing(self.nodes[(self.wheel_of_node < 0) & (self.along_of_node < 0)])
 

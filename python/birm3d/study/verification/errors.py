@@ -26,7 +26,7 @@ from collections.abc import Collection, Mapping
 from ... import units
 from ...base.frozen_mapping import FrozenMapping
 from ...result.metrics import METRIC_UNITS
-from ...simulation.simulation import Scene
+from ...scene.scene import Scene
 
 __all__ = ["BOOKKEEPING", "LEDGERS", "compared_metrics", "least_scales", "relative_errors"]
 

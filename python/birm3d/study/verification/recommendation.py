@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ...scene.settings import Settings
 from .convergence import Limit
-from .precision_result import AS_GIVEN, PrecisionRow, WorkPrecision
+from .precision_table import AS_GIVEN, PrecisionRow, PrecisionTable
 
 __all__ = ["Recommendation", "recommend", "report"]
 
@@ -41,20 +41,20 @@ class Recommendation:
         return self.text
 
 
-def _bound(study: WorkPrecision, row: PrecisionRow, metrics: Collection[str]) -> float:
+def _bound(study: PrecisionTable, row: PrecisionRow, metrics: Collection[str]) -> float:
     """Greatest error of a row that is possible: found, and what is not known of the converged value."""
     if not row.errors:
         return float("inf")
     return max(row.errors.get(name, float("inf")) + study.uncertainty[name] for name in metrics)
 
 
-def _held(study: WorkPrecision, rows: Sequence[PrecisionRow], metrics: Collection[str]) -> list[float]:
+def _held(study: PrecisionTable, rows: Sequence[PrecisionRow], metrics: Collection[str]) -> list[float]:
     """Greatest possible error of each row and all stricter ones; rows from loose to strict."""
     bounds = [_bound(study, row, metrics) for row in rows]
     return [max(bounds[i:]) for i in range(len(rows))]
 
 
-def recommend(study: WorkPrecision, error: float, metrics: Collection[str] | None) -> Recommendation:
+def recommend(study: PrecisionTable, error: float, metrics: Collection[str] | None) -> Recommendation:
     """Return the cheapest setting; see :meth:`birm3d.study.WorkPrecision.recommend`."""
     if not 0.0 < error < float("inf"):
         raise ValueError(f"error must be finite and > 0, got {error}")
@@ -99,7 +99,7 @@ def recommend(study: WorkPrecision, error: float, metrics: Collection[str] | Non
     return Recommendation(best.settings, best, error, best.errors[worst], uncertainty, "\n".join(lines))
 
 
-def report(study: WorkPrecision, error: float) -> str:
+def report(study: PrecisionTable, error: float) -> str:
     """Return a study in words; see :meth:`birm3d.study.WorkPrecision.report`."""
     lines = [study.title, ""]
     for kind in ("tolerance", "time_step"):

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ... import pictures
 from ...base.arguments import checked
 from .watched import Limits, text
 
@@ -122,9 +123,7 @@ class Stability:
 
     def plot(self) -> Figure:
         """Return a figure of the energy residual of every row, by axis."""
-        from ...plotting.stability import plot_stability
-
-        return plot_stability(self)
+        return pictures.plot_stability(self)
 
     def __repr__(self) -> str:
         count = Counter(row.verdict for row in self.rows)

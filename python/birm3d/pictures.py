@@ -1,0 +1,269 @@
+"""The one way up: what results, studies and calibrations show of themselves is drawn by layers above theirs.
+
+The first half are methods of :class:`birm3d.Result`. No other module imports from a layer above its own; a
+test holds this. Only what a picture needs is loaded, and only when it is made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+from .base.arguments import checked
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+    from matplotlib.figure import Figure
+
+    from .calibration.result import CalibrationResult
+    from .result.result import Result
+    from .signals.compare import CurveComparison
+    from .study.fragility import Fragility
+    from .study.impact_point import CriticalImpactPoint
+    from .study.sobol import SobolIndices
+    from .study.table import Study
+    from .study.verification.precision_result import WorkPrecision
+    from .study.verification.stability_result import Stability
+
+__all__ = [
+    "Color",
+    "Side",
+    "View",
+    "animate",
+    "plot",
+    "plot_comparison",
+    "plot_critical_point",
+    "plot_crush",
+    "plot_elements",
+    "plot_fit",
+    "plot_fragility",
+    "plot_histories",
+    "plot_plan",
+    "plot_profiles",
+    "plot_requested_vs_achieved",
+    "plot_residuals",
+    "plot_sobol",
+    "plot_stability",
+    "plot_study",
+    "plot_work_precision",
+    "render",
+    "result_html",
+    "show",
+    "study_html",
+    "text_html",
+    "write_html",
+]
+
+View: TypeAlias = Literal["three_quarter", "side", "top", "front", "driver"]
+Color: TypeAlias = Literal["crush", "zone", "plain"]
+Side: TypeAlias = Literal["front", "rear", "left", "right"]
+
+
+@checked
+def plot(self: Result) -> Figure:
+    """Return a figure of force, motion, angles and energies against time."""
+    from .plotting import plot_result
+
+    return plot_result(self)
+
+
+@checked
+def plot_histories(self: Result) -> Figure:
+    """Return time histories with their filter class; see :func:`birm3d.plotting.plot_histories`."""
+    from .plotting import plot_histories
+
+    return plot_histories(self)
+
+
+@checked
+def plot_plan(self: Result, times: Sequence[float] | None = None, *, exit_box: bool = True) -> Figure:
+    """Return the plan view of the trajectory; see :func:`birm3d.plotting.plot_plan`."""
+    from .plotting import plot_plan
+
+    return plot_plan(self, times, exit_box=exit_box)
+
+
+@checked
+def plot_crush(
+    self: Result, side: Side | None = None, *, height: float | None = None, unit: int = 0
+) -> Figure:
+    """Return crush map and profile of one side, the struck one if none is given.
+
+    See :func:`birm3d.plotting.plot_crush`.
+    """
+    from .plotting import plot_crush
+
+    return plot_crush(self, side, height=height, unit=unit)
+
+
+@checked
+def plot_elements(self: Result) -> Figure:
+    """Return the loads on the barrier's elements over time; see :func:`birm3d.plotting.plot_elements`."""
+    from .plotting import plot_elements
+
+    return plot_elements(self)
+
+
+@checked
+def render(
+    self: Result,
+    time: float | Sequence[float] | str | Path | None = None,
+    path: str | Path | None = None,
+    *,
+    view: View = "three_quarter",
+    color: Color = "crush",
+    size: tuple[int, int] = (1280, 720),
+    follow: bool = False,
+) -> npt.NDArray[np.uint8]:
+    """Return 3-D pictures of some instants, drawn off-screen; see :func:`birm3d.rendering.render`.
+
+    ``render("end.png")`` writes the end to a file, as ``animate("crash.mp4")`` writes the whole run.
+    """
+    from .rendering import render
+
+    return render(self, time, path, view=view, color=color, size=size, follow=follow)
+
+
+@checked
+def animate(
+    self: Result,
+    path: str | Path,
+    *,
+    frames: int = 100,
+    fps: float = 25.0,
+    view: View = "three_quarter",
+    color: Color = "crush",
+    size: tuple[int, int] = (1280, 720),
+    follow: bool = False,
+    progress: bool | None = None,
+) -> None:
+    """Write a movie of the whole run (.mp4, .gif, ...); see :func:`birm3d.rendering.animate`."""
+    from .rendering import animate
+
+    animate(
+        self,
+        path,
+        frames=frames,
+        fps=fps,
+        view=view,
+        color=color,
+        size=size,
+        follow=follow,
+        progress=progress,
+    )
+
+
+@checked
+def show(self: Result, *, view: View = "three_quarter", color: Color = "crush") -> None:
+    """Open a window with the scene in three dimensions; see :func:`birm3d.rendering.show`."""
+    from .rendering import show
+
+    show(self, view=view, color=color)
+
+
+@checked
+def write_html(self: Result, path: str | Path, *, frames: int = 61) -> None:
+    """Write one self-contained, interactive page; see :func:`birm3d.html_page.write_html`."""
+    from .html_page import write_html
+
+    write_html(self, path, frames=frames)
+
+
+def plot_comparison(comparison: CurveComparison) -> Figure:
+    """Return a figure of both curves and the residuals with their band."""
+    from .plotting import plot_comparison
+
+    return plot_comparison(comparison)
+
+
+def plot_study(study: Study, x: str, y: str, by: str | None) -> Figure:
+    """Return a figure of one column of a study against another."""
+    from .plotting.studies import plot_study
+
+    return plot_study(study, x, y, by)
+
+
+def plot_fragility(curve: Fragility) -> Figure:
+    """Return a figure of counted probabilities and the fit."""
+    from .plotting.studies import plot_fragility
+
+    return plot_fragility(curve)
+
+
+def plot_critical_point(point: CriticalImpactPoint) -> Figure:
+    """Return a figure of a metric over the ranges that were searched."""
+    from .plotting.uncertainty import plot_critical_point
+
+    return plot_critical_point(point)
+
+
+def plot_sobol(indices: SobolIndices, metrics: Sequence[str] | None) -> Figure:
+    """Return a figure of bars of first and total order."""
+    from .plotting.uncertainty import plot_sobol
+
+    return plot_sobol(indices, metrics)
+
+
+def plot_work_precision(study: WorkPrecision, metrics: Collection[str] | None) -> Figure:
+    """Return a figure of error against cost."""
+    from .plotting.precision import plot_work_precision
+
+    return plot_work_precision(study, metrics)
+
+
+def plot_requested_vs_achieved(study: WorkPrecision, metrics: Collection[str] | None) -> Figure:
+    """Return a figure of error against tolerance."""
+    from .plotting.precision import plot_requested_vs_achieved
+
+    return plot_requested_vs_achieved(study, metrics)
+
+
+def plot_stability(study: Stability) -> Figure:
+    """Return a figure of the energy residual of every row."""
+    from .plotting.stability import plot_stability
+
+    return plot_stability(study)
+
+
+def plot_fit(calibration: CalibrationResult) -> Figure:
+    """Return a figure of measured and computed curves."""
+    from .plotting.calibration import plot_fit
+
+    return plot_fit(calibration)
+
+
+def plot_residuals(calibration: CalibrationResult) -> Figure:
+    """Return a figure of what the fit leaves."""
+    from .plotting.calibration import plot_residuals
+
+    return plot_residuals(calibration)
+
+
+def plot_profiles(calibration: CalibrationResult) -> Figure:
+    """Return a figure of the profiles of all parameters."""
+    from .plotting.calibration import plot_profiles
+
+    return plot_profiles(calibration)
+
+
+def result_html(result: Result) -> str:
+    """Return what notebooks show of a result."""
+    from .html_page.notebook import result_html
+
+    return result_html(result)
+
+
+def study_html(study: Study) -> str:
+    """Return what notebooks show of a study."""
+    from .html_page.notebook import study_html
+
+    return study_html(study)
+
+
+def text_html(text: str, figure: Figure | None, name: str) -> str:
+    """Return what notebooks show of a text with a figure."""
+    from .html_page.notebook import text_html
+
+    return text_html(text, figure, name)
