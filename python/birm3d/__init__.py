@@ -9,7 +9,7 @@ from __future__ import annotations
 from . import _moved, calibration, study, units
 from ._core import BusyError, UnstableError
 from ._version import __version__
-from .assessment import OccupantRisk, occupant_risk
+from .assessment import OccupantRisk, Rating, RatingStudy, occupant_risk, rate
 from .barrier import Barrier, FreeStanding, lateral_load
 from .calibration import calibrate
 from .io.file_format import FileFormatError
@@ -54,6 +54,8 @@ __all__ = [
     "LedgerWarning",
     "OccupantRisk",
     "OverlapWarning",
+    "Rating",
+    "RatingStudy",
     "Result",
     "Scene",
     "Settings",
@@ -79,6 +81,7 @@ __all__ = [
     "metrics",
     "monte_carlo",
     "occupant_risk",
+    "rate",
     "read_csv_channels",
     "read_iso_mme",
     "read_nhtsa",

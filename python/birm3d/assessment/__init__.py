@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from .criteria import Criterion
 from .occupant import OccupantRisk, occupant_risk
+from .probability import RatingStudy
+from .rate import STANDARDS, rate
+from .rating import Rating
 
-__all__ = ["OccupantRisk", "occupant_risk"]
+__all__ = ["STANDARDS", "Criterion", "OccupantRisk", "Rating", "RatingStudy", "occupant_risk", "rate"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -68,15 +68,20 @@ class Sensor:
     @cached_property
     def rotation(self) -> Floats:
         """From body to world axes, shape (n, 3, 3)."""
+        return self.rotation_at(slice(None))
+
+    def rotation_at(self, rows: Any) -> Floats:
+        """Return the rotations from body to world axes at some rows, shape (k, 3, 3)."""
         from scipy.spatial.transform import Rotation
 
-        angles = self._result._history.unit(self._unit).roll_pitch_yaw
+        angles = self._result._history.unit(self._unit).roll_pitch_yaw[rows]
         return read_only(Rotation.from_euler("ZYX", angles[:, ::-1]).as_matrix())
 
     @cached_property
     def position(self) -> Floats:
         """World axes, shape (n, 3) [m]."""
-        return read_only(self._result.unit(self._unit).position + self.rotation @ self.lever)
+        center = self._result.unit(self._unit).position
+        return read_only(center + self.rotation @ self.lever if self.lever.any() else center)
 
     @cached_property
     def velocity(self) -> Floats:

@@ -1,0 +1,131 @@
+"""Probabilities of classes: every run of a study is rated."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..base.frozen_mapping import FrozenMapping
+from .criteria import Criterion, criteria_html, criteria_text
+from .rating import Rating
+
+if TYPE_CHECKING:
+    from ..result import Result
+    from ..study import Study
+
+__all__ = ["RatingStudy", "rate_study"]
+
+_Z = 1.959964  # of the normal distribution, 95 %, two sides
+
+
+class RatingStudy:
+    """Ratings of the runs of a study; made by :func:`birm3d.rate`. Always indicative.
+
+    Attributes
+    ----------
+    ratings : tuple of Rating
+        In the order of the study's runs; runs that failed are left out.
+    failed : mapping of int to str
+        Number of each run that failed, or could not be rated -> its reason.
+    """
+
+    def __init__(self, ratings: Mapping[int, Rating], failed: Mapping[int, str]) -> None:
+        self.ratings = tuple(ratings.values())
+        self.failed = FrozenMapping(dict(failed))
+
+    @property
+    def designation(self) -> tuple[str, ...]:
+        """Of each run."""
+        return tuple(rating.designation for rating in self.ratings)
+
+    @property
+    def penetration(self) -> npt.NDArray[np.float64]:
+        """Of each run, shape (n,) [m]; see :class:`birm3d.assessment.Rating`."""
+        return np.array([rating.penetration for rating in self.ratings])
+
+    @property
+    def probability(self) -> Mapping[str, float]:
+        """Share of the runs that have each designation, the greatest first."""
+        n = len(self.ratings)
+        return FrozenMapping({name: count / n for name, count in Counter(self.designation).most_common()})
+
+    @property
+    def contained(self) -> float:
+        """Share of the runs in which the vehicle was contained."""
+        return sum(rating.contained for rating in self.ratings) / len(self.ratings)
+
+    def interval(self, share: float) -> tuple[float, float]:
+        """Return the 95 % interval of a probability by its share of these runs (Wilson)."""
+        n = len(self.ratings)
+        middle = (share + _Z**2 / (2 * n)) / (1 + _Z**2 / n)
+        half = _Z / (1 + _Z**2 / n) * math.sqrt(share * (1 - share) / n + _Z**2 / (4 * n**2))
+        return max(0.0, middle - half), min(1.0, middle + half)
+
+    def _rows(self) -> list[Criterion]:
+        rows = []
+        for name, share in self.probability.items():
+            low, high = self.interval(share)
+            limit = f"{low:.1%} to {high:.1%} by {len(self.ratings)} runs"
+            rows.append(Criterion(name, f"{share:.1%}", "", limit, None))
+        low, median, high = np.quantile(self.penetration, [0.1, 0.5, 0.9])
+        rows.append(
+            Criterion("penetration, median", float(median), "m", f"80 %: {low:.2f} to {high:.2f} m", None)
+        )
+        return rows
+
+    @property
+    def _title(self) -> str:
+        first = self.ratings[0]
+        without = f"; {len(self.failed)} runs without a rating" if self.failed else ""
+        what = "indicative: probability of each class"
+        return f"{first.standard}, {what} (vehicle {first.vehicle_class}){without}"
+
+    def summary(self) -> str:
+        """Return the probabilities, their sampling errors and the caution as text."""
+        return "\n".join([self._title, criteria_text(self._rows()), f"Caution: {self.ratings[0].caution}"])
+
+    __str__ = summary
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all of it as plain values."""
+        return {
+            "standard": self.ratings[0].standard,
+            "probability": dict(self.probability),
+            "contained": self.contained,
+            "penetration": self.penetration.tolist(),
+            "failed": {str(run): reason for run, reason in self.failed.items()},
+        }
+
+    def _repr_html_(self) -> str:
+        return criteria_html(self._title, self._rows(), f"Caution: {self.ratings[0].caution}")
+
+    def __repr__(self) -> str:
+        return f"RatingStudy({len(self.ratings)} runs, {dict(self.probability)})"
+
+
+def rate_study(study: Study, rate: Callable[[Result], Rating]) -> RatingStudy:
+    """Return the ratings of all runs of a study; each is run once more, for its histories.
+
+    Raises
+    ------
+    ValueError
+        If no run can be rated; the message has the reason of the first.
+    """
+    ratings: dict[int, Rating] = {}
+    failed: dict[int, str] = dict(study.failed)
+    for row, run in enumerate(study.run.tolist()):
+        if run in failed:
+            continue
+        try:
+            ratings[run] = rate(study.simulation(row).run())
+        except ValueError as error:
+            failed[run] = str(error)
+    if not ratings:
+        reason = next(iter(failed.values()), "it has no runs")
+        raise ValueError(f"result must be a study with a run that can be rated, got none: {reason}")
+    return RatingStudy(ratings, failed)

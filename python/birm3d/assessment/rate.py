@@ -1,0 +1,114 @@
+"""Ratings of runs, of whole levels and of studies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import overload
+
+from ..base.arguments import checked
+from ..result import Result
+from ..study import Study
+from ..units import Quantity
+from .probability import RatingStudy, rate_study
+from .rating import Rating
+from .roadside import EN_1317, MASH
+from .roadside_rating import level_rating, rate_roadside
+from .security import SECURITY, rate_security
+
+__all__ = ["STANDARDS", "rate"]
+
+_ROADSIDE = {one.name: one for one in (MASH, EN_1317)}
+STANDARDS = (*SECURITY, *_ROADSIDE)
+"""Names of the standards that :func:`rate` knows."""
+
+
+@overload
+def rate(
+    result: Result | Sequence[Result],
+    standard: str,
+    *,
+    vehicle_class: str | None = None,
+    reference_point: str | Sequence[Quantity] | None = None,
+    part: str | int | None = None,
+) -> Rating: ...
+
+
+@overload
+def rate(
+    result: Study,
+    standard: str,
+    *,
+    vehicle_class: str | None = None,
+    reference_point: str | Sequence[Quantity] | None = None,
+    part: str | int | None = None,
+) -> RatingStudy: ...
+
+
+@checked
+def rate(
+    result: Result | Sequence[Result] | Study,
+    standard: str,
+    *,
+    vehicle_class: str | None = None,
+    reference_point: str | Sequence[Quantity] | None = None,
+    part: str | int | None = None,
+) -> Rating | RatingStudy:
+    """Return what a standard would call a run. Always indicative: a rating needs a test.
+
+    Parameters
+    ----------
+    result
+        A run until its outcome is decided. Several: one for each test of a level. A study: every run of it is
+        rated, and each class has its share of the runs as a probability.
+    standard
+        ``"ASTM F2656"``, ``"ASTM F2656-07"``, ``"SD-STD-02.01"``, ``"IWA 14-1"``, ``"ISO 22343-1"``,
+        ``"PAS 68"``, ``"MASH"`` or ``"EN 1317"``. The last two may name a level or test, as
+        ``"MASH TL-3"``, ``"MASH 3-11"``, ``"EN 1317 N2"``, ``"EN 1317 TB32"``; else it follows from the run.
+    vehicle_class
+        What the standard calls the vehicle, as ``"M"``; ``None``: by the kind and the mass of the vehicle.
+    reference_point, part
+        Of the vehicle, in place of the point that the standard measures penetration to, see
+        :meth:`birm3d.Result.sensor`; security barriers only.
+
+    Raises
+    ------
+    ValueError
+        If the standard or the vehicle is not known, the vehicle has no such point, the run has no barrier,
+        goes along it, or is not over.
+    """
+    name, rest = _split(standard)
+    if isinstance(result, Study):
+        return rate_study(result, lambda run: _of_run(run, name, rest, vehicle_class, reference_point, part))
+    if isinstance(result, Result):
+        return _of_run(result, name, rest, vehicle_class, reference_point, part)
+    if name not in _ROADSIDE or rest is None:
+        raise ValueError(
+            f"standard must name a level, as 'MASH TL-3', where several runs are given; got {standard!r}"
+        )
+    of = [_of_run(run, name, rest, vehicle_class, reference_point, part) for run in result]
+    return level_rating(_ROADSIDE[name], rest, of)
+
+
+def _split(standard: str) -> tuple[str, str | None]:
+    """Return the standard, and the level or test that is named beside it."""
+    for name in sorted(STANDARDS, key=len, reverse=True):
+        if standard == name:
+            return name, None
+        if standard.startswith(f"{name} ") and name in _ROADSIDE:
+            return name, standard.removeprefix(f"{name} ").strip()
+    raise ValueError(f"standard must be one of {', '.join(STANDARDS)}; got {standard!r}")
+
+
+def _of_run(
+    run: Result,
+    name: str,
+    rest: str | None,
+    vehicle_class: str | None,
+    point: str | Sequence[Quantity] | None,
+    part: str | int | None,
+) -> Rating:
+    if name in SECURITY:
+        return rate_security(run, SECURITY[name], vehicle_class, point, part)
+    if point is not None:
+        raise ValueError(f"reference_point must be None for {name}, which has none; got {point!r}")
+    return rate_roadside(run, _ROADSIDE[name], rest, vehicle_class)

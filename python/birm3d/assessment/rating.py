@@ -1,0 +1,95 @@
+"""A rating: what a run would be called by a standard, and by which criteria."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from .criteria import Criterion, criteria_html, criteria_text
+
+__all__ = ["MODEL_CAUTION", "Rating"]
+
+MODEL_CAUTION = (
+    "Indicative: computed, not tested. The vehicle is one rigid body with a crushable skin: its bed can not "
+    "slide on the frame, its engine can not stop before the cab, its wheels stay on; barriers that are "
+    "modelled as rigid do not give way, so that tests read more penetration and deflection."
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Rating:
+    """What a standard would call a run; made by :func:`birm3d.rate`. Always indicative.
+
+    Attributes
+    ----------
+    standard : str
+    designation : str
+        As the standard writes it: ``"M50-P1"``, ``"K12-L3"``, ``"V/7200[N3C]/80/90:0.8"``, ``"MASH 3-11:
+        pass"``; what begins with ``"no rating"`` has none.
+    penetration : float
+        Greatest dynamic distance of the standard's point of the vehicle past the standard's datum of the
+        barrier [m]; negative where it stays before it. Of MASH and EN 1317: of any part of the vehicle past
+        the undeformed traffic face.
+    contained : bool
+        Whether the vehicle was kept from going on past the barrier, within the standard's worst class.
+    criteria : tuple of Criterion
+        Name, value, limit, verdict of all that was judged or is reported.
+    caution : str
+        What the standard and the model say about a rating that was computed.
+    vehicle_class : str
+        What the standard calls the vehicle.
+    """
+
+    standard: str
+    designation: str
+    penetration: float
+    contained: bool
+    criteria: tuple[Criterion, ...]
+    caution: str
+    vehicle_class: str
+
+    @property
+    def passed(self) -> bool:
+        """Whether no criterion failed and the vehicle was contained."""
+        return self.contained and all(one.passed is not False for one in self.criteria)
+
+    def summary(self) -> str:
+        """Return designation, criteria and caution as text."""
+        return "\n".join([self.title, criteria_text(self.criteria), f"Caution: {self.caution}"])
+
+    __str__ = summary
+
+    @property
+    def title(self) -> str:
+        """Standard, designation and vehicle in one line."""
+        return f"{self.standard}, indicative: {self.designation} (vehicle {self.vehicle_class})"
+
+    def to_dict(self) -> dict[str, object]:
+        """Return all of it as plain values, SI."""
+        return {
+            "standard": self.standard,
+            "designation": self.designation,
+            "vehicle_class": self.vehicle_class,
+            "penetration": self.penetration,
+            "contained": self.contained,
+            "passed": self.passed,
+            "criteria": [
+                {
+                    **{name: getattr(one, name) for name in ("name", "value", "unit", "limit", "passed")},
+                    "grade": one.grade,
+                }
+                for one in self.criteria
+            ],
+            "caution": self.caution,
+        }
+
+    def _repr_html_(self) -> str:
+        return criteria_html(self.title, self.criteria, f"Caution: {self.caution}")
+
+    def __repr__(self) -> str:
+        return f"Rating({self.standard!r}, {self.designation!r}, penetration={self.penetration:.3f} m)"
+
+
+def first_reached(value: float, steps: Sequence[tuple[str, float]]) -> str | None:
+    """Return the name of the first step whose greatest value is not exceeded; ``None`` beyond the last."""
+    return next((name for name, most in steps if value <= most), None)

@@ -1,0 +1,294 @@
+"""Ratings of roadside barriers by MASH and EN 1317."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .. import units
+from .criteria import Criterion
+from .limits import FLAIL_LIMITS, THIV_LIMIT_KM_H, graded, severity_class
+from .measures import ExitBox, barrier_extent, check_side_on, exit_box, vehicle_intrusion
+from .occupant import occupant_risk
+from .rating import MODEL_CAUTION, Rating, first_reached
+from .roadside import RoadsideStandard, RoadsideTest
+from .vehicles import StandardVehicle, standard_vehicle
+
+if TYPE_CHECKING:
+    from ..result import Result
+
+__all__ = ["rate_roadside"]
+
+_MOST_ROLL = 75.0  # deg; MASH criterion F
+_LIGHT_KG = 3500.0  # below it vehicles are cars and pickups
+_LEAST_SEVERITY = 0.92  # of the nominal impact severity, MASH
+_WIDTHS = (0.6, 0.8, 1.0, 1.3, 1.7, 2.1, 2.5, 3.5)
+"""Greatest working width, and vehicle intrusion, of the classes 1 to 8 of EN 1317-2 [m]."""
+
+
+def rate_roadside(
+    result: Result, standard: RoadsideStandard, asked: str | None, vehicle_class: str | None
+) -> Rating:
+    """Return the rating of a run by one test of a standard; see :func:`birm3d.rate`.
+
+    Parameters
+    ----------
+    asked
+        A test or a level of the standard; ``None``: the test that the run comes nearest to.
+    """
+    check_side_on(result)
+    test = _test_of(result, standard, asked, vehicle_class)
+    conditions = _conditions(result, standard, test)
+    light = test.vehicle.mass < _LIGHT_KG
+    intrusion = vehicle_intrusion(result)
+    judge = _mash if standard.name == "MASH" else _european
+    judged, classes = judge(result, test, light, intrusion)
+    rows = (*conditions, *judged)
+    failed = [row.name for row in rows if row.passed is False]
+    unmet = [row.name for row in conditions if row.passed is False]
+    verdict = f"no rating: {', '.join(unmet)}" if unmet else "fail" if failed else "pass"
+    levels = [level for level, tests in standard.levels.items() if test.name in tests]
+    designation = (
+        f"{standard.name} {test.name}: {verdict}{classes if verdict != 'fail' and not unmet else ''}"
+    )
+    reported = Criterion("levels with this test", ", ".join(levels), "", "", None)
+    return Rating(
+        standard.name,
+        designation,
+        intrusion,
+        judged[0].passed is True,
+        (*rows, reported),
+        f"{standard.caution} {MODEL_CAUTION}",
+        test.vehicle.code,
+    )
+
+
+def _test_of(
+    result: Result, standard: RoadsideStandard, asked: str | None, vehicle_class: str | None
+) -> RoadsideTest:
+    """Return the test of a run: the vehicle decides, then the nearest nominal speed and angle."""
+    if asked is not None and asked not in (*standard.tests, *standard.levels):
+        raise ValueError(
+            f"standard must name a test ({', '.join(standard.tests)}) or a level "
+            f"({', '.join(standard.levels)}) of {standard.name}, or neither; got {asked!r}"
+        )
+    names = standard.levels.get(asked, (asked,)) if asked is not None else tuple(standard.tests)
+    tests = [standard.tests[name] for name in names]
+    known: dict[str, StandardVehicle] = {}
+    for test in tests:  # of a level or test that is named all vehicles may be meant
+        known[test.vehicle.code] = test.vehicle._replace(chosen=test.vehicle.chosen or asked is not None)
+    title = standard.name if asked is None else f"{standard.name} {asked}"
+    vehicle = standard_vehicle(title, tuple(known.values()), result.scene.vehicle, vehicle_class)
+    speed, angle = result.scene.impact_speed / units.km_h, _angle(result)
+    fitting = [test for test in tests if test.vehicle.code == vehicle.code]
+    return min(
+        fitting, key=lambda test: abs(speed - test.speed) / test.speed + abs(angle - test.angle) / 90.0
+    )
+
+
+def _angle(result: Result) -> float:
+    """Return the acute angle between path and barrier [deg]."""
+    angle = result.scene.impact_angle
+    return min(angle, 180.0 - angle)
+
+
+def _conditions(
+    result: Result, standard: RoadsideStandard, test: RoadsideTest
+) -> tuple[Criterion, Criterion, Criterion]:
+    vehicle, speed = test.vehicle, result.scene.impact_speed / units.km_h
+    least, most = standard.speed(test.speed)
+    below, above = standard.angle
+    angle = _angle(result)
+    slack = 1e-9  # rounding of the units
+    return (
+        Criterion(
+            "mass",
+            result.scene.vehicle.mass,
+            "kg",
+            f"{vehicle.mass:g} +-{vehicle.tolerance:g} kg",
+            vehicle.weighs(result.scene.vehicle),
+        ),
+        Criterion(
+            "impact speed",
+            speed,
+            "km/h",
+            f"{least:.4g} to {most:.4g} km/h",
+            least - slack <= speed <= most + slack,
+        ),
+        Criterion(
+            "impact angle",
+            angle,
+            "deg",
+            f"{test.angle - below:g} to {test.angle + above:g} deg",
+            test.angle - below - slack <= angle <= test.angle + above + slack,
+        ),
+    )
+
+
+def _containment(result: Result, name: str) -> Criterion:
+    """Return whether the vehicle was kept on its side; a run that is not over tells nothing.
+
+    Raises
+    ------
+    ValueError
+        If the outcome of the run is not decided.
+    """
+    if result.outcome == "undecided":
+        raise ValueError(
+            "result must have run until the outcome is decided (duration=None), got one that ends at "
+            f"{result.time[-1]:g} s: {result.outcome_detail}"
+        )
+    behind = result.outcome in ("passed", "overridden")
+    return Criterion(name, result.outcome, "", "contained or redirected", not behind)
+
+
+def _attitude(result: Result) -> tuple[float, float]:
+    """Return the greatest roll and pitch of all units [deg]."""
+    parts = [result.unit(i) for i in range(len(result.scene.vehicle.units))]
+    roll = max(float(np.abs(part.roll).max()) for part in parts)
+    return roll, max(float(np.abs(part.pitch).max()) for part in parts)
+
+
+def _working_width(result: Result) -> float:
+    """Return how far the barrier reaches at most behind its undeformed traffic face [m]."""
+    barrier = result.scene.barrier
+    assert barrier is not None  # check_side_on has refused None
+    extent = barrier_extent(barrier)
+    return extent.rear - extent.front + _deflection(result)
+
+
+def _deflection(result: Result) -> float:
+    """Return the dynamic deflection of the barrier [m]; 0 where it is fixed and rigid."""
+    return float(result.metrics.get("barrier_deflection", 0.0))
+
+
+def _box_row(box: ExitBox, judged: bool) -> Criterion:
+    limit = f"within {box.width:.2f} m over {box.length:g} m"
+    grade = "" if judged else "inside" if box.inside else "outside"
+    return Criterion(
+        "exit box, wheels from the face", box.reached, "m", limit, box.inside if judged else None, grade
+    )
+
+
+_Judged = tuple[tuple[Criterion, ...], str]
+
+
+def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> _Judged:
+    risk = occupant_risk(result)
+    limits = FLAIL_LIMITS["MASH"]
+    roll, pitch = _attitude(result)
+    upright = result.outcome != "rolled_over"
+    severity = float(result.metrics["impact_severity"]) / 1e3
+    least = _LEAST_SEVERITY * test.severity / 1e3
+    rows: list[Criterion] = [
+        _containment(result, "A: contained, redirected or stopped"),
+        Criterion("D: compartment", "not computed", "", "", None),
+    ]
+    if light:
+        rows += [
+            Criterion("F: upright", result.outcome, "", "not rolled over", upright),
+            Criterion("F: greatest roll", roll, "deg", f"{_MOST_ROLL:g} deg", roll <= _MOST_ROLL),
+            Criterion("F: greatest pitch", pitch, "deg", f"{_MOST_ROLL:g} deg", pitch <= _MOST_ROLL),
+            graded("H: OIV, longitudinal", risk.oiv_x, "m/s", limits.velocity),
+            graded("H: OIV, lateral", risk.oiv_y, "m/s", limits.velocity),
+            graded("I: ridedown, longitudinal", risk.ridedown_x, "g", limits.ridedown),
+            graded("I: ridedown, lateral", risk.ridedown_y, "g", limits.ridedown),
+        ]
+    else:
+        rows += [
+            Criterion("G: upright", result.outcome, "", "preferable", None, "yes" if upright else "no"),
+            Criterion("greatest roll", roll, "deg", "", None),
+        ]
+    rows += [
+        Criterion("impact severity", severity, "kJ", f"at least {least:.1f} kJ", None),
+        _box_row(exit_box(result, not light), judged=False),
+        Criterion("dynamic deflection", _deflection(result), "m", "", None),
+        Criterion("working width", _working_width(result), "m", "", None),
+        Criterion("vehicle intrusion", intrusion, "m", "", None),
+        Criterion("ASI", risk.asi, "", "", None),
+        Criterion("THIV", risk.thiv / units.km_h, "km/h", "", None),
+    ]
+    return tuple(rows), ""
+
+
+def _european(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> _Judged:
+    roll, _ = _attitude(result)
+    upright = result.outcome != "rolled_over"
+    width = _working_width(result)
+    rows: list[Criterion] = [
+        _containment(result, "containment"),
+        Criterion("upright", result.outcome, "", "not rolled over", upright),
+        Criterion("greatest roll", roll, "deg", "", None),
+        _box_row(exit_box(result, not light), judged=True),
+    ]
+    classes = []
+    if light:
+        risk = occupant_risk(result)
+        level = severity_class(risk.asi)
+        speed = risk.thiv / units.km_h
+        limit = f"{THIV_LIMIT_KM_H:g} km/h"
+        rows += [
+            Criterion(
+                "ASI", risk.asi, "", "A 1, B 1.4, C 1.9", level is not None, f"class {level}" if level else ""
+            ),
+            Criterion("THIV", speed, "km/h", limit, speed <= THIV_LIMIT_KM_H),
+            Criterion("PHD", risk.phd, "g", "", None),
+        ]
+        classes.append(f"severity {level}")
+    rows += [
+        Criterion("dynamic deflection", _deflection(result), "m", "", None),
+        _class_row("working width", width, "W"),
+        _class_row("vehicle intrusion", intrusion, "VI"),
+    ]
+    classes += [row.grade for row in rows[-2:] if row.grade]
+    return tuple(rows), f"; {', '.join(classes)}" if classes else ""
+
+
+def _class_row(name: str, value: float, letter: str) -> Criterion:
+    steps = [(f"{letter}{i + 1}", most) for i, most in enumerate(_WIDTHS)]
+    beyond = f"{letter}{len(steps) + 1}" if letter == "VI" else f"beyond {letter}{len(steps)}"
+    grade = first_reached(round(value, 2), steps) or beyond
+    return Criterion(
+        name, value, "m", f"{letter}1 {_WIDTHS[0]:g} to {letter}8 {_WIDTHS[-1]:g} m", None, grade
+    )
+
+
+def level_rating(standard: RoadsideStandard, level: str, ratings: Sequence[Rating]) -> Rating:
+    """Return the rating of a level from those of its tests.
+
+    Raises
+    ------
+    ValueError
+        If a test of the level is missing.
+    """
+    if level not in standard.levels:
+        raise ValueError(
+            f"standard must name a level of {standard.name} ({', '.join(standard.levels)}) for several runs, "
+            f"got {level!r}"
+        )
+    by_test = {
+        rating.designation.removeprefix(f"{standard.name} ").partition(":")[0]: rating for rating in ratings
+    }
+    missing = [name for name in standard.levels[level] if name not in by_test]
+    if missing:
+        raise ValueError(
+            f"results must hold all tests of {standard.name} {level} ({', '.join(standard.levels[level])}), "
+            f"got none of {', '.join(missing)}"
+        )
+    parts = [by_test[name] for name in standard.levels[level]]
+    rows = tuple(
+        Criterion(f"test {name}", part.designation.partition(": ")[2], "", "pass", part.passed)
+        for name, part in zip(standard.levels[level], parts, strict=True)
+    )
+    good = all(part.passed for part in parts)
+    return Rating(
+        standard.name,
+        f"{standard.name} {level}: {'pass' if good else 'fail'}",
+        max(part.penetration for part in parts),
+        all(part.contained for part in parts),
+        rows,
+        parts[0].caution,
+        ", ".join(part.vehicle_class for part in parts),
+    )
