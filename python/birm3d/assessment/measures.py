@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ..barrier.kinds import RigidWall
 from ..barrier.surfaces import barrier_surfaces
-from ..result.frames import capture
+from ..result.capture import capture
 from ..result.metrics import ALONG_LINE
 from ..vehicle.unit_shapes import unit_shapes
 
