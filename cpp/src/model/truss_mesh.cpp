@@ -217,14 +217,21 @@ void TrussMesh::find_panels(const TrussInput& input) {
     }
 }
 
+// Sums of their own for each entry, which stay in registers.
 StiffnessMoments stiffness_of(const TrussBlock& trusses) {
-    StiffnessMoments sum;
+    double k = 0.0, xx = 0.0, xy = 0.0, xz = 0.0, yx = 0.0, yy = 0.0, yz = 0.0, zx = 0.0, zy = 0.0, zz = 0.0;
     for (std::size_t i = 0; i < lanes; ++i) {
-        const double k = trusses.k_unloading[i];
-        const Vec3 r(trusses.node_x[i], trusses.node_y[i], trusses.node_z[i]);
-        sum.total += k;
-        sum.second += k * r * r.transpose();
+        const double x = trusses.node_x[i], y = trusses.node_y[i], z = trusses.node_z[i];
+        const double kx = trusses.k_unloading[i] * x, ky = trusses.k_unloading[i] * y,
+                     kz = trusses.k_unloading[i] * z;
+        k += trusses.k_unloading[i];
+        xx += kx * x, xy += kx * y, xz += kx * z;
+        yx += ky * x, yy += ky * y, yz += ky * z;
+        zx += kz * x, zy += kz * y, zz += kz * z;
     }
+    StiffnessMoments sum;
+    sum.total = k;
+    sum.second << xx, xy, xz, yx, yy, yz, zx, zy, zz;
     return sum;
 }
 

@@ -11,7 +11,7 @@ import typing
 from collections import abc
 from collections.abc import Callable, Container
 from pathlib import Path
-from typing import Any, Literal, NamedTuple, TypeVar, Union
+from typing import Any, Literal, NamedTuple, NoReturn, TypeVar, Union
 
 import numpy as np
 
@@ -73,17 +73,22 @@ def _checked_function(function: Callable[..., Any]) -> Callable[..., Any]:
         return function
     places = [p.name for p in parameters.values() if p.kind in _BY_PLACE]
     kinds: dict[str, Kind | None] | None = None
+    by_place: list[Kind | None] = []
 
     @functools.wraps(function)
     def call(*args: Any, **kwargs: Any) -> Any:
-        nonlocal kinds
+        nonlocal kinds, by_place
         if kinds is None:
-            kinds = _kinds_of(function)  # not before: annotations may name what is imported later
-        others = kinds.get("**")
-        for name, value in zip(places, args, strict=False):
-            _check(name, kinds.get(name), value)
+            found = _kinds_of(function)  # not before: annotations may name what is imported later
+            by_place = [found.get(name) for name in places]
+            kinds = found  # last: another thread may look
+        for place, (kind, value) in enumerate(zip(by_place, args, strict=False)):
+            if kind is not None and not kind.holds(value):
+                _refuse(places[place], kind, value)
         for name, value in kwargs.items():
-            _check(name, kinds.get(name, others), value)
+            kind = kinds[name] if name in kinds else kinds.get("**")
+            if kind is not None and not kind.holds(value):
+                _refuse(name, kind, value)
         return function(*args, **kwargs)
 
     return call
@@ -100,16 +105,17 @@ def check_fields(instance: Any, texts: Container[str] = ()) -> None:
     for name, kind in _field_kinds(type(instance).__init__):
         value = getattr(instance, name)
         if not kind.holds(value) and not (name in texts and (isinstance(value, str) or _is_list(value))):
-            _check(name, kind, value)
+            _refuse(name, kind, value)
 
 
-def _check(name: str, kind: Kind | None, value: Any) -> None:
-    if kind is not None and not kind.holds(value):
-        if kind.item is not None and _is_list(value) and not isinstance(value, np.ndarray):
-            for i, item in enumerate(value):
-                _check(f"{name}[{i}]", kind.item, item)
-        got = type(value).__name__ if kind.by_type and value is not None else shown(value)
-        raise WrongTypeError(f"{name} must be {kind.words}, got {got}")
+def _refuse(name: str, kind: Kind, value: Any) -> NoReturn:
+    """Raise for a value that is not of the kind, or for its first item that is not."""
+    if kind.item is not None and _is_list(value) and not isinstance(value, np.ndarray):
+        for i, item in enumerate(value):
+            if not kind.item.holds(item):
+                _refuse(f"{name}[{i}]", kind.item, item)
+    got = type(value).__name__ if kind.by_type and value is not None else shown(value)
+    raise WrongTypeError(f"{name} must be {kind.words}, got {got}")
 
 
 @functools.cache

@@ -121,9 +121,10 @@ def in_si(name: str, value: Any) -> Any:
     ValueError
         If the parameter has a unit and the text is no number with a unit of the same quantity.
     """
-    quantity = quantity_of(name)
-    if quantity is not None and (isinstance(value, str) or name in APPROACH):
-        return si(name, value, quantity)
+    if isinstance(value, str) or name in APPROACH:
+        quantity = quantity_of(name)
+        if quantity is not None:
+            return si(name, value, quantity)
     return value
 
 

@@ -797,8 +797,8 @@ class Vehicle:
         """Return middles and half edges of the rigid body's boxes, body axes, shape (k, 6) [m]."""
         if self._file is None:
             return np.empty((0, 6))
-        ranges = core_ranges(self._file) - self.center_of_mass[:, None]
-        return np.hstack([ranges.mean(axis=2), 0.5 * np.ptp(ranges, axis=2)])
+        low, high = core_ranges(self._file).transpose(2, 0, 1) - self.center_of_mass
+        return np.hstack([0.5 * (low + high), 0.5 * (high - low)])
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Vehicle):
