@@ -2,6 +2,8 @@
 
 #include <pybind11/stl.h>
 #include <pybind11/typing.h>
+
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -113,6 +115,15 @@ void register_simulation(py::module_& m) {
                       "of a unit's change in a step from the sum of all impulses on it")
         .def_readonly("largest_momentum", &Ledger::largest_momentum,
                       "N s, of a unit, or an impulse in a step")
+        .def_property_readonly(
+            "largest_fall",
+            [](const Ledger& ledger) {
+                double largest = 0.0;
+                for (const Ledger::Departure& fall : ledger.falls)
+                    largest = std::max(largest, fall.size);
+                return largest;
+            },
+            "J, of any dissipated term")
         .def_property_readonly(
             "falls",
             [](const Ledger& ledger) {

@@ -608,6 +608,11 @@ class Ledger:
         J, at the start
         """
     @property
+    def largest_fall(self) -> float:
+        """
+        J, of any dissipated term
+        """
+    @property
     def largest_momentum(self) -> float:
         """
         N s, of a unit, or an impulse in a step

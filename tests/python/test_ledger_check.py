@@ -4,12 +4,26 @@ from __future__ import annotations
 
 import re
 import warnings
+from collections.abc import Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from birm3d import Barrier, LedgerWarning, Settings, Simulation, Vehicle, ensemble, scenes
+from birm3d import (
+    Barrier,
+    LedgerWarning,
+    OverlapWarning,
+    Settings,
+    Simulation,
+    Vehicle,
+    ensemble,
+    scenes,
+    sweep,
+)
+from birm3d.base.complaints import Complaint, Complaints
 from birm3d.result.energy_balance import warn_if_open
+from birm3d.study.runner import StudyInterrupted
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -33,6 +47,54 @@ def test_so_does_a_study() -> None:
         ensemble([along_truss()], metrics=["exit_speed"])
 
 
+@pytest.mark.parametrize("pool", [ThreadPoolExecutor, ProcessPoolExecutor])
+def test_a_study_says_it_once_for_all_of_its_runs(pool: type[Executor]) -> None:
+    """Also of runs in other processes, whose own warnings nobody hears."""
+    base = scenes.w2(4, Settings(time_step=4e-3, gravity=0.0, ground=False))
+    speeds = [22.0, 1.0, 40.0, 25.0, 1.5, 22.5]
+    with pool(2) as executor, pytest.warns() as told:
+        study = sweep(base, impact_speed=speeds, metrics=["energy_residual"], executor=executor)
+    found = study["energy_residual"]
+    assert (found > 5e-3).tolist() == [True, False, True, True, False, True]
+    worst = int(found.argmax())
+    (warning,) = told
+    assert warning.category is LedgerWarning
+    assert warning.filename == __file__
+    told_of = Simulation(base.scene.vehicle, base.scene.barrier, speeds[worst], settings=base.scene.settings)
+    with pytest.warns(LedgerWarning) as alone:
+        told_of.run()
+    rows = f" (row {worst}, the worst of 4 in 6 runs: rows 0, 2 to 3, 5)"
+    assert str(warning.message) == str(alone[0].message) + rows
+
+
+def test_a_study_names_each_quantity_once_and_not_all_of_its_rows() -> None:
+    complaints = Complaints()
+    for row in range(0, 100, 2):
+        overlap = Complaint(OverlapWarning, "contact_overlap", 0.1 + row, lambda: "too deep")
+        complaints.add(row, [overlap, Complaint(LedgerWarning, "energy_residual", 0.1, lambda: "open")])
+    assert list(complaints.summaries(1000)) == [
+        (
+            OverlapWarning,
+            "too deep (row 98, the worst of 50 in 1,000 runs: rows 0, 2, 4, 6, 8, 10, 12, 14 and 42 more)",
+        ),
+        (
+            LedgerWarning,
+            "open (row 0, the worst of 50 in 1,000 runs: rows 0, 2, 4, 6, 8, 10, 12, 14 and 42 more)",
+        ),
+    ]
+
+
+def test_a_study_that_is_stopped_says_it_too() -> None:
+    base = scenes.w2(4, Settings(time_step=4e-3, gravity=0.0, ground=False))
+
+    def stopped() -> Iterator[Simulation]:
+        yield base
+        raise KeyboardInterrupt
+
+    with pytest.raises(StudyInterrupted, match=r"1 runs are finished.*; energy_residual must be .*\(row 0\)"):
+        ensemble(stopped(), metrics=["exit_speed"], executor=ThreadPoolExecutor(1))
+
+
 def test_the_check_of_the_steps_is_that_of_the_history() -> None:
     simulation = scenes.oblique_car(mesh_density=0.3)
     run = simulation.run()
@@ -54,6 +116,7 @@ def test_a_fall_is_told_by_its_name() -> None:
         largest_momentum=1.0,
         energy=nothing,
         momentum=nothing,
+        largest_fall=3e5,
         falls={"crushed": nothing, "tire_friction": worst},
     )
     told = (

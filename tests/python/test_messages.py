@@ -71,7 +71,7 @@ ELSEWHERE = {
     *("StudyInterrupted", "StudyStoppedError", "stability", "work_precision"),
     *("CalibrationResult", "Evaluation", "FittedParameter", "FittedTarget", "Profile", "NhtsaTest", "Unit"),
     *("PrecisionRow", "Recommendation", "Stability", "StabilityRow", "Summary", "WorkPrecision", "Measure"),
-    *("Stated", "energy_residual", "extremes_for", "metrics_of_outcome", "preset_for", "load"),
+    *("Stated", "energy_residual", "extremes_for", "values_of_outcome", "preset_for", "load"),
     *("nhtsa_tests", "nhtsa_10146"),
     *(
         "oblique",

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import warnings
+from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
-from ..base.arguments import caller_level
+from ..base.complaints import Complaint
 from .metrics import relative_to_start
 
 if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
 
-__all__ = ["ENERGY_LIMIT", "FALL_LIMIT", "MOMENTUM_LIMIT", "LedgerWarning", "warn_if_open"]
+__all__ = ["ENERGY_LIMIT", "FALL_LIMIT", "MOMENTUM_LIMIT", "LedgerWarning", "open_accounts", "warn_if_open"]
 
 ENERGY_LIMIT = 5e-3
 """Energy residual, relative to the energy at the run's disposal, beyond which a run is wrong."""
@@ -38,16 +39,28 @@ def warn_if_open(scene: Scene, ledger: _core.Ledger) -> None:
     - crush, friction or impacts fall from their highest value by more than :data:`FALL_LIMIT` of the energy
       at disposal.
     """
+    for complaint in open_accounts(scene, ledger):
+        complaint.warn()
+
+
+def open_accounts(scene: Scene, ledger: _core.Ledger) -> Iterator[Complaint]:
+    """Yield what :func:`warn_if_open` warns of."""
+
+    def complaint(quantity: str, limit: float, value: float, worst: _core.Departure) -> Complaint:
+        return Complaint(LedgerWarning, quantity, value, partial(_text, scene, quantity, limit, value, worst))
+
     residual = relative_to_start(scene, ledger.energy.size, ledger.at_disposal)
     if residual > ENERGY_LIMIT:
-        _warn("energy_residual", ENERGY_LIMIT, residual, ledger.energy, _advice(scene))
+        yield complaint("energy_residual", ENERGY_LIMIT, residual, ledger.energy)
     momentum = ledger.momentum.size / max(ledger.largest_momentum, scene.vehicle.mass)
     if momentum > MOMENTUM_LIMIT:
-        _warn("momentum_residual", MOMENTUM_LIMIT, momentum, ledger.momentum, _advice(scene))
+        yield complaint("momentum_residual", MOMENTUM_LIMIT, momentum, ledger.momentum)
+    if not relative_to_start(scene, ledger.largest_fall, ledger.at_disposal) > FALL_LIMIT:
+        return
     for name, fall in ledger.falls.items():
         share = relative_to_start(scene, fall.size, ledger.at_disposal)
         if share > FALL_LIMIT:
-            _warn(f"the fall of {name}", FALL_LIMIT, share, fall, _advice(scene))
+            yield complaint(f"the fall of {name}", FALL_LIMIT, share, fall)
 
 
 def _advice(scene: Scene) -> str:
@@ -62,11 +75,9 @@ def _advice(scene: Scene) -> str:
     )
 
 
-def _warn(name: str, limit: float, value: float, worst: _core.Departure, advice: str) -> None:
+def _text(scene: Scene, quantity: str, limit: float, value: float, worst: _core.Departure) -> str:
     x, y, z = worst.place
-    warnings.warn(
-        f"{name} must be at most {limit:g}, got {value:.2g} at t = {worst.time:.4g} s, mass centre at "
-        f"({x:.3g}, {y:.3g}, {z:.3g}) m: {advice}",
-        LedgerWarning,
-        stacklevel=caller_level(),
+    return (
+        f"{quantity} must be at most {limit:g}, got {value:.2g} at t = {worst.time:.4g} s, mass centre at "
+        f"({x:.3g}, {y:.3g}, {z:.3g}) m: {_advice(scene)}"
     )

@@ -12,7 +12,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping
-from functools import cached_property, partial
+from functools import cached_property, lru_cache, partial
+from itertools import repeat
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -33,7 +34,7 @@ __all__ = [
     "compute_metrics",
     "energy_residual",
     "extremes_for",
-    "metrics_of_outcome",
+    "values_of_outcome",
 ]
 
 METRIC_UNITS: Mapping[str, str] = MappingProxyType(
@@ -162,10 +163,23 @@ def compute_metrics(result: RunRecord, names: Collection[str] | None = None) -> 
     return _found(_Run(result.scene, _ResultOutcome(result, result._extremes(extremes_for(wanted)))), wanted)
 
 
-def metrics_of_outcome(scene: Scene, outcome: _core.Outcome, names: Collection[str]) -> dict[str, float]:
-    """Return what :func:`compute_metrics` would, of a run without histories with :func:`extremes_for`."""
+def values_of_outcome(scene: Scene, outcome: _core.Outcome, names: tuple[str, ...]) -> tuple[float, ...]:
+    """Return what :func:`compute_metrics` would, of a run without histories with :func:`extremes_for`.
+
+    In the order of the names, and NaN where the run has none.
+
+    Raises
+    ------
+    ArithmeticError
+        If a metric is not a number.
+    """
     _require_rows(scene, outcome.extremes.rows)
-    return _found(_Run(scene, outcome), names)
+    found = _found(_Run(scene, outcome), names)
+    if math.isnan(sum(found.values())):  # or infinite both ways
+        for name, value in found.items():
+            if math.isnan(value):
+                raise ArithmeticError(f"{name} is not a number")
+    return tuple(map(found.get, names, repeat(math.nan)))
 
 
 def extremes_for(names: Collection[str]) -> _core.ExtremeGroups:
@@ -182,14 +196,17 @@ def _require_rows(scene: Scene, rows: int) -> None:
 
 def _found(run: _Run, names: Collection[str]) -> dict[str, float]:
     found = {}
-    for name in names:
-        metric = _METRICS[name]
-        if metric.of_barrier and run.barrier is None:
-            continue
-        value = metric.of(run)
+    for name, value_of in _functions(tuple(names), run.barrier is not None):
+        value = value_of(run)
         if value is not None:
             found[name] = value
     return found
+
+
+@lru_cache(maxsize=16)
+def _functions(names: tuple[str, ...], with_barrier: bool) -> tuple[tuple[str, _Function], ...]:
+    wanted = ((name, _METRICS[name]) for name in names)
+    return tuple((name, metric.of) for name, metric in wanted if with_barrier or not metric.of_barrier)
 
 
 class _ResultOutcome:
@@ -244,15 +261,19 @@ class _Run:
     def segments(self) -> bool:
         return self.barrier is not None and bool(self.barrier.core.segments)
 
+    @cached_property
+    def statistics(self) -> _core.StepStatistics | Stored:
+        return self.outcome.statistics
+
     @property
     def along(self) -> bool:
         return abs(math.sin(math.radians(self.scene.impact_angle))) < ALONG_LINE
 
-    @property
+    @cached_property
     def dynamic_crush(self) -> float:
         return self.outcome.peak_deflection
 
-    @property
+    @cached_property
     def turn_time(self) -> float | None:
         """When the motion towards the barrier ends [s], if it began and anything was crushed."""
         began = self.dynamic_crush > 0.0 and self.motion.approach_speed > 0.0
@@ -324,7 +345,7 @@ def _exit_angle(run: _Run) -> float | None:
 
 
 def _contact_overlap(run: _Run) -> float:
-    statistics = run.outcome.statistics
+    statistics = run.statistics
     return max(statistics.deepest_point, statistics.greatest_overlap)
 
 
@@ -407,7 +428,7 @@ def _all_metrics() -> dict[str, _Metric]:
         "peak_joint_force": joint(_of_joint(lambda run: run.extremes.joint.force)),
         "energy_residual": energy(lambda run: energy_residual(run.scene, run.energy)),
         "momentum_residual": momentum(lambda run: run.extremes.momentum_residual),
-        "steps": end(lambda run: float(run.outcome.statistics.steps)),
+        "steps": end(lambda run: float(run.statistics.steps)),
         "run_time": end(lambda run: run.outcome.run_time),
         "end_time": end(lambda run: run.extremes.end_time),
     }

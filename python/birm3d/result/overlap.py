@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import warnings
+from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
-from ..base.arguments import caller_level
+from ..base.complaints import Complaint
 
 if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
 
-__all__ = ["OVERLAP_LIMIT", "OverlapWarning", "warn_if_overlapping"]
+__all__ = ["OVERLAP_LIMIT", "OverlapWarning", "overlaps"]
 
 OVERLAP_LIMIT = 0.1
 """Overlap of the rigid body with a barrier beyond which a run is not to be believed [m]."""
@@ -28,16 +29,18 @@ class OverlapWarning(UserWarning):
     """
 
 
-def warn_if_overlapping(scene: Scene, statistics: _core.StepStatistics) -> None:
-    """Warn with :class:`OverlapWarning` if the overlap was beyond :data:`OVERLAP_LIMIT`."""
+def overlaps(scene: Scene, statistics: _core.StepStatistics) -> Iterator[Complaint]:
+    """Yield a complaint if the overlap was beyond :data:`OVERLAP_LIMIT`."""
     overlap = statistics.greatest_overlap
-    if not overlap > OVERLAP_LIMIT or scene.barrier is None:
-        return
+    if overlap > OVERLAP_LIMIT and scene.barrier is not None:
+        yield Complaint(OverlapWarning, "contact_overlap", overlap, partial(_text, scene, statistics))
+
+
+def _text(scene: Scene, statistics: _core.StepStatistics) -> str:
+    assert scene.barrier is not None
     element = scene.barrier.element_names[statistics.greatest_overlap_element]
-    warnings.warn(
-        f"contact_overlap must be at most {OVERLAP_LIMIT:g} m, got {overlap:.2f} m: at "
+    return (
+        f"contact_overlap must be at most {OVERLAP_LIMIT:g} m, got {statistics.greatest_overlap:.2f} m: at "
         f"{statistics.greatest_overlap_time:.3f} s the rigid body of {scene.vehicle.name!r} was inside "
-        f"{element!r}; a finer mesh (with_mesh_density) or with_dent_reach holds it",
-        OverlapWarning,
-        stacklevel=caller_level(),
+        f"{element!r}; a finer mesh (with_mesh_density) or with_dent_reach holds it"
     )

@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import TYPE_CHECKING
 
-from .energy_balance import warn_if_open
-from .overlap import warn_if_overlapping
+from .energy_balance import open_accounts
+from .overlap import overlaps
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from .. import _core
+    from ..base.complaints import Complaint
     from ..scene.scene import Scene
 
-__all__ = ["warn_of_run"]
+__all__ = ["complaints_of_run", "warn_of_run"]
+
+
+def complaints_of_run(
+    scene: Scene, statistics: _core.StepStatistics, ledger: _core.Ledger
+) -> Iterator[Complaint]:
+    """Return complaints of an overlap of body and barrier, and of accounts that do not close."""
+    return chain(overlaps(scene, statistics), open_accounts(scene, ledger))
 
 
 def warn_of_run(scene: Scene, statistics: _core.StepStatistics, ledger: _core.Ledger) -> None:
@@ -20,9 +31,9 @@ def warn_of_run(scene: Scene, statistics: _core.StepStatistics, ledger: _core.Le
     Raises
     ------
     OverlapWarning
-        As a warning, see :func:`birm3d.result.overlap.warn_if_overlapping`.
+        As a warning, if the overlap was beyond :data:`birm3d.result.overlap.OVERLAP_LIMIT`.
     LedgerWarning
         As a warning, see :func:`birm3d.result.energy_balance.warn_if_open`.
     """
-    warn_if_overlapping(scene, statistics)
-    warn_if_open(scene, ledger)
+    for complaint in complaints_of_run(scene, statistics, ledger):
+        complaint.warn()

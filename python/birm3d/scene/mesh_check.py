@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..barrier.kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
-from ..base.arguments import caller_level
+from ..base.complaints import Complaint
 
 if TYPE_CHECKING:
     from ..barrier.base import Barrier
     from ..vehicle.vehicle import Vehicle
     from .scene import Scene
 
-__all__ = ["CoarseSkinWarning", "warn_if_coarse"]
+__all__ = ["CoarseSkinWarning", "coarse_skins", "warn_if_coarse"]
 
 
 class CoarseSkinWarning(UserWarning):
@@ -51,6 +51,12 @@ class _Part:
 
 def warn_if_coarse(scene: Scene) -> None:
     """Warn with :class:`CoarseSkinWarning` of the narrowest part of the barrier that can pass through."""
+    for complaint in coarse_skins(scene):
+        complaint.warn()
+
+
+def coarse_skins(scene: Scene) -> Iterator[Complaint]:
+    """Yield what :func:`warn_if_coarse` warns of."""
     if scene.barrier is None:
         return
     units = scene.vehicle.units
@@ -68,7 +74,9 @@ def warn_if_coarse(scene: Scene) -> None:
         narrowest = min(met, key=lambda part: part.width)
         # Nothing passes between nodes that is wider than all of the skin: no spacing is asked for at walls.
         if narrowest.width < (high - low).max() and narrowest.width < unit.node_spacing:
-            warnings.warn(_told(scene, unit, narrowest), CoarseSkinWarning, stacklevel=caller_level())
+            share = unit.node_spacing / narrowest.width
+            text = partial(_told, scene, unit, narrowest)
+            yield Complaint(CoarseSkinWarning, f"width of the {narrowest.name}", share, text)
             return
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence, Sized
 from typing import TYPE_CHECKING, Any
 
 from ..base.arguments import checked
+from ..base.complaints import Complaints
 from ..base.progress import progress_bar
 from ..result.metrics import METRIC_UNITS
 from ..simulation.simulation import Simulation
@@ -63,6 +64,9 @@ def ensemble(
         If the executor dies. Finished runs are in its ``study``.
     StudyInterrupted
         A KeyboardInterrupt, with the finished runs in its ``study``.
+    OverlapWarning, LedgerWarning
+        As warnings, each once: how many and which rows are not to be believed, and what is wrong with the
+        worst.
 
     Examples
     --------
@@ -80,6 +84,10 @@ def ensemble(
     def study() -> Study:
         return Study._of(None, (), [], units, outcomes)
 
+    def told() -> str:
+        return "".join(f"; {text}" for _, text in complaints.summaries(len(outcomes)))
+
+    complaints = Complaints()
     todo = ((run, (scene,)) for run, scene in enumerate(simulations))
     try:
         with progress_bar(progress, "ensemble", total) as advance:
@@ -88,14 +96,17 @@ def ensemble(
                 outcomes.update(finished)
                 advance(len(finished))
 
-            run_all(None, (), wanted, todo, total, executor, finish)
+            run_all(None, (), wanted, todo, total, executor, finish, complaints)
     except KeyboardInterrupt:
-        message = f"stopped: {len(outcomes)} runs are finished and kept in the error's 'study'"
+        message = f"stopped: {len(outcomes)} runs are finished and kept in the error's 'study'{told()}"
         raise StudyInterrupted(message, study()) from None
     except ExecutorError as died:
         cause = died.__cause__
-        message = f"the executor died ({type(cause).__name__}: {cause}); {len(outcomes)} runs are finished"
+        message = (
+            f"the executor died ({type(cause).__name__}: {cause}); {len(outcomes)} runs are finished{told()}"
+        )
         raise StudyStoppedError(message, study()) from cause
     if not outcomes:
         raise ValueError("simulations must have at least one scene, got none")
+    complaints.warn(len(outcomes))
     return study()

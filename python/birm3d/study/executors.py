@@ -27,12 +27,13 @@ from contextlib import ExitStack
 from functools import lru_cache, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, NamedTuple
 
 from .. import _core
-from ..result.metrics import extremes_for, metrics_of_outcome
-from ..result.run_warnings import warn_of_run
-from ..scene.mesh_check import warn_if_coarse
+from ..base.complaints import Complaints
+from ..result.metrics import extremes_for, values_of_outcome
+from ..result.run_warnings import complaints_of_run
+from ..scene.mesh_check import coarse_skins
 from ..scene.scene import APPROACH, Scene
 from ..simulation.parameters import varied_scene
 from ..simulation.simulation import Simulation
@@ -50,7 +51,14 @@ _END_REASONS = {int(reason): name for name, reason in _core.EndReason.__members_
 
 Chunk = list[tuple[int, tuple[Any, ...]]]
 Finished = list[tuple[int, Outcome]]
-Timed = tuple[Finished, float]  # and what it took to run them [s]
+
+
+class Done(NamedTuple):
+    """A chunk that was run."""
+
+    finished: Finished
+    complaints: Complaints
+    seconds: float  # that it took
 
 
 class ExecutorError(Exception):
@@ -65,8 +73,11 @@ def run_all(
     total: int | None,
     executor: Any,
     finish: Callable[[Finished], None],
+    complaints: Complaints,
 ) -> None:
     """Run all of `todo` (number of the run, values) and hand what is finished to `finish`, in any order.
+
+    What is to be said of runs is added to `complaints`, of those that were handed over.
 
     Without a `simulation` to vary the one value of each run is its scene. `total` is how many there are, if
     known.
@@ -93,7 +104,12 @@ def run_all(
         packed = pickle.dumps((_at_start(simulation), names, metrics), pickle.HIGHEST_PROTOCOL)
         todo = ((run, tuple(map(_at_start, row))) for run, row in todo)
         task = (_run_packed, _shipped(executor, packed, files))
-    pending: set[Future[Timed]] = set()
+
+    def take(done: Done) -> None:
+        complaints.merge(done.complaints)
+        finish(done.finished)
+
+    pending: set[Future[Done]] = set()
     left = iter(todo)
     at, done_runs, seconds, more = 0, 0, 0.0, True
     longest = _LONGEST_CHUNK if simulation is not None else _MOST_SCENES
@@ -112,9 +128,9 @@ def run_all(
             if not pending:
                 break
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
-                finished, spent = _result(future)
-                finish(finished)
-                done_runs, seconds = done_runs + len(finished), seconds + spent
+                done = _result(future)
+                take(done)
+                done_runs, seconds = done_runs + len(done.finished), seconds + done.seconds
                 pending.discard(future)
     except BaseException as error:
         stop.set()
@@ -128,7 +144,7 @@ def run_all(
             wait(pending)  # each thread ends with its present run
         for future in pending:
             if future.done() and not future.cancelled() and future.exception() is None:
-                finish(future.result()[0])
+                take(future.result())
         raise
     finally:
         files.close()
@@ -161,14 +177,14 @@ def _shipped(executor: Any, packed: bytes, files: ExitStack) -> Any:
         raise ExecutorError from error
 
 
-def _submit(pool: Executor, *task: Any) -> Future[Timed]:
+def _submit(pool: Executor, *task: Any) -> Future[Done]:
     try:
         return pool.submit(*task)
     except Exception as error:
         raise ExecutorError from error
 
 
-def _result(future: Future[Timed]) -> Timed:
+def _result(future: Future[Done]) -> Done:
     # A run that fails is an outcome, so whatever is raised here is of the executor.
     try:
         return future.result()
@@ -188,7 +204,7 @@ def _pool(executor: Any) -> tuple[Executor, int]:
     return executor, getattr(executor, "_max_workers", None) or os.cpu_count() or 1
 
 
-def _run_packed(packed: bytes | Path, chunk: Chunk) -> Timed:
+def _run_packed(packed: bytes | Path, chunk: Chunk) -> Done:
     simulation, names, metrics = _unpacked(packed)
     return _run_chunk(simulation, names, metrics, chunk)
 
@@ -206,26 +222,29 @@ def _run_chunk(
     metrics: tuple[str, ...],
     chunk: Chunk,
     stop: _core.Stop | None = None,
-) -> Timed:
+) -> Done:
     start = time.perf_counter()
     stop = stop or _core.Stop()
     finished: Finished = []
+    complaints = Complaints()
     runner, extremes = _core.Runner(), extremes_for(metrics)
-    for batch in _batches(simulation, names, chunk, finished, metrics):
+    for batch in _batches(simulation, names, chunk, finished, complaints, metrics):
         ended = runner.run([(core, scene.approach) for _, scene, core in batch], extremes, stop)
         # Those that were stopped are missing at the end.
         for (run, scene, _), done in zip(batch, ended, strict=False):
-            finished.append((run, _outcome(scene, done, metrics)))
+            finished.append((run, _outcome(run, scene, done, complaints, metrics)))
         if len(ended) < len(batch):
             break
-    return finished, time.perf_counter() - start
+    return Done(finished, complaints, time.perf_counter() - start)
 
 
-def _outcome(scene: Scene, done: _core.Run, metrics: tuple[str, ...]) -> Outcome:
+def _outcome(
+    run: int, scene: Scene, done: _core.Run, complaints: Complaints, metrics: tuple[str, ...]
+) -> Outcome:
     try:
         end = done.outcome()
-        warn_of_run(scene, end.statistics, end.ledger)
-        values = _values(metrics_of_outcome(scene, end, metrics), metrics)
+        complaints.add(run, complaints_of_run(scene, end.statistics, end.ledger))
+        values = values_of_outcome(scene, end, metrics)
         reason = _END_REASONS[int(end.end_reason)]
         return Outcome(values, reason, end.event.outcome, f"{end.state_hash:016x}")
     except Exception as error:
@@ -237,6 +256,7 @@ def _batches(
     names: tuple[str, ...],
     chunk: Chunk,
     finished: Finished,
+    complaints: Complaints,
     metrics: tuple[str, ...],
 ) -> Iterator[list[tuple[int, Scene, _core.Scene]]]:
     """Yield what one call of the core runs; runs whose scene can not be made are `finished`.
@@ -255,7 +275,7 @@ def _batches(
             scene = _scene(simulation, names, row)
             core = scene.core_scene()
             if simulation is not None:  # of a scene that was given it was told when that was made
-                warn_if_coarse(scene)
+                complaints.add(run, coarse_skins(scene))
         except Exception as error:
             finished.append((run, _failed(error, metrics)))
         else:
@@ -267,13 +287,6 @@ def _scene(simulation: Simulation | None, names: tuple[str, ...], row: tuple[Any
         return varied_scene(simulation.scene, dict(zip(names, row, strict=True)))
     (given,) = row
     return (given if isinstance(given, Simulation) else given()).scene
-
-
-def _values(found: dict[str, float], metrics: tuple[str, ...]) -> tuple[float, ...]:
-    for name, value in found.items():
-        if math.isnan(value):
-            raise ArithmeticError(f"{name} is not a number")
-    return tuple([found.get(name, math.nan) for name in metrics])
 
 
 def _failed(error: Exception, metrics: tuple[str, ...]) -> Outcome:

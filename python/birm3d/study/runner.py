@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from .._version import __version__
 from ..base.checks import is_number
+from ..base.complaints import Complaints
 from ..base.progress import progress_bar
 from ..result.metrics import JOINT_METRICS, METRIC_UNITS, SEGMENT_METRICS
 from ..simulation.parameters import value_of, varied
@@ -122,6 +123,9 @@ def run_study(
         runs are in its ``study``, and those before that in the store.
     StudyInterrupted
         A KeyboardInterrupt, with the finished runs in its ``study`` and in the store.
+    OverlapWarning, LedgerWarning, CoarseSkinWarning
+        As warnings, each once for all runs that were run now: how many and which rows are not to be
+        believed, and what is wrong with the worst.
     """
     # What only a study needs, such as sqlite3 and multiprocessing, is loaded by the first one.
     from ..base.fingerprint import fingerprint
@@ -151,6 +155,10 @@ def run_study(
         with closing(open_store(path)) as new:
             new.add(outcomes)
 
+    def told() -> str:
+        return "".join(f"; {text}" for _, text in complaints.summaries(len(outcomes)))
+
+    complaints = Complaints()
     kept = None if store is None else open_store(store)
     outcomes = OutcomeTable(len(wanted), len(table))
     where = f"kept in {str(store)!r}" if store is not None else "kept in the error's 'study'"
@@ -168,28 +176,30 @@ def run_study(
 
             # Asked for when they are needed: none is finished before.
             todo = ((run, row) for run, row in enumerate(table) if run not in outcomes)
-            run_all(simulation, names, wanted, todo, len(table) - len(outcomes), executor, finish)
+            run_all(simulation, names, wanted, todo, len(table) - len(outcomes), executor, finish, complaints)
     except StoreError as full:
         cause = full.__cause__
         stored = len(outcomes) - (0 if kept is None else len(kept.lost))
         message = (
             f"store {str(store)!r} can not be written ({cause}): it has {stored} of {len(table)} runs and "
             f"can be gone on with; {len(outcomes)} are finished and kept in the error's 'study'"
+            f"{told()}"
         )
         raise StudyStoppedError(message, study(outcomes)) from cause
     except KeyboardInterrupt:
-        message = f"stopped: {len(outcomes)} of {len(table)} runs are finished and {where}"
+        message = f"stopped: {len(outcomes)} of {len(table)} runs are finished and {where}{told()}"
         raise StudyInterrupted(message, study(outcomes), keep) from None
     except ExecutorError as died:
         cause = died.__cause__
         message = (
             f"the executor died ({type(cause).__name__}: {cause}); {len(outcomes)} of {len(table)} runs are "
-            f"finished and {where}"
+            f"finished and {where}{told()}"
         )
         raise StudyStoppedError(message, study(outcomes), keep) from cause
     finally:
         if kept is not None:
             kept.close()
+    complaints.warn(len(table))
     if grid is not None:
         grid = {name: [_plain(value) for value in values] for name, values in grid.items()}
     return study(outcomes, grid=grid)
