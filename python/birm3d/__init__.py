@@ -9,7 +9,7 @@ from __future__ import annotations
 from . import _moved, calibration, study, units
 from ._core import BusyError, UnstableError
 from ._version import __version__
-from .assessment import OccupantRisk, Rating, RatingStudy, occupant_risk, rate
+from .assessment import OccupantRisk, Rating, RatingStudy, occupant_risk, rate, test_matrix
 from .barrier import Barrier, FreeStanding, lateral_load
 from .calibration import calibrate
 from .io.file_format import FileFormatError
@@ -92,6 +92,7 @@ __all__ = [
     "study",
     "sweep",
     "test_data",
+    "test_matrix",
     "units",
 ]
 

@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 from .criteria import Criterion
+from .matrix import Matrix, test_matrix
 from .occupant import OccupantRisk, occupant_risk
 from .probability import RatingStudy
 from .rate import STANDARDS, rate
 from .rating import Rating
 
-__all__ = ["STANDARDS", "Criterion", "OccupantRisk", "Rating", "RatingStudy", "occupant_risk", "rate"]
+__all__ = [
+    "STANDARDS",
+    "Criterion",
+    "Matrix",
+    "OccupantRisk",
+    "Rating",
+    "RatingStudy",
+    "occupant_risk",
+    "rate",
+    "test_matrix",
+]

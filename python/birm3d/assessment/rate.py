@@ -15,7 +15,7 @@ from .roadside import EN_1317, MASH
 from .roadside_rating import level_rating, rate_roadside
 from .security import SECURITY, rate_security
 
-__all__ = ["STANDARDS", "rate"]
+__all__ = ["STANDARDS", "rate", "split_standard"]
 
 _ROADSIDE = {one.name: one for one in (MASH, EN_1317)}
 STANDARDS = (*SECURITY, *_ROADSIDE)
@@ -76,7 +76,7 @@ def rate(
         If the standard or the vehicle is not known, the vehicle has no such point, the run has no barrier,
         goes along it, or is not over.
     """
-    name, rest = _split(standard)
+    name, rest = split_standard(standard)
     if isinstance(result, Study):
         return rate_study(result, lambda run: _of_run(run, name, rest, vehicle_class, reference_point, part))
     if isinstance(result, Result):
@@ -89,12 +89,12 @@ def rate(
     return level_rating(_ROADSIDE[name], rest, of)
 
 
-def _split(standard: str) -> tuple[str, str | None]:
+def split_standard(standard: str) -> tuple[str, str | None]:
     """Return the standard, and the level or test that is named beside it."""
     for name in sorted(STANDARDS, key=len, reverse=True):
         if standard == name:
             return name, None
-        if standard.startswith(f"{name} ") and name in _ROADSIDE:
+        if standard.startswith(f"{name} "):
             return name, standard.removeprefix(f"{name} ").strip()
     raise ValueError(f"standard must be one of {', '.join(STANDARDS)}; got {standard!r}")
 
@@ -108,6 +108,10 @@ def _of_run(
     part: str | int | None,
 ) -> Rating:
     if name in SECURITY:
+        if rest is not None:
+            raise ValueError(
+                f"standard must be {name!r} alone: the level follows from the run; got {rest!r} too"
+            )
         return rate_security(run, SECURITY[name], vehicle_class, point, part)
     if point is not None:
         raise ValueError(f"reference_point must be None for {name}, which has none; got {point!r}")

@@ -10,7 +10,7 @@ import numpy as np
 from .. import units
 from .criteria import Criterion
 from .limits import FLAIL_LIMITS, THIV_LIMIT_KM_H, graded, severity_class
-from .measures import ExitBox, barrier_extent, check_side_on, exit_box, vehicle_intrusion
+from .measures import ExitBox, across_barrier, barrier_extent, check_side_on, exit_box, vehicle_intrusion
 from .occupant import occupant_risk
 from .rating import MODEL_CAUTION, Rating, first_reached
 from .roadside import RoadsideStandard, RoadsideTest
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["rate_roadside"]
 
+_STILL = 0.5  # m/s into the barrier, of a vehicle that slides along it
 _MOST_ROLL = 75.0  # deg; MASH criterion F
 _LIGHT_KG = 3500.0  # below it vehicles are cars and pickups
 _LEAST_SEVERITY = 0.92  # of the nominal impact severity, MASH
@@ -128,20 +129,30 @@ def _conditions(
 
 
 def _containment(result: Result, name: str) -> Criterion:
-    """Return whether the vehicle was kept on its side; a run that is not over tells nothing.
+    """Return whether the vehicle was kept on its side of the barrier.
+
+    A run that ends with the vehicle sliding along the barrier tells as much; one that ends while it moves
+    into the barrier tells nothing.
 
     Raises
     ------
     ValueError
-        If the outcome of the run is not decided.
+        If the outcome of the run is not decided and some unit moves into the barrier, or is behind it.
     """
-    if result.outcome == "undecided":
+    limit = "contained or redirected"
+    if result.outcome != "undecided":
+        return Criterion(name, result.outcome, "", limit, result.outcome not in ("passed", "overridden"))
+    barrier = result.scene.barrier
+    assert barrier is not None  # check_side_on has refused None
+    parts = [result.unit(i) for i in range(len(result.scene.vehicle.units))]
+    inward = max(float(part.final_velocity @ np.asarray(barrier._past)) for part in parts)
+    furthest = max(float(across_barrier(result, part.position[-1])) for part in parts)
+    if inward > _STILL or furthest > 0.0:
         raise ValueError(
             "result must have run until the outcome is decided (duration=None), got one that ends at "
-            f"{result.time[-1]:g} s: {result.outcome_detail}"
+            f"{result.time[-1]:g} s with {inward:.2f} m/s into the barrier: {result.outcome_detail}"
         )
-    behind = result.outcome in ("passed", "overridden")
-    return Criterion(name, result.outcome, "", "contained or redirected", not behind)
+    return Criterion(name, "still beside the barrier", "", limit, True)
 
 
 def _attitude(result: Result) -> tuple[float, float]:
