@@ -7,7 +7,7 @@ Builds the Python module anew for each compiler with -O3 and -O0, and with -O3 f
 choose from; runs the same scenes with each, alone, as ensembles on one and two threads and backwards, and
 interrupted and restored at random instants (twenty; with -O0 three); and compares the hashes of their last
 states. Ends with 1 if any differs. With --native a build for this very machine is timed against the one that
-is shipped, in turns; its bits are its own affair. --quick builds nothing: three scenes with the module that
+is shipped, in turns; its bits may differ. --quick builds nothing: three scenes with the module that
 is installed.
 
 Where there is no clang, that of the Python package ziglang will do, told to make what is shipped:

@@ -6,7 +6,7 @@
 
 namespace birm3d {
 
-// A wheel turns as all its nodes together will have it: their friction waits until they are all known.
+// How fast a wheel turns follows from the friction of all its nodes. So friction is added when all of them are known.
 void Skin::note_treads(std::size_t near, std::size_t b, const Places& places, const BlockContact& contact) {
     const std::size_t first = mesh_.first[b] - mesh_.shell;
     for (std::size_t i = 0; i < lanes; ++i) {

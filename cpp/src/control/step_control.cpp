@@ -17,7 +17,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// What an error is divided into may be nil (m/s).
+// Least divisor: an estimated error may be zero (m/s).
 constexpr double least_error = 1e-300;
 
 // Velocity error that a step may have (m/s).

@@ -106,7 +106,7 @@ Load correction(const LoadCourse& before, const LoadCourse& now) {
 }
 
 // The loads of the touches of one structure at the new instant, their courses, and what the higher order adds to the
-// trapezoid rule. Returns the estimated error of the step's velocity (m/s). What hangs on signs and sizes is decided by
+// trapezoid rule. Returns the estimated error of the step's velocity (m/s). What depends on signs and sizes is decided by
 // the structure's load as a whole; the rest is linear in the load.
 double load_and_correct(const Pushed& pushed, const LoadCourse& before, double dt,
                         std::span<const LoadCourse> befores, std::span<const Load> loads,

@@ -52,6 +52,8 @@ class Result(RunAnalysis):
     version : str
         Of the package that made the result.
 
+    Notes
+    -----
     Motions, ``nodes`` and deflections are those of unit 0, the leading one; forces of the barrier and of the
     ground are those on all units together. :meth:`unit` has both for each unit.
     """

@@ -77,6 +77,8 @@ class Study:
     version : str
         Of the package that made the runs.
 
+    Notes
+    -----
     :meth:`simulation` makes the simulation of a row anew.
     """
 

@@ -20,7 +20,7 @@ struct PlaneSums {
 };
 struct ObstacleSums {
     CrushSums sums;
-    Wrench by_trusses;  // of the paper's rule, in the stead of the projected force
+    Wrench by_trusses;  // of the paper's rule, in place of the projected force
     Wrench contact;     // of blocks that saw several obstacles
     double normal_force = 0.0;
     Rubbing rubbing;

@@ -21,7 +21,7 @@ struct StepSearch {
 // For a step of at most `longest` (s).
 StepSearch begin_search(const Scene& scene, const State& state, double longest);
 
-// One to be tried in the stead of a step that asks too much; infinite where that will do (s).
+// Length of a shorter step to try in place of one whose error is too large; infinite where that one is accepted (s).
 double shorter_step(const Scene& scene, const State& from, const Trial& tried, StepSearch& search);
 
 // The one after a step that is accepted (s).

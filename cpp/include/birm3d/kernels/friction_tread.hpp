@@ -35,7 +35,7 @@ struct TreadContact {
 TreadContact tread_contact(const TreadNode& node, std::size_t near, const Twist& motion, const Vec3& arm,
                            const Vec3& normal, double pressure);
 
-// q of a wheel that is free to turn (m/s), from all its nodes that push; 0 where none has any say.
+// q of a wheel that is free to turn (m/s), from all its nodes that push; 0 where no node pushes.
 double free_turning(double full_speed, std::span<const TreadContact> wheel);
 
 // Adds a node's friction to `rubbing` (body axes); `turning`: q.

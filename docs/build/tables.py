@@ -1,0 +1,220 @@
+"""Tables of the site, made from committed results and from the package: ``<!-- build: table NAME -->``."""
+
+from __future__ import annotations
+
+import csv
+import inspect
+import logging
+import re
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+BENCH, VALIDATION = ROOT / "tests/bench/results", ROOT / "tests/validation/results"
+MARK = re.compile(r"^<!-- build: (table|text) (\w+) -->$", re.MULTILINE)
+Row = dict[str, str]
+_log = logging.getLogger("mkdocs.hooks.tables")
+
+
+def rows_of(path: Path) -> list[Row]:
+    """Return the rows of a table; lines that begin with # tell of the machine."""
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table in Markdown."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(
+        "| " + " | ".join(str(cell).replace("|", "\\|") for cell in line) + " |" for line in lines
+    )
+
+
+def percent(text: str) -> str:
+    """Return a share as per cent with two digits; a dash where there is none."""
+    return "–" if text == "-" else f"{100.0 * float(text):.2g} %"
+
+
+def accuracy_errors() -> str:
+    """Worst metric of each case, by its error at the default tolerance."""
+    cases: dict[str, list[Row]] = {}
+    for row in rows_of(BENCH / "accuracy/converged.csv"):
+        cases.setdefault(row["case"], []).append(row)
+
+    def shown(rows: list[Row], column: str) -> str:
+        worst = max(rows, key=lambda row: float(row[column] or 0.0))
+        return f"{percent(worst[column])} ({worst['metric']})"
+
+    body = [
+        (case.replace("_", " "), shown(rows, "default_error"), shown(rows, "strict_error"))
+        for case, rows in cases.items()
+    ]
+    return table(("case", "default tolerance 1e-3", "strict, 1e-5"), body)
+
+
+def accuracy_claims() -> str:
+    """What is claimed, and in how many cases it holds."""
+    claims: dict[str, list[bool]] = {}
+    for row in rows_of(BENCH / "accuracy/claims.csv"):
+        claims.setdefault(row["claim"], []).append(row["holds"] == "yes")
+    return table(("claim", "holds"), [(k, f"in {sum(v)} of {len(v)} cases") for k, v in claims.items()])
+
+
+def mesh() -> str:
+    """Error of each preset's own mesh."""
+    rows = [row for row in rows_of(BENCH / "convergence/mesh.csv") if row["error_of_density_1"]]
+    kept = [row for row in rows if row["metric"] in {"dynamic_crush", "peak_normal_force_cfc60", "end_speed"}]
+    return table(
+        ("scene", "metric", "order", "error of density 1"),
+        [(r["scene"], r["metric"], r["order"], percent(r["error_of_density_1"])) for r in kept],
+    )
+
+
+def rivals() -> str:
+    """Times at an error of 0.1 % of W2, N = 1,000 and 10,000."""
+    rows = [
+        row
+        for row in rows_of(BENCH / "rivals/work_precision.csv")
+        if row["case"] in {"W1", "W2"} and row["nodes"] in {"1000", "10000"} and row["target"] == "0.001"
+    ]
+    return table(
+        ("case", "nodes", "program", "time", "times ours"),
+        [
+            (r["case"], r["nodes"], r["rival"], f"{r['time_ms']} ms", r["times_ours"])
+            for r in rows
+            if r["time_ms"]
+        ],
+    )
+
+
+def determinism() -> str:
+    """Hashes by scene, and from how many rows."""
+    scenes: dict[str, set[str]] = {}
+    rows = rows_of(BENCH / "determinism/hashes.csv")
+    for row in rows:
+        scenes.setdefault(row["scene"], set()).update(row["hash"].split("/"))
+    each = len(rows) // len(scenes)
+    head = ("scene", "different hashes", f"of {each} combinations of build and way to run")
+    return table(
+        head, [(scene, str(len(found)), "; ".join(sorted(found))) for scene, found in scenes.items()]
+    )
+
+
+def blind() -> str:
+    """Blind predictions of NHTSA wall tests."""
+    rows = [row for row in rows_of(BENCH / "predictions/nhtsa_frontal.csv") if row["measured_m"]]
+    names = {"similar_m": "similar front", "same_front_m": "the preset's front", "in_between_m": "in between"}
+    body = []
+    for column, name in names.items():
+        errors = sorted(float(r[column]) / float(r["measured_m"]) - 1.0 for r in rows if r[column])
+        sizes = sorted(abs(e) for e in errors)
+        mean = sum(errors) / len(errors)
+        body.append((name, str(len(errors)), f"{100 * sizes[len(sizes) // 2]:.0f} %", f"{100 * mean:+.0f} %"))
+    return table(("front", "tests", "median size of the error of travel", "mean error"), body)
+
+
+def finite_element() -> str:
+    """How the two vehicles fare, fitted and left out."""
+    body = []
+    for name in ("n", "s"):
+        for row in rows_of(VALIDATION / f"finite_element_{name}.csv"):
+            if row["what"] != "left out":
+                continue
+            crush, force = (
+                f"{float(row[c]) * scale:.{digits}f} ({float(row[c + '_measured']) * scale:.{digits}f})"
+                for c, scale, digits in (("crush", 1.0, 3), ("peak_force", 1e-3, 0))
+            )
+            body.append((row["vehicle"], row["run"], crush, force))
+    return table(
+        ("vehicle", "run, left out", "crush [m], computed (run)", "peak force [kN], computed (run)"), body
+    )
+
+
+def robustness() -> str:
+    """What 10,000 random impacts showed."""
+    return table(
+        ("barrier", "runs", "deepest node [m]", "deepest anchor [m]", "energy", "momentum", "faults"),
+        [
+            (
+                r["kind"],
+                r["runs"],
+                r["node_depth_m"],
+                r["anchor_depth_m"],
+                r["energy"],
+                r["momentum"],
+                r["faults"],
+            )
+            for r in rows_of(BENCH / "robustness/random_impacts.csv")
+        ],
+    )
+
+
+def metrics() -> str:
+    """Every scalar with its unit."""
+    from birm3d.metrics import METRIC_UNITS
+
+    return table(("name", "unit"), [(f"`{name}`", unit or "–") for name, unit in METRIC_UNITS.items()])
+
+
+def settings() -> str:
+    """Every setting with its default and meaning, from the docstring."""
+    import griffe
+    from birm3d import Settings
+
+    parsed = griffe.Docstring(inspect.getdoc(Settings) or "", parser="numpy").parse(warnings=False)
+    told = {p.name: p.description for part in parsed if part.kind.value == "parameters" for p in part.value}
+    body = [
+        (f"`{p.name}`", f"`{p.default!r}`", " ".join(told[p.name].split()).replace("``", "`"))
+        for p in inspect.signature(Settings).parameters.values()
+    ]
+    return table(("name", "default", "meaning"), [(a, b, _plain(c)) for a, b, c in body])
+
+
+def barriers() -> str:
+    """Makers of barriers with the first sentence of their docstrings."""
+    from birm3d import Barrier
+
+    makers = [
+        (name, inspect.getdoc(getattr(Barrier, name)) or "")
+        for name, member in vars(Barrier).items()
+        if isinstance(member, staticmethod) and not name.startswith("_")
+    ]
+    return table(("maker", "makes"), [(f"`Barrier.{n}`", _plain(d.split("\n\n")[0])) for n, d in makers])
+
+
+def tutorial_report() -> str:
+    """The tutorial's report, computed anew."""
+    import birm3d
+    from birm3d import units
+
+    car = birm3d.Vehicle.preset("passenger_car", gvw=units.lb(4500))
+    wall = birm3d.Barrier.rigid_wall(friction=0.2)
+    result = birm3d.Simulation(car, wall, impact_speed=units.mph(35), impact_angle=60.0).run()
+    return f"```text\n{result.report()}\n```"
+
+
+def _plain(text: str) -> str:
+    return re.sub(r":\w+:`~?([^`]+)`", r"`\1`", " ".join(text.split()))
+
+
+MADE: dict[str, Callable[[], str]] = {
+    made.__name__: made
+    for made in (
+        accuracy_errors, accuracy_claims, mesh, rivals, determinism, blind, finite_element, robustness,
+        metrics, settings, barriers, tutorial_report,
+    )
+}  # fmt: skip
+
+
+def on_page_markdown(markdown: str, *, page: Any, **_: Any) -> str:
+    """Put tables in the place of their marks."""
+
+    def made(match: re.Match[str]) -> str:
+        name = match.group(2)
+        if name not in MADE:
+            _log.warning("%s: no table %s", page.file.src_uri, name)
+            return match.group(0)
+        return MADE[name]()
+
+    return MARK.sub(made, markdown)

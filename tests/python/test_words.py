@@ -1,0 +1,162 @@
+"""Words of pages and comments: bounded sentences, no banned phrase, links that lead somewhere."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs/pages"
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.rglob("*.md"))]
+MOST_WORDS = 35
+
+# What a stranger could not understand without the author, and figures of speech in the place of a term.
+BANNED = (
+    "as all its nodes together will have it",
+    "what an error is divided into may be nil",
+    "arrive together by all but a hair",
+    "by all but a hair",
+    "may be nil",
+    "in the stead of",
+    "hangs on signs and sizes",
+    "has any say",
+    "its own affair",
+)
+TEXT_FILES = [
+    path
+    for folder in ("cpp", "bindings", "python", "docs", "examples", "tests/bench")
+    for path in sorted((ROOT / folder).rglob("*"))
+    if path.suffix in {".hpp", ".cpp", ".py", ".md"}
+] + PAGES[:2]
+
+
+def sentences(markdown: str) -> list[str]:
+    """Sentences of the running text; a list item, a cell of a table and a heading end one each."""
+    text = re.sub(r"^(`{3,}|~{3,}).*?^\1\s*$", "\n\n", markdown, flags=re.DOTALL | re.MULTILINE)
+    text = re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL)
+    text = re.sub(r"^:::.*$", "", text, flags=re.MULTILINE)
+    text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", text)
+    text = re.sub(r"`[^`\n]*`", "code", text)
+    text = re.sub(r"^\s*(?:[-*]|\d+\.)\s+", "\n\n", text, flags=re.MULTILINE)
+    text = re.sub(r"^#.*$", "\n\n", text, flags=re.MULTILINE)
+    text = re.sub(
+        r"^\|(.*)\|$", lambda row: "\n\n" + row.group(1).replace("|", "\n\n"), text, flags=re.MULTILINE
+    )
+    found = []
+    for paragraph in re.split(r"\n\s*\n", text):
+        found += re.split(r"(?<=[.!?])[\"*)]*\s+(?=[A-Z*\"(]|code\b)", " ".join(paragraph.split()))
+    return [sentence for sentence in found if sentence]
+
+
+def words(sentence: str) -> int:
+    """Number of words; numbers and signs alone are none."""
+    return len(re.findall(r"[A-Za-z][\w'’-]*", sentence))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_no_sentence_is_too_long(page: Path) -> None:
+    long = [s for s in sentences(page.read_text(encoding="utf-8")) if words(s) > MOST_WORDS]
+    assert not long, "\n".join(f"{words(s)} words: {s}" for s in long)
+
+
+def test_length_of_sentences_is_counted() -> None:
+    text = f"One two. W{'ord w' * 36}ord.\n\n- an item\n- {'word ' * 36}\n\n```\n{'code ' * 50}\n```\n"
+    assert [words(s) for s in sentences(text)] == [2, 37, 2, 36]
+    assert words("See code, 0.5 m, and 3 more.") == 5
+
+
+def phrases_in(text: str) -> list[str]:
+    """Banned phrases of a text, whatever the line breaks and comment signs between their words."""
+    plain = " ".join(re.sub(r"^\s*(//+|#)", " ", text, flags=re.MULTILINE).lower().split())
+    return [phrase for phrase in BANNED if re.search(rf"\b{re.escape(phrase)}\b", plain)]
+
+
+def test_no_banned_phrase() -> None:
+    found = {
+        path.relative_to(ROOT).as_posix(): phrases
+        for path in TEXT_FILES
+        if (phrases := phrases_in(path.read_text(encoding="utf-8")))
+    }
+    assert not found, found
+
+
+def test_banned_phrases_are_found_across_lines() -> None:
+    assert phrases_in("// A wheel turns as all its nodes\n// together will have it.") == [BANNED[0]]
+    assert phrases_in("x = 1  # many say\n") == []
+
+
+@pytest.fixture(scope="module")
+def source_links() -> ModuleType:
+    """The site's own finder of files and symbols, so that this test and the site agree."""
+    spec = importlib.util.spec_from_file_location("source_links", ROOT / "docs/build/source_links.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_pages_name_files_and_functions_that_exist(source_links: ModuleType) -> None:
+    """A renamed or moved function must be mended on the page that names it, docs/pages/*.md."""
+    wrong, count = [], 0
+    for page in PAGES[2:]:
+        for _, target, symbol in source_links.links_of(page):
+            count += 1
+            try:
+                source_links.resolved(page, target, symbol)
+            except ValueError as error:
+                wrong.append(str(error))
+    assert not wrong, "\n".join(wrong)
+    assert count > 100
+
+
+@pytest.mark.parametrize("page", PAGES[:2], ids=lambda page: page.name)
+def test_links_of_other_pages(page: Path) -> None:
+    targets = re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
+    assert targets
+    assert [t for t in targets if "://" not in t and not (page.parent / t).exists()] == []
+
+
+def test_a_wrong_link_is_found(source_links: ModuleType) -> None:
+    page = DOCS / "theory.md"
+    with pytest.raises(ValueError, match="no file"):
+        source_links.resolved(page, "../../cpp/none.cpp", None)
+    with pytest.raises(ValueError, match="does not define no_such_function"):
+        source_links.resolved(page, "../../cpp/src/kernels/impulse.cpp", "no_such_function")
+    text = "// f(x)\nvoid g() {\n    f(1);\n}\ndouble f(double x) {\n}\n"
+    assert source_links.line_of(text, "f") == 5
+
+
+@pytest.mark.slow
+def test_site_builds_without_warnings(tmp_path: Path) -> None:
+    """Every page, table, picture and docstring; a warning is an error."""
+    done = subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "-f", ROOT / "docs/mkdocs.yml", "-d", tmp_path],
+        env={**os.environ, "NO_MKDOCS_2_WARNING": "1"},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout
+    theory = (tmp_path / "theory.html").read_text(encoding="utf-8")
+    assert "source/cpp/src/kernels/impulse.cpp.html#line-" in theory
+    assert "<math" in theory
+    assert (tmp_path / "source/cpp/src/kernels/impulse.cpp.html").is_file()
+    assert len(list((tmp_path / "pictures").glob("*.png"))) >= 7
+    reference = (tmp_path / "reference/python.html").read_text(encoding="utf-8")
+    assert 'id="birm3d.Vehicle.preset"' in reference
+    assert "energy_residual" in (tmp_path / "reference/metrics.html").read_text(encoding="utf-8")
+    assert "ImpulseSolver" in (tmp_path / "reference/cpp.html").read_text(encoding="utf-8")
+    text = "".join(p.read_text(encoding="utf-8") for p in tmp_path.glob("*.html"))
+    assert "<!-- build:" not in text
+    assert not re.search(r'<(?:script|img|link)[^>]*(?:src|href)="https?://', text), (
+        "a page needs the network"
+    )
