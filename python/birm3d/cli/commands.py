@@ -16,6 +16,7 @@ from ..io.atomic_write import whole_file
 from ..result.summary import ELEMENT_COLUMNS, element_rows, elements_in_si, outcome_rows
 from .calibrate import calibrate_file
 from .files import HTML, MOVIE, PICTURE, RESULT, TABLE
+from .rate import STANDARD_HELP, assessed, assessments_as_json, print_assessments, rate
 from .scene import scene_options, simulation_of
 from .sweep import sweep
 from .table import print_table
@@ -33,12 +34,15 @@ def _cli() -> None:
 
 
 _cli.add_command(calibrate_file)
+_cli.add_command(rate)
 
 
 @_cli.command()
 @scene_options
 @click.option("--json", "as_json", is_flag=True, help="Metrics and loads on elements as JSON on stdout.")
 @click.option("--report", "with_report", is_flag=True, help="Also what was computed and what was left out.")
+@click.option("--rate", "standards", multiple=True, help=f"Also the rating by a standard. {STANDARD_HELP}")
+@click.option("--occupant-risk", "with_risk", is_flag=True, help="Also OIV, ridedown, ASI, THIV, PHD, OLC.")
 @click.option("--plot", type=PICTURE, help="Write figures to this file (.png, .pdf, .svg).")
 @click.option("--csv", "csv_path", type=TABLE, help="Write histories to this file (.csv).")
 @click.option("--save", type=RESULT, help="Write the result to this file (.npz); birm3d.load() reads it.")
@@ -48,6 +52,8 @@ def run(
     scene: Path | None,
     as_json: bool,
     with_report: bool,
+    standards: tuple[str, ...],
+    with_risk: bool,
     plot: Path | None,
     csv_path: Path | None,
     save: Path | None,
@@ -58,10 +64,13 @@ def run(
     """Run one crash: a SCENE file, or the options --vehicle and --speed."""
     simulation = simulation_of(scene, options)
     result = simulation.run(progress=True)
+    ratings, risk = assessed(result, standards, with_risk)
     if as_json:
-        click.echo(json.dumps(_as_json(result), indent=2))
+        click.echo(json.dumps({**_as_json(result), **assessments_as_json(ratings, risk)}, indent=2))
     else:
         _print_outcome(result)
+        if ratings or risk is not None:
+            print_assessments(ratings, risk)
     if with_report:
         click.echo(result.report(), err=as_json)
     if csv_path is not None:

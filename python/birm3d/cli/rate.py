@@ -1,0 +1,112 @@
+"""Command line: ratings and occupant risk of one run."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .scene import scene_options, simulation_of
+
+if TYPE_CHECKING:
+    from ..assessment import OccupantRisk, Rating
+    from ..result.result import Result
+
+__all__ = ["STANDARD_HELP", "assessed", "assessments_as_json", "print_assessments", "rate"]
+
+STANDARD_HELP = (
+    'Standard: "ASTM F2656", "ASTM F2656-07", "SD-STD-02.01", "IWA 14-1", "ISO 22343-1", "PAS 68", "MASH" or '
+    '"EN 1317", these two also with a level or test ("MASH TL-3", "EN 1317 TB32"). Can be repeated.'
+)
+
+
+@click.command()
+@scene_options
+@click.option("--standard", "standards", multiple=True, required=True, help=STANDARD_HELP)
+@click.option("--vehicle-class", help="What the standard calls the vehicle.  [default: by kind and mass]")
+@click.option(
+    "--reference-point",
+    help="Point of the vehicle in place of the standard's: a name, or x,y,z in its file's axes (m).",
+)
+@click.option("--occupant-risk", "with_risk", is_flag=True, help="Also OIV, ridedown, ASI, THIV, PHD, OLC.")
+@click.option("--json", "as_json", is_flag=True, help="As JSON on stdout.")
+def rate(
+    scene: Path | None,
+    standards: tuple[str, ...],
+    vehicle_class: str | None,
+    reference_point: str | None,
+    with_risk: bool,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Rate one crash by standards: a SCENE file, a result (.npz), or the options --vehicle and --speed.
+
+    Always indicative: a rating needs a test.
+    """
+    result = _result(scene, options)
+    ratings, risk = assessed(result, standards, with_risk, vehicle_class, reference_point)
+    if as_json:
+        click.echo(json.dumps(assessments_as_json(ratings, risk), indent=2))
+    else:
+        print_assessments(ratings, risk)
+
+
+def _result(scene: Path | None, options: dict[str, Any]) -> Result:
+    if scene is None or scene.suffix.lower() != ".npz":
+        return simulation_of(scene, options).run(progress=True)
+    from ..result.result import load
+
+    given = click.get_current_context()
+    source = click.core.ParameterSource.COMMANDLINE
+    for name in options:
+        if given.get_parameter_source(name) is source:
+            raise click.UsageError(
+                f"--{name.replace('_', '-')} must not be given beside a result, got {scene}"
+            )
+    return load(scene)
+
+
+def assessed(
+    result: Result,
+    standards: Sequence[str],
+    with_risk: bool,
+    vehicle_class: str | None = None,
+    reference_point: str | None = None,
+) -> tuple[list[Rating], OccupantRisk | None]:
+    """Return the ratings of a run by some standards, and its occupant risk where that is asked for."""
+    from ..assessment import occupant_risk
+    from ..assessment import rate as rate_result
+
+    point = None if reference_point is None else _point(reference_point)
+    ratings = [
+        rate_result(result, standard, vehicle_class=vehicle_class, reference_point=point)
+        for standard in standards
+    ]
+    return ratings, occupant_risk(result) if with_risk else None
+
+
+def _point(text: str) -> str | list[float]:
+    parts = text.split(",")
+    if len(parts) == 1:
+        return text
+    try:
+        return [float(part) for part in parts]
+    except ValueError as error:
+        raise ValueError(f"--reference-point must be a name or x,y,z in m, got {text!r}") from error
+
+
+def assessments_as_json(ratings: Sequence[Rating], risk: OccupantRisk | None) -> dict[str, Any]:
+    """Return ratings and occupant risk as plain values."""
+    found: dict[str, Any] = {"ratings": [rating.to_dict() for rating in ratings]} if ratings else {}
+    return found if risk is None else {**found, "occupant_risk": risk.to_dict()}
+
+
+def print_assessments(ratings: Sequence[Rating], risk: OccupantRisk | None) -> None:
+    """Print ratings and occupant risk as tables of text."""
+    texts = [rating.summary() for rating in ratings]
+    if risk is not None:
+        texts.append(risk.summary())
+    click.echo("\n\n".join(texts))

@@ -1,0 +1,91 @@
+"""The command line: ratings and occupant risk."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from birm3d.cli import main
+
+TRUCK = [
+    *("--vehicle", "cargo_truck", "--speed", "50mph", "--barrier", "bollards", "--count", "3"),
+    *("--mesh-density", "0.3"),
+]
+
+
+def birm3d(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
+    try:
+        main()
+    except SystemExit as stop:
+        return int(stop.code or 0)
+    return 0
+
+
+def test_rate(monkeypatch, capsys) -> None:
+    assert birm3d(monkeypatch, "rate", *TRUCK, "--standard", "ASTM F2656", "--standard", "SD-STD-02.01") == 0
+    out, err = capsys.readouterr()
+    assert "ASTM F2656, indicative: M50-P1 (vehicle M)" in out
+    assert "SD-STD-02.01, indicative: K12-L3" in out
+    assert "Caution: " in out
+    assert err == ""
+
+
+def test_run_with_ratings_as_json(monkeypatch, capsys) -> None:
+    arguments = ["run", *TRUCK, "--rate", "ASTM F2656", "--occupant-risk", "--json"]
+    assert birm3d(monkeypatch, *arguments) == 0
+    found = json.loads(capsys.readouterr().out)
+    (rating,) = found["ratings"]
+    assert rating["designation"] == "M50-P1"
+    assert rating["contained"] is True
+    assert found["occupant_risk"]["oiv_x"] > 10.0
+    assert "dynamic_crush" in found["metrics"]
+
+
+def test_of_a_scene_file_and_a_result(monkeypatch, capsys, tmp_path) -> None:
+    scene, result = tmp_path / "scene.toml", tmp_path / "r.npz"
+    scene.write_text(
+        '[vehicle]\npreset = "cargo_truck"\nmesh_density = 0.3\n[barrier]\nkind = "bollards"\ncount = 3\n'
+        '[impact]\nspeed = "50 mph"\n',
+        encoding="utf-8",
+    )
+    assert birm3d(monkeypatch, "run", str(scene), "--save", str(result), "--rate", "PAS 68") == 2
+    assert "vehicle must be one that PAS 68 knows" in capsys.readouterr().err
+    assert birm3d(monkeypatch, "run", str(scene), "--save", str(result)) == 0
+    capsys.readouterr()
+    texts = []
+    for file in (scene, result):
+        arguments = ["rate", str(file), "--standard", "PAS 68", "--vehicle-class", "N2", "--occupant-risk"]
+        assert birm3d(monkeypatch, *arguments) == 0
+        texts.append(capsys.readouterr().out)
+    assert texts[0] == texts[1]
+    assert "no rating: mass" in texts[0]
+    assert "OIV, longitudinal (MASH)" in texts[0]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--standard", "BS 5400"], "standard must be one of ASTM F2656"),
+        (["--standard", "MASH"], "vehicle must be one that MASH knows"),
+        (
+            ["--standard", "ASTM F2656", "--reference-point", "1,b,2"],
+            "--reference-point must be a name or x,y,z",
+        ),
+        (["--standard", "ASTM F2656", "--reference-point", "antenna"], "point must be one of"),
+        ([], "Missing option '--standard'"),
+    ],
+)
+def test_errors_say_what_is_wrong(monkeypatch, capsys, arguments, message) -> None:
+    assert birm3d(monkeypatch, "rate", *TRUCK, *arguments) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_options_beside_a_result_are_refused(monkeypatch, capsys, tmp_path) -> None:
+    result = tmp_path / "r.npz"
+    assert birm3d(monkeypatch, "run", *TRUCK, "--save", str(result)) == 0
+    assert birm3d(monkeypatch, "rate", str(result), "--speed", "30mph", "--standard", "ASTM F2656") == 2
+    assert "--speed must not be given beside a result" in capsys.readouterr().err
+    point = ["--reference-point", "-1.7,1.2,1.0", "--standard", "ASTM F2656", "--json"]
+    assert birm3d(monkeypatch, "rate", str(result), *point) == 0
+    assert json.loads(capsys.readouterr().out)["ratings"][0]["designation"] == "M50-P1"
