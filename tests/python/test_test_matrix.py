@@ -70,6 +70,17 @@ def test_a_semi_truck_on_a_tall_wall() -> None:
     assert rating.penetration > 0.3  # the van leans over the wall
 
 
+def test_ballast_is_as_high_as_mash_asks_for() -> None:
+    """The whole's mass centre follows from structure and load, whose middle is 1.60 m or 1.85 m high."""
+    for standard, height in (("MASH 4-12", 1.60), ("MASH 5-12", 1.85)):
+        (test,) = birm3d.test_matrix(standard, mesh_density=0.1)
+        carrier = test.scene.vehicle.units[-1]
+        empty = carrier.with_payload(0.0)
+        load = carrier.mass - empty.mass
+        moment = carrier.mass * carrier.mass_center_height - empty.mass * empty.mass_center_height
+        assert moment / load == pytest.approx(height, abs=1e-6)
+
+
 def test_own_vehicles() -> None:
     bus = Vehicle.preset("cargo_truck", mesh_density=0.1).with_gvw(13_000.0)
     car, own = birm3d.test_matrix("EN 1317 H2", vehicles={"13-t bus": bus}, mesh_density=0.1)

@@ -13,6 +13,7 @@ from ..scene.settings import Settings
 from ..simulation import Simulation
 from ..units import Quantity
 from ..vehicle import Vehicle
+from ..vehicle.payload import structure_mass
 from .rate import split_standard
 from .roadside import EN_1317, MASH, RoadsideStandard
 from .security import SECURITY, SecurityStandard
@@ -43,6 +44,8 @@ _PRESETS: Mapping[str, tuple[str, ...]] = {
     "N1G": ("pickup_4x4_2500", "pickup"),
     "N1": ("van_3500",),
 }
+_BALLAST = {"10000S": 1.60, "36000V": 1.85, "36000T": 1.85}
+"""Height of the middle of the ballast above the ground that MASH asks for, 63 in and 73 in [m]."""
 _LOADED = ("truck", "cab_over_truck", "bus", "tractor_semitrailer")
 """Kinds that are brought to a mass by their load; others are scaled as vehicles of their class."""
 
@@ -91,7 +94,8 @@ def test_matrix(
     vehicles
         What the standard calls a vehicle, as ``"2270P"`` -> vehicle to take for it. Others are presets,
         brought to the nominal mass: cars, vans and pickups as similar vehicles
-        (:meth:`birm3d.Vehicle.scaled_to`), trucks and buses by their load (:meth:`birm3d.Vehicle.with_gvw`).
+        (:meth:`birm3d.Vehicle.scaled_to`), trucks and buses by their load (:meth:`birm3d.Vehicle.with_gvw`),
+        those of MASH with its middle as high as MASH asks for.
     impact_offset, duration, settings
         See :class:`birm3d.Simulation`.
     mesh_density
@@ -199,5 +203,32 @@ def _vehicle(wanted: StandardVehicle, mesh_density: float) -> Vehicle:
     vehicle = Vehicle.preset(preset, mesh_density=mesh_density)
     if vehicle.mass == wanted.mass:
         return vehicle
-    loaded = vehicle.kind in _LOADED
-    return vehicle.with_gvw(wanted.mass) if loaded else vehicle.scaled_to(wanted.mass)
+    if vehicle.kind not in _LOADED:
+        return vehicle.scaled_to(wanted.mass)
+    if wanted.code not in _BALLAST:
+        return vehicle.with_gvw(wanted.mass)
+    return ballasted(vehicle, wanted.mass, _BALLAST[wanted.code])
+
+
+def ballasted(vehicle: Vehicle, mass: float, height: float) -> Vehicle:
+    """Return a truck with so much load in its load space that it has a mass, its middle at a height.
+
+    Parameters
+    ----------
+    mass
+        Of the whole [kg].
+    height
+        Of the middle of the load above the ground [m].
+
+    Raises
+    ------
+    ValueError
+        If the vehicle has no load space, or the load does not fit.
+    """
+    carrier = vehicle.units[-1]
+    file = carrier._file
+    floors = [] if file is None else [one.box_m[2][0] for one in file.solids if one.fills_to_m and one.box_m]
+    if file is None or not floors:
+        raise ValueError(f"vehicle must have a load space to be ballasted, got {vehicle.name!r}")
+    payload = mass - (vehicle.mass - carrier.mass) - structure_mass(file)
+    return vehicle.with_payload(payload, height=2.0 * (height - floors[0]))
