@@ -17,34 +17,49 @@ void SlabChain::set_up(std::span<const PinnedSlab> slabs, std::span<const SlabPi
     drift_ = drift;
     work_ = 0;
     parts_.resize(slabs.size());
+    blocks_.resize((slabs.size() + lanes - 1) / lanes);
     links_.resize(pins.size());
     motions_.assign(slabs.size(), Vec3::Zero());
     frictions_.assign(slabs.size(), Vec3::Zero());
     pulls_.assign(slabs.size(), Vec3::Zero());
-    for (std::size_t i = 0; i < slabs.size(); ++i) {
-        const PinnedSlab& slab = slabs[i];
-        Part& part = parts_[i];
-        const double k = std::sqrt(slab.inertia / slab.mass);
-        part.mass = slab.mass, part.gyration = k;
-        part.reach = slab.limit / slab.mass;
-        constexpr double nothing = 1e-100;  // m/s
-        part.limit = part.reach > nothing ? 0.25 * slab.limit : 0.0;
-        part.start = {slab.motion.x(), slab.motion.y(), k * slab.motion.z()};
-        part.q = {slab.guess.x(), slab.guess.y(), k * slab.guess.z()};
-        for (std::size_t c = 0; c < slab.arm.size(); ++c)
-            part.corners[c].arm = slab.arm[c] / k;
-        part.awake = part.fresh = !part.start.isZero(0.0) || !part.q.isZero(0.0);
-    }
+    for (std::size_t s = 0; s < slabs.size(); ++s)
+        set_up_slab(slabs[s], s);
     for (std::size_t l = 0; l < pins.size(); ++l) {
         const SlabPin& pin = pins[l];
-        Part &first = parts_[l], &next = parts_[l + 1];
-        links_[l].on_first = (pin.on_first - 0.5 * pin.gap) / first.gyration;
-        links_[l].on_next = (pin.on_next + 0.5 * pin.gap) / next.gyration;
+        set_up_end(block_of(l), block_of(l).high, l % lanes, pin.on_first, -0.5 * pin.gap);
+        set_up_end(block_of(l + 1), block_of(l + 1).low, (l + 1) % lanes, pin.on_next, 0.5 * pin.gap);
         links_[l].pull.setZero();
         links_[l].target.setZero();
         if (drift > 0.0 && pin.gap.cwiseAbs().maxCoeff() > closed)
-            first.awake = first.fresh = next.awake = next.fresh = true;
+            for (const std::size_t beside : {l, l + 1})
+                parts_[beside].awake = parts_[beside].fresh = true;
     }
+}
+
+void SlabChain::set_up_slab(const PinnedSlab& slab, std::size_t s) {
+    SlabBlock& b = block_of(s);
+    const std::size_t i = s % lanes;
+    const double k = std::sqrt(slab.inertia / slab.mass);
+    b.mass[i] = slab.mass, b.gyration[i] = k;
+    b.reach[i] = slab.limit / slab.mass;
+    constexpr double nothing = 1e-100;  // m/s
+    b.limit[i] = b.reach[i] > nothing ? 0.25 * slab.limit : 0.0;
+    b.start_x[i] = slab.motion.x(), b.start_y[i] = slab.motion.y(), b.start_z[i] = k * slab.motion.z();
+    b.q_x[i] = slab.guess.x(), b.q_y[i] = slab.guess.y(), b.q_z[i] = k * slab.guess.z();
+    for (std::size_t c = 0; c < slab.arm.size(); ++c)
+        b.corners[c].arm_x[i] = slab.arm[c].x() / k, b.corners[c].arm_y[i] = slab.arm[c].y() / k;
+    for (SlabEnd* end : {&b.low, &b.high})
+        set_up_end(b, *end, i, Vec2::Zero(), Vec2::Zero());  // of an end without a pin
+    parts_[s].awake = parts_[s].fresh = !b.start(i).isZero(0.0) || !b.q(i).isZero(0.0);
+}
+
+// `to_middle` leads from the place on the slab to the middle of the pin's two places.
+void SlabChain::set_up_end(const SlabBlock& b, SlabEnd& end, std::size_t i, const Vec2& place,
+                           const Vec2& to_middle) {
+    const Vec2 arm = (place + to_middle) / b.gyration[i];
+    end.place_x[i] = place.x(), end.place_y[i] = place.y();
+    end.arm_x[i] = arm.x(), end.arm_y[i] = arm.y();
+    end.pull_x[i] = end.pull_y[i] = 0.0;
 }
 
 void SlabChain::find_runs() {
@@ -58,21 +73,26 @@ void SlabChain::find_runs() {
 
 // Impulse of the pins, in q's units.
 Vec3 SlabChain::pull_on(std::size_t slab) const {
+    const SlabBlock& b = block_of(slab);
+    const std::size_t i = slab % lanes;
     Vec3 sum = Vec3::Zero();
-    const auto add = [&sum](const Vec2& arm, const Vec2& pull) {
-        sum += Vec3(pull.x(), pull.y(), arm.x() * pull.y() - arm.y() * pull.x());
+    const auto add = [&sum, i](const SlabEnd& end, const Vec2& pull) {
+        sum += Vec3(pull.x(), pull.y(), end.arm_x[i] * pull.y() - end.arm_y[i] * pull.x());
     };
-    if (slab < links_.size()) add(links_[slab].on_first, links_[slab].pull);
-    if (slab > 0) add(links_[slab - 1].on_next, -links_[slab - 1].pull);
+    if (slab < links_.size()) add(b.high, links_[slab].pull);
+    if (slab > 0) add(b.low, -links_[slab - 1].pull);
     return sum;
 }
 
 // Is all that moves it the rounding off?
-bool SlabChain::is_held(const Part& part) {
+bool SlabChain::is_held(std::size_t slab) const {
     constexpr double well = 0.9;  // of the limit: |u| is twice e there
-    return part.limit > 0.0 &&
-           std::all_of(part.corners.begin(), part.corners.end(),
-                       [](const Corner& corner) { return corner.law.squaredNorm() < well * well; });
+    const SlabBlock& b = block_of(slab);
+    const std::size_t i = slab % lanes;
+    return b.limit[i] > 0.0 &&
+           std::all_of(b.corners.begin(), b.corners.end(), [i](const SlabCorners& corner) {
+               return Vec2(corner.law_x[i], corner.law_y[i]).squaredNorm() < well * well;
+           });
 }
 
 // From slab `end` on: a quarter of the run, and one more. So all tries together cost a few times the last one.
@@ -89,8 +109,8 @@ void SlabChain::wake(const Run& run, std::size_t end, int direction) {
 
 // Are slabs to be taken in before or behind the run?
 bool SlabChain::wake_around(const Run& run) {
-    const bool before = run.begin > 0 && !is_held(parts_[run.begin]);
-    const bool behind = run.end < parts_.size() && !is_held(parts_[run.end - 1]);
+    const bool before = run.begin > 0 && !is_held(run.begin);
+    const bool behind = run.end < parts_.size() && !is_held(run.end - 1);
     if (before) wake(run, run.begin - 1, -1);
     if (behind) wake(run, run.end, 1);
     return before || behind;
@@ -107,14 +127,16 @@ void SlabChain::take_in_neighbours() {
 }
 
 void SlabChain::hand_over() {
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-        const Part& part = parts_[i];
-        if (!part.awake) continue;
-        const auto to_world = [&part](const Vec3& q) { return Vec3(q.x(), q.y(), part.gyration * q.z()); };
-        const Vec3 pull = pull_on(i);
-        pulls_[i] = to_world(pull);
-        motions_[i] = {part.q.x(), part.q.y(), part.q.z() / part.gyration};
-        if (part.limit > 0.0) frictions_[i] = to_world(part.mass * (part.q - part.start) - pull);
+    for (std::size_t s = 0; s < parts_.size(); ++s) {
+        if (!parts_[s].awake) continue;
+        const SlabBlock& b = block_of(s);
+        const std::size_t i = s % lanes;
+        const double k = b.gyration[i];
+        const auto to_world = [k](const Vec3& q) { return Vec3(q.x(), q.y(), k * q.z()); };
+        const Vec3 pull = pull_on(s);
+        pulls_[s] = to_world(pull);
+        motions_[s] = {b.q_x[i], b.q_y[i], b.q_z[i] / k};
+        if (b.limit[i] > 0.0) frictions_[s] = to_world(b.mass[i] * (b.q(i) - b.start(i)) - pull);
     }
 }
 

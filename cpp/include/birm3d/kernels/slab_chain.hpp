@@ -19,6 +19,7 @@
 #include <span>
 #include <vector>
 
+#include "birm3d/base/lanes.hpp"
 #include "birm3d/base/types.hpp"
 
 namespace birm3d {
@@ -42,6 +43,42 @@ struct SlabPin {
     Vec2 gap = Vec2::Zero();  // from the place on the next slab to that on the first one (m)
 };
 
+// A corner of the bases of some slabs, a slab a lane: friction by the law at the motion at hand, y, and what the last step
+// took for both.
+struct SlabCorners {
+    Lanes arm_x, arm_y;  // in units of k
+    Lanes law_x, law_y, dual_x, dual_y, used_x, used_y;
+    Lanes eta;  // |u| rounded off (m/s)
+};
+
+// An end of some slabs, with the pin there.
+struct SlabEnd {
+    Lanes place_x, place_y;  // of the pin, from the mass centre (m)
+    Lanes arm_x, arm_y;      // of the middle of its two places, in units of k
+    Lanes pull_x, pull_y;    // (N s)
+    Lanes speed_x, speed_y;  // (m/s)
+    Lanes drift_x, drift_y;  // (m)
+};
+
+// J mobility K^T of two ends (1/kg).
+struct SlabResponse {
+    Lanes xx, xy, yx, yy;
+};
+
+// Some slabs in q = (v_x, v_y, k w), k their radius of gyration. What Newton's steps do slab by slab is done column by
+// column.
+struct alignas(64) SlabBlock {
+    Lanes mass, gyration, limit, reach;  // of one corner (N s); what friction can take (m/s)
+    Lanes start_x, start_y, start_z, q_x, q_y, q_z, way_x, way_y, way_z;
+    Lanes xx, xy, xz, yy, yz, zz;  // mobility, the inverse of the curvature
+    std::array<SlabCorners, 4> corners;
+    SlabEnd low, high;  // towards the slab before, and the next one
+    SlabResponse at_low, at_high, across;
+
+    Vec3 start(std::size_t i) const { return {start_x[i], start_y[i], start_z[i]}; }
+    Vec3 q(std::size_t i) const { return {q_x[i], q_y[i], q_z[i]}; }
+};
+
 class SlabChain {
   public:
     // One pin between each two slabs. With a `drift` (s) the pins are closed after a drift of that length. Without, the
@@ -60,22 +97,10 @@ class SlabChain {
     std::size_t work() const { return work_; }
 
   private:
-    // A corner of a base: friction by the law at the motion at hand, y, and what the last step took for both.
-    struct Corner {
-        Vec2 arm;  // in units of k
-        Vec2 law, dual, used;
-        double eta;
-    };
-    // A slab in q = (v_x, v_y, k w), k its radius of gyration.
     struct Part {
-        double mass, gyration, limit, reach;  // of one corner (N s); what friction can take (m/s)
-        Vec3 start, q, way;
-        std::array<Corner, 4> corners;
-        Mat3 mobility;  // inverse of the curvature
         bool awake, fresh;
     };
     struct Link {
-        Vec2 on_first, on_next;  // of the middle, in units of k
         Vec2 target, lack, pull;
         Mat2 inverse, beside;  // of the eliminated block; the block beside it
     };
@@ -85,10 +110,13 @@ class SlabChain {
     };
 
     void set_up(std::span<const PinnedSlab> slabs, std::span<const SlabPin> pins, double drift);
+    void set_up_slab(const PinnedSlab& slab, std::size_t s);
+    static void set_up_end(const SlabBlock& b, SlabEnd& end, std::size_t i, const Vec2& place,
+                           const Vec2& to_middle);
     void find_runs();
     bool wake_around(const Run& run);
     void wake(const Run& run, std::size_t end, int direction);
-    static bool is_held(const Part& part);
+    bool is_held(std::size_t slab) const;
     void take_in_neighbours();
     Vec3 pull_on(std::size_t slab) const;
     void hand_over();
@@ -98,16 +126,21 @@ class SlabChain {
     bool newton(const Run& run, double soft, int most_steps, bool finish);
     void find_way(const Run& run, bool rubs);
     void find_pulls(const Run& run);
-    double search(const Run& run, double soft) const;
-    double value(const Run& run, double soft, double share) const;
-    void take_step(const Run& run, double share);
+    double search(const Run& run, double soft);
+    double value(const Run& run, double soft, double share);
     double settle_laws(const Run& run, double soft);
     double retarget(const Run& run);
-    Vec2 speed_between(std::size_t link, Vec3 Part::* motion) const;
+    // Calls f with the slabs of a run that are in each block.
+    template <class F>
+    void for_each_block(const Run& run, F f);
+
+    SlabBlock& block_of(std::size_t slab) { return blocks_[slab / lanes]; }
+    const SlabBlock& block_of(std::size_t slab) const { return blocks_[slab / lanes]; }
 
     std::span<const SlabPin> pins_;
     double drift_ = 0.0;
     std::vector<Part> parts_;
+    std::vector<SlabBlock> blocks_;
     std::vector<Link> links_;
     std::vector<Run> runs_;
     std::vector<Vec3> motions_, frictions_, pulls_;
