@@ -72,10 +72,7 @@ class Sensor:
 
     def rotation_at(self, rows: Any) -> Floats:
         """Return the rotations from body to world axes at some rows, shape (k, 3, 3)."""
-        from scipy.spatial.transform import Rotation
-
-        angles = self._result._history.unit(self._unit).roll_pitch_yaw[rows]
-        return read_only(Rotation.from_euler("ZYX", angles[:, ::-1]).as_matrix())
+        return read_only(_rotations(self._result._history.unit(self._unit).roll_pitch_yaw[rows]))
 
     @cached_property
     def position(self) -> Floats:
@@ -197,6 +194,16 @@ def _unit_of(units: Sequence[Vehicle], part: str | int) -> int:
             raise ValueError(f"part must be one of {', '.join(names)}; got {part!r}")
         return names.index(part)
     return index("part", part, len(units), "units")
+
+
+def _rotations(roll_pitch_yaw: Floats) -> Floats:
+    """Return rotations from body to world axes (k, 3, 3) of angles (k, 3) [rad]: yaw, pitch, roll in turn."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos(roll_pitch_yaw).T, np.sin(roll_pitch_yaw).T
+    turn = np.empty((len(roll_pitch_yaw), 3, 3))
+    turn[:, 0, 0], turn[:, 0, 1], turn[:, 0, 2] = cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr
+    turn[:, 1, 0], turn[:, 1, 1], turn[:, 1, 2] = sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr
+    turn[:, 2, 0], turn[:, 2, 1], turn[:, 2, 2] = -sp, cp * sr, cp * cr
+    return turn
 
 
 def _turned(rotation: Floats, vectors: Floats) -> Floats:
