@@ -8,6 +8,7 @@ import sys
 import sysconfig
 from pathlib import Path
 
+import birm3d
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -84,6 +85,12 @@ def test_example_uses_the_installed_library(prefix: Path, tmp_path: Path) -> Non
     configure(source, build, f"-DCMAKE_PREFIX_PATH={prefix}")
     run(tool("cmake"), "--build", build)
     assert run(build / "birm3d_example").strip()
+    for name, density, speed, angle in (("passenger_car", 0.3, 15.0, 60.0), ("semi_truck", 0.05, 8.0, 20.0)):
+        vehicle = birm3d.Vehicle.preset(name, mesh_density=density)
+        vehicle.export_core(tmp_path / name)
+        printed = run(build / "birm3d_from_file", tmp_path / name, str(speed), str(angle))
+        ours = birm3d.Simulation(vehicle, birm3d.Barrier.rigid_wall(), speed, angle).run()
+        assert f"state hash {ours.state_hash:016x}" in printed
 
 
 def test_library_inside_another_project_brings_no_tests(tmp_path: Path) -> None:

@@ -120,8 +120,6 @@ class ArticulatedVehicle(Vehicle):
         """The same vehicle for the core; its reference point is the leading unit's mass centre."""
         joint = self.joint
         leading, trailing = self._units
-        offset = trailing.center_of_mass + joint.shift - leading.center_of_mass
-        offset[2] = 0.0
         core_joint = _core.Joint(
             kind=_core.JointKind.__members__[joint.kind],
             leading=0,
@@ -131,9 +129,23 @@ class ArticulatedVehicle(Vehicle):
             roll_limit=math.radians(joint.roll_limit),
         )
         return _core.Vehicle(
-            [leading._core_unit(np.zeros(3)), trailing._core_unit(offset)],
+            [leading._core_unit(np.zeros(3)), trailing._core_unit(self._trailing_offset())],
             [core_joint],
         )
+
+    def _trailing_offset(self) -> Floats:
+        """Return the trailing mass centre along the ground, from the leading one, shape (3,) [m]."""
+        leading, trailing = self._units
+        offset = trailing.center_of_mass + self.joint.shift - leading.center_of_mass
+        offset[2] = 0.0
+        return offset
+
+    def _core_arguments(self) -> list[dict[str, Any]]:
+        leading, trailing = self._units
+        offsets = (np.zeros(3), self._trailing_offset())
+        return [
+            unit._arguments_of_unit(offset) for unit, offset in zip((leading, trailing), offsets, strict=True)
+        ]
 
     def _with(self, units: Sequence[Vehicle]) -> ArticulatedVehicle:
         return articulate(units, self.joint, self.name)

@@ -215,6 +215,27 @@ class Vehicle:
 
         save_vehicle(self, path)
 
+    def export_core(self, path: str | Path) -> None:
+        """Write the prepared vehicle to a file that the C++ library reads without Python.
+
+        The file holds mesh, laws and mass properties, not what made them: :meth:`from_file` does not read it.
+        It is text of version 1, which ``birm3d/model/vehicle_text.hpp`` describes. Its numbers are exact, so
+        that a run in C++ gives the same bits.
+
+        Parameters
+        ----------
+        path
+            File to write, in a folder that exists; replaced only when all of it is written.
+
+        Raises
+        ------
+        ValueError
+            If ``path`` is a folder or lies in none.
+        """
+        from .core_file import export_core
+
+        export_core(self, path)
+
     @staticmethod
     def from_arrays(
         *,
@@ -744,19 +765,33 @@ class Vehicle:
             trusses = self._shape.trusses(self.zones, self.rate_sensitivity, self.dent_reach)
             origin = self.center_of_mass
         else:
-            trusses, origin = self._core_trusses(), np.zeros(3)
-        return _core.Unit(
-            mass=self.mass,
-            inertia=self.inertia,
-            trusses=trusses,
-            origin=origin,
-            wheels=self.wheels,
-            mass_center_height=self.mass_center_height,
-            offset=offset,
-            core=self._core_boxes(),
-        )
+            trusses, origin = _core.TrussMesh(**self._truss_arguments()), np.zeros(3)
+        return _core.Unit(**self._unit_arguments(offset), trusses=trusses, origin=origin)
 
-    def _core_trusses(self) -> _core.TrussMesh:
+    def _core_arguments(self) -> list[dict[str, Any]]:
+        """Return what the core is made of, unit by unit: arguments of its Unit and of its TrussMesh."""
+        return [self._arguments_of_unit(np.zeros(3))]
+
+    def _arguments_of_unit(self, offset: Floats) -> dict[str, Any]:
+        arguments = self._unit_arguments(offset)
+        if self._shape is not None and self._is_shape():
+            laws = (self.zones, self.rate_sensitivity, self.dent_reach)
+            trusses, origin = self._shape.truss_arguments(*laws), self.center_of_mass
+        else:
+            trusses, origin = self._truss_arguments(), np.zeros(3)
+        return {**arguments, "trusses": trusses, "origin": origin}
+
+    def _unit_arguments(self, offset: Floats) -> dict[str, Any]:
+        return {
+            "mass": self.mass,
+            "inertia": self.inertia,
+            "wheels": self.wheels,
+            "mass_center_height": self.mass_center_height,
+            "offset": offset,
+            "core": self._core_boxes(),
+        }
+
+    def _truss_arguments(self) -> dict[str, Any]:
         """Return the trusses for the core, body axes."""
         if self._truss_laws is not None:
             laws, which = self._truss_laws[:1], np.zeros(self.n_nodes, int)
@@ -770,18 +805,18 @@ class Vehicle:
         else:
             curves = [zone.curve for zone in self.zones.values()]
             curve_of = self.zone_of_node
-        return _core.TrussMesh(
-            nodes=self.nodes,
-            anchors=self.anchors,
-            curves=curves,
-            curve_of=curve_of,
-            scale=self.area,
-            wheels=self.wheels,
-            rate_sensitivity=self.rate_sensitivity,
-            dent_reach=self.dent_reach,
-            wheel_of=self.wheel_of_node,
-            along_of=self.along_of_node,
-        )
+        return {
+            "nodes": self.nodes,
+            "anchors": self.anchors,
+            "curves": curves,
+            "curve_of": curve_of,
+            "scale": self.area,
+            "wheels": self.wheels,
+            "rate_sensitivity": self.rate_sensitivity,
+            "dent_reach": self.dent_reach,
+            "wheel_of": self.wheel_of_node,
+            "along_of": self.along_of_node,
+        }
 
     def _is_shape(self) -> bool:
         """Whether the arrays are those of the shape, nodes and anchors seen from the mass centre."""

@@ -99,6 +99,23 @@ class VehicleShape:
             _forget_first(self._seen, _PLACES)
         return seen
 
+    def truss_arguments(
+        self, zones: Mapping[str, Zone], rate_sensitivity: float, dent_reach: float
+    ) -> dict[str, Any]:
+        """Return the arguments of the core's TrussMesh, in file axes."""
+        return {
+            "nodes": self.nodes,
+            "anchors": self.anchors,
+            "curves": [zone.curve for zone in zones.values()],
+            "curve_of": self.zone_of_node,
+            "scale": self.area,
+            "wheels": self.wheels,
+            "rate_sensitivity": rate_sensitivity,
+            "dent_reach": dent_reach,
+            "wheel_of": self.wheel_of_node,
+            "along_of": self.along_of_node,
+        }
+
     def trusses(
         self, zones: Mapping[str, Zone], rate_sensitivity: float, dent_reach: float
     ) -> _core.TrussMesh:
@@ -106,18 +123,7 @@ class VehicleShape:
         key = (*zones.items(), rate_sensitivity, dent_reach)
         known = self._trusses.get(key)
         if known is None:
-            known = _core.TrussMesh(
-                nodes=self.nodes,
-                anchors=self.anchors,
-                curves=[zone.curve for zone in zones.values()],
-                curve_of=self.zone_of_node,
-                scale=self.area,
-                wheels=self.wheels,
-                rate_sensitivity=rate_sensitivity,
-                dent_reach=dent_reach,
-                wheel_of=self.wheel_of_node,
-                along_of=self.along_of_node,
-            )
+            known = _core.TrussMesh(**self.truss_arguments(zones, rate_sensitivity, dent_reach))
             self._trusses[key] = known
             _forget_first(self._trusses, _LAWS)
         return known

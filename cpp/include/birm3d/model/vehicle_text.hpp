@@ -1,0 +1,35 @@
+// A prepared vehicle as text: what Python's Vehicle.export_core() writes, read without Python.
+//
+// The text holds what the core needs of each unit, meshed and with its mass properties, so that the vehicle that is read gives
+// the same bits as the one in Python. Words are separated by spaces or line ends. A number is hexadecimal as C's %a writes it
+// (0x1.8p+3), inf, or a whole number: no rounding and no locale come between. Lengths are in m; n rows follow each count.
+//
+//   birm3d-vehicle 1
+//   units u
+//     mass m                      kg
+//     inertia                     nine numbers, about the mass centre, body axes (kg m^2)
+//     mass_center_height h        above the ground at rest
+//     offset x y z                of the mass centre from the vehicle's reference point; z is 0
+//     wheels n                    rows: centre (3), radius; body axes
+//     boxes n                     rows: centre (3), half edges (3) of the rigid body's boxes; body axes
+//     mesh_origin x y z           of the body axes, in the axes of the mesh
+//     mesh_wheels n               rows as above, in the axes of the mesh
+//     rate_sensitivity c          s/m
+//     indentation_length l
+//     curves n                    each: points k_unloading recovery, then rows: deflection, slope from there on
+//     trusses n                   rows: node (3), anchor (3), curve, scale, wheel or -1, skin node or -1 (see TrussInput)
+//   joints j
+//     rows: fifth_wheel or welded, leading unit, trailing unit, place on each (3 + 3), roll limit (rad)
+//   end
+#pragma once
+
+#include <string_view>
+
+#include "birm3d/model/vehicle.hpp"
+
+namespace birm3d {
+
+// Refuses text that is not of this form, naming the line, and numbers that no vehicle can have.
+Vehicle vehicle_of_text(std::string_view text);
+
+}  // namespace birm3d
