@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -173,3 +174,35 @@ def test_a_zone_without_a_plateau_comes_back(tmp_path):
     car = Vehicle.preset("passenger_car", mesh_density=0.1)
     car.with_zones({"bumper": Zone(1e6, np.inf, 0.0, np.inf, 1e6)}).save(tmp_path / "v.toml")
     assert Vehicle.from_file(tmp_path / "v.toml").zones["bumper"].knee == np.inf
+
+
+def test_export_for_the_core_holds_the_meshed_vehicle_exactly(tmp_path: Path) -> None:
+    """tests/python/test_build.py runs such files in C++ and compares the state hashes."""
+    vehicle = several(Vehicle.preset("passenger_car", mesh_density=0.02))
+    vehicle.export_core(tmp_path / "car.txt")
+    words = (tmp_path / "car.txt").read_text(encoding="ascii").split()
+    assert words[:5] == ["birm3d-vehicle", "1", "units", "1", "mass"]
+    assert float.fromhex(words[5]) == vehicle.mass
+    assert words[words.index("trusses") + 1] == str(vehicle.n_nodes)
+    height = words[words.index("mass_center_height") + 1]
+    assert float.fromhex(height) == vehicle.mass_center_height
+    assert float.fromhex(words[words.index("rate_sensitivity") + 1]) == vehicle.rate_sensitivity
+    assert words[-3:] == ["joints", "0", "end"]
+
+
+def test_export_for_the_core_of_two_units_and_of_arrays(tmp_path: Path) -> None:
+    semi = Vehicle.preset("semi_truck", mesh_density=0.02)
+    semi.export_core(tmp_path / "semi.txt")
+    words = (tmp_path / "semi.txt").read_text(encoding="ascii").split()
+    assert words[2:4] == ["units", "2"]
+    joint = words.index("joints")
+    assert words[joint + 1 : joint + 5] == ["1", "fifth_wheel", "0", "1"]
+    block = Vehicle.from_arrays(
+        mass=1000.0, inertia=np.eye(3), nodes=[[1.0, 0.0, 0.0]], anchors=[[0.0, 0.0, 0.0]], k_initial=1e6,
+        k_unloading=4e6,
+    )  # fmt: skip
+    block.export_core(tmp_path / "block.txt")
+    text = (tmp_path / "block.txt").read_text(encoding="ascii")
+    assert "inf" in text  # the recovery of the paper's law
+    with pytest.raises(ValueError, match="path must be a file"):
+        block.export_core(tmp_path)
