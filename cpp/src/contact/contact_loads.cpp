@@ -75,8 +75,8 @@ void Skin::hand_over() {
     SkinForces& skin = now_.skin;
     skin = {};
     skin.rubbed = {R_ * motion_.velocity, R_ * motion_.angular_velocity};
-    std::vector<Touch>& touches = trial_.skin.touches;
-    touches.clear();
+    std::vector<ContactLoad>& loads = trial_.skin.contact_loads;
+    loads.clear();
     const auto add = [&skin](const CrushSums& sums) {
         skin.work += sums.work();
         skin.stored += sums.stored();
@@ -87,7 +87,7 @@ void Skin::hand_over() {
         const ObstacleSums& sums = obstacles_[k];
         if (!sums.seen) continue;
         trial_.seen.push_back(near_[k].index);
-        Touch touch;
+        ContactLoad touch;
         touch.obstacle = near_[k].index;
         touch.contact = sums.contact;
         touch.contact += total_wrench(sums.sums);
@@ -106,23 +106,23 @@ void Skin::hand_over() {
         skin.contact += touch.contact;
         skin.friction += touch.friction;
         skin.normal_force += touch.normal_force;
-        if (touch.normal_force > 0.0) touches.push_back(touch);
+        if (touch.normal_force > 0.0) loads.push_back(touch);
     }
     if (skin.resistance.trace() > 0.0) skin.resistance = turned(skin.resistance, R_);
-    // What was touched before and is not now ends its course: at once, or, as part of a structure that is, in the
-    // steps by which the structure's course reaches back.
-    for (const Touch& last : before_.touches) {
-        const Load &rate = last.course.rate, &bend = last.course.bend;
-        if (!(last.normal_force > 0.0) && rate.normal_force == 0.0 && bend.normal_force == 0.0) continue;
+    // A contact that has ended keeps an empty load until its history is over: the divided differences of its structure
+    // still contain it for two steps.
+    for (const ContactLoad& last : before_.contact_loads) {
+        const Load &rate = last.history.rate, &second = last.history.second_difference;
+        if (!(last.normal_force > 0.0) && rate.normal_force == 0.0 && second.normal_force == 0.0) continue;
         const auto place = std::lower_bound(
-            touches.begin(), touches.end(), last.obstacle,
-            [](const Touch& touch, std::size_t obstacle) { return touch.obstacle < obstacle; });
-        if (place != touches.end() && place->obstacle == last.obstacle) continue;
-        Touch ended;
+            loads.begin(), loads.end(), last.obstacle,
+            [](const ContactLoad& touch, std::size_t obstacle) { return touch.obstacle < obstacle; });
+        if (place != loads.end() && place->obstacle == last.obstacle) continue;
+        ContactLoad ended;
         ended.obstacle = last.obstacle;
-        touches.insert(place, ended);
+        loads.insert(place, ended);
     }
-    now_.touches = touches;
+    now_.contact_loads = loads;
 }
 
 }  // namespace birm3d

@@ -37,9 +37,9 @@ Dented Skin::dents_of(std::size_t k) {
     const auto known = std::find_if(before_.dented.begin(), before_.dented.end(),
                                     [=](const Dented& d) { return d.obstacle == obstacle; });
     const Dented last = known != before_.dented.end() ? *known : Dented{obstacle};
-    const bool pushes = std::any_of(before_.touches.begin(), before_.touches.end(), [=](const Touch& touch) {
-        return touch.obstacle == obstacle && touch.normal_force > 0.0;
-    });
+    const bool pushes = std::any_of(
+        before_.contact_loads.begin(), before_.contact_loads.end(),
+        [=](const ContactLoad& touch) { return touch.obstacle == obstacle && touch.normal_force > 0.0; });
     Dented now{obstacle};
     for (std::size_t p = 0; p < panels; ++p) {
         const Panel& panel = mesh_.panel[p];

@@ -18,7 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Obstacles that were touched an instant before are near, whatever the step has made of it.
 void add_touched(const Scene& scene, std::size_t u, const State& before, const State& now,
                  std::vector<NearObstacle>& near) {
-    for (const Touch& touch : before.units[u].touches) {
+    for (const ContactLoad& touch : before.units[u].contact_loads) {
         const auto place = std::lower_bound(
             near.begin(), near.end(), touch.obstacle,
             [](const NearObstacle& known, std::size_t obstacle) { return known.index < obstacle; });
@@ -54,7 +54,7 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial, b
       group_dents_(trial.skin.group_dents),
       seen_(trial.skin.seen),
       block_dents_(trial.skin.block_dents) {
-    const double margin = before_.touches.empty() ? 0.0 : margin_;
+    const double margin = before_.contact_loads.empty() ? 0.0 : margin_;
     find_near(scene, u, from, trial.state, far ? 2.0 * mesh_.reach : margin, trial.skin.about, near_);
     add_touched(scene, u, from, trial.state, near_);
     const bool rubs = std::any_of(near_.begin(), near_.end(), [&](const NearObstacle& obstacle) {
@@ -83,7 +83,7 @@ Skin::Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial, b
 void Skin::press_blocks() {
     trial_.active[u_].clear();
     now_.dented.clear();
-    if (near_.empty() && before_.touches.empty() && !before_.trusses.hangs_slack()) return;
+    if (near_.empty() && before_.contact_loads.empty() && !before_.trusses.hangs_slack()) return;
     find_dents();
     for (std::size_t g = 0; g < before_.trusses.groups.size(); ++g)
         if (look_about_group(g))

@@ -34,7 +34,7 @@ double separation_speed(const Scene& scene, const State& state) {
         const Twist motion = twist(scene.vehicle->units[u].body, unit.body);
         power += unit.skin.contact.force.dot(motion.velocity) +
                  unit.skin.contact.torque.dot(motion.angular_velocity);
-        for (const Touch& touch : unit.touches) {
+        for (const ContactLoad& touch : unit.contact_loads) {
             const int other = body_of_obstacle(scene, touch.obstacle);
             if (other < 0) continue;
             const auto b = static_cast<std::size_t>(other);
@@ -117,16 +117,16 @@ double error_of_turns(const Scene& scene, const Trial& tried, double separation)
     return share * change * tried.dt * tried.dt / 16.0 * greatest_stiffness(tried.state);
 }
 
-// When a load is gone, by its course so far (s); infinite where that does not tell.
-double time_to_release(const LoadCourse& course) {
-    const double force = course.now.normal_force, rate = course.rate.normal_force,
-                 bend = course.bend.normal_force, step = course.step;
+// Time at which the parabola through the last three normal forces falls to zero (s); infinite where it does not.
+double time_to_release(const LoadHistory& history) {
+    const double force = history.now.normal_force, rate = history.rate.normal_force,
+                 second = history.second_difference.normal_force, step = history.step;
     if (!(force > 0.0)) return 0.0;
-    // Root of force + rate s + bend s (s + step), written for small bends.
-    const double slope = rate + bend * step;
-    const double square = slope * slope - 4.0 * bend * force;
-    const bool ends = square > 0.0 && slope < 0.0;
-    return ends ? 2.0 * force / (std::sqrt(square) - slope) : infinity;
+    // First root of force + rate s + second s (s + step), in the form that keeps its digits where `second` is small.
+    const double slope = rate + second * step;
+    const double discriminant = slope * slope - 4.0 * second * force;
+    const bool falls_to_zero = discriminant > 0.0 && slope < 0.0;
+    return falls_to_zero ? 2.0 * force / (std::sqrt(discriminant) - slope) : infinity;
 }
 
 // A step at whose end the next segment that slides straight on, untouched, comes to rest (s): its way is exact then.
@@ -187,10 +187,11 @@ double landing_step(const Scene& scene, const State& from, const Trial& tried, S
 double time_to_release(const Scene& scene, const State& state) {
     double latest = 0.0;
     for (const UnitState& unit : state.units)
-        for (std::size_t i = 0; i < unit.touches.size();) {
-            const std::size_t structure = scene.obstacles[unit.touches[i].obstacle].structure;
-            latest = std::max(latest, time_to_release(course_of_structure(scene, unit.touches, structure)));
-            i = end_of_structure(scene, unit.touches, i);
+        for (std::size_t i = 0; i < unit.contact_loads.size();) {
+            const std::size_t structure = scene.obstacles[unit.contact_loads[i].obstacle].structure;
+            latest =
+                std::max(latest, time_to_release(history_of_structure(scene, unit.contact_loads, structure)));
+            i = end_of_structure(scene, unit.contact_loads, i);
         }
     return latest;
 }

@@ -122,12 +122,12 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e, const
         put(row + at_tire_friction, impulses.tire_friction);
         put(row + at_joint_impulse, impulses.joints);
         row[at_normal_impulse] = impulses.barrier_normal;
-        for (const Touch& touch : loads.units[u].touches) {
+        for (const ContactLoad& touch : loads.units[u].contact_loads) {
             const bool ground = touch.obstacle == scene.ground;
-            const Load& now = touch.course.now;
+            const Load& now = touch.history.now;
             add_to(row + (ground ? at_ground_force : at_barrier_force), now.wrench.force);
             if (!ground) row[at_normal_force] += touch.normal_force;
-            const Load bend = loads.bent ? touch.extra.correction : Load{};
+            const Load bend = loads.bent ? touch.higher_order.corrector : Load{};
             add_to(row + (ground ? at_ground_bend : at_barrier_bend), bend.wrench.force);
             if (ground) continue;
             row[at_normal_bend] += bend.normal_force;

@@ -115,7 +115,7 @@ void Simulation::take(Trial& trial) {
         throw std::runtime_error("the state is no longer finite at t = " + to_text(trial.state.time) +
                                  " s, step " + to_text(trial.dt) + " s");
     failed_ = true;  // unless all of what follows is done
-    check_ledger(scene_, state_, trial, state_.ledger);
+    check_balances(scene_, state_, trial, state_.ledger);
     accept(scene_, trial, state_);
     note_overlap(scene_, about_, state_);
     recorder_.add(scene_, trial);

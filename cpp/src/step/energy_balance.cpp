@@ -3,26 +3,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include "birm3d/kernels/integrate.hpp"
+#include "birm3d/scene/bodies.hpp"
+
 namespace birm3d {
 
 namespace {
 
-void note(double size, const Scene& scene, const State& now, Ledger::Departure& greatest) {
+void note_departure(double size, const Scene& scene, const State& now, Ledger::Departure& greatest) {
     if (size > greatest.size) greatest = {size, now.time, scene.base + now.units.front().body.position};
 }
 
 void check_energies(const Energies& e, const Scene& scene, const State& now, Ledger& ledger) {
-    note(std::abs(e.total() - ledger.total), scene, now, ledger.energy);
+    note_departure(std::abs(e.total() - ledger.total), scene, now, ledger.energy);
     ledger.at_disposal = std::max(ledger.at_disposal, ledger.kinetic - e.potential);
     const std::array<double, Ledger::terms> terms{e.crushed,         e.barrier_friction, e.tire_friction,
                                                   e.ground_friction, e.impacts,          e.segment_friction};
     for (std::size_t i = 0; i < terms.size(); ++i) {
-        note(ledger.highest[i] - terms[i], scene, now, ledger.falls[i]);
+        note_departure(ledger.highest[i] - terms[i], scene, now, ledger.falls[i]);
         ledger.highest[i] = std::max(ledger.highest[i], terms[i]);
     }
 }
 
-Vec3 total(const ContactImpulses& sums) {
+// On the unit (N s).
+Vec3 total_impulse(const ContactImpulses& sums) {
     Vec3 sum = sums.tire_friction + sums.joints;
     for (const double impulse : sums.tire)
         sum.z() += impulse;
@@ -31,19 +35,21 @@ Vec3 total(const ContactImpulses& sums) {
     return sum;
 }
 
+// Change of each unit's momentum in the step, against the sum of all impulses that acted on it.
 void check_momentum(const Scene& scene, const State& state, const Trial& trial, Ledger& ledger) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const UnitState &from = state.units[u], &to = trial.state.units[u];
         const double mass = scene.vehicle->units[u].body.mass;
-        Vec3 impulse =
-            total(trial.impulses[u]) + total(trial.at_start.impulses[u]) + total(trial.at_end.impulses[u]);
+        Vec3 impulse = total_impulse(trial.impulses[u]) + total_impulse(trial.at_start.impulses[u]) +
+                       total_impulse(trial.at_end.impulses[u]);
         impulse.z() -= trial.dt * mass * scene.settings.gravity;
-        for (const Touch& touch : from.touches)
-            impulse += 0.5 * trial.dt * touch.course.now.wrench.force;
-        for (const Touch& touch : to.touches)
-            impulse += 0.5 * trial.dt * touch.course.now.wrench.force + touch.extra.correction.wrench.force;
+        for (const ContactLoad& contact : from.contact_loads)
+            impulse += 0.5 * trial.dt * contact.history.now.wrench.force;
+        for (const ContactLoad& contact : to.contact_loads)
+            impulse += 0.5 * trial.dt * contact.history.now.wrench.force +
+                       contact.higher_order.corrector.wrench.force;
         const Vec3 change = mass * (to.body.velocity - from.body.velocity);
-        note((change - impulse).norm(), scene, trial.state, ledger.momentum);
+        note_departure((change - impulse).norm(), scene, trial.state, ledger.momentum);
         ledger.largest_momentum =
             std::max({ledger.largest_momentum, mass * to.body.velocity.norm(), impulse.norm()});
     }
@@ -51,7 +57,22 @@ void check_momentum(const Scene& scene, const State& state, const Trial& trial, 
 
 }  // namespace
 
-void check_ledger(const Scene& scene, const State& state, const Trial& trial, Ledger& ledger) {
+void sum_truss_energies(State& now) {
+    now.energies.stored = 0.0;
+    for (const UnitState& unit : now.units) {
+        now.energies.stored += unit.skin.stored;
+        now.truss_work += unit.skin.work;
+    }
+    now.energies.crushed = now.truss_work - now.energies.stored;
+}
+
+void sum_kinetic_energy(const Scene& scene, State& now) {
+    now.energies.kinetic = 0.0;
+    for (std::size_t body = 0; body < body_count(now); ++body)
+        now.energies.kinetic += kinetic_energy(rigid_body(scene, body), body_state(now, body));
+}
+
+void check_balances(const Scene& scene, const State& state, const Trial& trial, Ledger& ledger) {
     if (!ledger.begun) {
         ledger.begun = true;
         ledger.kinetic = ledger.at_disposal = state.energies.kinetic;

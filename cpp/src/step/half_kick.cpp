@@ -23,7 +23,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// To memory.contacts.
+// Lists in memory.contacts every rigid contact that is possible within the step, and the constraints of joints.
 void find_rigid_contacts(const Scene& scene, const State& state, double dt, const StepOptions& options,
                          KickMemory& memory) {
     std::vector<RigidContact>& contacts = memory.contacts;
@@ -67,8 +67,9 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
                         body_state(state, joints[j].trailing), contacts);
 }
 
-// Contacts that last: before the drift they let the body come to its surface and no further, after it they
-// end its approach. What joints hold comes together in the drift, and after it moves together.
+// Sets the separation velocities that lasting contacts have to reach, and removes those that do not act.
+// Before the drift, a contact lets the body come to its surface and no further; after it, the contact stops the approach.
+// A joint closes its gap in the drift; after it, both bodies have the same velocity at the joint.
 void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpulses>& before_drift,
                          std::span<const ContactBody> bodies, std::vector<RigidContact>& contacts) {
     if (stage == Stage::before_drift) {
@@ -83,28 +84,29 @@ void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpuls
     }
     std::erase_if(contacts, [&](const RigidContact& contact) {
         if (contact.held) return false;
-        // A tyre that carried load before the drift still touches after it, whatever the turn did to its gap, and does not
-        // rebound from what the forces of the step press it with.
+        // A tyre that carried load before the drift is still in contact after it, though rotation may have opened a gap of
+        // rounding size. An approach that only the forces of this step make is no impact.
         if (contact.source == ContactSource::tire && before_drift[contact.body].tire[contact.index] > 0.0)
             return contact.comes_hard;
         return contact.gap > tolerance::touching_gap || approaches_hard(contact, bodies);
     });
 }
 
-// Time until the first contact that approaches hard reaches its surface (s). What the forces of the step alone press there
-// within `at_once` rests: an instant of its own for it would tell nothing.
-double time_to_impact(double at_once, std::span<const ContactBody> bodies,
+// Time until the first approaching contact reaches its surface at an impact speed (s). An approach that only the forces of
+// this step make, and that ends within `negligible` (s), is resting contact and needs no impact of its own.
+double time_to_impact(double negligible, std::span<const ContactBody> bodies,
                       const std::vector<RigidContact>& contacts) {
     double earliest = infinity;
     for (const RigidContact& contact : contacts) {
         if (!(contact.gap > tolerance::touching_gap) || !approaches_hard(contact, bodies)) continue;
         const double time = -contact.gap / separation_velocity(contact, bodies);
-        if (contact.comes_hard || time > at_once) earliest = std::min(earliest, time);
+        if (contact.comes_hard || time > negligible) earliest = std::min(earliest, time);
     }
     return earliest;
 }
 
-// Returns with what impulse each free-standing segment presses on the ground: its weight and what pushes it down (N s).
+// Applies half a step of contact loads and weight to all bodies.
+// Returns the impulse with which each free-standing segment presses on the ground (N s).
 Column kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial) {
     Column pressed(trial.state.segments.size());
     for (std::size_t i = 0; i < pressed.size(); ++i)
@@ -113,15 +115,16 @@ Column kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial
         const RigidBody& body = scene.vehicle->units[u].body;
         UnitState& unit = trial.state.units[u];
         Wrench impulse;
-        for (const Touch& touch : unit.touches) {
-            Load load = scaled(touch.course.now, half);
-            load += stage == Stage::before_drift ? touch.extra.lead
-                                                 : difference(touch.extra.correction, touch.extra.lead);
+        for (const ContactLoad& contact : unit.contact_loads) {
+            Load load = scaled(contact.history.now, half);
+            load += stage == Stage::before_drift
+                        ? contact.higher_order.predictor
+                        : difference(contact.higher_order.corrector, contact.higher_order.predictor);
             impulse += load.wrench;
-            const int segment = body_of_obstacle(scene, touch.obstacle);
+            const int segment = body_of_obstacle(scene, contact.obstacle);
             if (segment < 0) continue;
             kick_body(scene, static_cast<std::size_t>(segment), reaction_of(load), trial.state);
-            pressed[touch.obstacle] += load.wrench.force.z();
+            pressed[contact.obstacle] += load.wrench.force.z();
         }
         impulse.force.z() -= half * body.mass * scene.settings.gravity;
         kick(body, impulse, unit.body);
@@ -129,47 +132,50 @@ Column kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial
     return pressed;
 }
 
-void book_forces(const Scene& scene, const std::vector<Twist>& before, const std::vector<Twist>& after,
-                 double half, State& state) {
+// Work of friction, by the mean of the velocities before and after the half kick.
+void add_friction_work(const Scene& scene, const std::vector<Twist>& before, const std::vector<Twist>& after,
+                       double half, State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u)
-        for (const Touch& touch : state.units[u].touches)
-            friction_of(scene, touch.obstacle, state.energies) -=
-                half * power(touch.friction, relative_motion(scene, state, u, touch.obstacle, before, after));
+        for (const ContactLoad& contact : state.units[u].contact_loads)
+            friction_of(scene, contact.obstacle, state.energies) -=
+                half *
+                power(contact.friction, relative_motion(scene, state, u, contact.obstacle, before, after));
 }
 
-// a + share b
-void combine(const std::vector<Twist>& a, double share, const std::vector<Twist>& b,
+// result = a + factor b
+void combine(const std::vector<Twist>& a, double factor, const std::vector<Twist>& b,
              std::vector<Twist>& result) {
     result = a;
     for (std::size_t i = 0; i < a.size(); ++i) {
-        result[i].velocity += share * b[i].velocity;
-        result[i].angular_velocity += share * b[i].angular_velocity;
+        result[i].velocity += factor * b[i].velocity;
+        result[i].angular_velocity += factor * b[i].angular_velocity;
     }
 }
 
-void note_depth(const std::vector<RigidContact>& contacts, StepStatistics& statistics) {
+void note_greatest_depth(const std::vector<RigidContact>& contacts, StepStatistics& statistics) {
     for (const RigidContact& contact : contacts)
         if (contact.source == ContactSource::member)
             statistics.deepest_point = std::max(statistics.deepest_point, -contact.gap);
 }
 
-// Where no rigid contact and no segment is about, forces are all there is.
-void push_freely(const Scene& scene, Stage stage, double half, Trial& trial) {
+// The half kick of bodies that no rigid contact and no free-standing segment constrains.
+void kick_unconstrained(const Scene& scene, Stage stage, double half, Trial& trial) {
     State& state = trial.state;
     KickMemory& memory = trial.memory;
-    const bool rubs = std::any_of(state.units.begin(), state.units.end(), [](const UnitState& unit) {
-        return std::any_of(unit.touches.begin(), unit.touches.end(), [](const Touch& touch) {
-            return !touch.friction.force.isZero(0.0) || !touch.friction.torque.isZero(0.0);
-        });
+    const bool has_friction = std::any_of(state.units.begin(), state.units.end(), [](const UnitState& unit) {
+        return std::any_of(
+            unit.contact_loads.begin(), unit.contact_loads.end(), [](const ContactLoad& contact) {
+                return !contact.friction.force.isZero(0.0) || !contact.friction.torque.isZero(0.0);
+            });
     });
-    if (rubs) {
+    if (has_friction) {
         list_bodies(scene, state, memory.bodies);
         list_motions(state, memory.bodies, memory.before);
     }
     kick_by_forces(scene, stage, half, trial);
-    if (!rubs) return;
+    if (!has_friction) return;
     list_motions(state, memory.bodies, memory.pushed);
-    book_forces(scene, memory.before, memory.pushed, half, state);
+    add_friction_work(scene, memory.before, memory.pushed, half, state);
 }
 
 }  // namespace
@@ -181,17 +187,18 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     const double half = 0.5 * trial.dt;
     const bool start = stage == Stage::before_drift;
     find_rigid_contacts(scene, state, trial.dt, options, memory);
-    if (memory.contacts.empty() && state.segments.empty()) return push_freely(scene, stage, half, trial);
+    if (memory.contacts.empty() && state.segments.empty())
+        return kick_unconstrained(scene, stage, half, trial);
 
     list_bodies(scene, state, bodies);
     list_motions(state, bodies, memory.before);
     if (start) {
-        // Where impacts are not located, those of the coming step happen now, before anything has passed.
+        // With fixed steps, the impacts of the coming step happen at its start, before any point can pass its surface.
         impact_at_once(scene, stage, options.locate_impacts ? 0.0 : trial.dt, memory.before, memory.after,
                        trial);
         if (trial.at_start.happened) std::swap(memory.before, memory.after);
     } else {
-        note_depth(memory.contacts, state.statistics);
+        note_greatest_depth(memory.contacts, state.statistics);
     }
 
     for (RigidContact& contact : memory.contacts)
@@ -199,12 +206,12 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     const Column pressed = kick_by_forces(scene, stage, half, trial);
     list_motions(state, bodies, memory.pushed);
     if (start && options.locate_impacts)
-        trial.impact_after = time_to_impact(tolerance::at_once * trial.dt, bodies, memory.contacts);
+        trial.impact_after = time_to_impact(tolerance::resting_approach * trial.dt, bodies, memory.contacts);
     if (trial.impact_within()) return;
     memory.kick.contacts = memory.contacts;
     set_lasting_targets(stage, trial.dt, trial.impulses, bodies, memory.kick.contacts);
-    // Tyres roll as the body moves at the ends of the step: at the later one as contacts will have made it, taken to do
-    // what they did before the drift.
+    // Tyre friction needs the velocity at that end of the step. For the end after the drift, the contacts' change of
+    // velocity is taken to be the one before the drift.
     if (start) {
         kick_towards_closed_joints(
             scene, {.pressed = pressed, .at_end = memory.before, .from = memory.before, .drift = trial.dt},
@@ -217,7 +224,7 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     add_impulses(scene, state, memory.kick, trial.impulses, trial.joint_impulses);
     list_motions(state, bodies, memory.after);
     if (start) combine(memory.after, -1.0, memory.pushed, trial.by_contacts);
-    book_forces(scene, memory.before, memory.after, half, state);
+    add_friction_work(scene, memory.before, memory.after, half, state);
     book_contacts(scene, memory.kick, memory.before, memory.after, state);
 
     if (!start) impact_at_once(scene, stage, 0.0, memory.after, memory.before, trial);

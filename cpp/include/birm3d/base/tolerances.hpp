@@ -66,13 +66,13 @@ inline constexpr double untouched_way = 0.05;
 // Settings::tolerance. Larger: the asked and the achieved error of the metrics part.
 inline constexpr double step_error_per_tolerance = 0.01;
 
-// Steps that together are shorter than this share of the one before, as up to an impact, tell nothing of how the load goes
-// on: its change is that of single nodes.
-inline constexpr double telling_step = 0.05;
+// Shortest time over which a divided difference of the load is taken, as a fraction of the step before. Over shorter
+// times, as in the steps up to an impact, the difference is that of single nodes and predicts nothing.
+inline constexpr double min_informative_step = 0.05;
 
-// A bend of the load lasts through a step if it changes by less than this share of itself; then the scheme
-// follows it. Zero: third order throughout. Large: corners of the load are extrapolated.
-inline constexpr double lasting_bend = 0.6;
+// The load is smooth if its second difference changes within a step by less than this fraction of itself; then the
+// scheme uses its fourth-order terms. Zero: third order throughout. Large: corners of the load are extrapolated.
+inline constexpr double smooth_change = 0.6;
 
 // Speed scale of a scene that starts at rest (m/s): errors are judged against it.
 inline constexpr double slowest_reference_speed = 0.1;
@@ -108,8 +108,8 @@ inline constexpr double touching_gap = 1e-6;
 // wheels lands first would else hang on rounding. Large: points that are still in the air are stopped.
 inline constexpr double joint_impact_gap = 1e-3;
 
-// Share of a step within which what is pressed onto a surface by the step's own forces is taken to rest there.
-inline constexpr double at_once = 0.01;
+// A point that the forces of the step press onto a surface within this fraction of the step rests there; it makes no impact.
+inline constexpr double resting_approach = 0.01;
 
 // Places of a joint on its two bodies may differ by this much at rest (m): what files are rounded to.
 inline constexpr double joint_fit = 1e-3;

@@ -53,7 +53,7 @@ struct SkinMemory {
     // What the group of blocks at hand may see, places in near and dents; and the block at hand.
     std::vector<std::size_t> group_near, group_dents, seen;
     std::vector<BlockDent> block_dents;  // the nearest first
-    std::vector<Touch> touches;
+    std::vector<ContactLoad> contact_loads;
 };
 
 }  // namespace birm3d

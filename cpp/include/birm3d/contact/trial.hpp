@@ -103,8 +103,14 @@ class BlockSet {
 struct Trial {
     explicit Trial(const Vehicle& vehicle);
 
-    // Beside another state of the same vehicle, in the same memory.
-    void restart(const Vehicle& vehicle, const State& beside);
+    // Prepares the trial for steps from another state of the same vehicle, in the same memory.
+    void restart(const Vehicle& vehicle, const State& state);
+
+    // Prepares a step of `step` seconds from `from`: copies all but the trusses, clears all sums.
+    void begin(const State& from, double step);
+
+    // Gives unit u's blocks of trusses of this step to `with` and takes those of the step before in return.
+    void exchange_trusses(std::size_t u, TrussState& with);
 
     double dt = 0.0;
     State state;                            // at t + dt; trusses only where active
@@ -113,11 +119,12 @@ struct Trial {
     std::vector<ContactImpulses> impulses;  // (units) of lasting contacts, even over the step
     std::vector<Wrench> joint_impulses;     // (joints) the same, on the leading unit, about the joint
     std::vector<Twist> by_contacts;         // (bodies) by how much these changed motions before the drift
-    Column climbing;                        // (units) vertical velocity in the drift (m/s)
+    Column drift_velocity_z;                // (units) vertical velocity in the drift (m/s)
     Impact at_start, at_end;
     std::vector<std::size_t> seen;  // obstacles that blocks of nodes had in reach, once for each unit
     SkinMemory skin;
-    std::vector<LoadCourse> courses;  // for the higher order: memory too
+    std::vector<LoadHistory>
+        histories;  // working memory of correct_loads(), so that a step allocates nothing
     std::vector<Load> loads;
     KickMemory memory;
     double error = 0.0;    // estimated velocity error of this step (m/s)

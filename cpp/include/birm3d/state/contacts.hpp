@@ -8,6 +8,7 @@
 
 #include "birm3d/base/types.hpp"
 #include "birm3d/model/truss_mesh.hpp"
+#include "birm3d/state/contact_load.hpp"
 
 namespace birm3d {
 
@@ -52,61 +53,6 @@ struct SkinForces {
     // Of friction, to a change of the unit's motion from `rubbed` at which it was found (kernels/friction.hpp).
     Mat6 resistance = Mat6::Zero();
     Twist rubbed;
-};
-
-// What one obstacle and a unit's skin do to each other, world axes.
-struct Load {
-    Wrench wrench;  // on the unit, about its mass centre
-    Vec3 reaction_torque =
-        Vec3::Zero();           // on the obstacle, about its own point (N m); its force is -wrench.force
-    double normal_force = 0.0;  // N
-
-    Load& operator+=(const Load& o) {
-        wrench += o.wrench;
-        reaction_torque += o.reaction_torque;
-        normal_force += o.normal_force;
-        return *this;
-    }
-};
-
-// On the obstacle, about its own point.
-inline Wrench reaction_of(const Load& load) {
-    return {-load.wrench.force, load.reaction_torque};
-}
-
-inline Load scaled(const Load& load, double factor) {
-    return {scaled(load.wrench, factor), factor * load.reaction_torque, factor * load.normal_force};
-}
-
-inline Load difference(const Load& a, const Load& b) {
-    return {difference(a.wrench, b.wrench), a.reaction_torque - b.reaction_torque,
-            a.normal_force - b.normal_force};
-}
-
-// The course of the load over the last steps, in Newton's divided differences.
-struct LoadCourse {
-    Load now;
-    Load rate;                 // of the last step, per second
-    Load bend;                 // half the second derivative, of the last two steps, per second^2
-    double step = 0.0;         // length of the last step, zero where no rate is known (s)
-    double step_before = 0.0;  // and of the one before
-    double lapse = 0.0;        // time since then, in steps too short to tell anything
-    bool bend_lasts = false;   // did the bend go on through the last step?
-};
-
-// What the scheme adds to half kicks by the trapezoid rule (see step.hpp), impulses.
-struct HigherOrder {
-    Load lead;        // lent to the drift, taken back after it
-    Load correction;  // of the whole step
-};
-
-// A unit's skin at one obstacle.
-struct Touch {
-    std::size_t obstacle = 0;
-    Wrench contact, friction;   // on the unit, world axes (N, N m)
-    double normal_force = 0.0;  // N
-    LoadCourse course;          // of contact and friction together
-    HigherOrder extra;          // of the step that led here
 };
 
 // Which panels of a unit an obstacle dents (kernels/dent.hpp), bit by bit. Those it has come into from the side it never

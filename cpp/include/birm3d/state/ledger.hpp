@@ -1,4 +1,4 @@
-// How well a run keeps its own accounts, from step to step: the greatest departures so far, when and where.
+// How well a run keeps the balances of energy and momentum: the greatest departures so far, when and where.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 namespace birm3d {
 
 struct Ledger {
-    // What dissipation has taken does not come back.
+    // Dissipated energies: none of them may ever decrease.
     enum Term : std::size_t {
         crushed,
         barrier_friction,
@@ -28,14 +28,15 @@ struct Ledger {
     };
 
     bool begun = false;
-    double kinetic = 0.0;           // at the start (J)
-    double total = 0.0;             // of all terms, at the start (J)
-    double at_disposal = 0.0;       // greatest so far: kinetic at the start and what the weight has done (J)
-    Departure energy;               // of the sum of all terms from that at the start (J)
-    Departure momentum;             // of a unit's change in a step from the sum of all impulses on it (N s)
-    double largest_momentum = 0.0;  // of a unit, or an impulse in a step (N s)
-    std::array<double, terms> highest{};  // of each term so far (J)
-    std::array<Departure, terms> falls;   // of each term from there (J)
+    double kinetic = 0.0;  // at the start (J)
+    double total = 0.0;    // sum of all energy terms at the start (J)
+    double at_disposal =
+        0.0;             // greatest so far of the initial kinetic energy plus the work of the weight (J)
+    Departure energy;    // of the sum of all terms from `total` (J)
+    Departure momentum;  // of a unit's momentum change in a step from the impulses on it (N s)
+    double largest_momentum = 0.0;        // of a unit, or an impulse in a step: the scale of `momentum` (N s)
+    std::array<double, terms> highest{};  // greatest value of each dissipated energy so far (J)
+    std::array<Departure, terms> falls;   // decrease of each below that value (J)
 };
 
 }  // namespace birm3d

@@ -17,9 +17,9 @@ namespace birm3d {
 // What a unit has besides its trusses: small, copied whole with every step that is tried.
 struct UnitMotion {
     BodyState body;
-    SkinForces skin;             // at this instant
-    std::vector<Touch> touches;  // in the order of the obstacles
-    std::vector<Dented> dented;  // the same
+    SkinForces skin;                         // at this instant
+    std::vector<ContactLoad> contact_loads;  // in the order of the obstacles
+    std::vector<Dented> dented;              // the same
 };
 
 struct UnitState : UnitMotion {
@@ -29,7 +29,7 @@ struct UnitState : UnitMotion {
     void reset(const Unit& unit) {
         body = {};
         skin = {};
-        touches.clear();
+        contact_loads.clear();
         dented.clear();
         trusses.reset(unit.trusses);
     }

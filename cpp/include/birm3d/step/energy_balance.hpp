@@ -1,11 +1,17 @@
-// The accounts of each step that is accepted, checked at once: a few sums, no pass over histories.
+// Energy and momentum of each step, and how far their balances are from closing. The check costs a few sums a step.
 #pragma once
 
 #include "birm3d/contact/trial.hpp"
 
 namespace birm3d {
 
-// `state`: before the step that was tried is accepted.
-void check_ledger(const Scene& scene, const State& state, const Trial& trial, Ledger& ledger);
+// Energies of the trusses of all units: what they store, and what crush has dissipated.
+void sum_truss_energies(State& now);
+
+// Kinetic energy of all units and free-standing segments.
+void sum_kinetic_energy(const Scene& scene, State& now);
+
+// Enters the greatest departures from both balances into `ledger`. `state`: before the trial is accepted.
+void check_balances(const Scene& scene, const State& state, const Trial& trial, Ledger& ledger);
 
 }  // namespace birm3d

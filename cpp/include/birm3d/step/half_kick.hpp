@@ -1,9 +1,9 @@
-// Half a step of forces, with the rigid contacts that stand against them (paper 5.2, Eq. 1): tyres on the
-// ground, closed trusses at the barrier, and their friction.
+// Half a step of forces together with the impulses of rigid contacts (paper 5.2, Eq. 1): tyres on the ground,
+// bottomed-out trusses at the barrier, joints, and their friction.
 //
-// The two halves enclose the drift. Before it, contacts keep the body from passing a surface within the step;
-// after it, contacts that are at their surface stop or, above tolerance::restitution_speed, rebound. Work is
-// booked with the mean of the velocities before and after, which makes the change of kinetic energy exact.
+// Two half kicks enclose the drift. In the first, rigid contacts keep points from passing a surface within the step. In
+// the second, contacts at their surface stop or, above tolerance::restitution_speed, rebound.
+// The work of friction uses the mean of the velocities before and after, so that the change of kinetic energy is exact.
 #pragma once
 
 #include "birm3d/contact/trial.hpp"

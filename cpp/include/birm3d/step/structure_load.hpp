@@ -1,5 +1,6 @@
-// Segments that are joined bear one load: where a node passes from one to the next, the whole goes on as before. What
-// the scheme does by the course of a load it does by that of the structure, so that a wall in segments is the same wall.
+// Segments that are joined form one structure, and the stepping scheme follows the load on the structure as a whole.
+// Where a node passes from one segment to the next, the structure's load stays continuous while each segment's jumps:
+// so a wall in segments gives the same result as the same wall in one piece.
 #pragma once
 
 #include <span>
@@ -8,30 +9,32 @@
 
 namespace birm3d {
 
-// The touches of one structure stand side by side: place after the last of those that begin with `first`.
-inline std::size_t end_of_structure(const Scene& scene, std::span<const Touch> touches, std::size_t first) {
-    const std::size_t structure = scene.obstacles[touches[first].obstacle].structure;
+// The contacts of one structure are neighbours in `contacts`. Index one past the last that belongs to the structure of
+// contacts[first].
+inline std::size_t end_of_structure(const Scene& scene, std::span<const ContactLoad> contacts,
+                                    std::size_t first) {
+    const std::size_t structure = scene.obstacles[contacts[first].obstacle].structure;
     std::size_t end = first + 1;
-    while (end < touches.size() && scene.obstacles[touches[end].obstacle].structure == structure)
+    while (end < contacts.size() && scene.obstacles[contacts[end].obstacle].structure == structure)
         ++end;
     return end;
 }
 
-// Sum of the courses of the touches of a structure.
-inline LoadCourse course_of_structure(const Scene& scene, std::span<const Touch> touches,
-                                      std::size_t structure) {
-    LoadCourse sum;
-    for (const Touch& touch : touches) {
-        if (scene.obstacles[touch.obstacle].structure != structure) continue;
-        const LoadCourse& course = touch.course;
-        sum.now += course.now;
-        sum.rate += course.rate;
-        sum.bend += course.bend;
-        if (course.step == 0.0) continue;
-        sum.step = course.step;
-        sum.step_before = course.step_before;
-        sum.lapse = course.lapse;
-        sum.bend_lasts = course.bend_lasts;
+// Sum of the load histories of a structure's contacts.
+inline LoadHistory history_of_structure(const Scene& scene, std::span<const ContactLoad> contacts,
+                                        std::size_t structure) {
+    LoadHistory sum;
+    for (const ContactLoad& contact : contacts) {
+        if (scene.obstacles[contact.obstacle].structure != structure) continue;
+        const LoadHistory& history = contact.history;
+        sum.now += history.now;
+        sum.rate += history.rate;
+        sum.second_difference += history.second_difference;
+        if (history.step == 0.0) continue;
+        sum.step = history.step;
+        sum.previous_step = history.previous_step;
+        sum.time_since = history.time_since;
+        sum.is_smooth = history.is_smooth;
     }
     return sum;
 }

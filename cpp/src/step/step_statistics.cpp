@@ -1,0 +1,45 @@
+#include "step/step_statistics.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace birm3d {
+
+namespace {
+
+// Counts an element of the barrier the first time that it is near.
+void count_near(std::size_t obstacle, State& state) {
+    if (obstacle >= state.was_near.size() || state.was_near[obstacle] != 0) return;
+    state.was_near[obstacle] = 1;
+    ++state.statistics.near_elements;
+}
+
+}  // namespace
+
+void count_step(const Trial& accepted, State& state) {
+    StepStatistics& statistics = state.statistics;
+    statistics.steps += 1;
+    statistics.shortest_step = std::min(statistics.shortest_step, accepted.dt);
+    statistics.longest_step = std::max(statistics.longest_step, accepted.dt);
+    statistics.least_critical_step = std::min(statistics.least_critical_step, accepted.critical_step);
+    if (std::all_of(accepted.active.begin(), accepted.active.end(),
+                    [](const BlockSet& active) { return active.blocks().empty(); })) {
+        ++statistics.free_steps;
+        statistics.free_time += accepted.dt;
+    }
+    for (const std::size_t obstacle : accepted.seen)
+        count_near(obstacle, state);
+    for (std::size_t u = 0; u < accepted.impulses.size(); ++u) {
+        const ContactImpulses* const sums[] = {&accepted.impulses[u], &accepted.at_start.impulses[u],
+                                               &accepted.at_end.impulses[u]};
+        for (const ContactImpulses* sum : sums)
+            for (const ObstacleImpulse& on : sum->obstacles)
+                if (on.impulse != Vec3::Zero()) count_near(on.obstacle, state);
+        for (std::size_t w = 0; w < accepted.impulses[u].tire.size(); ++w)
+            statistics.wheels_on_ground += std::any_of(std::begin(sums), std::end(sums),
+                                                       [w](const auto* sum) { return sum->tire[w] > 0.0; });
+    }
+    statistics.body_steps += accepted.body_held();
+}
+
+}  // namespace birm3d
