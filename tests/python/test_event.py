@@ -124,6 +124,14 @@ def test_a_run_that_ends_before_is_undecided() -> None:
     assert "exit_angle" not in result.metrics
 
 
+def test_a_truck_that_its_tires_press_on_a_long_barrier_is_redirected() -> None:
+    """Its wheels do not steer: they press it on the barrier as long as it moves. Once that was undecided."""
+    truck = Vehicle.preset("cargo_truck", mesh_density=0.3)
+    result = Simulation(truck, Barrier.jersey(length=200.0), 15.0, 25.0).run()
+    assert (result.outcome, result.outcome_detail) == ("redirected", "it slides on along the barrier")
+    assert "time_of_separation" not in result.metrics
+
+
 def test_no_angle_of_what_passed_and_none_without_a_barrier() -> None:
     with pytest.raises(KeyError, match=r"does not leave on the traffic side|did not separate"):
         run("end").metrics["exit_angle"]

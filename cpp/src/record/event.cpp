@@ -284,6 +284,17 @@ bool is_decided(const Scene& scene, const State& state, Event& event) {
     return true;
 }
 
+void judge_at_longest(const Scene& scene, const State& state, Event& event) {
+    if (event.decided() || !state.touched || runs_along_line(scene)) return;
+    const Vec3& velocity = state.units.front().body.velocity;
+    const double along = velocity.dot(line_direction(event)), across = velocity.dot(event.towards);
+    const bool goes_on = along * scene.heading().dot(line_direction(event)) > 0.0;
+    if (!goes_on || std::abs(across) > parallel * std::abs(along)) return;
+    if (!(std::abs(along) > slow * scene.approach.speed)) return;
+    if (distance_past(scene, state, event) < 0.0)
+        event.verdict = Verdict::redirected, event.manner = Manner::slides_on;
+}
+
 Deflections greatest_deflections(const Vehicle& vehicle, const State& state) {
     Deflections found{-infinity, -infinity};
     for (std::size_t u = 0; u < state.units.size(); ++u) {

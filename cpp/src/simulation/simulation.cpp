@@ -124,6 +124,7 @@ void Simulation::take(Trial& trial) {
         state_.decided = true;
         state_.decided_at = time_of_decision(scene_, before_, released, trial.dt, trial.state);
     }
+    if (!scene_.duration && end_reason() == EndReason::longest) judge_at_longest(scene_, state_, event_);
     failed_ = false;
 }
 

@@ -16,7 +16,7 @@ out of reach of it. What it does then decides, except for rolling over, which co
 ``redirected``
     Contained, and it leaves along the barrier: within 45 degrees of the line, in the direction in which it
     came, with more than a tenth of its impact speed; or it slides on along a straight barrier, at rest
-    sideways.
+    sideways, or still slides along any barrier when a run without a duration ends after 5 s.
 ``stopped``
     Contained, and its motion into the barrier ended: it rebounds or rests.
 ``undecided``
@@ -49,7 +49,7 @@ _MANNERS = {
     "rebounds": "it rebounded from the barrier",
     "leaves": "it left along the barrier",
     "slides_to_end": "it slid along the barrier to its end and left",
-    "slides_on": "it slides on along the barrier, at rest sideways",
+    "slides_on": "it slides on along the barrier",
     "rests_beyond": "it came to rest behind the barrier",
     "over": "it went over the top of the barrier",
 }

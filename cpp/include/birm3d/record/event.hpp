@@ -76,6 +76,9 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
 // Is the outcome known, with nothing still to be seen of roll, pitch and what slides? Then the event has its verdict.
 bool is_decided(const Scene& scene, const State& state, Event& event);
 
+// Of a run that ends undecided at the longest event: a vehicle that still slides along the barrier is redirected.
+void judge_at_longest(const Scene& scene, const State& state, Event& event);
+
 // Greatest deflection of all trusses of all units, now and during the run (m).
 struct Deflections {
     double now, peak;
