@@ -18,7 +18,7 @@ def test_a_pole_that_passes_between_nodes_is_warned_of() -> None:
             Barrier.pole(diameter=0.3),
             15.0,
             43.5,
-            -0.41,
+            -0.3,
             impact_roll=90.0,
             impact_yaw=71.6,
             duration=1.0,

@@ -188,13 +188,10 @@ class TestTruckAtBollards:
         assert result.metrics["energy_residual"] < 0.005
 
     def test_pitch_is_known_to_be_too_great(self, result: Result) -> None:
-        """A prediction that misses: 34.5 deg with the assumed row. Held so that a change of it is seen.
-
-        Posts that stand beside the wheels meet the tyres; without that it is 36.4 deg.
-        """
-        assert result.metrics["max_pitch"] == pytest.approx(34.5, abs=2.0)
+        """A prediction that misses: 26 deg with the assumed row. Held so that a change of it is seen."""
+        assert result.metrics["max_pitch"] == pytest.approx(26.1, abs=2.0)
 
     def test_lower_bollards_pitch_more(self, result: Result) -> None:
-        """Couple about the mass centre, 1.28 m high: the lower the force, the more it turns."""
+        """Couple about the mass centre, 1.29 m high: the lower the force, the more it turns."""
         low, high = (scenes.truck_at_bollards(height=height).run() for height in (0.9, 1.2))
         assert low.metrics["max_pitch"] > result.metrics["max_pitch"] > high.metrics["max_pitch"]

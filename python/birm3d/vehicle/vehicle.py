@@ -560,7 +560,9 @@ class Vehicle:
 
         Text with a unit is taken too, as ``knee="20 cm"`` or ``f_max="1.1 MPa"`` (``k_initial`` in MPa/m).
         A zone with an envelope becomes one with a knee when ``k_initial``, ``knee`` and ``k_hardening`` are
-        given, and the other way round when ``envelope`` is.
+        given, and the other way round when ``envelope`` is. Such a law is a new one, and so is one of which
+        all of Fig. 3 but ``f_max`` is given: ``elastic_recovery`` and the tail of the old one do not go on,
+        unless they are given too.
         """
         if name not in self.zones:
             known = ", ".join(self.zones) or "none: the vehicle was made from arrays"
@@ -570,7 +572,7 @@ class Vehicle:
             if key not in known.split(", "):
                 raise ValueError(f"zone parameter must be one of {known}; got {key!r}")
         if "envelope" in changes:
-            changes = {**dict.fromkeys(KNEE), **changes}
+            changes = {**dict.fromkeys((*KNEE, *OPTIONAL)), **changes}
         elif self.zones[name].envelope is not None and any(key in changes for key in KNEE):
             missing = [key for key in KNEE[:3] if key not in changes]
             if missing:
@@ -578,7 +580,9 @@ class Vehicle:
                     f"{missing[0]} must be given too: zone {name!r} has an envelope, "
                     f"which needs {', '.join(KNEE[:3])} to take its place; got {', '.join(changes)}"
                 )
-            changes = {"envelope": None, **changes}
+            changes = {"envelope": None, **dict.fromkeys(OPTIONAL), **changes}
+        elif {*KNEE[:3], "k_unloading"} <= changes.keys():
+            changes = {**dict.fromkeys(OPTIONAL), **changes}
         for key, quantity in _LAW_QUANTITIES.items():
             if isinstance(changes.get(key), str):
                 changes[key] = si(key, changes[key], quantity)

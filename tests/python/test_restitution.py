@@ -1,0 +1,55 @@
+"""Restitution of the presets at a rigid wall, against speed."""
+
+from __future__ import annotations
+
+import pytest
+from birm3d import Barrier, Simulation, Vehicle
+from birm3d.reference import nhtsa_tests
+from birm3d.vehicle.vehicle_file import read_vehicle_file, unit_paths
+
+CARS = ("passenger_car", "minivan", "pickup")
+PRESETS = (*CARS, "cargo_truck", "semi_truck")
+SPEEDS = (3.0, 4.0, 5.0, 6.5, 8.0, 10.0, 12.5, 15.9, 18.0, 20.0, 22.5, 25.0)  # m/s
+
+
+def restitution(vehicle: Vehicle, speed: float) -> float:
+    return Simulation(vehicle, Barrier.rigid_wall(), speed).run().metrics["restitution"]
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_restitution_falls_with_speed(name: str) -> None:
+    vehicle = Vehicle.preset(name)
+    found = [restitution(vehicle, speed) for speed in SPEEDS]
+    assert found == sorted(found, reverse=True)
+    for speed in (2.0, 2.5, 3.0):  # car-to-car tests: 0.38 at a closing speed of 2.2 m/s
+        assert 0.35 <= restitution(vehicle, speed) <= 0.50
+    assert 0.10 <= found[SPEEDS.index(15.9)] <= 0.22  # NHTSA test 10146: 0.17 and 0.20
+
+
+@pytest.mark.parametrize("name", unit_paths())
+def test_every_zone_has_a_recovery_and_those_of_front_side_and_rear_a_tail(name: str) -> None:
+    file = read_vehicle_file(unit_paths()[name])
+    for zone in file.zones:
+        tire = zone.panels == ("tire",)
+        assert (zone.law.elastic_recovery is not None) == (not tire and name != "paper_pickup")
+        upright = {"front", "side", "rear"} & set(zone.panels)
+        assert (zone.law.tail_depth is not None) == (bool(upright) and name != "paper_pickup")
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_the_core_is_not_met_head_on(name: str) -> None:
+    """At 25 m/s, which is two and a half times the energy of the fastest test that was fitted."""
+    assert {test.speed < 16.0 for test in nhtsa_tests().values()} == {True}
+    result = Simulation(Vehicle.preset(name), Barrier.rigid_wall(), 25.0).run()
+    assert result.energy["impacts"][-1] < 1e-3 * result.energy["kinetic"][0]
+
+
+def test_a_zone_with_a_new_law_has_no_recovery_but_that_which_is_given() -> None:
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    fig_3 = {"k_initial": 1e6, "knee": 0.1, "k_hardening": 2e6, "k_unloading": 7e6}
+    for zone in ("bumper", "rear"):
+        law = car.with_zone(zone, **fig_3).zones[zone]
+        assert law.elastic_recovery is None
+        assert law.tail_depth is None
+    assert car.with_zone("rear", **fig_3, elastic_recovery=0.02).zones["rear"].elastic_recovery == 0.02
+    assert car.with_zone("rear", k_unloading=9e6).zones["rear"].tail_depth is not None  # one number changes
