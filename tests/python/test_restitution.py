@@ -53,3 +53,13 @@ def test_a_zone_with_a_new_law_has_no_recovery_but_that_which_is_given() -> None
         assert law.tail_depth is None
     assert car.with_zone("rear", **fig_3, elastic_recovery=0.02).zones["rear"].elastic_recovery == 0.02
     assert car.with_zone("rear", k_unloading=9e6).zones["rear"].tail_depth is not None  # one number changes
+
+
+def test_the_report_says_that_the_core_was_met() -> None:
+    """At a pole a 33-t truck has nothing left to crush."""
+    truck = Vehicle.preset("semi_truck", mesh_density=0.3)
+    met = Simulation(truck, Barrier.pole(), 15.0, duration=0.4).run().report()
+    assert "the rigid core was met behind bottomed-out trusses (" in met
+    assert "of 'bumper'" in met
+    wall = Simulation(truck, Barrier.rigid_wall(), 15.0, duration=0.2).run().report()
+    assert "rigid core was met" not in wall

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .. import units
+from .core_contact import core_lines
 from .element_loads import touched_elements
 from .omitted import left_out
 
@@ -53,6 +54,7 @@ def report(result: RunAnalysis) -> str:
         f"  contact model: {settings.contact_model}; energy residual {metrics['energy_residual']:.1e} of the "
         f"initial kinetic energy, momentum residual {metrics['momentum_residual']:.1e}",
     ]
+    lines += core_lines(result)
     if vehicle.joint is not None:
         lines.append(
             f"  {vehicle.joint.kind}: peak force {metrics['peak_joint_force']:.3g} N, greatest articulation "
