@@ -42,6 +42,17 @@ BIRM3D_LANE_LOOP Part take_part(const std::array<std::size_t, lanes>& nearest, s
     return {lane_sum(force), lane_sum(x), lane_sum(y), lane_sum(z), lane_sum(tx), lane_sum(ty), lane_sum(tz)};
 }
 
+// Skin that a post dents goes in with it: it slides on it only along the panel.
+BIRM3D_LANE_LOOP void rub_along_panel(const NodeFaces& faces, BlockContact& contact) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const bool dented = faces.per_force[i] > 0.0;
+        contact.nx[i] = dented ? faces.bx[i] : contact.nx[i];
+        contact.ny[i] = dented ? faces.by[i] : contact.ny[i];
+        contact.nz[i] = dented ? faces.bz[i] : contact.nz[i];
+    }
+}
+
 }  // namespace
 
 // Nodes of one block that push on several obstacles: to each its own.
@@ -68,7 +79,11 @@ void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, con
     }
     const double mu = scene_.obstacles[near_[near].index].friction;
     const Vec3* const normal = plane_normal_ ? &*plane_normal_ : nullptr;
-    if (mu > 0.0) add_friction(mu, full_speed_, away_[near], places, contact, normal, sums.rubbing);
+    if (!(mu > 0.0)) return;
+    if (block_dents_.empty()) return add_friction(mu, full_speed_, away_[near], places, contact, normal, sums.rubbing);
+    BlockContact within = contact;
+    rub_along_panel(faces_, within);
+    add_friction(mu, full_speed_, away_[near], places, within, nullptr, sums.rubbing);
 }
 
 void Skin::hand_over() {

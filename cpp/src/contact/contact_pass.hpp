@@ -137,6 +137,7 @@ class Skin {
     std::uint8_t dented_ = 0;       // panels that posts dented before the step, bit by bit
     double furthest_ = infinite;    // that a node of these can follow its dent outwards within the step (m)
     alignas(64) Lanes second_gap_;  // of each node, to the second nearest of several obstacles (m)
+    alignas(64) Lanes let_go_;      // nodes that a dent lets go (1, else 0)
     NodeFaces faces_;
     BlockContact contact_;
     std::optional<Vec3> plane_normal_;        // of all nodes in contact_, where they saw one plane

@@ -60,7 +60,7 @@ Dented Skin::dents_of(std::size_t k) {
         if (gap > 0.0) continue;
         if (dents || (!passed && (gap > -deepest || was_before(k, p)))) {
             now.panels |= bit;
-            dents_.push_back({k, p, dent, way});
+            dents_.push_back({k, p, dent, Dent(post, near_[k].before, panel, mesh_.dent_reach), way});
         } else {
             now.passed |= bit;
         }
@@ -81,6 +81,7 @@ bool Skin::was_before(std::size_t k, std::size_t p) {
 double Skin::reach_of_dent(const DentedPanel& dented, std::uint8_t of, const Box& box, bool touching) const {
     if ((of >> dented.panel & 1U) == 0) return infinity;
     const double gap = -most_inside(dented.dent, box);
+    if (touching && spans(dented.dent, box)) return std::min(gap, dented.way);
     return gap <= (touching ? dented.way : 0.0) ? gap : infinity;
 }
 
@@ -141,10 +142,17 @@ BIRM3D_LANE_LOOP void note_second(const Lanes& hangs, const Lanes& gap, Lanes& s
         second[i] = hangs[i] > 0.0 && gap[i] < second[i] ? gap[i] : second[i];
 }
 
+BIRM3D_LANE_LOOP void note_let_go(const Lanes& hangs, Lanes& let_go) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < lanes; ++i)
+        let_go[i] = hangs[i] > 0.0 ? hangs[i] - 1.0 : let_go[i];
+}
+
 }  // namespace
 
 void Skin::draw_in(std::size_t b, const TrussBlockState& block) {
     alignas(64) Lanes hangs;
+    let_go_.fill(0.0);
     for (const BlockDent& reached : block_dents_) {
         const DentedPanel& dented = dents_[reached.dent];
         const Lanes& panel_of = mesh_.block[b].panel;
@@ -152,8 +160,9 @@ void Skin::draw_in(std::size_t b, const TrussBlockState& block) {
             reached.gap > furthest_off(block, panel_of, dented.panel, faces_.gap))
             continue;
         alignas(64) const Lanes gap = faces_.gap;
-        hang_on(dented.dent, block, panel_of, dented.panel, faces_, contact_, hangs);
+        hang_on(dented.dent, dented.then, block, panel_of, dented.panel, faces_, contact_, hangs);
         note_second(hangs, gap, second_gap_);
+        note_let_go(hangs, let_go_);
         const auto seen = std::find(seen_.begin(), seen_.end(), dented.near) - seen_.begin();
         if (seen_.size() > 1) note_nearest(hangs, static_cast<std::size_t>(seen), nearest_);
     }

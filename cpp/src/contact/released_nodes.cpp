@@ -92,9 +92,10 @@ std::optional<Vec3> Skin::stop_on_way(std::size_t b, std::size_t i, const Vec3& 
     return start + outside * way;
 }
 
-// Has a dent gone from under the node at once, as where its post comes to lie across the panel or past its edge? No
-// motion of the step takes it as far outwards as it stands now.
+// Has a dent let the node go, or gone from under it at once, as where its post comes to lie across the panel? No motion of
+// the step takes it as far outwards as it stands now.
 bool Skin::springs_off(std::size_t b, std::size_t i) const {
+    if (!block_dents_.empty() && let_go_[i] > 0.0) return true;
     const TrussBlockState &last = from(b), &next = now_.trusses.block[b];
     if (!(last.force[i] > 0.0 && last.deflection[i] - next.deflection[i] > furthest_)) return false;
     const double panel = mesh_.block[b].panel[i];
@@ -105,7 +106,8 @@ bool Skin::springs_off(std::size_t b, std::size_t i) const {
 bool Skin::springs_off(std::size_t b) const {
     if ((mesh_.panels_of[b] & dented_) == 0) return false;
     const TrussBlockState &last = from(b), &next = now_.trusses.block[b];
-    return furthest_outwards(last, next) > furthest_;
+    alignas(64) Lanes let_go = let_go_;
+    return (!block_dents_.empty() && lane_max(let_go) > 0.0) || furthest_outwards(last, next) > furthest_;
 }
 
 // Finds the nodes that are let go and that another surface stops on their way. `plane` lets them go, or, where it is null,

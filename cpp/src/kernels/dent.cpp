@@ -46,9 +46,12 @@ Dent::Dent(const Post& post, const Placement& stands, const Panel& panel, double
     high = most.dot(w);
     low_at = least.dot(l);
     high_at = most.dot(l);
+    const double off = std::min(1.0, std::max({low, -high, 0.0}) / post.radius);
+    grip = 1.0 - off * off;
     surface = middle.dot(e) - panel.box.half.dot(e.cwiseAbs());
     tilt = stretch * leaning;
     radius = post.radius;
+    height = post.height;
     const double rim = std::sqrt(leaning * leaning + rounded * rounded);
     top = post.height * upright + radius * rim;
     top_rate = radius * leaning / rim - post.height * tilt;
@@ -98,9 +101,11 @@ double most_drawn_in(double deepest, double beside, double reach) {
                                                            : std::max(by_deepest, -least_slope * further);
 }
 
-}  // namespace
+struct BoxInDent {
+    double outermost, depth, drawn_in;
+};
 
-double most_inside(const Dent& d, const Box& box) {
+BoxInDent box_in_dent(const Dent& d, const Box& box) {
     const auto range = [&](const Vec3& way) {
         const double middle = (box.center - d.foot()).dot(way), half = box.half.dot(way.cwiseAbs());
         return std::pair(middle - half, middle + half);
@@ -112,7 +117,18 @@ double most_inside(const Dent& d, const Box& box) {
         d.stretch * d.radius + std::max(d.tilt * std::min(l0, d.top), d.tilt * std::min(l1, d.top));
     const double beside = std::max({w0 - d.radius, -d.radius - w1, 0.0}) + std::max(l0 - d.top, 0.0);
     const double depth = deepest - d.surface;
-    return d.surface + most_drawn_in(depth, beside, d.reach) - outermost;
+    return {outermost, depth, most_drawn_in(depth, beside, d.reach)};
+}
+
+}  // namespace
+
+double most_inside(const Dent& d, const Box& box) {
+    const BoxInDent in = box_in_dent(d, box);
+    return d.surface + in.drawn_in - in.outermost;
+}
+
+bool spans(const Dent& d, const Box& box) {
+    return box_in_dent(d, box).drawn_in > 0.0;
 }
 
 double gap_of(const Dent& dent, const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel) {
@@ -120,10 +136,10 @@ double gap_of(const Dent& dent, const TrussBlockState& nodes, const Lanes& panel
                                           panel_of.data(), static_cast<double>(panel)});
 }
 
-void hang_on(const Dent& dent, const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel,
-             NodeFaces& faces, BlockContact& contact, Lanes& hangs) {
+void hang_on(const Dent& dent, const Dent& then, const TrussBlockState& nodes, const Lanes& panel_of,
+             std::size_t panel, NodeFaces& faces, BlockContact& contact, Lanes& hangs) {
     dent_rows.find_dent(
-        dent,
+        dent, then,
         {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), panel_of.data(),
          static_cast<double>(panel)},
         {faces.gap.data(), faces.per_force.data(), faces.bx.data(), faces.by.data(), faces.bz.data(),

@@ -2,14 +2,21 @@
 #include "kernels/dent_rows.hpp"
 
 #include "base/row.hpp"
+#include "birm3d/base/tolerances.hpp"
 
 namespace birm3d::BIRM3D_INSTRUCTION_SET {
 
 namespace {
 
-// Where a panel ends, the way in which its nodes hang on a post that stands beside it changes over within this (m): the
-// outermost stand on the edge itself, and rounding would choose.
-constexpr double edge_width = 1e-3;
+// Share of its slope with which the skin leans on the flank of a post: 0.5 to 1 is a wedge that drives a vehicle aside at
+// the end of its bumper, and with nothing at all an offset pole gives less sideways than finite elements show.
+constexpr double lean = 0.3;
+
+// Nodes that a dent keeps are known by a share above zero.
+constexpr double least_drawn = 1e-9;
+
+// Nearer than this to another surface a node is held by that (m).
+constexpr double touching = tolerance::touching_gap;
 
 // Depth of the post's surface over that of its axis, at `a` across: itself, and for each unit across and of stretch.
 struct Rise {
@@ -85,64 +92,92 @@ BIRM3D_IN_LANE_LOOP Row where_on(const PanelNodes& nodes, const Row& yes, const 
 BIRM3D_IN_LANE_LOOP bool any_matters(const PanelNodes& nodes, const SeenColumns& seen, const Row& least,
                                      std::size_t i) {
     const Row zero = 0.0;
-    const Row below = where_above(Row::load(nodes.force + i), zero, infinitely_far, zero);
     const Row so_far = Row::load(seen.gap + i);
-    return any_above(where_on(nodes, lesser(below, so_far), -infinitely_far, i), least);
+    const Row below = where_above(Row::load(nodes.force + i), zero, infinitely_far, lesser(so_far, zero));
+    return any_above(where_on(nodes, below, -infinitely_far, i), least);
 }
 
-// What the edges of the panel add to how the depth changes as the post turns about e: nodes that hang on one hang beside
-// the post wherever that goes.
-BIRM3D_IN_LANE_LOOP Row at_edges(const DentNumbers& d, const Standing& n, const Hanging& h) {
-    const Row zero = 0.0, one = 1.0, s = h.slope.slope;
-    const auto at_edge = [&](const Row& of_high, const Row& of_low, const Row& of_neither) {
-        return where_above(h.arc, h.highest, of_high, where_above(h.lowest, h.arc, of_low, of_neither));
-    };
-    const Row within = at_edge(d.high - n.w, n.w - d.low, zero);
-    const Row part = lesser(greater(0.5 + within * (0.5 / edge_width), zero), one);
-    const Row share = at_edge(part, part, zero);
-    const Row edge = at_edge(d.high_at, d.low_at, zero), side = at_edge(-1.0 * s, s, s);
-    return share * (side * (n.l - edge) + h.rise.across * (n.l - edge));
+// How far a node that the dent draws in goes along e for each unit that the post comes in, and that it goes along the
+// panel.
+struct Drawn {
+    Row in, across;
+};
+BIRM3D_IN_LANE_LOOP Drawn drawn(const DentNumbers& d, const Hanging& h) {
+    const Row slope = h.slope.slope, flank = lesser(greater(h.rise.across, -1.0 * slope), slope);
+    return {greater(d.grip * (1.0 - h.slope.grows * h.beyond), least_drawn),
+            (lean * d.grip) * flank / square_root(1.0 + flank * flank)};
 }
 
-// Which nodes hang on the dent (1, else 0)?
-BIRM3D_IN_LANE_LOOP Row find_hanging(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns& seen,
-                                     const Row& gap, std::size_t i) {
-    const Row zero = 0.0, one = 1.0, so_far = Row::load(seen.gap + i);
+// Way of the nodes within the step, outwards.
+BIRM3D_IN_LANE_LOOP Row way_of(const Standing& now, const Standing& then, const Drawn& at_end,
+                               const Drawn& at_start) {
+    const Row in = (now.deepest - now.e) - (then.deepest - then.e), across = now.w - then.w;
+    return -0.5 * ((at_end.in + at_start.in) * in + (at_end.across + at_start.across) * across);
+}
+
+// What the dent asks of each node. Those that push go with it while it reaches over them, and are let go then; others go
+// with it once it has come to them.
+struct Asked {
+    Row gap, lets_go;
+};
+BIRM3D_IN_LANE_LOOP Asked ask(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns& seen,
+                              const Standing& s, const Hanging& h, const Row& way, std::size_t i) {
+    const Row zero = 0.0, one = 1.0, far = infinitely_far, surface = d.surface, held_elsewhere = touching;
+    const Row pushes = Row::load(nodes.force + i), held = d.grip > 0.0 ? one : zero;
+    const Row comes = where_above(h.gap, zero, h.gap, greater(h.gap, way));
+    // A node that another surface holds is not the dent's before that comes to it.
+    const Row other = where_above(Row::load(seen.per_force + i), zero, far, Row::load(seen.gap + i));
+    const Row goes = where_above(zero, h.gap, way, where_above(other, held_elsewhere, way, far));
+    const Row reaches = where_above(s.e - h.gap, surface, held, zero);
+    const Row off = where_above(pushes, zero, where_above(reaches, zero, zero, one), zero);
+    return {where_above(pushes, zero, where_above(reaches, zero, goes, greater(h.gap, zero)), comes), off};
+}
+
+// Which nodes are the dent's? One for those that it has, two for those that it lets go, else zero. Of two dents that both
+// go outwards the one that goes further takes its nodes along.
+BIRM3D_IN_LANE_LOOP Row find_own(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns& seen,
+                                 const Asked& asked, std::size_t i) {
+    const Row zero = 0.0, one = 1.0, so_far = Row::load(seen.gap + i), gap = asked.gap;
     const Row against =
         d.ex * Row::load(seen.nx + i) + d.ey * Row::load(seen.ny + i) + d.ez * Row::load(seen.nz + i);
-    const Row drawn_in = where_above(zero, so_far - against * gap, zero, one);
-    return where_on(nodes, where_above(so_far, gap, where_above(zero, against, drawn_in, one), zero), zero,
+    const Row own = one + asked.lets_go;
+    const Row drawn_in = where_above(zero, so_far - against * gap, zero, own);
+    const Row on_both = lesser(Row::load(nodes.force + i), Row::load(seen.per_force + i));
+    const Row outwards = where_above(on_both, zero, where_above(so_far, zero, own, zero), zero);
+    const Row further = where_above(asked.lets_go, zero, zero, outwards);
+    const Row nearer = where_above(zero, against, drawn_in, own);
+    return where_on(nodes, where_above(so_far, gap, nearer, where_above(gap, so_far, further, zero)), zero,
                     i);
 }
 
 }  // namespace
 
-void find_dent(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns& seen);
+void find_dent(const DentNumbers& d, const DentNumbers& then, const PanelNodes& nodes,
+               const SeenColumns& seen);
 double find_dent_gap(const DentNumbers& d, const PanelNodes& nodes);
 
-void find_dent(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns& seen) {
+void find_dent(const DentNumbers& d, const DentNumbers& then, const PanelNodes& nodes,
+               const SeenColumns& seen) {
     const Row zero = 0.0, top = d.top, top_leans = d.top_rate * d.per_stretch;
     for (std::size_t i = 0; i < lanes; i += row_length) {
         zero.store(seen.hangs + i);
-        const Standing n = stand(d, nodes, i);
+        const Standing n = stand(d, nodes, i), was = stand(then, nodes, i);
         if (!any_matters(nodes, seen, no_less_than(d, n), i)) continue;
         const Hanging h = hang(d, n);
-        const Row hangs = find_hanging(d, nodes, seen, h.gap, i);
-        if (!any_above(hangs, zero)) continue;
-        hangs.store(seen.hangs + i);
+        const Drawn by = drawn(d, h);
+        const Row way = way_of(n, was, by, drawn(then, hang(then, was)));
+        const Asked asked = ask(d, nodes, seen, n, h, way, i);
+        const Row own = find_own(d, nodes, seen, asked, i);
+        if (!any_above(own, zero)) continue;
+        own.store(seen.hangs + i);
         const auto tell = [&](double* column, const Row& found) {
-            where_above(hangs, zero, found, Row::load(column + i)).store(column + i);
+            where_above(own, zero, found, Row::load(column + i)).store(column + i);
         };
-        const Row s = h.slope.slope;
-        // As the post goes deeper, the slope grows.
-        const Row less = h.slope.grows * h.beyond;
-        const Row rises = where_above(n.l, top, -1.0 * s, d.tilt),
-                  leans = where_above(n.l, top, zero, d.tilt);
-        const Row fe = 1.0 - less, fw = h.rise.across, fl = rises - less * leans;
+        const Row fe = by.in, fw = by.across, fl = where_above(n.l, top, zero, fe * d.tilt);
         const Row nx = fe * d.ex - fw * d.wx - fl * d.lx, ny = fe * d.ey - fw * d.wy - fl * d.ly,
                   nz = fe * d.ez - fw * d.wz - fl * d.lz;
         const Row size = square_root(fe * fe + fw * fw + fl * fl), per = 1.0 / size;
-        tell(seen.gap, h.gap);
+        tell(seen.gap, asked.gap);
         tell(seen.bx, d.ex);
         tell(seen.by, d.ey);
         tell(seen.bz, d.ez);
@@ -154,12 +189,10 @@ void find_dent(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns&
         tell(seen.py, d.oy + (h.at * d.ey + h.a * d.wy + n.up * d.ly));
         tell(seen.pz, d.oz + (h.at * d.ez + h.a * d.wz + n.up * d.lz));
 
-        // How the depth changes as the post turns about e, with the dent, and as its axis leans along e.
-        Row about = fl * n.w - h.rise.across * n.l;
-        if (any_above(h.arc, h.highest) || any_above(h.lowest, h.arc)) about = about + at_edges(d, n, h);
-        const Row leaning = d.stretch * d.stretch * fe * n.up +
-                            d.stretch * d.tilt * (h.rise.stretch - less * d.radius) +
-                            where_above(n.l, top, (fe * d.tilt + s) * top_leans, zero);
+        // How the node goes as the post turns about e, and as its axis leans along e.
+        const Row about = fl * n.w - fw * n.l;
+        const Row leaning = fe * (d.stretch * d.stretch * n.up + d.stretch * d.tilt * d.radius +
+                                  where_above(n.l, top, d.tilt * top_leans, zero));
         const Row qx = about * (d.tilt * d.lx - d.ex) + leaning * d.wx,
                   qy = about * (d.tilt * d.ly - d.ey) + leaning * d.wy,
                   qz = about * (d.tilt * d.lz - d.ez) + leaning * d.wz;

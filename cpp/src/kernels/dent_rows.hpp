@@ -39,7 +39,8 @@ struct SeenColumns {
 };
 
 // See hang_on.
-using FindDent = void (*)(const DentNumbers& dent, const PanelNodes& nodes, const SeenColumns& seen);
+using FindDent = void (*)(const DentNumbers& dent, const DentNumbers& then, const PanelNodes& nodes,
+                          const SeenColumns& seen);
 // The least gap; infinite if there are no such nodes.
 using FindDentGap = double (*)(const DentNumbers& dent, const PanelNodes& nodes);
 

@@ -31,7 +31,7 @@ struct ObstacleSums {
 struct DentedPanel {
     std::size_t near;
     std::size_t panel;
-    Dent dent;
+    Dent dent, then;  // now, and an instant before
     double way;  // how far it can have come in within the step, and nodes off it (m)
 };
 

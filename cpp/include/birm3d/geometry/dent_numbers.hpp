@@ -13,9 +13,11 @@ struct DentNumbers {
     double top;                                 // along, of the highest place of the rim
     double top_rate;                            // of that for each unit of change of the axis's part along e
     double tilt;                                // e of the axis for each unit of l
+    double height;  // of the post
     double radius, stretch;  // the post's, and that of its section with a plane of e and w over it
     double surface;          // into, of the outermost node of the panel
     double per_reach, per_stretch;
+    double grip;  // share of the post's way that the skin takes at the deepest place of the post in the panel
     double steep_arc, rise_there;  // across and deep, of the place from where the flank is steepest
 };
 

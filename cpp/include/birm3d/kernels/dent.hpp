@@ -54,14 +54,17 @@ bool stands_across(const Placement& post, const Panel& panel, bool dents);
 // No node of the box (body axes) is further inside than this (m); negative: none is reached.
 double most_inside(const Dent& dent, const Box& box);
 
+// Can nodes above or before the box, or in it, hang on the dent?
+bool spans(const Dent& dent, const Box& box);
+
 // Least gap of those nodes of a block that are of the panel (m); infinite if there are none.
 double gap_of(const Dent& dent, const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel);
 
 // Nodes of the panel to which the dent is nearer than what they have seen so far hang on it, unless it would draw them
 // into that: a post that came past the panel's edge stands behind them. Says in `faces` and `contact` how they do, and
 // which (1, else 0). Of nodes that are outside and without force nothing may be said.
-void hang_on(const Dent& dent, const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel,
-             NodeFaces& faces, BlockContact& contact, Lanes& hangs);
+void hang_on(const Dent& dent, const Dent& then, const TrussBlockState& nodes, const Lanes& panel_of,
+             std::size_t panel, NodeFaces& faces, BlockContact& contact, Lanes& hangs);
 
 // No dent that is further from all nodes than this holds any of them (m). `gap`: of what they have seen so far.
 double furthest_off(const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel, const Lanes& gap);
