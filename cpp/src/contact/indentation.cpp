@@ -81,7 +81,7 @@ bool Skin::was_before(std::size_t k, std::size_t p) {
 double Skin::reach_of_dent(const DentedPanel& dented, std::uint8_t of, const Box& box, bool touching) const {
     if ((of >> dented.panel & 1U) == 0) return infinity;
     const double gap = -most_inside(dented.dent, box);
-    if (touching && spans(dented.dent, box)) return std::min(gap, dented.way);
+    if (touching && spans(dented.dent, box)) return -infinity;
     return gap <= (touching ? dented.way : 0.0) ? gap : infinity;
 }
 

@@ -8,6 +8,9 @@ namespace birm3d::BIRM3D_INSTRUCTION_SET {
 
 namespace {
 
+// The gap of nodes that a dent lets go: any other holds them before (m).
+constexpr double away = 10.0;
+
 // Share of its slope with which the skin leans on the flank of a post: 0.5 to 1 is a wedge that drives a vehicle aside at
 // the end of its bumper, and with nothing at all an offset pole gives less sideways than finite elements show.
 constexpr double lean = 0.3;
@@ -130,11 +133,19 @@ BIRM3D_IN_LANE_LOOP Asked ask(const DentNumbers& d, const PanelNodes& nodes, con
     const Row goes = where_above(zero, h.gap, way, where_above(other, held_elsewhere, way, far));
     const Row reaches = where_above(s.e - h.gap, surface, held, zero);
     const Row off = where_above(pushes, zero, where_above(reaches, zero, zero, one), zero);
-    return {where_above(pushes, zero, where_above(reaches, zero, goes, greater(h.gap, zero)), comes), off};
+    return {where_above(pushes, zero, where_above(reaches, zero, goes, away), comes), off};
 }
 
-// Which nodes are the dent's? One for those that it has, two for those that it lets go, else zero. Of two dents that both
-// go outwards the one that goes further takes its nodes along.
+// Of two dents that hold a node the one that takes it further in has it; of two that both let it come out, the one that
+// lets it come further. One that lets it go comes after those, and surfaces that it does not touch come last.
+BIRM3D_IN_LANE_LOOP Row rank_in_dent(const Row& gap) {
+    return where_above(gap, 0.0, where_above(away, gap, away - gap, 2.0 * away), gap);
+}
+BIRM3D_IN_LANE_LOOP Row rank_at_surface(const Row& gap) {
+    return where_above(gap, touching, 3.0 * away, gap);
+}
+
+// Which nodes are the dent's? One for those that it has, two for those that it lets go, else zero.
 BIRM3D_IN_LANE_LOOP Row find_own(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns& seen,
                                  const Asked& asked, std::size_t i) {
     const Row zero = 0.0, one = 1.0, so_far = Row::load(seen.gap + i), gap = asked.gap;
@@ -142,12 +153,13 @@ BIRM3D_IN_LANE_LOOP Row find_own(const DentNumbers& d, const PanelNodes& nodes, 
         d.ex * Row::load(seen.nx + i) + d.ey * Row::load(seen.ny + i) + d.ez * Row::load(seen.nz + i);
     const Row own = one + asked.lets_go;
     const Row drawn_in = where_above(zero, so_far - against * gap, zero, own);
-    const Row on_both = lesser(Row::load(nodes.force + i), Row::load(seen.per_force + i));
-    const Row outwards = where_above(on_both, zero, where_above(so_far, zero, own, zero), zero);
-    const Row further = where_above(asked.lets_go, zero, zero, outwards);
     const Row nearer = where_above(zero, against, drawn_in, own);
-    return where_on(nodes, where_above(so_far, gap, nearer, where_above(gap, so_far, further, zero)), zero,
-                    i);
+    const Row pushes = Row::load(nodes.force + i);
+    const Row of_last = where_above(Row::load(seen.per_force + i), zero, rank_in_dent(so_far),
+                                    rank_at_surface(so_far));
+    const Row last = where_above(pushes, zero, of_last, so_far);
+    const Row now = where_above(pushes, zero, rank_in_dent(gap), gap);
+    return where_on(nodes, where_above(last, now, nearer, zero), zero, i);
 }
 
 }  // namespace
