@@ -80,7 +80,8 @@ void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, con
     const double mu = scene_.obstacles[near_[near].index].friction;
     const Vec3* const normal = plane_normal_ ? &*plane_normal_ : nullptr;
     if (!(mu > 0.0)) return;
-    if (block_dents_.empty()) return add_friction(mu, full_speed_, away_[near], places, contact, normal, sums.rubbing);
+    if (block_dents_.empty())
+        return add_friction(mu, full_speed_, away_[near], places, contact, normal, sums.rubbing);
     BlockContact within = contact;
     rub_along_panel(faces_, within);
     add_friction(mu, full_speed_, away_[near], places, within, nullptr, sums.rubbing);

@@ -151,8 +151,9 @@ BIRM3D_LANE_LOOP void note_let_go(const Lanes& hangs, Lanes& let_go) {
 }  // namespace
 
 void Skin::draw_in(std::size_t b, const TrussBlockState& block) {
-    alignas(64) Lanes hangs;
+    alignas(64) Lanes hangs, rank;
     let_go_.fill(0.0);
+    rank.fill(infinity);
     for (const BlockDent& reached : block_dents_) {
         const DentedPanel& dented = dents_[reached.dent];
         const Lanes& panel_of = mesh_.block[b].panel;
@@ -160,7 +161,7 @@ void Skin::draw_in(std::size_t b, const TrussBlockState& block) {
             reached.gap > furthest_off(block, panel_of, dented.panel, faces_.gap))
             continue;
         alignas(64) const Lanes gap = faces_.gap;
-        hang_on(dented.dent, dented.then, block, panel_of, dented.panel, faces_, contact_, hangs);
+        hang_on(dented.dent, dented.then, block, panel_of, dented.panel, faces_, contact_, rank, hangs);
         note_second(hangs, gap, second_gap_);
         note_let_go(hangs, let_go_);
         const auto seen = std::find(seen_.begin(), seen_.end(), dented.near) - seen_.begin();

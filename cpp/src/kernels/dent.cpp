@@ -137,14 +137,14 @@ double gap_of(const Dent& dent, const TrussBlockState& nodes, const Lanes& panel
 }
 
 void hang_on(const Dent& dent, const Dent& then, const TrussBlockState& nodes, const Lanes& panel_of,
-             std::size_t panel, NodeFaces& faces, BlockContact& contact, Lanes& hangs) {
+             std::size_t panel, NodeFaces& faces, BlockContact& contact, Lanes& rank, Lanes& hangs) {
     dent_rows.find_dent(
         dent, then,
         {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), panel_of.data(),
          static_cast<double>(panel)},
         {faces.gap.data(), faces.per_force.data(), faces.bx.data(), faces.by.data(), faces.bz.data(),
          contact.nx.data(), contact.ny.data(), contact.nz.data(), contact.px.data(), contact.py.data(),
-         contact.pz.data(), contact.tx.data(), contact.ty.data(), contact.tz.data(), hangs.data()});
+         contact.pz.data(), contact.tx.data(), contact.ty.data(), contact.tz.data(), rank.data(), hangs.data()});
 }
 
 double furthest_off(const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel,

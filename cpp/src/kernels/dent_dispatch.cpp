@@ -5,10 +5,10 @@
 namespace birm3d {
 
 // The functions of dent_rows.cpp, for each instruction set that it is compiled for.
-#define BIRM3D_DECLARE(set, runs)                                              \
-    namespace set {                                                            \
+#define BIRM3D_DECLARE(set, runs)                                                                  \
+    namespace set {                                                                                \
     void find_dent(const DentNumbers&, const DentNumbers&, const PanelNodes&, const SeenColumns&); \
-    double find_dent_gap(const DentNumbers&, const PanelNodes&);               \
+    double find_dent_gap(const DentNumbers&, const PanelNodes&);                                   \
     }
 BIRM3D_INSTRUCTION_SETS(BIRM3D_DECLARE)
 

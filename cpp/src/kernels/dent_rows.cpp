@@ -121,7 +121,7 @@ BIRM3D_IN_LANE_LOOP Row way_of(const Standing& now, const Standing& then, const 
 // What the dent asks of each node. Those that push go with it while it reaches over them, and are let go then; others go
 // with it once it has come to them.
 struct Asked {
-    Row gap, lets_go;
+    Row gap, lets_go, rank;
 };
 BIRM3D_IN_LANE_LOOP Asked ask(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns& seen,
                               const Standing& s, const Hanging& h, const Row& way, std::size_t i) {
@@ -133,19 +133,12 @@ BIRM3D_IN_LANE_LOOP Asked ask(const DentNumbers& d, const PanelNodes& nodes, con
     const Row goes = where_above(zero, h.gap, way, where_above(other, held_elsewhere, way, far));
     const Row reaches = where_above(s.e - h.gap, surface, held, zero);
     const Row off = where_above(pushes, zero, where_above(reaches, zero, zero, one), zero);
-    return {where_above(pushes, zero, where_above(reaches, zero, goes, away), comes), off};
+    return {where_above(pushes, zero, where_above(reaches, zero, goes, away), comes), off,
+            where_above(off, zero, away, h.gap)};
 }
 
-// Of two dents that hold a node the one that takes it further in has it; of two that both let it come out, the one that
-// lets it come further. One that lets it go comes after those, and surfaces that it does not touch come last.
-BIRM3D_IN_LANE_LOOP Row rank_in_dent(const Row& gap) {
-    return where_above(gap, 0.0, where_above(away, gap, away - gap, 2.0 * away), gap);
-}
-BIRM3D_IN_LANE_LOOP Row rank_at_surface(const Row& gap) {
-    return where_above(gap, touching, 3.0 * away, gap);
-}
-
-// Which nodes are the dent's? One for those that it has, two for those that it lets go, else zero.
+// Which nodes are the dent's? One for those that it has, two for those that it lets go, else zero. Of several dents the
+// one that is deepest there holds a node: by their ways it would change hands with every step.
 BIRM3D_IN_LANE_LOOP Row find_own(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns& seen,
                                  const Asked& asked, std::size_t i) {
     const Row zero = 0.0, one = 1.0, so_far = Row::load(seen.gap + i), gap = asked.gap;
@@ -154,11 +147,11 @@ BIRM3D_IN_LANE_LOOP Row find_own(const DentNumbers& d, const PanelNodes& nodes, 
     const Row own = one + asked.lets_go;
     const Row drawn_in = where_above(zero, so_far - against * gap, zero, own);
     const Row nearer = where_above(zero, against, drawn_in, own);
-    const Row pushes = Row::load(nodes.force + i);
-    const Row of_last = where_above(Row::load(seen.per_force + i), zero, rank_in_dent(so_far),
-                                    rank_at_surface(so_far));
-    const Row last = where_above(pushes, zero, of_last, so_far);
-    const Row now = where_above(pushes, zero, rank_in_dent(gap), gap);
+    const Row pushes = Row::load(nodes.force + i), far = infinitely_far, at_surface = touching;
+    const Row by_surface = where_above(so_far, at_surface, far, so_far);
+    const Row by_dent = where_above(Row::load(seen.per_force + i), zero, Row::load(seen.rank + i), by_surface);
+    const Row last = where_above(pushes, zero, by_dent, so_far);
+    const Row now = where_above(pushes, zero, asked.rank, gap);
     return where_on(nodes, where_above(last, now, nearer, zero), zero, i);
 }
 
@@ -190,6 +183,7 @@ void find_dent(const DentNumbers& d, const DentNumbers& then, const PanelNodes& 
                   nz = fe * d.ez - fw * d.wz - fl * d.lz;
         const Row size = square_root(fe * fe + fw * fw + fl * fl), per = 1.0 / size;
         tell(seen.gap, asked.gap);
+        tell(seen.rank, asked.rank);
         tell(seen.bx, d.ex);
         tell(seen.by, d.ey);
         tell(seen.bz, d.ez);

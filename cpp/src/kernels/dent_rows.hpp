@@ -33,9 +33,10 @@ struct PanelNodes {
     double of;
 };
 
-// What they have seen so far (NodeFaces, BlockContact); `hangs`: on this dent (1, else 0).
+// What they have seen so far (NodeFaces, BlockContact); `rank`: the lower
+// that is, the more right a dent has to a node that pushes. `hangs`: on this dent (1; 2: let go by it; else 0).
 struct SeenColumns {
-    double *gap, *per_force, *bx, *by, *bz, *nx, *ny, *nz, *px, *py, *pz, *tx, *ty, *tz, *hangs;
+    double *gap, *per_force, *bx, *by, *bz, *nx, *ny, *nz, *px, *py, *pz, *tx, *ty, *tz, *rank, *hangs;
 };
 
 // See hang_on.

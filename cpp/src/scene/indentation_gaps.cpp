@@ -64,7 +64,7 @@ double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, 
 
 namespace {
 
-// Calls `use` with each dent that a post makes or would make, and its panel's number. `about`: of the obstacles. `way`: by
+// Calls `use` with each dent that a post makes or would make, and the numbers of the post and the panel. `about`: of the obstacles. `way`: by
 // which posts beside, before or below a panel count too, as if it had no ends (m).
 template <class Use>
 void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& mesh,
@@ -84,7 +84,7 @@ void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& m
                 dent.low = -infinity;
                 dent.high = infinity;
             }
-            use(dent, p);
+            use(dent, i, p);
         }
     }
 }
@@ -98,10 +98,11 @@ double overlap_of_dents(const Scene& scene, const State& state, double deepest) 
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         if (mesh.dent_reach == 0.0) continue;
         scene.map.find(state.units[u].body.position, state.units[u].trusses.around.radius(), about);
-        for_each_dent(scene, state.units[u], mesh, about, 0.0, [&](const Dent& dent, std::size_t panel) {
-            const double gap = gap_of_panel(dent, panel, mesh, state.units[u], 0.0, -infinity);
-            if (-gap < deepest) most = std::max(most, -gap);
-        });
+        for_each_dent(scene, state.units[u], mesh, about, 0.0,
+                      [&](const Dent& dent, std::size_t, std::size_t panel) {
+                          const double gap = gap_of_panel(dent, panel, mesh, state.units[u], 0.0, -infinity);
+                          if (-gap < deepest) most = std::max(most, -gap);
+                      });
     }
     return most;
 }
@@ -111,6 +112,13 @@ namespace {
 // Nodes that a dent has just let go lie on it but for rounding: at this gap it has come already (m).
 constexpr double come = tolerance::touching_gap;
 
+// Does the post dent the panel already? Nodes that it has left behind are off its dent then, however near it stands.
+bool dents_already(const UnitState& unit, std::size_t obstacle, std::size_t panel) {
+    return std::any_of(unit.dented.begin(), unit.dented.end(), [=](const Dented& dented) {
+        return dented.obstacle == obstacle && (dented.panels >> panel & 1U) != 0;
+    });
+}
+
 }  // namespace
 
 double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
@@ -118,12 +126,15 @@ double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh&
     std::vector<std::size_t> about;
     const double way = longest * fastest;
     scene.map.find(unit.body.position, unit.trusses.around.radius() + way, about);
-    for_each_dent(scene, unit, mesh, about, way, [&](const Dent& dent, std::size_t panel) {
-        // A post dents what it comes into.
-        const double grows = dent.fastest_growth(mesh.panel[panel]);
-        const double gap = gap_of_panel(dent, panel, mesh, unit, grows * way, come);
-        if (gap > come) longest = std::min(longest, (gap + tolerance::untouched_way) / (grows * fastest));
-    });
+    for_each_dent(scene, unit, mesh, about, way,
+                  [&](const Dent& dent, std::size_t obstacle, std::size_t panel) {
+                      if (dents_already(unit, obstacle, panel)) return;
+                      // A post dents what it comes into.
+                      const double grows = dent.fastest_growth(mesh.panel[panel]);
+                      const double gap = gap_of_panel(dent, panel, mesh, unit, grows * way, come);
+                      if (gap > come)
+                          longest = std::min(longest, (gap + tolerance::untouched_way) / (grows * fastest));
+                  });
     return longest;
 }
 

@@ -64,7 +64,7 @@ double gap_of(const Dent& dent, const TrussBlockState& nodes, const Lanes& panel
 // into that: a post that came past the panel's edge stands behind them. Says in `faces` and `contact` how they do, and
 // which (1, else 0). Of nodes that are outside and without force nothing may be said.
 void hang_on(const Dent& dent, const Dent& then, const TrussBlockState& nodes, const Lanes& panel_of,
-             std::size_t panel, NodeFaces& faces, BlockContact& contact, Lanes& hangs);
+             std::size_t panel, NodeFaces& faces, BlockContact& contact, Lanes& rank, Lanes& hangs);
 
 // No dent that is further from all nodes than this holds any of them (m). `gap`: of what they have seen so far.
 double furthest_off(const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel, const Lanes& gap);
