@@ -33,8 +33,8 @@ def test_one_post_feels_what_the_headline_says(truck: Result) -> None:
     # The vector has the sideways and the vertical part on top.
     assert metrics["peak_force_50ms"] <= metrics["peak_element_force_50ms"] < 1.1 * metrics["peak_force_50ms"]
     assert metrics["peak_element_force"] == np.linalg.norm(load.force, axis=1).max()
-    # The post presses on both flanks of the dent: the sum of magnitudes is no load.
-    assert truck.sum_of_contact_forces.max() > 1.3 * component.max()
+    # The skin leans a little on both flanks of the post: the sum of magnitudes is no load.
+    assert truck.sum_of_contact_forces.max() > 1.01 * component.max()
 
 
 @pytest.mark.parametrize("name", ["truck", "jersey", "semi"])

@@ -76,7 +76,7 @@ NUMBERS = (
         "engine",
         "Pa",
         stresses("bumper_middle", "engine", points=(3, 4)),
-        1e6,
+        1.5e6,
         0.3e6,
         8e6,
         "accessories of the engine yield at 2 MPa, on a part of the area",
@@ -85,7 +85,7 @@ NUMBERS = (
         "behind the engine",
         "Pa",
         stresses("bumper_middle", "engine", points=(5, 6)),
-        0.3e6,
+        0.8e6,
         0.1e6,
         4e6,
         "mounts, cross members, cab; less than the engine",
@@ -110,7 +110,7 @@ NUMBERS = (
         "vehicles N and S: 0.04 and 0.06",
     ),
     Number(
-        "reach of dents", "m", ("vehicle.dent_reach",), 0.36, 0.15, 1.0, "half to three diameters of a post"
+        "reach of dents", "m", ("vehicle.dent_reach",), 0.6, 0.15, 1.0, "half to three diameters of a post"
     ),
     Number("tyres", "", ("zone.tire.scale",), 2.5, 0.5, 6.0, "rims and hangers of 75 kN beside the rubber"),
 )

@@ -243,8 +243,7 @@ DIAMETER_HEAD = (
 )
 
 POSTS = """The outer posts of the row of three, inner faces at 1.04 m, where the bumper ends at 1.125 m (run:
-0.4 forward, 1.2 sideways). Only dents push them; a load that grows as the post gets thinner is the law's
-error."""
+0.4 forward, 1.2 sideways). Only dents push them. Of a thinner post more is before the bumper."""
 
 HEADINGS = {
     "before": "Before: the preset cargo_truck, as it is",
@@ -278,9 +277,11 @@ READING = """- **Engine.** The momentum that it lacks is taken from it in 5 to 1
   with full friction, where the folds of the run stay in place (impulse up). Without front wheels and friction
   the same vehicle pitches as much as the runs or more (last table); either is enough to hold the nose up.
 - **Posts at the end of a bumper.** The outer two of three posts overlap it by 85 mm, and bend it away in the
-  run. The computed dent leans on them like a wedge. The middle post lacks what they take.
-- **Friction on posts.** Half of the energy goes into friction at the three posts; all contacts of the run
-  take 6 %. Skin that hangs beside a post is rubbed as if it slid along it. The fitted front is weaker for it,
-  and has to be fitted anew when posts are computed otherwise.
+  run. The computed skin there goes in with the post, as far as that pushes it.
+- **Friction on posts.** Computed posts rub the skin only where that moves along the panel. All contacts of
+  the run take 6 %, most of it between parts of the truck.
+- **Two posts at a frame.** In the run the front of the frame bends, and jams between the two posts: 53 and
+  62 kN s sideways. The computed front is crushed straight back, and nothing is squeezed between the posts.
+  This is the mark of posts that is not met.
 - **Posts at a rail and beside it.** The run shares the load evenly between the two posts of the offset pair,
   as its frame bends sideways. The computed post at the rail and the engine takes more than the other."""

@@ -44,14 +44,11 @@ Dent::Dent(const Post& post, const Placement& stands, const Panel& panel, double
     const Vec3 middle = panel.box.center - o, least = middle - edge, most = middle + edge;
     low = least.dot(w);
     high = most.dot(w);
-    low_at = least.dot(l);
-    high_at = most.dot(l);
     const double off = std::min(1.0, std::max({low, -high, 0.0}) / post.radius);
     grip = 1.0 - off * off;
     surface = middle.dot(e) - panel.box.half.dot(e.cwiseAbs());
     tilt = stretch * leaning;
     radius = post.radius;
-    height = post.height;
     const double rim = std::sqrt(leaning * leaning + rounded * rounded);
     top = post.height * upright + radius * rim;
     top_rate = radius * leaning / rim - post.height * tilt;
@@ -138,13 +135,13 @@ double gap_of(const Dent& dent, const TrussBlockState& nodes, const Lanes& panel
 
 void hang_on(const Dent& dent, const Dent& then, const TrussBlockState& nodes, const Lanes& panel_of,
              std::size_t panel, NodeFaces& faces, BlockContact& contact, Lanes& rank, Lanes& hangs) {
-    dent_rows.find_dent(
-        dent, then,
-        {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), panel_of.data(),
-         static_cast<double>(panel)},
-        {faces.gap.data(), faces.per_force.data(), faces.bx.data(), faces.by.data(), faces.bz.data(),
-         contact.nx.data(), contact.ny.data(), contact.nz.data(), contact.px.data(), contact.py.data(),
-         contact.pz.data(), contact.tx.data(), contact.ty.data(), contact.tz.data(), rank.data(), hangs.data()});
+    dent_rows.find_dent(dent, then,
+                        {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), panel_of.data(),
+                         static_cast<double>(panel)},
+                        {faces.gap.data(), faces.per_force.data(), faces.bx.data(), faces.by.data(),
+                         faces.bz.data(), contact.nx.data(), contact.ny.data(), contact.nz.data(),
+                         contact.px.data(), contact.py.data(), contact.pz.data(), contact.tx.data(),
+                         contact.ty.data(), contact.tz.data(), rank.data(), hangs.data()});
 }
 
 double furthest_off(const TrussBlockState& nodes, const Lanes& panel_of, std::size_t panel,

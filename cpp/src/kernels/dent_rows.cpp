@@ -11,9 +11,9 @@ namespace {
 // The gap of nodes that a dent lets go: any other holds them before (m).
 constexpr double away = 10.0;
 
-// Share of its slope with which the skin leans on the flank of a post: 0.5 to 1 is a wedge that drives a vehicle aside at
-// the end of its bumper, and with nothing at all an offset pole gives less sideways than finite elements show.
-constexpr double lean = 0.3;
+// Share with which the skin leans on the flank of a post. Chosen by hand between 0.1 and 0.4: with less, a pole 0.35 m off
+// the middle gives less sideways than finite elements show; with more, posts at the end of a bumper are a wedge.
+constexpr double lean = 0.2;
 
 // Nodes that a dent keeps are known by a share above zero.
 constexpr double least_drawn = 1e-9;
@@ -21,9 +21,9 @@ constexpr double least_drawn = 1e-9;
 // Nearer than this to another surface a node is held by that (m).
 constexpr double touching = tolerance::touching_gap;
 
-// Depth of the post's surface over that of its axis, at `a` across: itself, and for each unit across and of stretch.
+// Depth of the post's surface over that of its axis, at `a` across: itself, and for each unit across.
 struct Rise {
-    Row rise, across, stretch;
+    Row rise, across;
 };
 BIRM3D_IN_LANE_LOOP Rise rise_at(const DentNumbers& d, const Row& a) {
     const Row zero = 0.0, steep_arc = d.steep_arc;
@@ -31,8 +31,7 @@ BIRM3D_IN_LANE_LOOP Rise rise_at(const DentNumbers& d, const Row& a) {
     const Row on = lesser(far, steep_arc);
     const Row root = square_root(d.radius * d.radius - on * on);
     return {where_above(far, steep_arc, d.rise_there - steepest * (far - steep_arc), d.stretch * root),
-            where_above(far, steep_arc, where_above(zero, a, steepest, -steepest), -d.stretch * a / root),
-            root};
+            where_above(far, steep_arc, where_above(zero, a, steepest, -steepest), -d.stretch * a / root)};
 }
 
 // Where a row of nodes stands, in the post's axes; the middle of the post, as high as they are.
@@ -64,7 +63,7 @@ BIRM3D_IN_LANE_LOOP Row no_less_than(const DentNumbers& d, const Standing& s) {
 // The place of the post that a row of nodes hangs on.
 struct Hanging {
     Slope<Row> slope;  // of the skin beside the post
-    Row arc, highest, lowest, a, at, beyond, gap;
+    Row a, at, beyond, gap;
     Rise rise;
 };
 BIRM3D_IN_LANE_LOOP Hanging hang(const DentNumbers& d, const Standing& s) {
@@ -74,10 +73,9 @@ BIRM3D_IN_LANE_LOOP Hanging hang(const DentNumbers& d, const Standing& s) {
     // The nearest place of the post that falls off no more steeply than the dent, within the panel.
     const Row share = h.slope.slope * d.per_stretch;
     const Row arc = d.radius * share / square_root(1.0 + share * share);
-    h.arc = lesser(greater(s.w, -1.0 * arc), arc);
-    h.highest = greater(s.w, high);
-    h.lowest = lesser(s.w, low);
-    h.a = where_above(h.arc, h.highest, h.highest, where_above(h.lowest, h.arc, h.lowest, h.arc));
+    const Row near = lesser(greater(s.w, -1.0 * arc), arc), highest = greater(s.w, high),
+              lowest = lesser(s.w, low);
+    h.a = where_above(near, highest, highest, where_above(lowest, near, lowest, near));
     h.rise = rise_at(d, h.a);
     h.at = d.tilt * s.up + h.rise.rise;
     h.beyond = where_above(s.w, h.a, s.w - h.a, h.a - s.w) + (s.l - s.up);
@@ -118,6 +116,17 @@ BIRM3D_IN_LANE_LOOP Row way_of(const Standing& now, const Standing& then, const 
     return -0.5 * ((at_end.in + at_start.in) * in + (at_end.across + at_start.across) * across);
 }
 
+// The gap to another surface that holds the node against the way of the dent; infinite where none does. One that it glides
+// on, as the ground below a bumper, does not.
+BIRM3D_IN_LANE_LOOP Row held_by_other(const DentNumbers& d, const SeenColumns& seen, std::size_t i) {
+    const Row zero = 0.0, far = infinitely_far, faces = 0.5, near = touching;
+    const Row gap = Row::load(seen.gap + i), along = d.ex * Row::load(seen.nx + i) +
+                                                     d.ey * Row::load(seen.ny + i) +
+                                                     d.ez * Row::load(seen.nz + i);
+    const Row held = where_above(along, faces, where_above(gap, near, far, gap), far);
+    return where_above(Row::load(seen.per_force + i), zero, far, held);
+}
+
 // What the dent asks of each node. Those that push go with it while it reaches over them, and are let go then; others go
 // with it once it has come to them.
 struct Asked {
@@ -125,16 +134,16 @@ struct Asked {
 };
 BIRM3D_IN_LANE_LOOP Asked ask(const DentNumbers& d, const PanelNodes& nodes, const SeenColumns& seen,
                               const Standing& s, const Hanging& h, const Row& way, std::size_t i) {
-    const Row zero = 0.0, one = 1.0, far = infinitely_far, surface = d.surface, held_elsewhere = touching;
+    const Row zero = 0.0, one = 1.0, far = infinitely_far, surface = d.surface;
     const Row pushes = Row::load(nodes.force + i), held = d.grip > 0.0 ? one : zero;
     const Row comes = where_above(h.gap, zero, h.gap, greater(h.gap, way));
     // A node that another surface holds is not the dent's before that comes to it.
-    const Row other = where_above(Row::load(seen.per_force + i), zero, far, Row::load(seen.gap + i));
-    const Row goes = where_above(zero, h.gap, way, where_above(other, held_elsewhere, way, far));
+    const Row other = where_above(far, held_by_other(d, seen, i), far, way);
+    const Row goes = where_above(zero, h.gap, way, other);
     const Row reaches = where_above(s.e - h.gap, surface, held, zero);
     const Row off = where_above(pushes, zero, where_above(reaches, zero, zero, one), zero);
-    return {where_above(pushes, zero, where_above(reaches, zero, goes, away), comes), off,
-            where_above(off, zero, away, h.gap)};
+    const Row gap = where_above(pushes, zero, where_above(reaches, zero, goes, away), comes);
+    return {gap, off, where_above(off, zero, away, where_above(far, gap, h.gap, far))};
 }
 
 // Which nodes are the dent's? One for those that it has, two for those that it lets go, else zero. Of several dents the
@@ -147,9 +156,9 @@ BIRM3D_IN_LANE_LOOP Row find_own(const DentNumbers& d, const PanelNodes& nodes, 
     const Row own = one + asked.lets_go;
     const Row drawn_in = where_above(zero, so_far - against * gap, zero, own);
     const Row nearer = where_above(zero, against, drawn_in, own);
-    const Row pushes = Row::load(nodes.force + i), far = infinitely_far, at_surface = touching;
-    const Row by_surface = where_above(so_far, at_surface, far, so_far);
-    const Row by_dent = where_above(Row::load(seen.per_force + i), zero, Row::load(seen.rank + i), by_surface);
+    const Row pushes = Row::load(nodes.force + i), by_surface = held_by_other(d, seen, i);
+    const Row by_dent =
+        where_above(Row::load(seen.per_force + i), zero, Row::load(seen.rank + i), by_surface);
     const Row last = where_above(pushes, zero, by_dent, so_far);
     const Row now = where_above(pushes, zero, asked.rank, gap);
     return where_on(nodes, where_above(last, now, nearer, zero), zero, i);

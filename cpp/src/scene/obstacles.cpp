@@ -76,6 +76,21 @@ double fastest_segment(const Scene& scene, const State& state) {
     return fastest;
 }
 
+namespace {
+
+// Panels of the unit that the obstacle dents, bit by bit. Their nodes go in with it as its dent asks: skin that it has
+// pushed aside stands within its outline (kernels/dent.hpp).
+std::uint8_t panels_dented(const UnitState& unit, std::size_t obstacle) {
+    const auto known = std::find_if(unit.dented.begin(), unit.dented.end(),
+                                    [=](const Dented& dented) { return dented.obstacle == obstacle; });
+    return known != unit.dented.end() ? known->panels : std::uint8_t{0};
+}
+
+// A place where nothing is (m).
+constexpr double nowhere = 1e9;
+
+}  // namespace
+
 double nearest_gap(const Scene& scene, const State& state, const Nearness& what) {
     double least = infinity;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
@@ -91,11 +106,16 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
                 Box box;
                 const Lanes *x, *y, *z;
             };
+            const std::uint8_t dented = panels_dented(unit, i);
+            alignas(64) Lanes none;
+            none.fill(nowhere);
             if (what.nodes)
                 least = nearest_in_blocks(
                     shape, seen, i == scene.ground ? mesh.shell_blocks : mesh.blocks,
                     [&](std::size_t b) {
                         const TrussBlockState& block = unit.trusses.block[b];
+                        if ((mesh.panels_of[b] & dented) != 0)
+                            return Points{{Vec3::Constant(nowhere), Vec3::Zero()}, &none, &none, &none};
                         return Points{block.box, &block.x, &block.y, &block.z};
                     },
                     least);

@@ -32,7 +32,7 @@ struct DentedPanel {
     std::size_t near;
     std::size_t panel;
     Dent dent, then;  // now, and an instant before
-    double way;  // how far it can have come in within the step, and nodes off it (m)
+    double way;       // how far it can have come in within the step, and nodes off it (m)
 };
 
 // One of the dents that the block at hand may reach; no node is nearer to it than this (m).

@@ -9,11 +9,9 @@ struct DentNumbers {
     double ex, ey, ez, wx, wy, wz, lx, ly, lz;  // unit, square to each other
     double ox, oy, oz;                          // the foot
     double low, high;                           // of the panel, across from the axis
-    double low_at, high_at;                     // along from the foot, of the middles of these edges
     double top;                                 // along, of the highest place of the rim
     double top_rate;                            // of that for each unit of change of the axis's part along e
     double tilt;                                // e of the axis for each unit of l
-    double height;  // of the post
     double radius, stretch;  // the post's, and that of its section with a plane of e and w over it
     double surface;          // into, of the outermost node of the panel
     double per_reach, per_stretch;
