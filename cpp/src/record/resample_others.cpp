@@ -86,14 +86,18 @@ void Recorder::resample_obstacles(const Scene& scene, const OutputInstants& outp
                 for (std::size_t n = 0; n < span.size(); ++n)
                     now[i][n] += before_step[i];
             }
+            const std::size_t n = span.size(), skipped = span.first == 0 ? 1 : 0;
             for (std::size_t i = 0; i < 6; ++i) {
-                std::vector<Vec3>& to = i < 3 ? of.force : of.moment;
-                for (std::size_t k = span.first; k < span.end; ++k) {
-                    const double sum = now[i][k - span.first];
-                    if (k > 0)
-                        to[k][static_cast<Eigen::Index>(i % 3)] = (sum - previous[i]) / output.interval[k];
-                    previous[i] = sum;
-                }
+                const SpanColumn& sum = now[i];
+                const double* interval = output.interval.data() + span.first;
+                SpanColumn mean;
+                mean[0] = (sum[0] - previous[i]) / interval[0];
+                for (std::size_t k = 1; k < n; ++k)
+                    mean[k] = (sum[k] - sum[k - 1]) / interval[k];
+                Vec3* to = (i < 3 ? of.force : of.moment).data() + span.first;
+                for (std::size_t k = skipped; k < n; ++k)
+                    to[k][static_cast<Eigen::Index>(i % 3)] = mean[k];
+                previous[i] = sum[n - 1];
             }
         }
         for (std::size_t k = 0; k < count; ++k)

@@ -34,7 +34,7 @@ class _Kind:
     rows: list[int] = field(default_factory=list)
     worst: float = 0.0
     worst_row: int = -1
-    text: str = ""  # of the worst
+    text: Callable[[], str] | str = ""  # of the worst
 
 
 class Complaints:
@@ -46,10 +46,18 @@ class Complaints:
     def add(self, row: int, complaints: Iterable[Complaint]) -> None:
         """Take the complaints of one run."""
         for category, quantity, value, text in complaints:
-            kind = self._kinds.setdefault((category, quantity), _Kind())
+            kind = self._kinds.get((category, quantity))
+            if kind is None:
+                kind = self._kinds[category, quantity] = _Kind()
             kind.rows.append(row)
             if kind.worst_row < 0 or value > kind.worst:
-                kind.worst, kind.worst_row, kind.text = value, row, text()
+                kind.worst, kind.worst_row, kind.text = value, row, text
+
+    def told(self) -> Complaints:
+        """Return the same with the texts made of what they are made of, which is not kept."""
+        for kind in self._kinds.values():
+            kind.text = _told(kind.text)
+        return self
 
     def merge(self, others: Complaints) -> None:
         """Take those of other runs."""
@@ -67,12 +75,16 @@ class Complaints:
             rows = (
                 "" if count == 1 else f", the worst of {count:,} in {runs:,} runs: rows {_ranges(kind.rows)}"
             )
-            yield category, f"{kind.text} (row {kind.worst_row}{rows})"
+            yield category, f"{_told(kind.text)} (row {kind.worst_row}{rows})"
 
     def warn(self, runs: int) -> None:
         """Warn once of each quantity, at the line that called this package; of so many runs."""
         for category, text in self.summaries(runs):
             warnings.warn(text, category, stacklevel=caller_level())
+
+
+def _told(text: Callable[[], str] | str) -> str:
+    return text if isinstance(text, str) else text()
 
 
 def _ranges(rows: list[int]) -> str:

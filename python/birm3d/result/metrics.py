@@ -246,6 +246,7 @@ class _Run:
         self.outcome = outcome
         self.extremes = outcome.extremes
         self.event = outcome.event
+        self.statistics = outcome.statistics
         self.barrier = scene.barrier
 
     def __getattr__(self, group: str) -> Any:
@@ -261,19 +262,15 @@ class _Run:
     def segments(self) -> bool:
         return self.barrier is not None and bool(self.barrier.core.segments)
 
-    @cached_property
-    def statistics(self) -> _core.StepStatistics | Stored:
-        return self.outcome.statistics
-
     @property
     def along(self) -> bool:
         return abs(math.sin(math.radians(self.scene.impact_angle))) < ALONG_LINE
 
-    @cached_property
+    @property
     def dynamic_crush(self) -> float:
         return self.outcome.peak_deflection
 
-    @cached_property
+    @property
     def turn_time(self) -> float | None:
         """When the motion towards the barrier ends [s], if it began and anything was crushed."""
         began = self.dynamic_crush > 0.0 and self.motion.approach_speed > 0.0

@@ -235,7 +235,7 @@ def _run_chunk(
             finished.append((run, _outcome(run, scene, done, complaints, metrics)))
         if len(ended) < len(batch):
             break
-    return Done(finished, complaints, time.perf_counter() - start)
+    return Done(finished, complaints.told(), time.perf_counter() - start)
 
 
 def _outcome(

@@ -220,6 +220,8 @@ def checked_metrics(metrics: Sequence[str] | None, joined: bool, free: bool) -> 
 
 def _plain(value: Any) -> Any:
     """Numbers as float, so that 20 and 20.0 and numpy's are the same run."""
+    if type(value) is float:
+        return value
     return float(value) if is_number(value) else value
 
 
