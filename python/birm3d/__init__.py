@@ -17,7 +17,7 @@ from .result import Result, metrics
 from .result.element_loads import ElementLoad
 from .result.energy_balance import LedgerWarning
 from .result.overlap import OverlapWarning
-from .result.result import load
+from .result.result import load, write_capsule
 from .scene.mesh_check import CoarseSkinWarning
 from .scene.settings import Settings
 from .signals import filters, reference
@@ -29,6 +29,7 @@ from .signals.readers import read_csv_channels, read_iso_mme, read_nhtsa
 from .simulation import Scene, Simulation
 from .simulation import parameters as scene_parameters
 from .simulation import presets as scenes
+from .simulation.rerun import Rerun, rerun
 from .study import Study
 from .study.ensemble import ensemble
 from .study.fragility import fragility
@@ -56,6 +57,7 @@ __all__ = [
     "OverlapWarning",
     "Rating",
     "RatingStudy",
+    "Rerun",
     "Result",
     "Scene",
     "Settings",
@@ -86,6 +88,7 @@ __all__ = [
     "read_iso_mme",
     "read_nhtsa",
     "reference",
+    "rerun",
     "scene_parameters",
     "scenes",
     "sobol",
@@ -94,6 +97,7 @@ __all__ = [
     "test_data",
     "test_matrix",
     "units",
+    "write_capsule",
 ]
 
 

@@ -100,7 +100,8 @@ def damaged_member(content: bytes, applied: list[Change]) -> bytes:
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         members = {member.filename: archive.read(member) for member in archive.infolist()}
     # The header holds most of what a reader has to understand.
-    names = [*members, *(["header.npy"] * len(members))]
+    head = next(name for name in ("header.npy", "manifest.json") if name in members)
+    names = [*members, *([head] * len(members))]
     name = names[int(applied[0].place * len(names))]
     members[name] = (
         _resized(damaged(members[name], applied)) if name == "header.npy" else damaged(members[name], applied)

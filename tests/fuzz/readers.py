@@ -112,6 +112,11 @@ def save(write: Callable[[Path], None]) -> bytes:
 
 
 @cache
+def capsule_file() -> dict[str, bytes]:
+    return {"run.birm3d": save(result().capsule)}
+
+
+@cache
 def study_file() -> dict[str, bytes]:
     study = birm3d.sweep(
         birm3d.scenes.w2(6), impact_speed=[4.0, 5.0], impact_angle=[80.0, 90.0], progress=False,
@@ -305,6 +310,8 @@ STORE_ERRORS = (birm3d.FileFormatError, ValueError)
 READERS = [
     Reader("result", result_file, read_result, checked=True),
     Reader("result, repacked", result_file, read_result, damaged=damaged_member, checked=True),
+    Reader("capsule", capsule_file, read_result, checked=True),
+    Reader("capsule, repacked", capsule_file, read_result, damaged=damaged_member, checked=True),
     Reader("study table", study_file, read_study, checked=True),
     Reader("calibration", calibration_file, read_calibration, checked=True),
     Reader("store of runs", store_file, read_store, STORE_ERRORS, checked=True, same=part_of),

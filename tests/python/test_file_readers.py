@@ -25,9 +25,10 @@ from birm3d.study.store import RunStore
 
 FUZZ = Path(__file__).resolve().parents[1] / "fuzz"
 NAMES = [
-    "result", "result, repacked", "study table", "calibration", "store of runs", "store of runs, by SQL",
-    "scene", "fit", "vehicle", "vehicle that extends", "vehicle of two units", "CSV channels", "NHTSA header",
-    "NHTSA curve", "ISO MME header", "ISO MME index", "ISO MME channel",
+    "result", "result, repacked", "capsule", "capsule, repacked", "study table", "calibration",
+    "store of runs", "store of runs, by SQL", "scene", "fit", "vehicle", "vehicle that extends",
+    "vehicle of two units", "CSV channels", "NHTSA header", "NHTSA curve", "ISO MME header", "ISO MME index",
+    "ISO MME channel",
 ]  # fmt: skip
 
 

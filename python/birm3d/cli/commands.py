@@ -15,8 +15,9 @@ from .. import units
 from ..io.atomic_write import whole_file
 from ..result.summary import ELEMENT_COLUMNS, element_rows, elements_in_si, outcome_rows
 from .calibrate import calibrate_file
-from .files import HTML, MOVIE, PICTURE, RESULT, TABLE
+from .files import CAPSULE, HTML, MOVIE, PICTURE, RESULT, TABLE
 from .rate import STANDARD_HELP, assessed, assessments_as_json, print_assessments, rate
+from .rerun import rerun
 from .scene import scene_options, simulation_of
 from .sweep import sweep
 from .table import print_table
@@ -35,6 +36,7 @@ def _cli() -> None:
 
 _cli.add_command(calibrate_file)
 _cli.add_command(rate)
+_cli.add_command(rerun)
 
 
 @_cli.command()
@@ -46,6 +48,7 @@ _cli.add_command(rate)
 @click.option("--plot", type=PICTURE, help="Write figures to this file (.png, .pdf, .svg).")
 @click.option("--csv", "csv_path", type=TABLE, help="Write histories to this file (.csv).")
 @click.option("--save", type=RESULT, help="Write the result to this file (.npz); birm3d.load() reads it.")
+@click.option("--capsule", type=CAPSULE, help="Write a capsule (.birm3d) that `birm3d rerun` runs again.")
 @click.option("--html", type=HTML, help="Write an interactive page that needs no network to this file.")
 @click.option("--movie", type=MOVIE, help="Write a movie to this file (.mp4, .gif, ...).")
 def run(
@@ -57,6 +60,7 @@ def run(
     plot: Path | None,
     csv_path: Path | None,
     save: Path | None,
+    capsule: Path | None,
     html: Path | None,
     movie: Path | None,
     **options: Any,
@@ -84,6 +88,9 @@ def run(
     if save is not None:
         result.save(save)
         click.echo(f"result: {save}", err=True)
+    if capsule is not None:
+        result.capsule(capsule)
+        click.echo(f"capsule: {capsule}", err=True)
     if html is not None:
         result.write_html(html)
         click.echo(f"page: {html}", err=True)

@@ -9,7 +9,19 @@ from typing import Any
 
 import click
 
-__all__ = ["CSV", "HTML", "JSON", "MOVIE", "PICTURE", "RESULT", "STORE", "TABLE", "VEHICLE", "OutputFile"]
+__all__ = [
+    "CAPSULE",
+    "CSV",
+    "HTML",
+    "JSON",
+    "MOVIE",
+    "PICTURE",
+    "RESULT",
+    "STORE",
+    "TABLE",
+    "VEHICLE",
+    "OutputFile",
+]
 
 
 class OutputFile(click.ParamType):  # type: ignore[type-arg,unused-ignore]
@@ -76,6 +88,7 @@ PICTURE = OutputFile(".png", ".pdf", ".svg", ".jpg", ".jpeg", ".webp", ".tif", "
 TABLE = OutputFile(".csv", ".csv.gz", ".csv.xz", ".csv.zip", ".txt", pandas="table")
 CSV = OutputFile(".csv", ".txt")
 RESULT = OutputFile(".npz")
+CAPSULE = OutputFile(".birm3d")
 HTML = OutputFile(".html", ".htm", plotly="html")
 JSON = OutputFile(".json")
 VEHICLE = OutputFile(".toml")

@@ -42,7 +42,7 @@ def rate(
     as_json: bool,
     **options: Any,
 ) -> None:
-    """Rate one crash by standards: a SCENE file, a result (.npz), or the options --vehicle and --speed.
+    """Rate one crash by standards: a SCENE file, a result (.npz, .birm3d), or --vehicle and --speed.
 
     Always indicative: a rating needs a test.
     """
@@ -55,7 +55,7 @@ def rate(
 
 
 def _result(scene: Path | None, options: dict[str, Any]) -> Result:
-    if scene is None or scene.suffix.lower() != ".npz":
+    if scene is None or scene.suffix.lower() not in (".npz", ".birm3d"):
         return simulation_of(scene, options).run(progress=True)
     from ..result.result import load
 

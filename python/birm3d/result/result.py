@@ -15,6 +15,7 @@ from ..base.arguments import checked
 from ..io.file_format import reads
 from ..scene.scene import Scene
 from ..units import Quantity
+from . import capsule as capsules
 from . import result_file
 from . import table as result_table
 from .analysis import RunAnalysis
@@ -23,7 +24,7 @@ from .report import report
 from .sensor import Sensor, place_sensor
 from .unit_result import UnitResult
 
-__all__ = ["Result", "load"]
+__all__ = ["Result", "load", "write_capsule"]
 
 
 @checked
@@ -152,6 +153,20 @@ class Result(RunAnalysis):
         """
         result_file.save(self, self._text_of_file(), path)
 
+    def capsule(self, path: str | Path) -> None:
+        """Write one file that runs again to the same bits: scene, vehicle, settings, versions, state hash.
+
+        ``birm3d rerun FILE`` and :func:`birm3d.rerun` run it again and compare; :func:`load` reads it too.
+        The format is that of :mod:`birm3d.result.capsule`; the usual ending is ``.birm3d``.
+
+        Raises
+        ------
+        ValueError
+            If the scene does not run again to the same bits, as that of a result of another version may not,
+            or the path is a folder or lies in none.
+        """
+        capsules.write(self, self._text_of_file(), path)
+
     def __reduce__(self) -> tuple[Any, ...]:
         stream = io.BytesIO()
         result_file.write(self, self._text_of_file(), stream)
@@ -170,9 +185,9 @@ class Result(RunAnalysis):
         return f"Result({self.outcome}, {rows} rows to {self.time[-1]:g} s, {self.end_reason}, {steps} steps)"
 
 
-@reads("must be a file of Result.save(), npz")
+@reads("must be a file of Result.save(), npz, or a capsule")
 def load(path: str | Path) -> Result:
-    """Read a result that :meth:`Result.save` wrote; its scene can be run again.
+    """Read a result that :meth:`Result.save` or :meth:`Result.capsule` wrote; its scene can be run again.
 
     Raises
     ------
@@ -182,7 +197,16 @@ def load(path: str | Path) -> Result:
     """
     path = Path(path)
     with path.open("rb") as stream:
+        if capsules.is_capsule(stream):
+            capsule = capsules.read(stream, path)
+            return _of_file(capsule.parts, capsule.report)
         return _of_file(*result_file.read(stream, path))
+
+
+@checked
+def write_capsule(result: Result, path: str | Path) -> None:
+    """Write the capsule of a result; see :meth:`Result.capsule`."""
+    result.capsule(path)
 
 
 def _from_bytes(content: bytes) -> Result:
