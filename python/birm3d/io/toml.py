@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NoReturn, TypeAlias, TypeVar
@@ -33,6 +33,30 @@ class Strict(BaseModel):
     """A block of a file: immutable, no unknown keys, no NaN, no conversion from text."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    def changed(self: Block, changes: Mapping[str, Any]) -> Block:
+        """Return the block with some fields changed, unchecked; cached properties are not copied along."""
+        copy = self.model_copy(update=changes)
+        for name in copy.__dict__.keys() - type(copy).model_fields.keys():
+            del copy.__dict__[name]
+        return copy
+
+
+Block = TypeVar("Block", bound=Strict)
+
+
+def plain(block: Strict) -> dict[str, Any]:
+    """Return a block as TOML's own kinds, without what has its default."""
+    content: dict[str, Any] = block.model_dump(by_alias=True, exclude_none=True, exclude_defaults=True)
+    return {key: _listed(value) for key, value in content.items()}
+
+
+def _listed(value: Any) -> Any:
+    if isinstance(value, (list, tuple)):
+        return [_listed(item) for item in value]
+    if isinstance(value, dict):
+        return {key: _listed(item) for key, item in value.items()}
+    return value
 
 
 def reject(key: str, message: str) -> NoReturn:

@@ -16,6 +16,7 @@ from .. import _core
 from ..base.arguments import checked
 from ..unit_check import given
 from ..units import Quantity, si
+from .scaling import factors_of, sizes_given
 from .vehicle import Vehicle
 from .zone import Zone, positive
 
@@ -191,10 +192,41 @@ class ArticulatedVehicle(Vehicle):
         """Return the vehicle with another payload [kg]: :meth:`Vehicle.with_payload` of the trailing unit."""
         return self._with_trailing(lambda unit: unit.with_payload(payload, density=density, height=height))
 
-    def scaled_to(self, mass: Quantity) -> ArticulatedVehicle:
-        """Return a similar vehicle of another mass [kg]: :meth:`Vehicle.scaled_to` of both units."""
+    def scaled_to(
+        self,
+        mass: Quantity,
+        *,
+        length: Quantity | None = None,
+        width: Quantity | None = None,
+        height: Quantity | None = None,
+        wheelbase: Quantity | None = None,
+        mass_center_height: Quantity | None = None,
+    ) -> ArticulatedVehicle:
+        """Return a similar vehicle of another mass and size: :meth:`Vehicle.scaled_to` of both units.
+
+        Masses of both go in proportion, and so do all places along it, across and upwards, those of the
+        joint too; so `wheelbase` must be ``None``.
+        """
         factor = self._mass_given("mass", mass) / self.mass
-        return self._with([unit.scaled_to(factor * unit.mass) for unit in self._units])
+        if wheelbase is not None:
+            raise ValueError(
+                f"wheelbase must be None for {self.name!r}: it goes with the length of its two units; "
+                f"got {wheelbase}"
+            )
+        wanted = sizes_given(length=length, width=width, height=height)
+        ratio = factors_of(wanted, self._sizes, self.name)
+        units = []
+        for unit in self._units:
+            new = {name: r * getattr(unit, name) for name, r in ratio.items()}
+            units.append(unit.scaled_to(factor * unit.mass, **new))
+        times = [ratio.get(name, 1.0) for name in ("length", "width", "height")]
+        joint = dataclasses.replace(
+            self.joint,
+            place_on_leading=_product(times, self.joint.place_on_leading),
+            place_on_trailing=_product(times, self.joint.place_on_trailing),
+        )
+        scaled = articulate(units, joint, self.name)
+        return scaled if mass_center_height is None else scaled.with_mass_center_height(mass_center_height)
 
     def with_rate_sensitivity(self, rate_sensitivity: Quantity) -> ArticulatedVehicle:
         """Return the vehicle with :meth:`Vehicle.with_rate_sensitivity` of both units."""
@@ -295,6 +327,11 @@ class ArticulatedVehicle(Vehicle):
     def __repr__(self) -> str:
         leading, trailing = self._units
         return f"ArticulatedVehicle({self.name!r}, {leading!r}, {trailing!r}, {self.joint.kind})"
+
+
+def _product(factors: Sequence[float], place: Place) -> Place:
+    x, y, z = (factor * coordinate for factor, coordinate in zip(factors, place, strict=True))
+    return (x, y, z)
 
 
 def combine(units: Sequence[Vehicle], file: CombinationFile) -> ArticulatedVehicle:

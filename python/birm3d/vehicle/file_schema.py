@@ -13,6 +13,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import AfterValidator, Field, model_validator
 
 from ..io.toml import Strict, reject
+from .scaling import SIZES, Extent, Factors, PlaceMap, Scaling, factors_of, scaling_between
 from .zone_law import NonNegative, Positive, ZoneLaw
 
 __all__ = [
@@ -26,8 +27,11 @@ __all__ = [
     "Kind",
     "Name",
     "NamedPoint",
+    "Panel",
     "Point",
     "Positive",
+    "Range",
+    "Scaled",
     "Solid",
     "Source",
     "Target",
@@ -327,6 +331,50 @@ class Exterior(Block):
             reject("element_size_m", f"must be {limit}, got {self.element_size_m} on a box of {box}")
 
 
+class Scaled(Block):
+    """What the vehicle that the file extends is scaled to before the file's own blocks take the place of its.
+
+    The numbers are those of :meth:`birm3d.Vehicle.scaled_to`. In place of length_m and wheelbase_m, x_m may
+    have rows [place of the vehicle extended, place here], and so may z_m in place of height_m: places between
+    go in proportion. Zones hold at mass_kg. without: names of solids, wheels, points, core boxes and zones of
+    the vehicle extended that have no place here. Solids, wheels, points and core boxes of the file take the
+    place of those of the same name, others are added.
+    """
+
+    mass_kg: Positive
+    length_m: Positive | None = None
+    width_m: Positive | None = None
+    height_m: Positive | None = None
+    wheelbase_m: Positive | None = None
+    x_m: Annotated[tuple[Range, ...], Field(min_length=2)] | None = None
+    z_m: Annotated[tuple[Range, ...], Field(min_length=2)] | None = None
+    without: tuple[Name, ...] = ()
+
+    @model_validator(mode="after")
+    def _check(self) -> Scaled:
+        for key, others in (("x_m", ("length_m", "wheelbase_m")), ("z_m", ("height_m",))):
+            rows = getattr(self, key)
+            if rows is None:
+                continue
+            for other in others:
+                if getattr(self, other) is not None:
+                    reject(other, f"must not be given together with {key}, got {getattr(self, other)}")
+            for column in (0, 1):
+                _check_order(key, [row[column] for row in rows], "places must increase")
+        return self
+
+    def scaling_of(self, extent: Extent, name: str) -> Scaling:
+        """Return where places of the vehicle extended go."""
+        wanted = {size: getattr(self, f"{size}_m") for size in SIZES}
+        scaling = scaling_between(extent, factors_of(wanted, extent.sizes, name))
+        x = scaling.x if self.x_m is None else _map(self.x_m)
+        return Scaling(x, scaling.y, scaling.z if self.z_m is None else _map(self.z_m))
+
+
+def _map(rows: tuple[Range, ...]) -> PlaceMap:
+    return PlaceMap(tuple(row[0] for row in rows), tuple(row[1] for row in rows))
+
+
 class NamedPoint(Block):
     """A point of the rigid body that sensors and standards ask for by name; m, file axes.
 
@@ -441,13 +489,13 @@ class Zone(Block, ZoneLaw):
             message = f"must be at least the stress at the knee, {at_knee:g}, got {self.f_max_Pa:g}"
             reject("f_max_Pa", message)
 
-    def scaled(self, factor: float) -> Zone:
-        """Return the zone with all stresses and slopes times a factor."""
-        changes = ZoneLaw.numbers_of(self.law.scaled(factor))
+    def scaled(self, factor: float, stretch: float = 1.0, along: Factors | None = None) -> Zone:
+        """Return the zone with stresses and deflections times two factors; `along` its panels: the same."""
+        changes = ZoneLaw.numbers_of(self.law.scaled(factor, stretch))
         if self.along is not None:
-            update = ZoneLaw.numbers_of(self.along.law.scaled(factor))
-            changes["along"] = self.along.model_copy(update=update)
-        return self.model_copy(update=changes)
+            law = self.along.law.scaled(*(along if along is not None else (factor, stretch)))
+            changes["along"] = self.along.changed(ZoneLaw.numbers_of(law))
+        return self.changed(changes)
 
     @property
     def along_name(self) -> str:

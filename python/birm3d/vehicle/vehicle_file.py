@@ -11,14 +11,15 @@ silently: unknown keys, NaN and text where a number belongs are errors.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from importlib import resources
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field, field_validator, model_validator
 
 from ..io.file_format import reading
-from ..io.toml import Document, DocumentError, KeyPath, Strict, frozen, received, reject
+from ..io.toml import Document, DocumentError, KeyPath, Strict, frozen, plain, received, reject
 from .file_schema import (
     Block,
     CoreBox,
@@ -29,7 +30,9 @@ from .file_schema import (
     Kind,
     Name,
     NamedPoint,
+    Panel,
     Positive,
+    Scaled,
     Solid,
     Source,
     Target,
@@ -40,6 +43,8 @@ from .file_schema import (
     check_known,
     check_unique,
 )
+from .resize import Resize, extent_of
+from .scaling import Extent, Factors, Scaling, panel_factors
 from .vehicle_changes import Changes
 from .zone import Zone as LawOfZone
 
@@ -66,6 +71,9 @@ __all__ = [
 
 # The solids must add up to the stated vehicle weight within this share; the rest is a typing error.
 _MASS = 0.01
+_SAME_SIZE = Scaling()
+# Blocks that a file with a block [scaled] replaces one by one.
+_NAMED = ("solid", "wheel", "point", "core")
 
 
 class VehicleFileError(DocumentError):
@@ -167,16 +175,44 @@ class VehicleFile(Strict):
         """Mass of the vehicle that the zones' stiffness holds for [kg]."""
         return self.gvw_kg if self.zones_at_kg is None else self.zones_at_kg
 
-    def scaled_to(self, mass: float) -> VehicleFile:
-        """Return the file of a vehicle of another mass [kg]: solids and zones heavier in proportion."""
-        weight, strength = mass / self.gvw_kg, mass / self.zones_mass
-        solids = tuple(
-            solid.model_copy(update={"mass_kg": weight * solid.mass, "density_kg_per_m3": None})
-            for solid in self.solids
-        )
-        zones = tuple(zone.scaled(strength) for zone in self.zones)
-        changes = {"gvw_kg": mass, "zones_at_kg": mass, "solids": solids, "zones": zones, "targets": ()}
-        return self.model_copy(update=changes)
+    @cached_property
+    def extent(self) -> Extent:
+        """Where skin, wheels and core end."""
+        return extent_of(self.exterior, self.wheels, self.core)
+
+    def law_factors(self, mass: float, scaling: Scaling) -> dict[str, Factors]:
+        """Return by which factors the laws go when the vehicle is scaled to a mass [kg], by their names."""
+        strength = mass / self.zones_mass
+        panels = {name: panel_factors(scaling, self.extent, name) for name in (*get_args(Panel), "along")}
+        factors = {}
+        for zone in self.zones:
+            factors[zone.name] = Factors.mean(panels[name] for name in zone.panels)
+            factors[zone.along_name] = panels["along"]
+        return {name: one._replace(stress=strength * one.stress) for name, one in factors.items()}
+
+    def scaled_to(self, mass: float, scaling: Scaling = _SAME_SIZE) -> VehicleFile:
+        """Return the file of a vehicle of another mass [kg] and size (:mod:`birm3d.vehicle.scaling`).
+
+        Masses of the solids go in proportion; targets are left out, as they are not met any more.
+        """
+        to = Resize(scaling, self.extent, mass / self.gvw_kg)
+        factors = self.law_factors(mass, scaling)
+        changes: dict[str, Any] = {
+            "gvw_kg": mass,
+            "zones_at_kg": mass,
+            "targets": (),
+            "solids": tuple(to.solid(solid) for solid in self.solids),
+            "wheels": tuple(to.wheel(wheel) for wheel in self.wheels),
+            "points": tuple(to.point(point) for point in self.points),
+            "core": tuple(to.core(box) for box in self.core),
+            "zones": tuple(
+                to.zone(zone, factors[zone.name], factors[zone.along_name]) for zone in self.zones
+            ),
+            "dimensions": to.dimensions(self.dimensions),
+            "exterior": to.exterior(self.exterior),
+            "dents": to.dents(self.dents),
+        }
+        return self.changed(changes)
 
     @property
     def laws(self) -> dict[str, LawOfZone]:
@@ -239,6 +275,8 @@ class _VehicleDocument(ZonesInOrder):
             raise self.fault(("extends",), reason)
         target = preset_path(name) if name in preset_names() else self.path.parent / name
         base = _VehicleDocument(target, (*parents, self.path.resolve()))
+        if "scaled" in self.data:
+            self._scale(base)
         own = self.data
         merged = {**base.data, **own}
         shift = 0
@@ -261,6 +299,46 @@ class _VehicleDocument(ZonesInOrder):
                 self._places[key] = where
         self.data = merged
 
+    def _scale(self, base: _VehicleDocument) -> None:
+        """Scale the vehicle that the file extends, as the block "scaled" says."""
+        scaled = self.validate(Scaled, frozen(self.data.pop("scaled")), ("scaled",))
+        file = base.validate(VehicleFile, base.zones_in_order())
+        if file.changes is not None:
+            raise self.fault(("scaled",), "scaled: must extend a vehicle without a block [changes]")
+        try:
+            scaling = scaled.scaling_of(file.extent, file.name)
+        except ValueError as error:
+            raise self.fault(("scaled",), f"scaled: {error}") from error
+        data = plain(file.scaled_to(scaled.mass_kg, scaling))
+        names = {block["name"] for key in (*_NAMED, "zone") for block in data.get(key, ())}
+        with self.placed(("scaled", "without")):
+            check_known("scaled.without", scaled.without, names)
+        data["zone"] = {
+            name: zone for zone in data["zone"] if (name := zone.pop("name")) not in scaled.without
+        }
+        for key in _NAMED:
+            data[key] = [block for block in data.get(key, ()) if block["name"] not in scaled.without]
+            if isinstance(self.data.get(key), list):
+                self._merge(key, data[key])
+        origin = {"source": list(scaled.source), "status": scaled.status}
+        data["dimensions"] = {**data["dimensions"], **origin}
+        base.data = data
+
+    def _merge(self, key: str, base: list[dict[str, Any]]) -> None:
+        """Put the file's own named blocks in the place of those of the same name, or behind them all."""
+        merged, names = list(base), [block["name"] for block in base]
+        written = {at: where for at, where in self._places.items() if at[:1] == (key,) and len(at) > 1}
+        for at in written:
+            del self._places[at]
+        for i, block in enumerate(self.data[key]):
+            name = block.get("name") if isinstance(block, dict) else None
+            place = names.index(name) if name in names else len(merged)
+            merged[place : place + 1] = [block]
+            for at, where in written.items():
+                if at[1] == i:
+                    self._places[(key, place, *at[2:])] = where
+        self.data[key] = merged
+
 
 def read_vehicle_file(path: str | Path) -> VehicleFile:
     """Read and check a vehicle file.
@@ -270,6 +348,7 @@ def read_vehicle_file(path: str | Path) -> VehicleFile:
     path
         TOML file. With ``extends = "pickup"`` (a preset, or a file beside it) it states only what differs:
         whole top-level keys are replaced, zones one by one, sources are added; new zones are matched first.
+        With a block ``[scaled]`` the vehicle extended is scaled before that.
 
     Raises
     ------

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
 from ..io.atomic_write import whole_file
+from ..io.toml import plain
 from .vehicle_changes import changes_of
 
 if TYPE_CHECKING:
@@ -65,9 +66,9 @@ def check_savable(vehicle: Vehicle) -> None:
 def _of_one_unit(vehicle: Vehicle) -> dict[str, Any]:
     file = vehicle._file
     assert file is not None  # see check_savable
-    content = _plain(file)
+    content = plain(file)
     content["zone"] = {zone.pop("name"): zone for zone in content["zone"]}
-    changes = _plain(changes_of(vehicle, file))
+    changes = plain(changes_of(vehicle, file))
     return {**content, "changes": changes} if changes else content
 
 
@@ -98,20 +99,6 @@ def _of_two_units(vehicle: Vehicle) -> dict[str, Any]:
         },
         "unit": units,
     }
-
-
-def _plain(block: Any) -> dict[str, Any]:
-    """Return a block as TOML's own kinds, without what has its default."""
-    content: dict[str, Any] = block.model_dump(by_alias=True, exclude_none=True, exclude_defaults=True)
-    return {key: _listed(value) for key, value in content.items()}
-
-
-def _listed(value: Any) -> Any:
-    if isinstance(value, (list, tuple)):
-        return [_listed(item) for item in value]
-    if isinstance(value, dict):
-        return {key: _listed(item) for key, item in value.items()}
-    return value
 
 
 def _differences(vehicle: Vehicle, other: Vehicle) -> list[str]:

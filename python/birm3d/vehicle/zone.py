@@ -116,14 +116,21 @@ class Zone(Mapping[str, Any]):
                 raise ValueError(f"{name} must be given where there is no envelope, got None")
         return _core.knee_curve(**numbers, k_unloading=self.k_unloading, **self._optional)
 
-    def scaled(self, factor: float) -> Zone:
-        """Return the zone with all its stresses and slopes times a factor > 0; deflections stay."""
-        factor = positive("scale", factor)
-        stresses = ("k_initial", "k_hardening", "f_max", "k_unloading", "tail_slope")
-        given = {name: getattr(self, name) for name in stresses}
-        changes: dict[str, Any] = {name: factor * value for name, value in given.items() if value is not None}
+    def scaled(self, factor: float, stretch: float = 1.0) -> Zone:
+        """Return the zone with its stresses times a factor > 0 and its deflections times a stretch > 0.
+
+        Slopes go with the factor over the stretch.
+        """
+        factor, stretch = positive("scale", factor), positive("stretch", stretch)
+        slopes = ("k_initial", "k_hardening", "k_unloading", "tail_slope")
+        times = {**dict.fromkeys(slopes, factor / stretch), "f_max": factor}
+        times |= dict.fromkeys(("knee", "elastic_recovery", "tail_depth"), stretch)
+        given = {name: getattr(self, name) for name in times}
+        changes: dict[str, Any] = {
+            name: times[name] * value for name, value in given.items() if value is not None
+        }
         if self.envelope is not None:
-            changes["envelope"] = tuple((d, factor * stress) for d, stress in self.envelope)
+            changes["envelope"] = tuple((stretch * d, factor * stress) for d, stress in self.envelope)
         return dataclasses.replace(self, **changes)
 
     def __getstate__(self) -> dict[str, object]:
