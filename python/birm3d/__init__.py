@@ -9,7 +9,17 @@ from __future__ import annotations
 from . import _moved, calibration, study, units
 from ._core import BusyError, UnstableError
 from ._version import __version__
-from .assessment import OccupantRisk, Rating, RatingStudy, occupant_risk, rate, test_matrix
+from .assessment import (
+    DesignLoad,
+    DesignLoadInterrupted,
+    OccupantRisk,
+    Rating,
+    RatingStudy,
+    design_load,
+    occupant_risk,
+    rate,
+    test_matrix,
+)
 from .barrier import Barrier, FreeStanding, lateral_load
 from .calibration import calibrate
 from .io.file_format import FileFormatError
@@ -48,6 +58,8 @@ __all__ = [
     "Channel",
     "CoarseSkinWarning",
     "CurveComparison",
+    "DesignLoad",
+    "DesignLoadInterrupted",
     "ElementLoad",
     "FileFormatError",
     "FreeStanding",
@@ -75,6 +87,7 @@ __all__ = [
     "check_channel",
     "compare_curves",
     "critical_impact_point",
+    "design_load",
     "ensemble",
     "filters",
     "fragility",

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from matplotlib.figure import Figure
 
+    from .assessment.design_table import DesignLoad
     from .calibration.result import CalibrationResult
     from .result.result import Result
     from .signals.compare import CurveComparison
@@ -36,6 +37,7 @@ __all__ = [
     "plot_comparison",
     "plot_critical_point",
     "plot_crush",
+    "plot_design_load",
     "plot_elements",
     "plot_fit",
     "plot_fragility",
@@ -197,6 +199,13 @@ def plot_critical_point(point: CriticalImpactPoint) -> Figure:
     from .plotting.uncertainty import plot_critical_point
 
     return plot_critical_point(point)
+
+
+def plot_design_load(loads: DesignLoad) -> Figure:
+    """Return a figure of loads by element, histories and the response spectrum."""
+    from .plotting.design_loads import plot_design_load
+
+    return plot_design_load(loads)
 
 
 def plot_sobol(indices: SobolIndices, metrics: Sequence[str] | None) -> Figure:

@@ -1,8 +1,11 @@
-"""From a run to a decision: occupant risk and ratings by the standards of barrier testing."""
+"""From a run to a decision: occupant risk, ratings by the standards of barrier testing, design loads."""
 
 from __future__ import annotations
 
 from .criteria import Criterion
+from .design_load import DesignLoadInterrupted, design_load
+from .design_table import DesignLoad, LoadScene
+from .element_design import ElementDesign
 from .matrix import Matrix, test_matrix
 from .occupant import OccupantRisk, occupant_risk
 from .probability import RatingStudy
@@ -12,10 +15,15 @@ from .rating import Rating
 __all__ = [
     "STANDARDS",
     "Criterion",
+    "DesignLoad",
+    "DesignLoadInterrupted",
+    "ElementDesign",
+    "LoadScene",
     "Matrix",
     "OccupantRisk",
     "Rating",
     "RatingStudy",
+    "design_load",
     "occupant_risk",
     "rate",
     "test_matrix",

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 
-__all__ = ["Criterion", "criteria_html", "criteria_text"]
+__all__ = ["Criterion", "criteria_html", "criteria_text", "table_html", "table_text"]
 
 _HEAD = ("criterion", "value", "limit", "verdict")
 
@@ -50,28 +50,39 @@ class Criterion:
         return f"{number} {self.unit}".strip()
 
 
-def _rows(criteria: Iterable[Criterion]) -> list[tuple[str, str, str, str]]:
+def _rows(criteria: Iterable[Criterion]) -> list[tuple[str, ...]]:
     return [(one.name, one.shown, one.limit, one.verdict) for one in criteria]
 
 
 def criteria_text(criteria: Iterable[Criterion]) -> str:
     """Return criteria as a table of text, columns in line."""
-    rows = [_HEAD, *_rows(criteria)]
-    widths = [max(len(row[i]) for row in rows) for i in range(len(_HEAD))]
-    lines = ["  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows]
-    return "\n".join([lines[0], "-" * max(map(len, lines)), *lines[1:]])
+    return table_text(_HEAD, _rows(criteria))
 
 
 def criteria_html(title: str, criteria: Iterable[Criterion], foot: str = "") -> str:
     """Return criteria as a table that notebooks show; all texts are escaped."""
+    return table_html(title, _HEAD, _rows(criteria), foot)
+
+
+def table_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table of text, columns in line."""
+    lines = [head, *rows]
+    widths = [max(len(row[i]) for row in lines) for i in range(len(head))]
+    texts = ["  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip() for row in lines]
+    return "\n".join([texts[0], "-" * max(map(len, texts)), *texts[1:]])
+
+
+def table_html(title: str, head: Sequence[str], rows: Iterable[Sequence[str]], foot: str = "") -> str:
+    """Return a table that notebooks show, a line of the foot below the other; all texts are escaped."""
     style = 'style="text-align:left;padding:1px 10px 1px 0"'
 
     def line(cells: Iterable[str], tag: str) -> str:
         return "<tr>" + "".join(f"<{tag} {style}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>"
 
-    body = "".join(line(row, "td") for row in _rows(criteria))
-    end = f'<div style="max-width:48em;opacity:0.8">{escape(foot)}</div>' if foot else ""
+    body = "".join(line(row, "td") for row in rows)
+    below = "<br>".join(map(escape, foot.split("\n")))
+    end = f'<div style="max-width:48em;opacity:0.8">{below}</div>' if foot else ""
     return (
         f'<div><div style="font-weight:600;margin-bottom:4px">{escape(title)}</div>'
-        f"<table><thead>{line(_HEAD, 'th')}</thead><tbody>{body}</tbody></table>{end}</div>"
+        f"<table><thead>{line(head, 'th')}</thead><tbody>{body}</tbody></table>{end}</div>"
     )

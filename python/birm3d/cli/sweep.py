@@ -25,7 +25,7 @@ from .table import print_table
 if TYPE_CHECKING:
     from ..study import Study
 
-__all__ = ["sweep"]
+__all__ = ["sweep", "values"]
 
 # Columns of the table on stdout; files and JSON have all metrics unless --metrics says which.
 _SHOWN = (
@@ -81,14 +81,14 @@ def sweep(
 
     wanted = _split(vary)
     if scene is None and options["speed"] is None and n is None and "impact_speed" in wanted:
-        options["speed"] = _values("impact_speed", wanted["impact_speed"])[0]
+        options["speed"] = values("impact_speed", wanted["impact_speed"])[0]
     simulation = simulation_of(scene, options)
     names = None if metrics is None else [name.strip() for name in metrics.split(",")]
     with nullcontext() if jobs is None else ThreadPoolExecutor(jobs) as executor:
         shared: dict[str, Any] = {"metrics": names, "executor": executor, "store": store}
         with _kept_when_stopped(store):
             if n is None:
-                lists = {name: _values(name, text) for name, text in wanted.items()}
+                lists = {name: values(name, text) for name, text in wanted.items()}
                 study = run_sweep(simulation, lists, **shared)
             else:
                 drawn = {name: _distribution(name, text) for name, text in wanted.items()}
@@ -152,7 +152,7 @@ def _split(vary: Sequence[str]) -> dict[str, str]:
     return wanted
 
 
-def _values(name: str, text: str) -> list[Any]:
+def values(name: str, text: str) -> list[Any]:
     """Return the values of a list a,b,c or a range first:last:step, whose last unit holds for all of it."""
     if ":" not in text:
         return [_value(name, part) for part in text.split(",")]

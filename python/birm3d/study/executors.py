@@ -27,7 +27,7 @@ from contextlib import ExitStack
 from functools import lru_cache, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from .. import _core
 from ..base.complaints import Complaints
@@ -39,7 +39,7 @@ from ..simulation.parameters import varied_scene
 from ..simulation.simulation import Simulation
 from .store import Outcome
 
-__all__ = ["ExecutorError", "Finished", "run_all"]
+__all__ = ["ExecutorError", "Finished", "pool_of", "result_of", "run_all", "submit"]
 
 # A chunk takes about this long [s]: long beside what it costs to hand it over, short to wait for or to lose.
 _CHUNK_TIME = 0.2
@@ -49,6 +49,7 @@ _MOST_SCENES = 64  # of a chunk that has scenes of its own, which are held until
 # Enumerators of the core look for their name each time.
 _END_REASONS = {int(reason): name for name, reason in _core.EndReason.__members__.items()}
 
+Found = TypeVar("Found")
 Chunk = list[tuple[int, tuple[Any, ...]]]
 Finished = list[tuple[int, Outcome]]
 
@@ -95,7 +96,7 @@ def run_all(
         return
     stop = _core.Stop()
     own = ThreadPoolExecutor(os.cpu_count() or 1) if executor is None else None
-    pool, workers = _pool(own or executor)
+    pool, workers = pool_of(own or executor)
     files = ExitStack()
     task: tuple[Any, ...]  # a function and its arguments before the chunk
     if isinstance(pool, ThreadPoolExecutor):
@@ -124,11 +125,11 @@ def run_all(
                 at += len(chunk)
                 more = len(chunk) == size
                 if chunk:
-                    pending.add(_submit(pool, *task, chunk))
+                    pending.add(submit(pool, *task, chunk))
             if not pending:
                 break
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
-                done = _result(future)
+                done = result_of(future)
                 take(done)
                 done_runs, seconds = done_runs + len(done.finished), seconds + done.seconds
                 pending.discard(future)
@@ -177,14 +178,16 @@ def _shipped(executor: Any, packed: bytes, files: ExitStack) -> Any:
         raise ExecutorError from error
 
 
-def _submit(pool: Executor, *task: Any) -> Future[Done]:
+def submit(pool: Executor, *task: Any) -> Future[Any]:
+    """Hand a task to the workers; an ExecutorError says that they take none any more."""
     try:
         return pool.submit(*task)
     except Exception as error:
         raise ExecutorError from error
 
 
-def _result(future: Future[Done]) -> Done:
+def result_of(future: Future[Found]) -> Found:
+    """Return what a task returned; an ExecutorError says that the executor died."""
     # A run that fails is an outcome, so whatever is raised here is of the executor.
     try:
         return future.result()
@@ -192,7 +195,7 @@ def _result(future: Future[Done]) -> Done:
         raise ExecutorError from error
 
 
-def _pool(executor: Any) -> tuple[Executor, int]:
+def pool_of(executor: Any) -> tuple[Executor, int]:
     """Return an executor and its number of workers, as far as it tells; more only means smaller chunks."""
     if hasattr(executor, "get_executor") and hasattr(executor, "nthreads"):
         return executor.get_executor(), max(1, sum(executor.nthreads().values()))

@@ -1,0 +1,238 @@
+"""Design loads: what each element of a barrier has to carry, over all impacts that it is designed for."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ..barrier.base import Barrier
+from ..barrier.text import barrier_text
+from ..base.arguments import checked
+from ..base.checks import check_runs, number
+from ..result.result import Result
+from ..simulation.parameters import in_si, varied_scene
+from ..simulation.simulation import Simulation
+from ..study.executors import ExecutorError
+from ..study.whole_runs import look_at_runs
+from ..unit_check import warn_if_any_unusual
+from ..units import Quantity, si
+from .design_caution import barrier_caution, run_cautions
+from .design_table import DesignLoad, LoadScene
+from .element_design import ElementDesign, System, element_design, envelope, peak_filter
+from .oscillator import LEAST_INTERVALS
+
+__all__ = ["DesignLoadInterrupted", "design_load"]
+
+Floats = npt.NDArray[np.float64]
+
+_ASSUMED_PERIOD = 0.1  # s
+_MOST_DUCTILITY = 100.0
+_MOST_OF_ONE_PULSE = 2.0  # dynamic load factor of any single pulse, at the most
+
+
+_ADDED = (
+    "A dynamic load factor above 2 comes from blows that follow each other while the element swings, or from "
+    "peaks that the filter of the peak force takes: damping lessens the first."
+)
+
+
+class DesignLoadInterrupted(KeyboardInterrupt):
+    """Ctrl-C; ``design_load`` is the envelope over the finished scenes, ``None`` if there are none."""
+
+    def __init__(self, message: str, design_load: DesignLoad | None) -> None:
+        super().__init__(message)
+        self.design_load = design_load
+
+
+class _Found(NamedTuple):
+    """What one run adds to the envelope."""
+
+    rows: list[ElementDesign]
+    cautions: list[str]
+
+
+@checked
+def design_load(
+    cases: Simulation | Result | Sequence[Simulation | Result],
+    *,
+    natural_period: Quantity | None = None,
+    ductility: float = 1.0,
+    damping: float = 0.0,
+    offsets: Iterable[Quantity] | None = None,
+    impact_angles: Iterable[Quantity] | None = None,
+    impact_speeds: Iterable[Quantity] | None = None,
+    executor: Any = None,
+    progress: bool | None = None,
+) -> DesignLoad:
+    """Return what each post, segment or panel of a barrier has to carry: a table for the structural engineer.
+
+    For each element: impulse, peak force (CFC 60), greatest 50-ms mean force with its height, design moment
+    at the foot, and the equivalent static force. With several scenes each value is the greatest of all, and
+    the table names the scene that it comes from.
+
+    The equivalent static force is that of a system with one degree of freedom under the unfiltered load
+    (Biggs, Introduction to Structural Dynamics, 1964). At ductility 1 it is m w^2 max|u|, the peak force
+    times the dynamic load factor. Above, it is the resistance R of the elastic-plastic system for which
+    max|u| = ductility R / (m w^2). See :mod:`birm3d.assessment.oscillator`.
+
+    Parameters
+    ----------
+    cases
+        A scene, or several at the same barrier, as of several vehicles; results are taken as they are.
+    natural_period
+        Of an element on its foundation [s]; at least 4 output intervals. ``None``: 0.1 s is assumed, and the
+        caution says so.
+    ductility
+        Displacement over yield displacement that the element may reach, 1 (elastic) to 100.
+    damping
+        Ratio to the critical one, >= 0 and < 1.
+    offsets, impact_angles, impact_speeds
+        Lists of ``impact_offset`` [m], ``impact_angle`` [deg] and ``impact_speed`` [m/s], or texts with
+        units: each scene is run with all combinations. ``None``: the scene's own.
+    executor
+        Any :class:`concurrent.futures.Executor`, or a ``dask.distributed.Client``; ``None``: a thread for
+        each core of the machine.
+    progress
+        Bar on stderr; ``None``: if that is a terminal, and in notebooks.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, its limit and the value; if there is no barrier, the barriers differ, or no scene
+        can be run.
+    DesignLoadInterrupted
+        A KeyboardInterrupt, with the envelope over the finished scenes.
+    RuntimeError
+        If the executor dies.
+
+    Examples
+    --------
+    >>> loads = birm3d.design_load(sim, natural_period=0.05, ductility=3, offsets=[0.0, 0.3, 0.6])
+    >>> print(loads.to_markdown())
+    """
+    listed = [cases] if isinstance(cases, (Simulation, Result)) else list(cases)
+    lists = {"impact_offset": offsets, "impact_angle": impact_angles, "impact_speed": impact_speeds}
+    varied = {name: _values(name, values) for name, values in lists.items() if values is not None}
+    barrier = _common_barrier(listed, varied)
+    system = _system(listed, natural_period, ductility, damping)
+    check_runs("cases", len(listed) * math.prod(map(len, varied.values())))
+    plan = [
+        (case, varied_scene(case.scene, dict(zip(varied, row, strict=True))))
+        for case in listed
+        for row in itertools.product(*varied.values())
+    ]
+    look = partial(_look, normal=-np.asarray(barrier.core.normal), system=system)
+    found: dict[int, _Found] = {}
+    failed: dict[int, str] = {}
+    general = barrier_caution(barrier)
+    if natural_period is None:
+        general.append(f"The natural period of {_ASSUMED_PERIOD:g} s is assumed: give that of the element.")
+
+    def table() -> DesignLoad:
+        runs = sorted(found)
+        elements = range(len(barrier.element_names))
+        cautions = [text for run in runs for text in found[run].cautions]
+        if any(row.dynamic_load_factor > _MOST_OF_ONE_PULSE for run in runs for row in found[run].rows):
+            cautions.append(_ADDED)
+        load = DesignLoad(
+            tuple(envelope({run: found[run].rows[i] for run in runs}) for i in elements),
+            system,
+            peak_filter=peak_filter(max(scene.settings.output_interval for _, scene in plan)),
+            scenes=tuple(LoadScene.of(scene) for _, scene in plan),
+            failed=failed,
+            barrier=barrier_text(barrier),
+            normal=-np.asarray(barrier.core.normal),
+            caution="",
+        )
+        load.caution = " ".join(dict.fromkeys([*general, *cautions, *_at_ends(load, varied)]))
+        return load
+
+    try:
+        for run, result in enumerate(case for case, _ in plan):
+            if isinstance(result, Result):
+                found[run] = look(result)
+        runs = [run for run, (case, _) in enumerate(plan) if not isinstance(case, Result)]
+        scenes = [plan[run][1] for run in runs]
+        for seen in look_at_runs(scenes, look, executor=executor, progress=progress, title="design loads"):
+            if seen.found is None:
+                failed[runs[seen.run]] = seen.error
+            else:
+                found[runs[seen.run]] = seen.found
+    except KeyboardInterrupt:
+        message = f"stopped: {len(found)} of {len(plan)} scenes are finished, their envelope is kept in the "
+        message += "error's 'design_load'"
+        raise DesignLoadInterrupted(message, table() if found else None) from None
+    except ExecutorError as died:
+        cause = died.__cause__
+        raise RuntimeError(f"the executor died ({type(cause).__name__}: {cause})") from cause
+    if not found:
+        raise ValueError(f"cases must have a scene that can be run, got none: {failed[min(failed)]}")
+    return table()
+
+
+def _look(result: Result, normal: Floats, system: System) -> _Found:
+    rows = [element_design(load, normal, system) for load in result.element_loads]
+    return _Found(rows, list(run_cautions(result)))
+
+
+def _values(name: str, values: Iterable[Quantity]) -> list[float]:
+    given = list(values)
+    warn_if_any_unusual(name, given)
+    found = [number(name, in_si(name, value)) for value in given]
+    if not found:
+        raise ValueError(f"{name} must have at least one value, got an empty list")
+    for value in found:
+        if not math.isfinite(value):
+            raise ValueError(f"{name} must be finite, got {value}")
+    return found
+
+
+def _common_barrier(cases: Sequence[Simulation | Result], varied: Iterable[str]) -> Barrier:
+    if not cases:
+        raise ValueError("cases must be at least one Simulation or Result, got an empty list")
+    barrier = cases[0].scene.barrier
+    if barrier is None:
+        raise ValueError("cases must have a barrier, got one without")
+    for case in cases:
+        if case.scene.barrier != barrier:
+            raise ValueError(f"cases must have the same barrier, got {barrier} and {case.scene.barrier}")
+        if varied and isinstance(case, Result):
+            raise ValueError(f"cases must be simulations to vary {', '.join(varied)}, got a Result")
+    return barrier
+
+
+def _system(
+    cases: Sequence[Simulation | Result], natural_period: Quantity | None, ductility: float, damping: float
+) -> System:
+    period = _ASSUMED_PERIOD if natural_period is None else si("natural_period", natural_period, "time")
+    least = LEAST_INTERVALS * max(case.scene.settings.output_interval for case in cases)
+    if not least <= period < math.inf:
+        raise ValueError(
+            f"natural_period must be finite and >= {least:g} s ({LEAST_INTERVALS} output intervals), "
+            f"got {period}"
+        )
+    if not 1.0 <= ductility <= _MOST_DUCTILITY:
+        raise ValueError(f"ductility must be >= 1 and <= {_MOST_DUCTILITY:g}, got {ductility}")
+    if not 0.0 <= damping < 1.0:
+        raise ValueError(f"damping must be >= 0 and < 1, got {damping}")
+    return System(float(period), float(ductility), float(damping))
+
+
+def _at_ends(load: DesignLoad, varied: Mapping[str, Sequence[float]]) -> Iterator[str]:
+    """Yield of which lists the governing value is an end, beyond which it may be greater."""
+    row = load.governing
+    if not row.touched:
+        return
+    scene = load.scenes[row.scene["equivalent_static_force"]]
+    for name in ("impact_offset", "impact_angle"):
+        values = varied.get(name, ())
+        if len(set(values)) > 1 and getattr(scene, name) in (min(values), max(values)):
+            words = name.replace("_", " ")
+            if not (name == "impact_angle" and scene.impact_angle == 90.0):
+                yield f"The greatest load comes from the end of the list of {words}s: beyond it may be more."

@@ -1,0 +1,323 @@
+"""The design loads of a barrier: a table, its files, and what is to be said of it."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import pictures, units
+from ..base.frozen_mapping import FrozenMapping
+from ..io.atomic_write import whole_file
+from ..scene.scene import Scene
+from .criteria import table_html, table_text
+from .element_design import ENVELOPED, ElementDesign, System
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+__all__ = ["DesignLoad", "LoadScene"]
+
+Floats = npt.NDArray[np.float64]
+
+_NUMBERS = ("impulse", "peak_force", "force_50ms", "height", "direction", "moment", "equivalent_static_force")
+
+
+class LoadScene(NamedTuple):
+    """An impact that the envelope looks at."""
+
+    vehicle: str
+    mass: float  # kg
+    impact_speed: float  # m/s
+    impact_angle: float  # deg
+    impact_offset: float  # m
+
+    @classmethod
+    def of(cls, scene: Scene) -> LoadScene:
+        """Return that of a scene."""
+        return cls(
+            scene.vehicle.name,
+            scene.vehicle.mass,
+            scene.impact_speed,
+            scene.impact_angle,
+            scene.impact_offset,
+        )
+
+    def __str__(self) -> str:
+        return (
+            f"{self.vehicle}, {self.mass:,.0f} kg, {self.impact_speed:.2f} m/s "
+            f"({self.impact_speed / units.mph:.1f} mph), {self.impact_angle:g}°, "
+            f"offset {self.impact_offset:g} m"
+        )
+
+
+class DesignLoad:
+    """What each element of a barrier has to carry; made by :func:`birm3d.design_load`.
+
+    A sequence of :class:`birm3d.assessment.ElementDesign`, one for each element in the order of
+    ``barrier.element_names``; ``loads["bollard 3"]`` finds one by its name. Its own properties of the same
+    names are arrays of all elements, shape (n,).
+
+    Attributes
+    ----------
+    rows : tuple of ElementDesign
+    natural_period : float
+        [s].
+    ductility, damping : float
+    peak_filter : str
+        Filter of ``peak_force``: ``"CFC 60"``, or ``"unfiltered"`` where the rows are too far apart.
+    scenes : tuple of LoadScene
+        The impacts that were looked at; a row's ``scene`` has their numbers, from 0.
+    failed : mapping of int to str
+        Number of each scene that could not be run -> its reason. Its loads are not in the envelope.
+    barrier : str
+        Kind, count and sizes.
+    normal : ndarray, shape (3,)
+        Horizontal unit vector square to the barrier's line, into the barrier.
+    caution : str
+        What the numbers rest on, where it matters.
+    """
+
+    def __init__(
+        self,
+        rows: tuple[ElementDesign, ...],
+        system: System,
+        *,
+        peak_filter: str,
+        scenes: tuple[LoadScene, ...],
+        failed: Mapping[int, str],
+        barrier: str,
+        normal: Floats,
+        caution: str,
+    ) -> None:
+        self.rows = rows
+        self.natural_period, self.ductility, self.damping = system
+        self.peak_filter = peak_filter
+        self.scenes = scenes
+        self.failed = FrozenMapping(dict(failed))
+        self.barrier = barrier
+        self.normal = normal
+        self.caution = caution
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __iter__(self) -> Iterator[ElementDesign]:
+        return iter(self.rows)
+
+    def __getitem__(self, element: int | str) -> ElementDesign:
+        if not isinstance(element, str):
+            return self.rows[element]
+        for row in self.rows:
+            if row.name == element:
+                return row
+        names = ", ".join(row.name for row in self.rows)
+        raise ValueError(f"element must be one of {names}; got {element!r}")
+
+    def _column(self, name: str) -> Floats:
+        column = np.array([getattr(row, name) for row in self.rows])
+        column.setflags(write=False)
+        return column
+
+    @property
+    def impulse(self) -> Floats:
+        """Along the barrier's normal, positive into the barrier [N s]."""
+        return self._column("impulse")
+
+    @property
+    def peak_force(self) -> Floats:
+        """After ``peak_filter`` [N]."""
+        return self._column("peak_force")
+
+    @property
+    def force_50ms(self) -> Floats:
+        """Greatest mean over 50 ms [N]."""
+        return self._column("force_50ms")
+
+    @property
+    def height(self) -> Floats:
+        """Of ``force_50ms`` above the foot [m]."""
+        return self._column("height")
+
+    @property
+    def direction(self) -> Floats:
+        """Of ``force_50ms`` from the barrier's normal [deg]."""
+        return self._column("direction")
+
+    @property
+    def moment(self) -> Floats:
+        """Greatest 50-ms mean of the overturning moment about the foot [N m]."""
+        return self._column("moment")
+
+    @property
+    def equivalent_static_force(self) -> Floats:
+        """For the natural period, ductility and damping [N]."""
+        return self._column("equivalent_static_force")
+
+    @property
+    def governing(self) -> ElementDesign:
+        """The element with the greatest equivalent static force."""
+        return max(self.rows, key=lambda row: row.equivalent_static_force)
+
+    @property
+    def title(self) -> str:
+        """What the table is of, in one line."""
+        if len(self.scenes) == 1:
+            return f"Design loads: {self.barrier}; {self.scenes[0]}"
+        return f"Design loads: {self.barrier}; envelope of {len(self.scenes) - len(self.failed)} scenes"
+
+    @property
+    def basis(self) -> str:
+        """How the columns are made, in a few sentences."""
+        kind = "elastic" if self.ductility == 1.0 else f"elastic-plastic, ductility {self.ductility:g}"
+        damped = f", damping {self.damping:g}" if self.damping > 0.0 else ""
+        return (
+            f"Forces are horizontal, of walls across their line. Peak force: {self.peak_filter}. Force and "
+            "moment: greatest 50-ms means; height is that of the 50-ms force above the element's foot, where "
+            "the moment is taken; direction that from the barrier's normal. Equivalent static force, at this "
+            f"height and in this direction: system with one degree of freedom, {kind}, natural period "
+            f"{self.natural_period:g} s{damped}, unfiltered load."
+        )
+
+    def _head(self) -> tuple[str, ...]:
+        return (
+            "element",
+            "impulse [kN s]",
+            f"peak force, {self.peak_filter} [kN]",
+            "50-ms force [kN]",
+            "height [m]",
+            "direction [deg]",
+            "moment [kN m]",
+            "equivalent static force [kN]",
+            "DLF",
+        )
+
+    def _cells(self) -> list[tuple[str, ...]]:
+        return [
+            (
+                row.name,
+                self._cell(row, "impulse"),
+                self._cell(row, "peak_force"),
+                self._cell(row, "force_50ms"),
+                f"{row.height:.2f}",
+                f"{row.direction:.0f}",
+                self._cell(row, "moment"),
+                self._cell(row, "equivalent_static_force"),
+                f"{row.dynamic_load_factor:.2f}",
+            )
+            if row.touched
+            else (row.name, "0", "0", "0", "", "", "0", "0", "")
+            for row in self.rows
+        ]
+
+    def _cell(self, row: ElementDesign, name: str) -> str:
+        value = getattr(row, name) / 1e3
+        text = f"{value:,.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
+        return text if len(self.scenes) == 1 else f"{text} ({row.scene[name]})"
+
+    def _legend(self) -> list[str]:
+        """Return the scenes that the table names, and those that failed."""
+        if len(self.scenes) == 1:
+            return []
+        named = sorted({number for row in self.rows for number in row.scene.values()})
+        lines = [f"({number}) {self.scenes[number]}" for number in named]
+        return lines + [f"({number}) failed: {reason}" for number, reason in self.failed.items()]
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return a row an element, SI; with several scenes the one that each value comes from as text.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        import pandas as pd
+
+        return pd.DataFrame(self._records()).set_index("element")
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the same to a file, SI, units in the head."""
+        records = self._records()
+        with whole_file(path) as part, part.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(
+                [f"{name} [{unit}]" if (unit := _UNITS.get(name)) else name for name in records[0]]
+            )
+            writer.writerows(record.values() for record in records)
+
+    def _records(self) -> list[dict[str, Any]]:
+        records = []
+        for row in self.rows:
+            record: dict[str, Any] = {"element": row.name}
+            record.update((name, getattr(row, name)) for name in _NUMBERS)
+            record["dynamic_load_factor"] = row.dynamic_load_factor
+            record.update(zip(_VECTOR, row.impulse_vector.tolist(), strict=True))
+            if len(self.scenes) > 1:
+                for name in ENVELOPED:
+                    number = row.scene.get(name)
+                    record[f"{name}_scene"] = "" if number is None else str(self.scenes[number])
+            records.append(record)
+        return records
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all of it but the histories as plain values, SI."""
+        return {
+            "barrier": self.barrier,
+            "natural_period": self.natural_period,
+            "ductility": self.ductility,
+            "damping": self.damping,
+            "peak_filter": self.peak_filter,
+            "scenes": [scene._asdict() for scene in self.scenes],
+            "failed": {str(number): reason for number, reason in self.failed.items()},
+            "elements": [row.to_dict() for row in self.rows],
+            "caution": self.caution,
+        }
+
+    def to_markdown(self) -> str:
+        """Return the table with its basis and its caution, to paste into a report."""
+        head, cells = self._head(), self._cells()
+        lines = [f"**{self.title}**", "", _pipes(head), _pipes(["---", *["---:"] * (len(head) - 1)])]
+        lines += map(_pipes, cells)
+        lines += ["", *(f"- {line}" for line in self._legend())]
+        if len(self.scenes) > 1:
+            lines.append("")
+        return "\n".join([*lines, self.basis, "", f"Caution: {self.caution}"])
+
+    def summary(self) -> str:
+        """Return the table with its basis and its caution as text."""
+        table = table_text(self._head(), self._cells())
+        return "\n".join([self.title, table, *self._legend(), self.basis, f"Caution: {self.caution}"])
+
+    __str__ = summary
+
+    def plot(self) -> Figure:
+        """Return loads by element, histories of the governing one, and its response spectrum."""
+        return pictures.plot_design_load(self)
+
+    def _repr_html_(self) -> str:
+        foot = "\n".join([*self._legend(), self.basis, f"Caution: {self.caution}"])
+        return table_html(self.title, self._head(), self._cells(), foot)
+
+    def __repr__(self) -> str:
+        return (
+            f"DesignLoad({len(self.rows)} elements, {len(self.scenes)} scenes, greatest: {self.governing!r})"
+        )
+
+
+_VECTOR = ("impulse_x", "impulse_y", "impulse_z")
+_UNITS = {
+    **dict.fromkeys(("impulse", *_VECTOR), "N s"),
+    **dict.fromkeys(("peak_force", "force_50ms", "equivalent_static_force"), "N"),
+    "height": "m",
+    "direction": "deg",
+    "moment": "N m",
+}
+
+
+def _pipes(cells: tuple[str, ...] | list[str]) -> str:
+    return f"| {' | '.join(cell.replace('|', '/') for cell in cells)} |"

@@ -1,0 +1,201 @@
+"""What one element of a barrier has to carry, from its load history."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ..base.frozen_mapping import FrozenMapping
+from ..result.element_loads import ElementLoad, overturning, resultant_height
+from ..signals.filters import cfc, moving_average
+from .oscillator import resistance
+
+__all__ = [
+    "ENVELOPED",
+    "ElementDesign",
+    "System",
+    "design_direction",
+    "element_design",
+    "envelope",
+    "lateral_level",
+    "peak_filter",
+]
+
+Floats = npt.NDArray[np.float64]
+
+ENVELOPED = ("impulse", "peak_force", "force_50ms", "moment", "equivalent_static_force")
+"""Values of which the greatest over all scenes counts, each from a scene of its own."""
+
+_CLASS = 60.0
+_WINDOW = 0.05  # s
+
+
+class System(NamedTuple):
+    """The element as a system with one degree of freedom."""
+
+    natural_period: float
+    ductility: float
+    damping: float
+
+
+@dataclass(frozen=True, eq=False)
+class ElementDesign:
+    """A row of a :class:`birm3d.assessment.DesignLoad`: what one element has to carry.
+
+    Forces are horizontal: of walls and Jersey barriers the part across their line, of posts and meshes the
+    resultant. Moments are about the element's foot, as in :class:`birm3d.ElementLoad`. An element that no
+    scene touches has zeros.
+
+    Attributes
+    ----------
+    index : int
+        Place among ``barrier.element_names``.
+    name : str
+    impulse : float
+        Along the barrier's normal, positive into the barrier [N s].
+    impulse_vector : ndarray, shape (3,)
+        In world axes, of the same scene [N s].
+    peak_force : float
+        After CFC 60 (SAE J211-1), filtered before the resultant is taken [N]; unfiltered where the output
+        interval is too long for it.
+    force_50ms : float
+        Greatest mean over 50 ms [N].
+    height : float
+        Of ``force_50ms`` above the foot [m].
+    direction : float
+        Of ``force_50ms`` from the barrier's normal, positive to the left seen along it [deg].
+    moment : float
+        Greatest 50-ms mean of the overturning moment about the foot, at ground level [N m].
+    equivalent_static_force : float
+        Static force that asks as much of a system of the given period, ductility and damping as the
+        unfiltered load along ``direction`` [N]; it acts at ``height``.
+    scene : mapping of str to int
+        Each of the values above that are enveloped -> number of the scene that it comes from.
+    load : ElementLoad or None
+        Histories in the scene that ``equivalent_static_force`` comes from; ``None`` if never touched.
+    """
+
+    index: int
+    name: str
+    impulse: float = 0.0
+    impulse_vector: Floats = field(default_factory=lambda: np.zeros(3))
+    peak_force: float = 0.0
+    force_50ms: float = 0.0
+    height: float = 0.0
+    direction: float = 0.0
+    moment: float = 0.0
+    equivalent_static_force: float = 0.0
+    scene: Mapping[str, int] = field(default_factory=dict)
+    load: ElementLoad | None = None
+
+    @property
+    def dynamic_load_factor(self) -> float:
+        """``equivalent_static_force`` over ``peak_force``; 0 without load."""
+        return self.equivalent_static_force / self.peak_force if self.peak_force > 0.0 else 0.0
+
+    @property
+    def touched(self) -> bool:
+        """Whether a scene loads it."""
+        return self.load is not None
+
+    def to_dict(self) -> dict[str, object]:
+        """Return all values as plain ones, SI."""
+        return {
+            "element": self.name,
+            "impulse": self.impulse,
+            "impulse_vector": self.impulse_vector.tolist(),
+            **{name: getattr(self, name) for name in ("peak_force", "force_50ms", "height", "direction")},
+            **{name: getattr(self, name) for name in ("moment", "equivalent_static_force")},
+            "dynamic_load_factor": self.dynamic_load_factor,
+            "scene": dict(self.scene),
+        }
+
+    def __repr__(self) -> str:
+        return (
+            f"ElementDesign({self.name!r}, force_50ms={self.force_50ms:.4g} N at {self.height:.2f} m, "
+            f"moment={self.moment:.4g} N m, equivalent_static_force={self.equivalent_static_force:.4g} N)"
+        )
+
+
+def peak_filter(interval: float) -> str:
+    """Return how peaks are filtered at an output interval [s]: ``"CFC 60"`` or ``"unfiltered"``."""
+    return f"CFC {_CLASS:g}" if interval * _CLASS <= 0.1 else "unfiltered"
+
+
+def design_direction(load: ElementLoad, normal: Floats) -> Floats:
+    """Return the horizontal unit vector along which an element is designed, shape (3,).
+
+    Of a wall the normal; else that of the greatest 50-ms mean of the horizontal force.
+    """
+    if load.line is not None:
+        return normal
+    mean = moving_average(load.force[:, :2], _WINDOW, load.interval)
+    x, y = mean[int(np.argmax(np.hypot(*mean.T)))]
+    size = math.hypot(x, y)
+    return np.array([x / size, y / size, 0.0]) if size > 0.0 else normal
+
+
+def element_design(load: ElementLoad, normal: Floats, system: System) -> ElementDesign:
+    """Return what an element has to carry in one scene; ``normal`` is that into the barrier, system in SI."""
+    if not load.touched:
+        return ElementDesign(load.index, load.name)
+    direction = design_direction(load, normal)
+    force = moving_average(load.force, _WINDOW, load.interval)
+    moment = moving_average(load.moment, _WINDOW, load.interval)
+    level = lateral_level(force, load, normal)
+    row = int(np.argmax(level))
+    filtered = (
+        load.force if peak_filter(load.interval) == "unfiltered" else cfc(load.force, 60, load.interval)
+    )
+    # The first row is the mean over the second one's interval.
+    impulse = load.interval * load.force[1:].sum(axis=0)
+    return ElementDesign(
+        load.index,
+        load.name,
+        impulse=float(impulse @ normal),
+        impulse_vector=impulse,
+        peak_force=float(lateral_level(filtered, load, normal).max()),
+        force_50ms=float(level[row]),
+        height=float(resultant_height(force, moment, load.line)[row]),
+        direction=_degrees(direction, normal),
+        moment=float(overturning(moment, load.line).max()),
+        equivalent_static_force=resistance(load.force[1:] @ direction, load.interval, *system),
+        load=load,
+    )
+
+
+def lateral_level(force: Floats, load: ElementLoad, normal: Floats) -> Floats:
+    """Return the size of the horizontal force, of a wall across its line, shape (n,)."""
+    if load.line is not None:
+        return np.abs(force @ normal)
+    return np.asarray(np.hypot(force[:, 0], force[:, 1]))
+
+
+def _degrees(direction: Floats, normal: Floats) -> float:
+    across = normal[0] * direction[1] - normal[1] * direction[0]
+    return math.degrees(math.atan2(across, float(normal @ direction)))
+
+
+def envelope(rows: Mapping[int, ElementDesign]) -> ElementDesign:
+    """Return the greatest of each value of one element over scenes, by their numbers, with its scene."""
+    touched = {scene: row for scene, row in sorted(rows.items()) if row.touched}
+    if not touched:
+        return next(iter(rows.values()))
+    # The first of equal ones.
+    best = {name: max(touched, key=lambda scene: abs(getattr(touched[scene], name))) for name in ENVELOPED}
+    force = touched[best["force_50ms"]]
+    return ElementDesign(
+        force.index,
+        force.name,
+        **{name: getattr(touched[scene], name) for name, scene in best.items()},
+        impulse_vector=touched[best["impulse"]].impulse_vector,
+        height=force.height,
+        direction=force.direction,
+        scene=FrozenMapping(best),
+        load=touched[best["equivalent_static_force"]].load,
+    )

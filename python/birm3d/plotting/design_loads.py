@@ -1,0 +1,173 @@
+"""Figure of the design loads of a barrier."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..assessment.element_design import design_direction
+from ..assessment.oscillator import LEAST_INTERVALS, resistance
+from ..result.element_loads import overturning
+from ..signals.filters import moving_average
+from .figure import new_figure
+from .style import BLUE, DASH_DOT, DASHED, GREEN, ORANGE, RED, filtered, legend, prepare
+
+if TYPE_CHECKING:
+    from ..assessment.design_table import DesignLoad
+    from ..assessment.element_design import ElementDesign
+    from ..result.element_loads import ElementLoad
+
+__all__ = ["plot_design_load"]
+
+Floats = npt.NDArray[np.float64]
+
+_MOST_BARS = 12
+_PERIODS = (0.005, 2.0)  # s
+_POINTS, _SOFT_POINTS = 240, 30  # of the elastic spectrum, and of the one that takes its time
+_LOAD_SHARE, _ROOM = 0.01, 1.08  # where a history ends, and the room after it
+
+
+def plot_design_load(loads: DesignLoad) -> Figure:
+    """Return loads by element, force and moment of the governing one, and its response spectrum.
+
+    The governing element has the greatest equivalent static force. Its histories are those of the scene that
+    this force comes from. Unfiltered lines are thin. At most 12 elements are drawn, the most loaded ones.
+
+    Raises
+    ------
+    ValueError
+        If no element was touched.
+    """
+    row = loads.governing
+    if row.load is None:
+        raise ValueError("elements must have been touched to be drawn, got none that was")
+    figure = new_figure(11.0, 7.6)
+    (bars, force), (moment, spectrum) = figure.subplots(2, 2)
+    prepare(bars, force, moment, spectrum)
+    _bars(bars, loads)
+    end = _end_of_load(row.load)
+    direction = design_direction(row.load, loads.normal)
+    _force(force, row, row.load.force @ direction, row.load.interval)
+    _moment(moment, row, row.load)
+    for axes in (force, moment):
+        axes.set_xlim(0.0, end)
+        axes.set_xlabel("time [ms]")
+    _spectrum(spectrum, loads, row, row.load.force[1:] @ direction)
+    for axes in (bars, force, moment, spectrum):
+        legend([axes])
+    scene = "" if len(loads.scenes) == 1 else f"\nhistories of {loads.scenes[_scene(row)]}"
+    figure.suptitle(f"{loads.title}{scene}", fontsize="medium")
+    return figure
+
+
+def _scene(row: ElementDesign) -> int:
+    return row.scene["equivalent_static_force"]
+
+
+def _bars(axes: Axes, loads: DesignLoad) -> None:
+    most = sorted(loads.rows, key=lambda row: -row.equivalent_static_force)[:_MOST_BARS]
+    rows = sorted(most, key=lambda row: row.index)
+    place = np.arange(len(rows))
+    columns = (
+        ("peak_force", f"peak, {loads.peak_filter}", ORANGE),
+        ("force_50ms", "50-ms mean", BLUE),
+        ("equivalent_static_force", "equivalent static", RED),
+    )
+    for k, (name, label, color) in enumerate(columns):
+        values = [getattr(row, name) / 1e3 for row in rows]
+        axes.bar(place + 0.27 * (k - 1), values, 0.25, color=color, label=label)
+    axes.set_xticks(place, [row.name for row in rows], fontsize="small")
+    if len(rows) > 4:
+        axes.tick_params("x", labelrotation=30)
+    axes.grid(visible=False, axis="x")
+    axes.set_ylabel("force [kN]")
+    axes.set_title("Horizontal force on each element", fontsize="medium")
+
+
+def _force(axes: Axes, row: ElementDesign, force: Floats, interval: float) -> None:
+    ms = np.arange(len(force)) * interval * 1e3
+    smooth, name = filtered(force, 60, interval)
+    mean = moving_average(force, 0.05, interval)
+    axes.plot(ms, force / 1e3, color=ORANGE, ls="-", lw=0.5, alpha=0.5, zorder=1.5)
+    axes.plot(ms, smooth / 1e3, color=ORANGE, ls="-", lw=2.2, label=name)
+    axes.plot(ms, mean / 1e3, color=BLUE, ls=DASHED, lw=1.8, label="mean over the last 50 ms")
+    _mark(axes, ms, mean / 1e3, "kN")
+    level = row.equivalent_static_force / 1e3
+    axes.axhline(level, color=RED, ls=DASH_DOT, lw=1.4, label=f"equivalent static, {level:,.0f} kN")
+    top = max(float(smooth.max()), float(mean.max()), row.equivalent_static_force) / 1e3
+    axes.set_ylim(min(0.0, 1.1 * float(smooth.min()) / 1e3), 1.25 * top)
+    axes.set_ylabel("force [kN]")
+    axes.set_title(f"{row.name}: force at {row.direction:.0f}° from the normal", fontsize="medium")
+
+
+def _moment(axes: Axes, row: ElementDesign, load: ElementLoad) -> None:
+    ms = np.arange(len(load.moment)) * load.interval * 1e3
+    smooth, name = filtered(load.moment, 60, load.interval)
+    mean = moving_average(load.moment, 0.05, load.interval)
+    curves = [overturning(moment, load.line) / 1e3 for moment in (load.moment, smooth, mean)]
+    axes.plot(ms, curves[0], color=ORANGE, ls="-", lw=0.5, alpha=0.5, zorder=1.5)
+    axes.plot(ms, curves[1], color=ORANGE, ls="-", lw=2.2, label=name)
+    axes.plot(ms, curves[2], color=BLUE, ls=DASHED, lw=1.8, label="mean over the last 50 ms")
+    _mark(axes, ms, curves[2], "kN m")
+    axes.set_ylim(0.0, 1.25 * max(float(curves[1].max()), float(curves[2].max())))
+    axes.set_ylabel("moment [kN m]")
+    axes.set_title(f"{row.name}: overturning moment about its foot", fontsize="medium")
+
+
+def _mark(axes: Axes, ms: npt.NDArray[np.floating[Any]], curve: Floats, unit: str) -> None:
+    at = int(np.argmax(curve))
+    axes.plot([ms[at]], [curve[at]], "o", color=BLUE, ms=6, mec="w", ls="none", zorder=6)
+    axes.annotate(
+        f"{curve[at]:,.0f} {unit}",
+        (ms[at], curve[at]),
+        (6.0, 6.0),
+        textcoords="offset points",
+        fontsize="small",
+        color=BLUE,
+        zorder=7,
+    )
+
+
+def _spectrum(axes: Axes, loads: DesignLoad, row: ElementDesign, force: Floats) -> None:
+    assert row.load is not None
+    interval = row.load.interval
+    low = max(_PERIODS[0], LEAST_INTERVALS * interval)
+    own = loads.natural_period
+    wanted = [(1.0, GREEN, "elastic", _POINTS)]
+    if loads.ductility > 1.0:
+        wanted.append((loads.ductility, RED, f"ductility {loads.ductility:g}", _SOFT_POINTS))
+    for ductility, color, label, points in wanted:
+        periods = np.unique([own, *np.geomspace(min(low, own), max(_PERIODS[1], own), points)])
+        found = [resistance(force, interval, period, ductility, loads.damping) for period in periods]
+        axes.semilogx(periods, np.array(found) / row.peak_force, color=color, ls="-", lw=1.8, label=label)
+    axes.plot([own], [row.dynamic_load_factor], "o", color=RED, ms=7, mec="w", ls="none", zorder=6)
+    axes.annotate(
+        f"{own:g} s: {row.dynamic_load_factor:.2f}",
+        (own, row.dynamic_load_factor),
+        (0.0, 7.0),
+        textcoords="offset points",
+        ha="center",
+        fontsize="small",
+        color=RED,
+        zorder=7,
+    )
+    axes.set_ylim(0.0, 1.12 * axes.get_ylim()[1])
+    axes.set_xlabel("natural period [s]")
+    axes.set_ylabel("dynamic load factor")
+    size = row.peak_force / 1e3
+    other = axes.twinx()
+    other.set_ylim(0.0, axes.get_ylim()[1] * size)
+    other.set_ylabel("equivalent static force [kN]")
+    axes.set_title(f"{row.name}: response spectrum, over the peak force", fontsize="medium")
+
+
+def _end_of_load(load: ElementLoad) -> float:
+    """Return where the panels end [ms]: some time after the load."""
+    level = np.linalg.norm(load.force, axis=1)
+    last = int(np.flatnonzero(level >= _LOAD_SHARE * level.max())[-1])
+    last += round(0.05 / load.interval)
+    return float(max(1, min(len(level) - 1, _ROOM * last)) * load.interval * 1e3)

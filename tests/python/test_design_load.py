@@ -1,0 +1,355 @@
+"""Design loads: recomputed from raw histories, summed, turned, enveloped; and what is refused."""
+
+from __future__ import annotations
+
+import csv
+import importlib
+import json
+import math
+import re
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
+
+import birm3d
+import numpy as np
+import pytest
+from birm3d import Barrier, DesignLoad, DesignLoadInterrupted, Settings, Simulation, Vehicle
+from birm3d.cli import main
+from scipy.signal import butter, filtfilt
+
+NUMBERS = ("impulse", "peak_force", "force_50ms", "height", "moment", "equivalent_static_force")
+
+
+def car() -> Vehicle:
+    return Vehicle.preset("passenger_car", mesh_density=0.3)
+
+
+BARRIERS = {
+    "one of three bollards": Barrier.bollards(count=3, spacing=4.0, friction=0.3),
+    "bollards": Barrier.bollards(count=4, spacing=1.1, heading=30.0),
+    "wall": Barrier.rigid_wall(width=6.0, height=1.0, segments=3, heading=-20.0),
+    "fixed Jersey barrier": Barrier.jersey(length=9.0, segments=3),
+    "free Jersey barrier": Barrier.jersey(length=9.0, segments=3, free_standing=True),
+    "pole": Barrier.pole(),
+    "mesh": Barrier.from_mesh(
+        [[x, y, z] for x in (0.0, 0.5) for y in (-2.0, 2.0) for z in (0.0, 1.0)],
+        [
+            *([0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5]),
+            *([0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [1, 5, 7], [1, 7, 3], [0, 2, 6], [0, 6, 4]),
+        ],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BARRIERS)
+def test_recomputed_from_the_histories(name: str) -> None:
+    """With scipy alone: J211-1 filter, means over 50 ms, a spring hit by the load in small steps."""
+    barrier = BARRIERS[name]
+    result = Simulation(car(), barrier, 14.0, 65.0, 0.2).run()
+    period, dt = 0.06, result.scene.settings.output_interval
+    loads = birm3d.design_load(result, natural_period=period)
+    angle = math.radians(barrier.heading)
+    into = np.array([math.cos(angle), math.sin(angle), 0.0])
+    line = np.array([-into[1], into[0], 0.0])
+    straight = "wall" in name or "Jersey" in name
+    b, a = butter(2, 2.0775 * 60.0, fs=1.0 / dt)
+    assert [row.name for row in loads] == list(barrier.element_names)
+    assert sum(row.impulse for row in loads) == pytest.approx(
+        -dt * float(result.barrier_force[1:].sum(axis=0) @ into), rel=1e-9
+    )
+    for row, load in zip(loads, result.element_loads, strict=True):
+        if not load.force.any():
+            assert all(getattr(row, number) == 0.0 for number in NUMBERS)
+            continue
+        window = np.ones(round(0.05 / dt)) / round(0.05 / dt)
+        force, moment = (
+            np.array([np.convolve(part, window)[: len(part)] for part in history.T])
+            for history in (load.force, load.moment)
+        )
+        level = np.abs(into @ force) if straight else np.hypot(force[0], force[1])
+        at = int(np.argmax(level))
+        turning = np.abs(line @ moment) if straight else np.hypot(moment[0], moment[1])
+        across = into if straight else np.array([force[0, at], force[1, at], 0.0]) / level[at]
+        filtered = filtfilt(b, a, load.force, axis=0, padtype="constant")
+        size = np.abs(filtered @ into) if straight else np.hypot(filtered[:, 0], filtered[:, 1])
+        assert row.impulse_vector == pytest.approx(dt * load.force[1:].sum(axis=0), rel=1e-9)
+        assert row.force_50ms == pytest.approx(level[at], rel=1e-9)
+        assert row.moment == pytest.approx(turning.max(), rel=1e-9)
+        assert row.peak_force == pytest.approx(size.max(), rel=2e-3)
+        if not straight or turning[at] == turning.max():
+            assert row.height == pytest.approx(turning[at] / level[at], rel=0.05)
+        assert row.equivalent_static_force == pytest.approx(
+            spring_force(load.force[1:] @ across, dt, period), rel=2e-3
+        )
+
+
+def spring_force(load: np.ndarray, dt: float, period: float) -> float:
+    """Greatest k u by the velocity Verlet rule, mass 1, and a period of free swinging."""
+    omega2, u, v, greatest = (2.0 * math.pi / period) ** 2, 0.0, 0.0, 0.0
+    for p in np.concatenate([load, np.zeros(round(period / dt))]).tolist():
+        v += 0.5 * dt * (p - omega2 * u)
+        u += dt * v
+        v += 0.5 * dt * (p - omega2 * u)
+        greatest = max(greatest, abs(u))
+    return greatest * omega2
+
+
+def one_node(height: float) -> Vehicle:
+    return Vehicle.from_arrays(
+        mass=1000.0,
+        inertia=1000.0 * np.eye(3),
+        nodes=[[1.0, 0.0, 0.0]],
+        anchors=[[0.0, 0.0, 0.0]],
+        k_initial=1e6,
+        k_unloading=1e6,
+        mass_center_height=height,
+    )
+
+
+@pytest.mark.parametrize("period", [0.02, 0.3])
+def test_exact_half_sine(period: float) -> None:
+    """A body on a spring: half a sine of sqrt(k m) v, for pi sqrt(m / k), whose response is known."""
+    free = Settings(gravity=0.0, ground=False)
+    simulation = Simulation(one_node(0.6), Barrier.rigid_wall(friction=0.0), 5.0, settings=free)
+    (row,) = birm3d.design_load(simulation, natural_period=period)
+    peak, own, w = 5.0 * math.sqrt(1e9), math.sqrt(1e3), 2.0 * math.pi / period
+    lasting = math.pi / own
+    t = np.linspace(0.0, lasting, 200_001)
+    forced = (np.sin(own * t) - own / w * np.sin(w * t)) / (1.0 - (own / w) ** 2)
+    after = abs(2.0 * (own / w) / (1.0 - (own / w) ** 2) * math.cos(0.5 * w * lasting))
+    assert row.impulse == pytest.approx(2.0 * 1000.0 * 5.0, rel=1e-3)
+    assert row.force_50ms == pytest.approx(peak * math.sin(own * 0.025) / (own * 0.025), rel=1e-3)
+    assert row.height == pytest.approx(0.6, rel=1e-9)
+    assert row.moment == pytest.approx(0.6 * row.force_50ms, rel=1e-9)
+    assert row.equivalent_static_force == pytest.approx(peak * max(forced.max(), after), rel=2e-3)
+
+
+def test_turned_scene() -> None:
+    """The same impact at another place and heading: the same table."""
+    tables = []
+    for heading, origin in ((0.0, (0.0, 0.0, 0.0)), (113.0, (4.0, -7.0, 0.0))):
+        barrier = Barrier.bollards(count=3, spacing=1.3, heading=heading, origin=origin)
+        simulation = Simulation(car(), barrier, 13.0, 60.0, barrier.station() + 0.2)
+        tables.append(birm3d.design_load(simulation, natural_period=0.05, ductility=3.0))
+    for number in (*NUMBERS, "direction"):
+        here, there = (getattr(table, number) for table in tables)
+        assert there == pytest.approx(here, rel=2e-3, abs=1e-6 * np.abs(here).max())
+
+
+def test_mirrored_scene() -> None:
+    barrier = Barrier.bollards(count=3, spacing=1.3)
+    left, right = (
+        birm3d.design_load(Simulation(car(), barrier, 13.0, 90.0, offset), natural_period=0.05)
+        for offset in (0.3, -0.3)
+    )
+    for number in NUMBERS:
+        assert getattr(left, number) == pytest.approx(getattr(right, number)[::-1], rel=1e-3)
+    assert left.direction == pytest.approx(-right.direction[::-1], abs=0.1)
+
+
+@pytest.fixture(scope="module")
+def envelope() -> DesignLoad:
+    simulation = Simulation(car(), Barrier.bollards(count=3, spacing=1.3), 12.0)
+    return birm3d.design_load(
+        simulation, natural_period="50 ms", ductility=2.0, offsets=[0.0, 0.4], impact_speeds=["8 m/s", 12.0]
+    )
+
+
+def test_envelope_is_the_greatest_of_its_scenes(envelope: DesignLoad) -> None:
+    assert [(scene.impact_offset, scene.impact_speed) for scene in envelope.scenes] == [
+        *((0.0, 8.0), (0.0, 12.0)),
+        *((0.4, 8.0), (0.4, 12.0)),
+    ]
+    singles = []
+    for scene in envelope.scenes:
+        simulation = Simulation(
+            car(), Barrier.bollards(count=3, spacing=1.3), scene.impact_speed, 90.0, scene.impact_offset
+        )
+        singles.append(birm3d.design_load(simulation, natural_period=0.05, ductility=2.0))
+    for i, row in enumerate(envelope):
+        for number in ("impulse", "peak_force", "force_50ms", "moment", "equivalent_static_force"):
+            values = [getattr(single[i], number) for single in singles]
+            assert getattr(row, number) == max(values)
+            assert row.scene.get(number, 0) == int(np.argmax(values))
+        assert row.touched == any(single[i].touched for single in singles)
+        assert row.height == singles[row.scene.get("force_50ms", 0)][i].height
+    assert "end of the list of impact offsets" in envelope.caution
+    assert "rigid and fixed" in envelope.caution
+
+
+def test_same_by_any_executor_and_with_results(envelope: DesignLoad) -> None:
+    simulation = Simulation(car(), Barrier.bollards(count=3, spacing=1.3), 12.0)
+    lists = {"offsets": [0.0, 0.4], "impact_speeds": [8.0, 12.0]}
+    for make in (ThreadPoolExecutor, ProcessPoolExecutor):
+        with make(2) as executor:
+            again = birm3d.design_load(
+                simulation, natural_period=0.05, ductility=2.0, executor=executor, **lists
+            )
+        assert again.to_dict() == envelope.to_dict()
+    results = [
+        Simulation(
+            car(), Barrier.bollards(count=3, spacing=1.3), scene.impact_speed, 90.0, scene.impact_offset
+        )
+        for scene in envelope.scenes
+    ]
+    mixed = [results[0].run(), *results[1:3], results[3].run()]
+    again = birm3d.design_load(mixed, natural_period=0.05, ductility=2.0)
+    assert again.to_markdown().split("Caution")[0] == envelope.to_markdown().split("Caution")[0]
+
+
+def test_several_vehicles() -> None:
+    barrier = Barrier.rigid_wall()
+    cases = [Simulation(car().with_gvw(mass), barrier, 12.0) for mass in (1500.0, 2200.0)]
+    (row,) = birm3d.design_load(cases, natural_period=0.05)
+    assert row.scene["impulse"] == 1
+    assert row.impulse > birm3d.design_load(cases[0], natural_period=0.05)[0].impulse
+
+
+def test_ductility_lessens_the_force() -> None:
+    result = Simulation(car(), Barrier.rigid_wall(), 12.0).run()
+    forces = [birm3d.design_load(result, ductility=mu).governing.equivalent_static_force for mu in (1, 2, 5)]
+    assert forces == sorted(forces, reverse=True)
+    assert forces[0] > 1.3 * forces[2]
+
+
+def test_what_is_written(envelope: DesignLoad, tmp_path: Path) -> None:
+    frame = envelope.to_dataframe()
+    assert list(frame.index) == ["bollard 1", "bollard 2", "bollard 3"]
+    assert frame.loc["bollard 2", "force_50ms"] == envelope["bollard 2"].force_50ms == envelope.force_50ms[1]
+    assert "12.00 m/s" in frame.loc["bollard 2", "moment_scene"]
+    envelope.to_csv(tmp_path / "loads.csv")
+    with (tmp_path / "loads.csv").open(encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    assert head[:4] == ["element", "impulse [N s]", "peak_force [N]", "force_50ms [N]"]
+    assert [float(row[3]) for row in rows] == envelope.force_50ms.tolist()
+    text = envelope.to_markdown()
+    lines = [line for line in text.splitlines() if line.startswith("|")]
+    assert len(lines) == 2 + 3
+    assert len({line.count("|") for line in lines}) == 1
+    for number in {number for row in envelope for number in row.scene.values()}:
+        assert f"({number}) passenger_car" in text
+    assert "Caution: Computed, not tested" in text
+    assert envelope.caution in envelope.summary()
+    assert "<table>" in envelope._repr_html_()
+    assert json.loads(json.dumps(envelope.to_dict()))["elements"][1]["element"] == "bollard 2"
+    figure = envelope.plot()
+    assert len(figure.axes) == 5
+    assert "bollard" in figure.axes[1].get_title()
+
+
+def test_cautions_are_said_where_they_matter() -> None:
+    free = birm3d.design_load(
+        Simulation(car(), Barrier.jersey(length=9.0, segments=3, free_standing=True), 14.0, 40.0),
+        natural_period=0.1,
+    )
+    assert "stand free" in free.caution
+    assert "rigid and fixed" not in free.caution
+    assert "assumed" not in free.caution
+    short = Simulation(car(), Barrier.rigid_wall(), 12.0, duration=0.05).run()
+    caution = birm3d.design_load(short).caution
+    assert "still acts" in caution
+    assert "natural period of 0.1 s is assumed" in caution
+
+
+def test_nothing_touched() -> None:
+    simulation = Simulation(car(), Barrier.bollards(count=2, spacing=1.5), 10.0, 90.0, 30.0, duration=0.2)
+    loads = birm3d.design_load(simulation)
+    assert not loads.impulse.any()
+    assert not loads.equivalent_static_force.any()
+    with pytest.raises(ValueError, match="elements must have been touched"):
+        loads.plot()
+
+
+def test_a_scene_that_fails_is_named() -> None:
+    simulation = Simulation(car(), Barrier.bollards(count=3), 10.0)
+    loads = birm3d.design_load(simulation, impact_speeds=[10.0, -1.0])
+    assert list(loads.failed) == [1]
+    assert "impact_speed" in loads.failed[1] or "speed" in loads.failed[1]
+    assert "(1) failed" in loads.summary()
+    with pytest.raises(ValueError, match="cases must have a scene that can be run, got none"):
+        birm3d.design_load(simulation, impact_speeds=[-1.0])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"natural_period": 0.0}, "natural_period must be .* got 0"),
+        ({"natural_period": 1e-4}, "natural_period must be finite and >= 0.0004 s"),
+        ({"natural_period": math.nan}, "natural_period must be"),
+        ({"natural_period": "3 m"}, "natural_period"),
+        ({"ductility": 0.5}, "ductility must be >= 1 and <= 100, got 0.5"),
+        ({"ductility": math.nan}, "ductility must be"),
+        ({"damping": 1.0}, "damping must be >= 0 and < 1, got 1.0"),
+        ({"damping": -0.1}, "damping must be"),
+        ({"offsets": []}, "impact_offset must have at least one value, got an empty list"),
+        ({"impact_angles": [math.nan]}, "impact_angle must be finite, got nan"),
+        ({"impact_speeds": ["fast"]}, "impact_speed"),
+        ({"offsets": 0.3}, "offsets must be a list"),
+    ],
+)
+def test_refused(arguments: dict[str, object], message: str) -> None:
+    simulation = Simulation(car(), Barrier.rigid_wall(), 10.0)
+    with pytest.raises(ValueError, match=message):
+        birm3d.design_load(simulation, **arguments)
+
+
+def test_refused_cases() -> None:
+    wall = Simulation(car(), Barrier.rigid_wall(), 10.0, duration=0.01)
+    with pytest.raises(ValueError, match="cases must be at least one"):
+        birm3d.design_load([])
+    with pytest.raises(ValueError, match="cases must have a barrier"):
+        birm3d.design_load(Simulation(car(), None, 10.0, duration=0.1))
+    with pytest.raises(ValueError, match="same barrier"):
+        birm3d.design_load([wall, Simulation(car(), Barrier.pole(), 10.0)])
+    with pytest.raises(ValueError, match=re.escape("simulations to vary impact_offset, got a Result")):
+        birm3d.design_load(wall.run(), offsets=[0.0])
+    with pytest.raises(ValueError, match="element must be one of wall; got 'post'"):
+        birm3d.design_load(wall)["post"]
+
+
+def test_interrupted(monkeypatch: pytest.MonkeyPatch) -> None:
+    module = importlib.import_module("birm3d.assessment.design_load")  # the package has the function
+
+    def two(scenes: object, look: object, **options: object) -> object:
+        runs = real(scenes, look, **options)
+        yield next(runs)
+        yield next(runs)
+        raise KeyboardInterrupt
+
+    real = module.look_at_runs
+    monkeypatch.setattr(module, "look_at_runs", two)
+    simulation = Simulation(car(), Barrier.rigid_wall(), 10.0)
+    with pytest.raises(DesignLoadInterrupted, match="2 of 3 scenes are finished") as stopped:
+        birm3d.design_load(simulation, impact_speeds=[8.0, 9.0, 10.0])
+    assert stopped.value.design_load is not None
+    assert stopped.value.design_load.force_50ms[0] > 0.0
+
+
+def birm3d_command(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
+    try:
+        main()
+    except SystemExit as stop:
+        return int(stop.code or 0)
+    return 0
+
+
+def test_command_line(monkeypatch, capsys, tmp_path) -> None:
+    scene = ["--vehicle", "passenger_car", "--mesh-density", "0.3", "--barrier", "bollards", "--count", "3"]
+    command = ["loads", *scene, "--speed", "12m/s", "--period", "50ms", "--ductility", "2"]
+    table, figure = tmp_path / "loads.csv", tmp_path / "loads.png"
+    assert birm3d_command(monkeypatch, *command, "--csv", str(table), "--plot", str(figure)) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith("Design loads: 3 bollards")
+    assert "Caution:" in out
+    assert f"table: {table}" in err
+    assert figure.stat().st_size > 10_000
+    assert birm3d_command(monkeypatch, *command, "--offsets", "0:0.4:0.4", "--json", "--jobs", "2") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert len(found["scenes"]) == 2
+    assert found["natural_period"] == 0.05
+    assert birm3d_command(monkeypatch, *command, "--markdown") == 0
+    assert capsys.readouterr().out.startswith("**Design loads")
+    assert birm3d_command(monkeypatch, *command, "--markdown", "--json") == 2
+    assert birm3d_command(monkeypatch, *command[:-1], "0.5") == 2
+    assert "ductility must be" in capsys.readouterr().err
