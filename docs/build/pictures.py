@@ -47,6 +47,17 @@ def tutorial() -> Figure:
     return result.plot()
 
 
+def design_loads() -> Figure:
+    """What the page on design loads plots."""
+    import birm3d
+    from birm3d import units
+
+    truck = birm3d.Vehicle.preset("cargo_truck")
+    crash = birm3d.Simulation(truck, birm3d.Barrier.bollards(), impact_speed=units.mph(30))
+    offsets = [0.0, 0.15, 0.3, 0.45, 0.6]
+    return birm3d.design_load(crash, natural_period=0.05, ductility=3, offsets=offsets).plot()
+
+
 def truss_law() -> Figure:
     """Fig. 3: loading, unloading, reloading, computed by the core."""
     import numpy as np
@@ -176,7 +187,16 @@ def _rows(path: Path) -> list[dict[str, str]]:
 
 MADE: dict[str, Callable[[], Figure]] = {
     made.__name__: made
-    for made in (sedan, tutorial, truss_law, architecture, work_precision, blind, finite_element)
+    for made in (
+        sedan,
+        tutorial,
+        design_loads,
+        truss_law,
+        architecture,
+        work_precision,
+        blind,
+        finite_element,
+    )
 }
 
 

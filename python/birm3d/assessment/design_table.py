@@ -205,7 +205,7 @@ class DesignLoad:
                 self._cell(row, "peak_force"),
                 self._cell(row, "force_50ms"),
                 f"{row.height:.2f}",
-                f"{row.direction:.0f}",
+                f"{round(row.direction)}",
                 self._cell(row, "moment"),
                 self._cell(row, "equivalent_static_force"),
                 f"{row.dynamic_load_factor:.2f}",

@@ -19,6 +19,7 @@ __all__ = [
     "ENVELOPED",
     "ElementDesign",
     "System",
+    "degrees_between",
     "design_direction",
     "element_design",
     "envelope",
@@ -162,7 +163,7 @@ def element_design(load: ElementLoad, normal: Floats, system: System) -> Element
         peak_force=float(lateral_level(filtered, load, normal).max()),
         force_50ms=float(level[row]),
         height=float(resultant_height(force, moment, load.line)[row]),
-        direction=_degrees(direction, normal),
+        direction=degrees_between(normal, direction),
         moment=float(overturning(moment, load.line).max()),
         equivalent_static_force=resistance(load.force[1:] @ direction, load.interval, *system),
         load=load,
@@ -176,7 +177,8 @@ def lateral_level(force: Floats, load: ElementLoad, normal: Floats) -> Floats:
     return np.asarray(np.hypot(force[:, 0], force[:, 1]))
 
 
-def _degrees(direction: Floats, normal: Floats) -> float:
+def degrees_between(normal: Floats, direction: Floats) -> float:
+    """Return the angle from a normal to a direction, seen from above, positive to the left [deg]."""
     across = normal[0] * direction[1] - normal[1] * direction[0]
     return math.degrees(math.atan2(across, float(normal @ direction)))
 

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..assessment.element_design import design_direction
+from ..assessment.element_design import degrees_between, design_direction
 from ..assessment.oscillator import LEAST_INTERVALS, resistance
 from ..result.element_loads import overturning
 from ..signals.filters import moving_average
@@ -51,7 +51,8 @@ def plot_design_load(loads: DesignLoad) -> Figure:
     _bars(bars, loads)
     end = _end_of_load(row.load)
     direction = design_direction(row.load, loads.normal)
-    _force(force, row, row.load.force @ direction, row.load.interval)
+    degrees = degrees_between(loads.normal, direction)
+    _force(force, row, row.load.force @ direction, row.load.interval, degrees)
     _moment(moment, row, row.load)
     for axes in (force, moment):
         axes.set_xlim(0.0, end)
@@ -88,7 +89,7 @@ def _bars(axes: Axes, loads: DesignLoad) -> None:
     axes.set_title("Horizontal force on each element", fontsize="medium")
 
 
-def _force(axes: Axes, row: ElementDesign, force: Floats, interval: float) -> None:
+def _force(axes: Axes, row: ElementDesign, force: Floats, interval: float, degrees: float) -> None:
     ms = np.arange(len(force)) * interval * 1e3
     smooth, name = filtered(force, 60, interval)
     mean = moving_average(force, 0.05, interval)
@@ -101,7 +102,7 @@ def _force(axes: Axes, row: ElementDesign, force: Floats, interval: float) -> No
     top = max(float(smooth.max()), float(mean.max()), row.equivalent_static_force) / 1e3
     axes.set_ylim(min(0.0, 1.1 * float(smooth.min()) / 1e3), 1.25 * top)
     axes.set_ylabel("force [kN]")
-    axes.set_title(f"{row.name}: force at {row.direction:.0f}° from the normal", fontsize="medium")
+    axes.set_title(f"{row.name}: force at {round(degrees)}° from the normal", fontsize="medium")
 
 
 def _moment(axes: Axes, row: ElementDesign, load: ElementLoad) -> None:
@@ -148,7 +149,7 @@ def _spectrum(axes: Axes, loads: DesignLoad, row: ElementDesign, force: Floats) 
     axes.annotate(
         f"{own:g} s: {row.dynamic_load_factor:.2f}",
         (own, row.dynamic_load_factor),
-        (0.0, 7.0),
+        (0.0, -14.0),
         textcoords="offset points",
         ha="center",
         fontsize="small",
