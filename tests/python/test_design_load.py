@@ -216,7 +216,9 @@ def test_what_is_written(envelope: DesignLoad, tmp_path: Path) -> None:
     frame = envelope.to_dataframe()
     assert list(frame.index) == ["bollard 1", "bollard 2", "bollard 3"]
     assert frame.loc["bollard 2", "force_50ms"] == envelope["bollard 2"].force_50ms == envelope.force_50ms[1]
-    assert "12.00 m/s" in frame.loc["bollard 2", "moment_scene"]
+    named = envelope.scenes[envelope["bollard 2"].scene["moment"]]
+    assert frame.loc["bollard 2", "moment_scene"] == str(named)
+    assert f"{named.impact_speed:.2f} m/s" in str(named)
     envelope.to_csv(tmp_path / "loads.csv")
     with (tmp_path / "loads.csv").open(encoding="utf-8", newline="") as file:
         head, *rows = csv.reader(file)
