@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import importlib
 import json
 import math
 import re
@@ -310,7 +309,7 @@ def test_refused_cases() -> None:
 
 
 def test_interrupted(monkeypatch: pytest.MonkeyPatch) -> None:
-    module = importlib.import_module("birm3d.assessment.design_load")  # the package has the function
+    from birm3d.study import whole_runs as module
 
     def two(scenes: object, look: object, **options: object) -> object:
         runs = real(scenes, look, **options)

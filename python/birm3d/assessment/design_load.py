@@ -18,8 +18,6 @@ from ..base.checks import check_runs, number
 from ..result.result import Result
 from ..simulation.parameters import in_si, varied_scene
 from ..simulation.simulation import Simulation
-from ..study.executors import ExecutorError
-from ..study.whole_runs import look_at_runs
 from ..unit_check import warn_if_any_unusual
 from ..units import Quantity, si
 from .design_caution import barrier_caution, run_cautions
@@ -116,6 +114,10 @@ def design_load(
     >>> loads = birm3d.design_load(sim, natural_period=0.05, ductility=3, offsets=[0.0, 0.3, 0.6])
     >>> print(loads.to_markdown())
     """
+    # What only studies need, such as multiprocessing, is loaded by the first one.
+    from ..study.executors import ExecutorError
+    from ..study.whole_runs import look_at_runs
+
     listed = [cases] if isinstance(cases, (Simulation, Result)) else list(cases)
     lists = {"impact_offset": offsets, "impact_angle": impact_angles, "impact_speed": impact_speeds}
     varied = {name: _values(name, values) for name, values in lists.items() if values is not None}
