@@ -63,6 +63,7 @@ USUAL: Mapping[str, Usual] = MappingProxyType(
         "diameter": Usual(0.01, 5.0, "m", "mm"),
         "height": _SIZE,
         "thickness": _SIZE,
+        "edge_radius": Usual(0.0, 5.0, "m", "mm"),
         "spacing": Usual(0.01, 100.0, "m", "mm"),
         "row_spacing": Usual(0.01, 100.0, "m", "mm"),
         "row_offset": Usual(0.0, 100.0, "m", "mm", magnitude=True),

@@ -75,7 +75,7 @@ def test_fitted_files_name_their_fit(key: str) -> None:
 
 
 def test_page_is_what_the_results_say() -> None:
-    assert (FOLDER / "README.md").read_text(encoding="utf-8") == page.page()
+    assert (FOLDER / "finite_element.md").read_text(encoding="utf-8") == page.page()
 
 
 def test_command_line_of_the_fit() -> None:

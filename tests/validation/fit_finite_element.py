@@ -2,7 +2,7 @@
 
     python tests/validation/fit_finite_element.py n    # writes fitted_n.toml and results/finite_element_n.csv
     python tests/validation/fit_finite_element.py s
-    python tests/validation/page.py                    # README.md from the results
+    python tests/validation/page.py                    # finite_element.md from the results
 
 Least squares over crush, CFC60 peak force, restitution (head-on), yaw at the end (of the others), lateral
 impulse of a post off the centre line, and, with half their weight, the CFC60 force over time. A residual of

@@ -1,4 +1,4 @@
-"""Writes README.md beside this file from the tables in results.
+"""Writes finite_element.md beside this file from the tables in results.
 
 python tests/validation/page.py
 """
@@ -29,11 +29,9 @@ HEAD = (
     "lateral over normal impulse",
 )
 
-INTRODUCTION = """# Predicted beside given results
+INTRODUCTION = """# Finite-element vehicles N and S
 
 Tables are written by `python tests/validation/page.py` from `results`.
-
-## Finite-element vehicles N and S
 
 `python tests/validation/fit_finite_element.py n` (or `s`) fits the skin of a vehicle to all its given runs
 together and saves it as `tests/data/finite_element/fitted_n.toml`. Then it fits it without each run in turn.
@@ -119,7 +117,7 @@ def _table(key: str, kind: str, rows: Sequence[dict[str, str]]) -> Iterator[str]
 
 
 def page() -> str:
-    """The text of README.md."""
+    """The text of finite_element.md."""
     tables = {key: rows_of(key) for key in VEHICLES}
     lines = [INTRODUCTION, *_summary(tables)]
     for key, table in tables.items():
@@ -136,4 +134,4 @@ def page() -> str:
 
 
 if __name__ == "__main__":
-    (FOLDER / "README.md").write_text(page(), encoding="utf-8", newline="\n")
+    (FOLDER / "finite_element.md").write_text(page(), encoding="utf-8", newline="\n")

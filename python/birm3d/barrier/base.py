@@ -77,6 +77,7 @@ class Barrier:
         height: Quantity | None = None,
         thickness: Quantity = 0.5,
         segments: int = 1,
+        edge_radius: Quantity = 0.0,
         friction: float = 0.2,
         origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
         heading: Quantity = 0.0,
@@ -86,11 +87,15 @@ class Barrier:
         Parameters
         ----------
         width, height
-            Of the wall, its middle at the origin [m]; ``None``: without end.
+            Of the wall, its middle at the origin [m]; ``None``: without end, but a wall with rounded edges is
+            then 4 m wide.
         thickness
             Of a wall that has an end or a top [m].
         segments
             Elements of equal width that a wall of finite width is made of.
+        edge_radius
+            Of the upright edges [m], at most half of thickness and width; 0: sharp. The width is counted from
+            the outermost place of one arc to that of the other.
         friction, origin, heading
             See :class:`Barrier`.
 
@@ -101,14 +106,17 @@ class Barrier:
         """
         from .kinds import RigidWall
 
+        radius = given("edge_radius", edge_radius)
+        rounded = radius > 0.0
         return RigidWall(
             float(friction),
             _point(origin),
             given("heading", heading),
-            width=math.inf if width is None else given("width", width),
+            width=(4.0 if rounded else math.inf) if width is None else given("width", width),
             height=math.inf if height is None else given("height", height),
             thickness=given("thickness", thickness),
             segments=segments,
+            edge_radius=radius,
         )
 
     @staticmethod

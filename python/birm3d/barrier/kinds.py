@@ -17,7 +17,7 @@ from .base import Barrier
 from .closed_mesh import check_closed
 from .free_standing import FreeStanding
 
-__all__ = ["PROFILES", "Bollards", "Jersey", "MeshBarrier", "Pole", "RigidWall"]
+__all__ = ["PROFILES", "Bollards", "Jersey", "MeshBarrier", "Pole", "RigidWall", "drawn_up"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -25,6 +25,8 @@ Floats = npt.NDArray[np.float64]
 _HIGH = 100.0
 # Solids that stand on the ground go on below it, so that nothing is pushed out downwards [m].
 _FOOT = 1.0
+# Of the polygon that an arc of 90 degrees is made of.
+_SIDES_OF_QUARTER = 15
 
 
 def _positive(name: str, value: float) -> None:
@@ -42,13 +44,15 @@ class RigidWall(Barrier):
     """A flat, rigid, vertical wall.
 
     Without end in width and height it is a half-space. Else it has a ``thickness``, with ends, a top and a
-    back that can be met like the face.
+    back that can be met like the face. Its upright edges are sharp, or rounded by ``edge_radius``: then it is
+    one closed mesh, see :meth:`outline`, whose faces go over into arcs without a seam.
     """
 
     width: float = math.inf
     height: float = math.inf
     thickness: float = 0.5
     segments: int = 1
+    edge_radius: float = 0.0
 
     _counts: ClassVar = ("segments",)
 
@@ -58,6 +62,18 @@ class RigidWall(Barrier):
         _positive("height", self.height)
         _finite("thickness", self.thickness)
         heading = math.radians(self.heading)
+        self._check_edges()
+        if self.edge_radius > 0.0:
+            top = self.height if math.isfinite(self.height) else _HIGH
+            vertices, faces = drawn_up(self.outline(), -_FOOT, top)
+            return [
+                _core.Element.mesh(
+                    vertices=vertices,
+                    faces=faces.tolist(),
+                    position=self.from_origin(0.0, 0.0),
+                    heading=heading,
+                )
+            ]
         if math.isinf(self.width) and self.segments > 1:
             raise ValueError(f"segments must be 1 for a wall of infinite width, got {self.segments}")
         if math.isinf(self.width) and math.isinf(self.height):
@@ -65,6 +81,37 @@ class RigidWall(Barrier):
         top = self.height if math.isfinite(self.height) else _HIGH
         corners = [(0.0, -_FOOT), (self.thickness, -_FOOT), (self.thickness, top), (0.0, top)]
         return _along_line(self, np.array(corners), 0.0, self.width, self.segments)
+
+    def outline(self) -> Floats:
+        """Return the plan of a wall with rounded edges: across and along of its corners, shape (n, 2) [m].
+
+        The arcs are polygons of 6 degrees a side with their corners on the arc. At the radius r they lie
+        within 0.0014 r of it.
+        """
+        quarter = np.linspace(0.0, 0.5 * np.pi, _SIDES_OF_QUARTER + 1)
+        arc = self.edge_radius * np.stack([np.cos(quarter), np.sin(quarter)], axis=1)
+        middle = np.array([0.5 * self.thickness, 0.0])
+        corner = np.array([middle[0], 0.5 * self.width]) - self.edge_radius
+        parts = []
+        for c, s, sides in ((1, 0, (1, 1)), (0, 1, (-1, 1)), (-1, 0, (-1, -1)), (0, -1, (1, -1))):
+            parts.append(middle + corner * sides + arc @ np.array([[c, s], [-s, c]]))
+        ring = np.vstack(parts)
+        # Where the radius is half of the wall, arcs end where the next ones begin.
+        apart = np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1) > 1e-9
+        return np.asarray(ring[apart])
+
+    def _check_edges(self) -> None:
+        radius = self.edge_radius
+        most = 0.5 * min(self.thickness, self.width)
+        if not 0.0 <= radius <= most:
+            raise ValueError(
+                f"edge_radius must be >= 0 m and at most half of thickness and width ({most:g} m), "
+                f"got {radius}"
+            )
+        if radius > 0.0 and math.isinf(self.width):
+            raise ValueError(f"edge_radius must be 0 m for a wall of infinite width, got {radius}")
+        if radius > 0.0 and self.segments > 1:
+            raise ValueError(f"edge_radius must be 0 m for a wall of several segments, got {radius}")
 
     @property
     def element_names(self) -> tuple[str, ...]:
@@ -359,6 +406,23 @@ def _along_line(
             )
         )
     return elements
+
+
+def drawn_up(outline: Floats, low: float, high: float) -> tuple[Floats, npt.NDArray[np.int64]]:
+    """Return vertices and triangles of a solid with a convex plan (n, 2), counter-clockwise from above."""
+    n = len(outline)
+    i = np.arange(n)
+    j = (i + 1) % n
+    fan = np.arange(1, n - 1)
+    first = np.zeros_like(fan)
+    faces = [
+        np.stack([i, j, j + n], axis=1),
+        np.stack([i, j + n, i + n], axis=1),
+        np.stack([first, fan + 1, fan], axis=1),
+        np.stack([first + n, fan + n, fan + 1 + n], axis=1),
+    ]
+    vertices = np.vstack([np.column_stack([outline, np.full(n, z)]) for z in (low, high)])
+    return vertices, np.vstack(faces).astype(np.int64)
 
 
 def _numbered(whole: str, part: str, count: int) -> tuple[str, ...]:

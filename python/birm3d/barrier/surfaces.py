@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
+from .kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall, drawn_up
 
 if TYPE_CHECKING:
     from .base import Barrier
@@ -62,6 +62,8 @@ def barrier_surfaces(barrier: Barrier | None, around: npt.ArrayLike) -> list[Sur
         return [_cylinder(barrier.place(*place), radius, height) for place in barrier.places()]
     if isinstance(barrier, RigidWall):
         endless = np.isinf(barrier.width) and np.isinf(barrier.height)
+        if barrier.edge_radius > 0.0:
+            return [_rounded_wall(barrier, min(barrier.height, top))]
         depth = _WALL_DEPTH if endless else barrier.thickness
         sides = (np.zeros(2), np.full(2, depth), np.array([0.0, min(barrier.height, top)]))
         return _extruded(barrier, *sides, _ends(barrier.width, barrier.segments, seen))
@@ -99,6 +101,12 @@ def _extruded(barrier: Barrier, front: Floats, back: Floats, height: Floats, end
         sections = [np.stack([across, np.full(n, end), up], axis=1) for end in (low, high)]
         surfaces.append((_placed(barrier, np.vstack(sections)), faces))
     return surfaces
+
+
+def _rounded_wall(barrier: RigidWall, height: float) -> Surface:
+    """Return a wall with rounded upright edges."""
+    vertices, faces = drawn_up(barrier.outline(), 0.0, height)
+    return _placed(barrier, vertices), faces
 
 
 def _cylinder(foot: Floats, radius: float, height: float) -> Surface:

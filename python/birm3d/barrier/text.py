@@ -28,6 +28,8 @@ def barrier_text(barrier: Barrier | None) -> str:
         if math.isinf(barrier.width) and math.isinf(barrier.height):
             return "rigid wall without end"
         sizes = [_length(barrier.width), _height(barrier.height), f"{barrier.thickness:g} m thick"]
+        if barrier.edge_radius > 0.0:
+            sizes.append(f"edges rounded by {barrier.edge_radius:g} m")
         return ", ".join([f"rigid wall {sizes[0]}{_segments(barrier.segments)}", *sizes[1:]])
     if isinstance(barrier, Pole):
         return f"pole, Ø {barrier.diameter:g} m"

@@ -171,13 +171,15 @@ def _print_outcome(result: Result) -> None:
     from rich.markup import escape
     from rich.table import Table
 
+    from ..scene.text import overlap_text
+
     scene = result.scene
     table = Table(
         "outcome",
         "value",
         "unit",
         title=f"{scene.vehicle.name}, {scene.vehicle.mass:,.0f} kg, {scene.impact_speed:.2f} m/s "
-        f"({scene.impact_speed / units.mph:.1f} mph) at {scene.impact_angle:g}°",
+        f"({scene.impact_speed / units.mph:.1f} mph) at {scene.impact_angle:g}°{overlap_text(scene)}",
         caption=f"{result.end_reason} after {result.time[-1] * 1e3:.0f} ms; {result.statistics.steps} steps "
         f"in {result.run_time * 1e3:.1f} ms of computing",
     )

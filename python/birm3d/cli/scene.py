@@ -36,7 +36,7 @@ class QuantityOption(click.ParamType):  # type: ignore[type-arg,unused-ignore]
 
 # Kind of barrier -> the options that give its sizes.
 _SIZES = {
-    "rigid_wall": ("width", "height", "thickness", "segments"),
+    "rigid_wall": ("width", "height", "thickness", "segments", "edge_radius"),
     "pole": ("diameter",),
     "bollards": ("count", "diameter", "height", "spacing", "rows", "row_spacing", "row_offset"),
     "jersey": ("profile", "height", "length", "segments", "free_standing", "density"),
@@ -60,6 +60,7 @@ _OPTIONS = (
     click.option("--width", type=QuantityOption("length"), help="Of the wall.  [default: without end]"),
     click.option("--height", type=QuantityOption("length"), help="Of wall, bollards or Jersey barrier."),
     click.option("--thickness", type=QuantityOption("length"), help="Of a wall with an end or a top."),
+    click.option("--edge-radius", type=QuantityOption("length"), help="Of a wall's upright edges."),
     click.option("--diameter", type=QuantityOption("length"), help="Of pole or bollards."),
     click.option("--count", type=int, help="Bollards in a row."),
     click.option("--spacing", type=QuantityOption("length"), help="Of bollards, centre to centre."),
@@ -101,6 +102,16 @@ _OPTIONS = (
         default=0.0,
         show_default=True,
         help="Along the barrier, m; at angle 0 behind its line.",
+    ),
+    click.option(
+        "--overlap", type=float, help="Share of the vehicle's width that meets the barrier, 0 to 1."
+    ),
+    click.option(
+        "--overlap-side",
+        type=click.Choice(["left", "right"]),
+        default="left",
+        show_default=True,
+        help="Of the vehicle, from which the overlap is counted.",
     ),
     click.option(
         "--yaw",
@@ -181,4 +192,6 @@ def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
         impact_roll=options["roll"],
         duration=options["duration"],
         settings=Settings(**settings),
+        overlap=options["overlap"],
+        overlap_side=options["overlap_side"],
     )

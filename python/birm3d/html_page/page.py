@@ -24,6 +24,7 @@ from .page_data import page_data
 if TYPE_CHECKING:
     from ..barrier.base import Barrier
     from ..result.result import Result
+    from ..scene.scene import Scene
 
 __all__ = ["write_html"]
 
@@ -116,12 +117,18 @@ def _scene_rows(result: Result) -> list[tuple[str, ...]]:
         ("barrier", _barrier(scene.barrier)),
         ("impact speed", f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph)"),
         ("impact angle", f"{scene.impact_angle:g}° from the barrier's line"),
-        ("impact offset", f"{scene.impact_offset:g} m"),
+        _aim(scene),
         ("time steps", steps),
         ("contact, tyres", f"{settings.contact_model}, {settings.tire_model}"),
         ("ended", f"at {result.time[-1]:.4f} s: {END_REASONS[result.end_reason]}"),
         ("state hash", f"{result.state_hash:016x}"),
     ]
+
+
+def _aim(scene: Scene) -> tuple[str, str]:
+    if scene.overlap is None:
+        return "impact offset", f"{scene.impact_offset:g} m"
+    return "overlap", f"{100.0 * scene.overlap:g} % of the width, {scene.overlap_side} side"
 
 
 def _barrier(barrier: Barrier | None) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .. import units
+from ..scene.text import overlap_text
 from .core_contact import core_lines
 from .element_loads import touched_elements
 from .omitted import left_out
@@ -34,7 +35,7 @@ def report(result: RunAnalysis) -> str:
         f"{result.outcome}: {result.outcome_detail}",
         f"{vehicle.name}, {vehicle.mass:.1f} kg, {vehicle.n_nodes} shell nodes, {len(vehicle.wheels)} wheels",
         f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph) "
-        f"at {scene.impact_angle:g} deg "
+        f"at {scene.impact_angle:g} deg{overlap_text(scene)} "
         + (_barrier(scene.barrier) if scene.barrier else "without a barrier"),
         f"ended at {result.time[-1]:.4f} s: {END_REASONS[result.end_reason]}",
         "",

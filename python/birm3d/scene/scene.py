@@ -12,6 +12,7 @@ from ..barrier.base import Barrier
 from ..base.arguments import checked
 from ..vehicle.vehicle import Vehicle
 from .settings import MU_TIRE_BARRIER, Settings
+from .width_overlap import offset_of_overlap
 
 __all__ = ["APPROACH", "Scene"]
 
@@ -34,6 +35,8 @@ class Scene:
     impact_roll: float
     duration: float | None
     settings: Settings
+    overlap: float | None = None
+    overlap_side: str = "left"
 
     @property
     def mu_tire_barrier(self) -> float:
@@ -69,12 +72,25 @@ class Scene:
         )
 
     @property
+    def path_offset(self) -> float:
+        """Where the path meets the barrier's line [m]: ``impact_offset``, or what the overlap leads to."""
+        if self.overlap is None:
+            return self.impact_offset
+        for name in ("impact_offset", "impact_yaw"):
+            value = getattr(self, name)
+            if value != 0.0:
+                raise ValueError(f"{name} must be 0 where overlap is given, got {value}")
+        return offset_of_overlap(
+            self.vehicle, self.barrier, self.overlap, self.overlap_side, self.impact_angle
+        )
+
+    @property
     def approach(self) -> _core.Approach:
         """How the vehicle comes, for the core."""
         return _core.Approach(
             speed=self.impact_speed,
             angle=math.radians(self.impact_angle),
-            offset=self.impact_offset,
+            offset=self.path_offset,
             standoff=self.standoff,
             yaw=math.radians(self.impact_yaw),
             roll=math.radians(self.impact_roll),

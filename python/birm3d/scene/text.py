@@ -10,7 +10,7 @@ from ..barrier.text import barrier_text
 if TYPE_CHECKING:
     from .scene import Scene
 
-__all__ = ["scene_text"]
+__all__ = ["overlap_text", "scene_text"]
 
 
 def scene_text(scene: Scene, separator: str = ": ") -> str:
@@ -19,4 +19,11 @@ def scene_text(scene: Scene, separator: str = ": ") -> str:
     head = f"{scene.vehicle.name}, {scene.vehicle.mass:,.0f} kg, {speed}"
     if scene.barrier is None:
         return f"{head}, no barrier"
-    return f"{head} at {scene.impact_angle:g}°{separator}{barrier_text(scene.barrier)}"
+    return f"{head} at {scene.impact_angle:g}°{overlap_text(scene)}{separator}{barrier_text(scene.barrier)}"
+
+
+def overlap_text(scene: Scene) -> str:
+    """Return the share of the width that meets the barrier, after a comma; ``""`` where it is not given."""
+    if scene.overlap is None:
+        return ""
+    return f", {100.0 * scene.overlap:g} % overlap on the {scene.overlap_side}"

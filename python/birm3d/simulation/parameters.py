@@ -4,7 +4,8 @@
 name                           value
 =============================  ========================================================================
 ``impact_speed`` ...           an argument of :class:`birm3d.Simulation` (``impact_angle``, ``impact_offset``,
-                               ``standoff``, ``duration``, ``vehicle``, ``barrier``, ``settings``)
+                               ``standoff``, ``duration``, ``overlap``, ``vehicle``, ``barrier``,
+                               ``settings``)
 ``barrier.<field>``            a field of the barrier, as ``barrier.friction`` or ``barrier.spacing``
 ``settings.<field>``           a field of :class:`birm3d.Settings`, as ``settings.tolerance``
 ``vehicle.gvw``                mass [kg], see :meth:`birm3d.Vehicle.with_gvw`
@@ -26,6 +27,7 @@ name                           value
 from __future__ import annotations
 
 import dataclasses
+import math
 import re
 from collections.abc import Mapping
 from difflib import get_close_matches
@@ -65,6 +67,7 @@ _UNITS = {
     "barrier.height": "m",
     "barrier.diameter": "m",
     "barrier.thickness": "m",
+    "barrier.edge_radius": "m",
     "barrier.spacing": "m",
     "barrier.row_spacing": "m",
     "barrier.row_offset": "m",
@@ -136,9 +139,15 @@ def quantity_of(name: str) -> str | None:
 
 
 def _names(scene: Scene) -> tuple[str, ...]:
-    names = [f.name for f in dataclasses.fields(Scene) if f.name not in ("vehicle", "barrier", "settings")]
+    no_numbers = {"vehicle", "barrier", "settings", "overlap_side"}
+    if scene.overlap is None:
+        no_numbers.add("overlap")
+    names = [f.name for f in dataclasses.fields(Scene) if f.name not in no_numbers]
     if scene.barrier is not None:
-        names += [f"barrier.{f.name}" for f in dataclasses.fields(scene.barrier)]
+        # A wall without end has no edges.
+        edgeless = math.isinf(getattr(scene.barrier, "width", 0.0))
+        fields = (f.name for f in dataclasses.fields(scene.barrier))
+        names += [f"barrier.{name}" for name in fields if not (edgeless and name == "edge_radius")]
     names += [f"settings.{f.name}" for f in dataclasses.fields(Settings)]
     vehicle = scene.vehicle
     no_effect = set() if vehicle.has_file else {"mesh_density"}

@@ -45,6 +45,7 @@ _BARRIERS: dict[str, dict[str, str]] = {
         "height_m": "height",
         "thickness_m": "thickness",
         "segments": "segments",
+        "edge_radius_m": "edge_radius",
     },
     "pole": {"diameter_m": "diameter"},
     "bollards": {
@@ -96,6 +97,7 @@ class _Barrier(Strict):
     height_m: float | None = None
     thickness_m: float | None = None
     segments: int | None = None
+    edge_radius_m: float | None = None
     diameter_m: float | None = None
     count: int | None = None
     spacing_m: float | None = None
@@ -141,8 +143,10 @@ class _Impact(Strict):
     yaw: str = "0 deg"
     roll: str = "0 deg"
     duration: str | None = None
+    overlap: float | None = None
+    overlap_side: Literal["left", "right"] = "left"
 
-    @field_validator("*")
+    @field_validator("speed", "angle", "offset", "standoff", "yaw", "roll", "duration")
     @classmethod
     def _readable(cls, value: str | None, info: ValidationInfo) -> str | None:
         if value is not None:
@@ -229,6 +233,8 @@ def read_scene_file(path: str | Path) -> Simulation:
             impact_roll=impact.si("roll"),
             duration=None if impact.duration is None else impact.si("duration"),
             settings=settings,
+            overlap=impact.overlap,
+            overlap_side=impact.overlap_side,
         )
 
 

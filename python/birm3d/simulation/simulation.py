@@ -68,6 +68,12 @@ class Simulation:
         [s]; ``None``: until the outcome is decided.
     settings
         See :class:`birm3d.Settings`.
+    overlap
+        Share of the vehicle's width that meets the barrier, above 0 to 1, in place of ``impact_offset``. Seen
+        along the path the barrier's end stands that far inside the skin of the (leading) unit. ``None``: the
+        path is that of ``impact_offset``.
+    overlap_side
+        Of the vehicle, from which the overlap is counted, "left" or "right".
 
     Raises
     ------
@@ -92,6 +98,8 @@ class Simulation:
         impact_roll: Quantity = 0.0,
         duration: Quantity | None = None,
         settings: Settings | None = None,
+        overlap: float | None = None,
+        overlap_side: str = "left",
     ) -> None:
         scene = Scene(
             vehicle,
@@ -104,6 +112,8 @@ class Simulation:
             given("impact_roll", impact_roll),
             None if duration is None else given("duration", duration),
             settings if settings is not None else Settings(),
+            None if overlap is None else float(overlap),
+            overlap_side,
         )
         self._begin(scene)
 

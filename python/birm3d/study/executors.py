@@ -267,7 +267,8 @@ def _batches(
     Where all that varies is how the vehicle comes, that is the chunk. Other scenes are held one at a time:
     each has a vehicle or a barrier of its own.
     """
-    if simulation is not None and all(name in APPROACH for name in names):
+    by_offset = simulation is not None and simulation.scene.overlap is None
+    if simulation is not None and by_offset and all(name in APPROACH for name in names):
         base = simulation.scene
         core = base.core_scene()
         rows = ((run, dict(zip(names, row, strict=True))) for run, row in chunk)

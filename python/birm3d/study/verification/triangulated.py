@@ -28,7 +28,8 @@ def triangulated(barrier: Barrier | None) -> MeshBarrier | None:
     along, out, up = barrier_axes(barrier)
     # Where the exact shape goes on below the ground, which blocks of laboratories do not have.
     bottomless = isinstance(barrier, Pole | Bollards) or (
-        isinstance(barrier, RigidWall) and np.isinf(barrier.width) and np.isinf(barrier.height)
+        isinstance(barrier, RigidWall)
+        and (barrier.edge_radius > 0.0 or (np.isinf(barrier.width) and np.isinf(barrier.height)))
     )
     far = origin + np.array([_ALONG * along, -_ALONG * along, _UP * up])
     vertices, faces, count = [], [], 0

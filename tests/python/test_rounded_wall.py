@@ -1,0 +1,186 @@
+"""Walls with rounded upright edges, and impacts that overlap a share of the vehicle's width."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+from pathlib import Path
+
+import numpy as np
+import pytest
+from birm3d import Barrier, Result, Settings, Simulation, Vehicle, sweep, units
+from birm3d.barrier.text import barrier_text
+from birm3d.cli import main
+from birm3d.simulation.scene_file import read_scene_file
+
+SPEED = units.km_h(64.4)
+
+
+@pytest.fixture(scope="module")
+def car() -> Vehicle:
+    return Vehicle.preset("passenger_car", mesh_density=0.5)
+
+
+def crash(car: Vehicle, wall: Barrier, side: str = "left", overlap: float = 0.25) -> Result:
+    return Simulation(car, wall, SPEED, overlap=overlap, overlap_side=side, duration=0.15).run()
+
+
+def change(result: Result) -> np.ndarray:
+    return np.asarray(result.velocity[-1] - result.velocity[0])
+
+
+def test_left_and_right_are_mirror_images(car: Vehicle) -> None:
+    wall = Barrier.rigid_wall(edge_radius=0.15)
+    left, right = (crash(car, wall, side) for side in ("left", "right"))
+    assert change(left) == pytest.approx(change(right) * [1.0, -1.0, 1.0], rel=1e-3, abs=5e-3)
+    assert left.yaw[-1] == pytest.approx(-right.yaw[-1], rel=2e-3)
+    assert left.velocity[-1, 1] < -0.3, "pushed off to the right"
+    assert left.yaw[-1] > 5.0, "turned to the left"
+
+
+def test_sharp_edge_is_the_limit_of_small_radii(car: Vehicle) -> None:
+    found = [change(crash(car, Barrier.rigid_wall(width=4.0, edge_radius=r))) for r in (0.0, 0.001, 0.02)]
+    sharp, nearly, small = found
+    assert nearly == pytest.approx(sharp, rel=0.02, abs=0.05)
+    assert np.linalg.norm(small - sharp) < 1.0
+
+
+def test_energy_and_momentum_close(car: Vehicle) -> None:
+    result = crash(car, Barrier.rigid_wall(edge_radius=0.15))
+    assert abs(result.metrics["energy_residual"]) < 2e-3
+    assert result.metrics["momentum_residual"] < 1e-9
+
+
+def test_impulse_goes_over_the_edge_without_a_jump(car: Vehicle) -> None:
+    """The offset leads the car from the face over the seam and round the arc to nothing."""
+    wall = Barrier.rigid_wall(width=4.0, edge_radius=0.15)
+    shares = np.linspace(0.02, 0.22, 21)
+    found = [change(crash(car, wall, overlap=float(share))) for share in shares]
+    assert max(float(np.linalg.norm(b - a)) for a, b in itertools.pairwise(found)) < 2.0
+    assert np.linalg.norm(found[0]) < 0.5
+    assert np.linalg.norm(found[-1]) > 3.0
+
+
+def test_overlap_of_the_whole_width_is_the_full_wall(car: Vehicle) -> None:
+    whole = crash(car, Barrier.rigid_wall(width=4.0), overlap=1.0)
+    wall = Simulation(car, Barrier.rigid_wall(), SPEED, duration=0.15).run()
+    assert whole.metrics["max_displacement"] == pytest.approx(wall.metrics["max_displacement"], rel=1e-3)
+
+
+@pytest.mark.parametrize("angle", [90.0, 60.0, 120.0])
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_barrier_ends_inside_the_width_by_that_share(car: Vehicle, side: str, angle: float) -> None:
+    wall = Barrier.rigid_wall(width=3.0, thickness=0.4, edge_radius=0.1, origin=(3.0, 1.0, 0.0), heading=10.0)
+    scene = Simulation(car, wall, SPEED, angle, overlap=0.4, overlap_side=side).scene
+    line = np.array([-np.sin(np.radians(10.0)), np.cos(np.radians(10.0))])
+    yaw = np.radians(10.0 + 90.0 - angle)
+    left = np.array([-np.sin(yaw), np.cos(yaw)])
+    # A point of the path, on the line; the line is a ruler whose zero is nearest to the world's origin.
+    past = np.array([np.cos(np.radians(10.0)), np.sin(np.radians(10.0))])
+    point = (np.array([3.0, 1.0]) @ past) * past + scene.path_offset * line
+    low, high = car.skin_bounds
+    edge = (high if side == "left" else low)[1] - 0.4 * (high - low)[1] * (1 if side == "left" else -1)
+    # Outermost place of the wall: the axis of an arc and its radius.
+    axes = [
+        np.array([3.0, 1.0]) + across * past + along * line for across in (0.1, 0.3) for along in (-1.4, 1.4)
+    ]
+    reach = [axis @ left for axis in axes]
+    end = min(reach) - 0.1 if side == "left" else max(reach) + 0.1
+    assert point @ left + edge == pytest.approx(end, abs=1e-3)
+
+
+def test_moved_scene_is_the_same(car: Vehicle) -> None:
+    here = crash(car, Barrier.rigid_wall(edge_radius=0.15))
+    there = crash(car, Barrier.rigid_wall(edge_radius=0.15, origin=(12.0, -7.0, 0.0), heading=25.0))
+    turn = np.radians(25.0)
+    back = np.array([[np.cos(turn), np.sin(turn), 0.0], [-np.sin(turn), np.cos(turn), 0.0], [0.0, 0.0, 1.0]])
+    assert back @ change(there) == pytest.approx(change(here), rel=1e-4, abs=1e-3)
+
+
+def test_wall_with_rounded_edges_is_four_metres_wide_unless_told() -> None:
+    assert Barrier.rigid_wall(edge_radius=0.15).width == 4.0
+    assert Barrier.rigid_wall(edge_radius=0.15, width=2.0).width == 2.0
+    assert Barrier.rigid_wall(edge_radius="6 in").edge_radius == pytest.approx(0.1524)
+    assert "edges rounded by 0.15 m" in barrier_text(Barrier.rigid_wall(edge_radius=0.15))
+
+
+@pytest.mark.parametrize(
+    ("wall", "message"),
+    [
+        ({"edge_radius": 0.3}, "edge_radius must be >= 0 m and at most half of thickness and width"),
+        ({"edge_radius": -0.1}, "edge_radius"),
+        ({"edge_radius": 0.1, "width": 3.0, "segments": 2}, "edge_radius must be 0 m for a wall of several"),
+    ],
+)
+def test_edges_that_are_none_are_refused(wall: dict[str, float], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        Barrier.rigid_wall(**wall)
+
+
+def test_overlaps_that_are_none_are_refused(car: Vehicle) -> None:
+    wall = Barrier.rigid_wall(edge_radius=0.15)
+    for overlap in (0.0, 1.5, float("nan"), -0.2):
+        with pytest.raises(ValueError, match="overlap must be > 0 and <= 1"):
+            Simulation(car, wall, SPEED, overlap=overlap)
+    with pytest.raises(ValueError, match="overlap_side must be one of left, right"):
+        Simulation(car, wall, SPEED, overlap=0.3, overlap_side="top")
+    with pytest.raises(ValueError, match="overlap must be None for a barrier without end"):
+        Simulation(car, Barrier.rigid_wall(), SPEED, overlap=0.3)
+    with pytest.raises(ValueError, match="overlap must be None where there is no barrier"):
+        Simulation(car, None, SPEED, overlap=0.3, duration=0.1)
+    with pytest.raises(ValueError, match="impact_offset must be 0 where overlap is given"):
+        Simulation(car, wall, SPEED, impact_offset=0.1, overlap=0.3)
+    with pytest.raises(ValueError, match="impact_yaw must be 0 where overlap is given"):
+        Simulation(car, wall, SPEED, impact_yaw=5.0, overlap=0.3)
+
+
+def test_overlap_can_be_swept_and_survives_a_file(car: Vehicle, tmp_path: Path) -> None:
+    wall = Barrier.rigid_wall(edge_radius=0.15)
+    base = Simulation(car, wall, SPEED, overlap=0.25, duration=0.02, settings=Settings(tolerance=1e-2))
+    table = sweep(base, overlap=[0.2, 0.6], metrics=["delta_v"])
+    weak, strong = (float(value) for value in table.to_dataframe()["delta_v"])
+    assert strong > weak > 0.0
+    result = base.run()
+    result.save(tmp_path / "run.npz")
+    import birm3d
+
+    scene = birm3d.load(tmp_path / "run.npz").scene
+    assert (scene.overlap, scene.overlap_side, scene.barrier.edge_radius) == (0.25, "left", 0.15)
+    assert dataclasses.replace(scene, overlap=None).path_offset == 0.0
+
+
+def test_scene_file_and_page(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(
+        "[vehicle]\npreset = 'minivan'\nmesh_density = 0.5\n"
+        "[barrier]\nkind = 'rigid_wall'\nedge_radius_m = 0.15\n"
+        "[impact]\nspeed = '40 mph'\noverlap = 0.3\noverlap_side = 'right'\nduration = '10 ms'\n",
+        encoding="utf-8",
+    )
+    simulation = read_scene_file(path)
+    assert (simulation.scene.overlap, simulation.scene.overlap_side) == (0.3, "right")
+    page = tmp_path / "page.html"
+    simulation.run().write_html(page)
+    assert "30 % of the width, right side" in page.read_text(encoding="utf-8")
+
+
+def test_command_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    options = [
+        "run",
+        "--vehicle",
+        "minivan",
+        "--mesh-density",
+        "0.5",
+        "--speed",
+        "40mph",
+        "--duration",
+        "5ms",
+    ]
+    monkeypatch.setattr("sys.argv", ["birm3d", *options, "--edge-radius", "0.15", "--overlap", "0.3"])
+    main()
+    assert "30 % overlap on the left" in " ".join(capsys.readouterr().out.split())
+    monkeypatch.setattr("sys.argv", ["birm3d", *options, "--overlap", "0.3"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code
+    assert "overlap must be None" in capsys.readouterr().err

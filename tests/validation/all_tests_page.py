@@ -1,0 +1,149 @@
+"""The page of all tests: counts and medians by kind, then the rows of each kind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from statistics import median
+from types import ModuleType
+
+from comparison import RESULTS, TOLD, Row
+
+INTRODUCTION = """# Predicted beside given tests
+
+Written by `python tests/validation/all_tests.py` from data; nothing on this page is typed in.
+
+One table for each kind of test: measured, predicted, error. Which preset stands for a vehicle follows from
+one rule (`stand_in.py`: the preset of the class that is nearest in mass, with the mass of the test); no row
+has a number of its own. An error beyond the test's own scatter is bold.
+
+- fitted: the row was used in a fit of this vehicle.
+- left out: a fit to all rows of its vehicle but this one.
+- predicted: no fit has seen the row.
+
+Figures known from memory only are printed apart, at the end of a kind, and are in no count.
+Details of the fits: [finite-element cars](finite_element.md), [finite-element truck](truck.md).
+"""
+
+
+def page(modules: Mapping[str, ModuleType], tables: Mapping[str, Sequence[Row]]) -> str:
+    """The text of README.md."""
+    lines = [INTRODUCTION, "## By kind of test", "", *_summary(modules, tables), ""]
+    lines += ["## The worst rows that no fit has seen", "", *_worst(tables), ""]
+    for name, module in modules.items():
+        lines += [f"## {module.TITLE}", "", module.TEXT, "", *_rows(tables[name]), ""]
+        if name == "redirection":
+            lines += [*_computed(), ""]
+        memory = [row for row in tables[name] if not row.judged]
+        if memory:
+            lines += ["From memory, not judged:", "", *_table(memory), ""]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _line(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _rule(count: int) -> str:
+    return "|" + "---|" * count
+
+
+def _number(value: float, unit: str) -> str:
+    factor, _ = TOLD.get(unit, (1.0, unit))
+    return f"{factor * value:.3g}" if abs(factor * value) < 1000.0 else f"{factor * value:,.0f}"
+
+
+def _unit(unit: str) -> str:
+    return TOLD.get(unit, (1.0, unit))[1]
+
+
+def quantities(rows: Sequence[Row]) -> list[str]:
+    """Quantities of judged rows, in their order."""
+    return list(dict.fromkeys(row.quantity for row in rows if row.judged))
+
+
+def median_error(rows: Sequence[Row]) -> str:
+    """Median magnitude of the errors, as a share or in the quantity's unit."""
+    if not rows:
+        return ""
+    if rows[0].relative:
+        return f"{100.0 * median(abs(row.error) for row in rows):.0f} %"
+    factor, unit = TOLD.get(rows[0].unit, (1.0, rows[0].unit))
+    told = "" if unit == "-" else f" {unit}"
+    return f"{factor * median(abs(row.error) for row in rows):.2g}{told}"
+
+
+def _summary(modules: Mapping[str, ModuleType], tables: Mapping[str, Sequence[Row]]) -> Iterator[str]:
+    head = ("kind", "quantity", "role", "rows", "within the marks", "median error")
+    yield _line(head)
+    yield _rule(len(head))
+    for name, module in modules.items():
+        title = module.TITLE
+        for quantity in quantities(tables[name]):
+            for role in ("fitted", "left out", "predicted"):
+                chosen = [
+                    row
+                    for row in tables[name]
+                    if row.judged and row.quantity == quantity and row.role == role
+                ]
+                if not chosen:
+                    continue
+                met = sum(row.met for row in chosen)
+                yield _line((title, quantity, role, str(len(chosen)), str(met), median_error(chosen)))
+                title = ""
+
+
+def _worst(tables: Mapping[str, Sequence[Row]], count: int = 20) -> Iterator[str]:
+    """Rows furthest outside their marks, in widths of the mark."""
+
+    def beyond(row: Row) -> float:
+        half = 0.5 * (row.high - row.low)
+        outside = max(row.low - row.predicted, row.predicted - row.high)
+        return outside / half if half > 0.0 else 0.0
+
+    rows = [row for table in tables.values() for row in table if row.judged and row.role != "fitted"]
+    worst = sorted((row for row in rows if not row.met), key=beyond, reverse=True)[:count]
+    yield "Ordered by how far they are outside their marks, in half widths of the mark.\n"
+    head = ("test", "vehicle", "quantity", "measured", "predicted", "error", "outside by")
+    yield _line(head)
+    yield _rule(len(head))
+    for row in worst:
+        measured, predicted = (_number(value, row.unit) for value in (row.measured, row.predicted))
+        told = f"{measured} {_unit(row.unit)}".removesuffix(" -")
+        cells = (row.test, row.vehicle, row.quantity, told, predicted, row.error_text, f"{beyond(row):.1f}")
+        yield _line(cells)
+
+
+def _rows(rows: Sequence[Row]) -> list[str]:
+    return _table([row for row in rows if row.judged])
+
+
+def _table(rows: Sequence[Row]) -> list[str]:
+    head = ("test", "vehicle", "quantity", "measured", "predicted", "error", "")
+    lines = [_line(head), _rule(len(head))]
+    for row in rows:
+        measured, predicted = (_number(value, row.unit) for value in (row.measured, row.predicted))
+        told = f"{measured} {_unit(row.unit)}".removesuffix(" -")
+        role = "" if row.role == "predicted" else row.role
+        mark = row.error_text if row.met else f"**{row.error_text}**"
+        lines.append(_line((row.test, row.vehicle, row.quantity, told, predicted, mark, role)))
+    return lines
+
+
+def _computed() -> list[str]:
+    """Figures of oblique impacts that nothing was measured of."""
+    head = (
+        "test",
+        "vehicle",
+        "outcome",
+        "exit speed, m/s",
+        "exit angle, deg",
+        "roll, deg",
+        "pitch, deg",
+        "wall's impulse / m v sin a",
+        "force over 50 ms, kN",
+        "ASI",
+    )
+    path = Path(RESULTS) / "redirection_computed.txt"
+    rows = [line.split("; ") for line in path.read_text(encoding="utf-8").splitlines()]
+    return ["Computed, without a measured figure:", "", _line(head), _rule(len(head)), *map(_line, rows)]

@@ -1,0 +1,102 @@
+"""Oblique impacts on walls and concrete barriers: tests, and nominal ones of MASH, NCHRP 350, EN 1317."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import birm3d
+import numpy as np
+from birm3d import units
+from birm3d.barrier.lateral_load import NORMAL_IMPULSE, normal_momentum
+from comparison import Row, about, facts
+from stand_in import name_of, stand_in
+
+NAME = "redirection"
+TITLE = "Oblique impact on walls and concrete barriers"
+TEXT = """Vehicles: the stand-in of the class with the test's mass. Barriers: rigid, fixed, friction 0.2. No
+measured force, exit angle or roll of these tests could be read in a source; forces are known from memory
+only and are printed apart. What can be judged: the change of momentum across the barrier when the vehicle
+has left it, or at the end of the run, over the momentum towards it, m v sin(angle). It is 1 + e with e from
+0 to 0.3 (the mark). Whether the vehicle is contained and stays upright, as in the tests (1: yes, 0: no), is
+known from memory too. The wall's own impulse is in the table of computed figures: tyres that press a
+vehicle on the wall add to it.
+
+What the model can not do here: wheels have no travel. A near-side wheel that climbs a sloped face neither
+springs, steers nor comes off; it takes back most of the roll that the slope gives. The load of a trailer
+does not shift."""
+
+
+def tasks() -> Sequence[str]:
+    """Names of the tests."""
+    return [fact["test"] for fact in facts("redirections")]
+
+
+def barrier(kind: str, height: float) -> birm3d.Barrier:
+    """The barrier of a row."""
+    if kind == "wall":
+        return birm3d.Barrier.rigid_wall(height=height)
+    return birm3d.Barrier.jersey(profile=kind, height=height)
+
+
+def simulation(fact: Mapping[str, str]) -> birm3d.Simulation:
+    """The impact of a row."""
+    vehicle = stand_in(fact["vehicle"], float(fact["mass_kg"]))
+    wall = (
+        barrier(fact["barrier"], float(fact["height_m"])) if fact["height_m"] else birm3d.Barrier.rigid_wall()
+    )
+    return birm3d.Simulation(vehicle, wall, units.km_h(float(fact["speed_km_h"])), float(fact["angle_deg"]))
+
+
+def rows(task: str) -> list[Row]:
+    """What one task is compared in."""
+    (fact,) = (fact for fact in facts("redirections") if fact["test"] == task)
+    result = simulation(fact).run()
+    scene, metrics = result.scene, result.metrics
+    who = name_of(scene.vehicle)
+    # The barriers stand along y; units of a combination count by their masses.
+    across = float(
+        np.sum([unit.mass * _velocity(result, k)[0] for k, unit in enumerate(scene.vehicle.units)])
+    )
+    towards = normal_momentum(scene.vehicle.mass, scene.impact_speed, scene.impact_angle)
+    change = 1.0 - across / towards
+    contained = float(result.outcome in ("redirected", "stopped", "undecided"))
+    middle = 0.5 * sum(NORMAL_IMPULSE)
+    found = [
+        Row(task, who, "change of momentum across / m v sin a", "-", middle, *NORMAL_IMPULSE, change),
+        Row(task, who, "contained and upright", "-", 1.0, 1.0, 1.0, contained, judged=False),
+    ]
+    if fact["force_50ms_kN"]:
+        force = 1e3 * float(fact["force_50ms_kN"])
+        own = float(metrics["peak_force_50ms"])
+        found.append(Row(task, who, "force over 50 ms", "N", force, *about(force, 0.25), own, judged=False))
+    return found
+
+
+def _velocity(result: birm3d.Result, unit: int) -> np.ndarray:
+    """Of a unit's mass centre when the vehicle has left the barrier, or at the end, world axes [m/s]."""
+    left = float(result.metrics.get("time_of_separation", result.time[-1]))
+    row = min(int(np.searchsorted(result.time, left)), len(result.time) - 1)
+    return np.asarray(result.unit(unit).velocity[row])
+
+
+def computed(task: str) -> tuple[str, ...]:
+    """Figures without a measured counterpart, as text: outcome, exit speed and angle, roll, pitch, ASI."""
+    (fact,) = (fact for fact in facts("redirections") if fact["test"] == task)
+    result = simulation(fact).run()
+    metrics = result.metrics
+    scene = result.scene
+    single = scene.vehicle.joint is None
+    impulse = float(result.barrier_normal_force[1:].sum()) * scene.settings.output_interval
+    towards = normal_momentum(scene.vehicle.mass, scene.impact_speed, scene.impact_angle)
+    return (
+        task,
+        name_of(scene.vehicle),
+        result.outcome,
+        *(
+            f"{float(metrics[name]):.1f}" if name in metrics else ""
+            for name in ("exit_speed", "exit_angle", "max_roll", "max_pitch")
+        ),
+        f"{impulse / towards:.2f}",
+        f"{1e-3 * float(metrics['peak_force_50ms']):.0f}",
+        f"{birm3d.occupant_risk(result).asi:.2f}" if single else "",
+    )
