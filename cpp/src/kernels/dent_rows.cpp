@@ -13,7 +13,7 @@ constexpr double away = 10.0;
 
 // Share with which the skin leans on the flank of a post. Chosen by hand between 0.1 and 0.4: with less, a pole 0.35 m off
 // the middle gives less sideways than finite elements show; with more, posts at the end of a bumper are a wedge.
-constexpr double lean = 0.2;
+constexpr double lean = 0.35;
 
 // Nodes that a dent keeps are known by a share above zero.
 constexpr double least_drawn = 1e-9;
