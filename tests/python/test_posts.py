@@ -59,12 +59,17 @@ def test_sideways_impulse_of_a_pole_off_the_middle_is_that_of_finite_elements() 
 
 @pytest.mark.parametrize("name", list(SPEED))
 def test_a_post_before_the_front_takes_most_of_its_load_forward(name: str) -> None:
-    """It was a wedge: a truck beside its middle gave twice as much sideways as forward."""
+    """It was a wedge: a truck beside its middle gave twice as much sideways as forward.
+
+    Stiff rails do lean on a post: between two of them a truck gave 0.7 to 0.8 of the forward impulse in a
+    finite-element run (truck_bollards2_50_offset).
+    """
+    most = 0.6 if name == "fitted_truck" else 0.35
     last = 0.0
     # Beside the truck's rails there is little but its front tyres, whose load is sideways.
     for share in (0.0, 0.25, 0.5, 0.75, *((0.9,) if name != "fitted_truck" else ())):
         forward, left = np.abs(impulse(crash(name, share * half_width(name))))
-        assert left < 0.35 * forward, share
+        assert left < most * forward, share
         assert left / forward > last - 0.05  # it grows towards the edge, by and by
         last = left / forward
 

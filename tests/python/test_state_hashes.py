@@ -52,15 +52,15 @@ HASHES = {
     "paper's pickup at 30 mph": "935402b6b67b308b",
     "rolling": "3b6c8e52c8592598",
     "oblique car": "f90f5b82049c5e77",
-    "paper pickup, bollards": "1fd932a71292fa38",
-    "pickup, bollards": "a33d479d06e781af",
+    "paper pickup, bollards": "be6e522c77514edd",
+    "pickup, bollards": "1390860daad3b962",
     "car, Jersey": "d2550315f561dd4e",
     "semi, wall": "018159d0597c9a30",
     "truck, pole of triangles": "aa8e3b242bda3bae",
     "free-standing": "6b00878593bd7817",
     "minivan on its side": "9bcf72722dcb9900",
-    "finite-element car, wall": "e9706df525d671c7",
-    "finite-element truck, wall": "f8df2d7e9405edee",
+    "finite-element car, wall": "a489be2e82d272ae",
+    "finite-element truck, wall": "af82b788bbd405d9",
 }
 
 
