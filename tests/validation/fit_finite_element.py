@@ -54,7 +54,7 @@ class Prediction:
     yaw: float
     lateral_impulse: float
     restitution: float
-    closed: float  # greatest deflection of a truss as a share of its length; 1: the core is met
+    closed: float  # greatest deflection as a share of a front truss's length; 1: the core is met
 
 
 @dataclass(frozen=True)
@@ -103,6 +103,8 @@ def predicted(vehicle: birm3d.Vehicle, run: Run) -> tuple[Prediction, birm3d.Res
     time = result.time - touch(run)
     end = int(np.searchsorted(time, run.end))
     length = np.linalg.norm(vehicle.nodes - vehicle.anchors, axis=1)
+    front = [index for index, zone in enumerate(vehicle.zones) if zone.startswith("front")]
+    in_front = np.isin(vehicle.zone_of_node, front)
     travel = result.position[:end, 0] - result.position[0, 0] - STANDOFF
     deflection = result.unit(0).peak_deflection[: len(length)]
     found = Prediction(
@@ -111,7 +113,7 @@ def predicted(vehicle: birm3d.Vehicle, run: Run) -> tuple[Prediction, birm3d.Res
         yaw=float(np.interp(run.end, time, result.yaw)),
         lateral_impulse=float(result.barrier_force[1 : end + 1, 1].sum() * interval),
         restitution=float(-np.interp(run.end, time, result.velocity[:, 0]) / result.velocity[0, 0]),
-        closed=float((deflection / length).max()),
+        closed=float((deflection / length)[in_front].max()),
     )
     return found, result
 
