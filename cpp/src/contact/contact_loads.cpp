@@ -1,9 +1,10 @@
-// The loads of a block's nodes on each obstacle, with friction, and their sums for the step.
+#include "contact/contact_loads.hpp"
+
 #include <algorithm>
 
 #include "birm3d/kernels/friction.hpp"
-#include "birm3d/scene/obstacles.hpp"
-#include "contact/contact_pass.hpp"
+#include "contact/corner_contacts.hpp"
+#include "contact/tire_contact.hpp"
 
 namespace birm3d {
 
@@ -21,12 +22,14 @@ Mat6 turned(const Mat6& of, const Mat3& R) {
     return turned;
 }
 
-// Keeps the pressure of nodes whose nearest is the k-th, and sums their loads.
-struct Part {
-    double force, x, y, z, tx, ty, tz;
+// Sums over the nodes of one obstacle, body axes.
+struct NodeLoads {
+    double normal_force, x, y, z, tx, ty, tz;
 };
-BIRM3D_LANE_LOOP Part take_part(const std::array<std::size_t, lanes>& nearest, std::size_t k,
-                                const BlockContact& contact, Lanes& pressure) {
+
+// Keeps the pressure of nodes whose nearest obstacle is the k-th, and sums their loads.
+BIRM3D_LANE_LOOP NodeLoads select_loads(const std::array<std::size_t, lanes>& nearest, std::size_t k,
+                                        const BlockContact& contact, Lanes& pressure) {
     alignas(64) Lanes force, x, y, z, tx, ty, tz;
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
@@ -42,103 +45,116 @@ BIRM3D_LANE_LOOP Part take_part(const std::array<std::size_t, lanes>& nearest, s
     return {lane_sum(force), lane_sum(x), lane_sum(y), lane_sum(z), lane_sum(tx), lane_sum(ty), lane_sum(tz)};
 }
 
-// Skin that a post dents goes in with it: it slides on it only along the panel.
-BIRM3D_LANE_LOOP void rub_along_panel(const NodeFaces& faces, BlockContact& contact) {
+// Skin that a post indents goes in with it and slides on it only along the panel: friction acts across that direction.
+BIRM3D_LANE_LOOP void slide_along_panel(const NodeFaces& faces, BlockContact& contact) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
-        const bool dented = faces.per_force[i] > 0.0;
-        contact.nx[i] = dented ? faces.bx[i] : contact.nx[i];
-        contact.ny[i] = dented ? faces.by[i] : contact.ny[i];
-        contact.nz[i] = dented ? faces.bz[i] : contact.nz[i];
+        const bool indented = faces.per_force[i] > 0.0;
+        contact.nx[i] = indented ? faces.bx[i] : contact.nx[i];
+        contact.ny[i] = indented ? faces.by[i] : contact.ny[i];
+        contact.nz[i] = indented ? faces.bz[i] : contact.nz[i];
     }
 }
 
-}  // namespace
-
-// Nodes of one block that push on several obstacles: to each its own.
-void Skin::share_out(std::size_t b, const TrussBlockState& next) {
-    if (!corners_.empty()) share_out_corners(b, next);
-    BlockContact part = contact_;
-    for (std::size_t k = 0; k < seen_.size(); ++k) {
-        const Part of = take_part(nearest_, k, contact_, part.pressure);
-        if (!(of.force > 0.0)) continue;
-        ObstacleSums& sums = obstacles_[seen_[k]];
-        sums.contact += {Vec3(of.x, of.y, of.z), Vec3(of.tx, of.ty, of.tz)};
-        sums.normal_force += of.force;
-        rub(seen_[k], b, next, contact_.places(), part);
-    }
+void add(const CrushSums& sums, SkinForces& skin) {
+    skin.work += sums.work();
+    skin.stored += sums.stored();
+    skin.stiffness += sums.stiffness();
 }
 
-void Skin::rub(std::size_t near, std::size_t b, const TrussBlockState& next, const Places& places,
-               const BlockContact& contact) {
-    ObstacleSums& sums = obstacles_[near];
-    if (along_) sums.by_trusses += along_trusses(mesh_.block[b], next, contact);
-    if (b >= mesh_.shell_blocks) {
-        if (scene_.settings.mu_tire_barrier > 0.0) note_treads(near, b, places, contact);
-        return;
+// The load on the k-th near obstacle, world axes; adds what it stores and resists to `skin`. `R`: body to world axes.
+ContactLoad load_on(const ContactPass& pass, std::size_t k, const ContactSums& all, const Mat3& R,
+                    SkinForces& skin) {
+    const ObstacleSums& sums = all.obstacles[k];
+    ContactLoad load;
+    load.obstacle = pass.near[k].index;
+    load.contact = sums.contact;
+    load.contact += total_wrench(sums.sums);
+    load.normal_force = sums.normal_force + sums.sums.normal_force();
+    add(sums.sums, skin);
+    for (const PlaneSums& plane : all.planes) {
+        if (plane.near != k) continue;
+        load.contact += total_wrench(plane.surface, plane.sums);
+        load.normal_force += plane.sums.normal_force();
+        add(plane.sums, skin);
     }
-    const double mu = scene_.obstacles[near_[near].index].friction;
-    const Vec3* const normal = plane_normal_ ? &*plane_normal_ : nullptr;
-    if (!(mu > 0.0)) return;
-    if (block_dents_.empty())
-        return add_friction(mu, full_speed_, away_[near], places, contact, normal, sums.rubbing);
-    BlockContact within = contact;
-    rub_along_panel(faces_, within);
-    add_friction(mu, full_speed_, away_[near], places, within, nullptr, sums.rubbing);
+    if (pass.along_trusses) load.contact = sums.by_trusses;
+    load.contact = turned(load.contact, R);
+    load.friction = turned(sums.rubbing.friction, R);
+    if (sums.rubbing.resistance.trace() > 0.0) skin.resistance += sums.rubbing.resistance;
+    skin.contact += load.contact;
+    skin.friction += load.friction;
+    skin.normal_force += load.normal_force;
+    return load;
 }
 
-void Skin::hand_over() {
-    SkinForces& skin = now_.skin;
-    skin = {};
-    skin.rubbed = {R_ * motion_.velocity, R_ * motion_.angular_velocity};
-    std::vector<ContactLoad>& loads = trial_.skin.contact_loads;
-    loads.clear();
-    const auto add = [&skin](const CrushSums& sums) {
-        skin.work += sums.work();
-        skin.stored += sums.stored();
-        skin.stiffness += sums.stiffness();
-    };
-    add(shared_);
-    for (std::size_t k = 0; k < near_.size(); ++k) {
-        const ObstacleSums& sums = obstacles_[k];
-        if (!sums.seen) continue;
-        trial_.seen.push_back(near_[k].index);
-        ContactLoad touch;
-        touch.obstacle = near_[k].index;
-        touch.contact = sums.contact;
-        touch.contact += total_wrench(sums.sums);
-        touch.normal_force = sums.normal_force + sums.sums.normal_force();
-        add(sums.sums);
-        for (const PlaneSums& plane : planes_) {
-            if (plane.near != k) continue;
-            touch.contact += total_wrench(plane.surface, plane.sums);
-            touch.normal_force += plane.sums.normal_force();
-            add(plane.sums);
-        }
-        if (along_) touch.contact = sums.by_trusses;
-        touch.contact = turned(touch.contact, R_);
-        touch.friction = turned(sums.rubbing.friction, R_);
-        if (sums.rubbing.resistance.trace() > 0.0) skin.resistance += sums.rubbing.resistance;
-        skin.contact += touch.contact;
-        skin.friction += touch.friction;
-        skin.normal_force += touch.normal_force;
-        if (touch.normal_force > 0.0) loads.push_back(touch);
-    }
-    if (skin.resistance.trace() > 0.0) skin.resistance = turned(skin.resistance, R_);
-    // A contact that has ended keeps an empty load until its history is over: the divided differences of its structure
-    // still contain it for two steps.
-    for (const ContactLoad& last : before_.contact_loads) {
+// A contact that has ended keeps an empty load until its history is over: the divided differences of its structure
+// contain it for two more steps.
+void keep_ended_loads(const std::vector<ContactLoad>& before, std::vector<ContactLoad>& loads) {
+    for (const ContactLoad& last : before) {
         const Load &rate = last.history.rate, &second = last.history.second_difference;
         if (!(last.normal_force > 0.0) && rate.normal_force == 0.0 && second.normal_force == 0.0) continue;
         const auto place = std::lower_bound(
             loads.begin(), loads.end(), last.obstacle,
-            [](const ContactLoad& touch, std::size_t obstacle) { return touch.obstacle < obstacle; });
+            [](const ContactLoad& load, std::size_t obstacle) { return load.obstacle < obstacle; });
         if (place != loads.end() && place->obstacle == last.obstacle) continue;
         ContactLoad ended;
         ended.obstacle = last.obstacle;
         loads.insert(place, ended);
     }
-    now_.contact_loads = loads;
+}
+
+}  // namespace
+
+void apply_friction(const ContactPass& pass, std::size_t k, const Places& places, const BlockContact& contact,
+                    const ContactBlock& block, ContactSums& sums) {
+    ObstacleSums& to = sums.obstacles[k];
+    if (pass.along_trusses) to.by_trusses += along_trusses(pass.mesh.block[block.index], *block.end, contact);
+    if (block.index >= pass.mesh.shell_blocks)
+        return note_tire_nodes(pass, k, block.index, places, contact, sums);
+    const double mu = pass.obstacle(k).friction;
+    if (!(mu > 0.0)) return;
+    const Vec3* const normal = block.flat_normal ? &*block.flat_normal : nullptr;
+    const Twist& motion = pass.relative_motion[k];
+    if (block.indentations.empty())
+        return add_friction(mu, pass.full_friction_speed, motion, places, contact, normal, to.rubbing);
+    BlockContact along = contact;
+    slide_along_panel(block.faces, along);
+    add_friction(mu, pass.full_friction_speed, motion, places, along, nullptr, to.rubbing);
+}
+
+void share_loads(const ContactPass& pass, ContactBlock& block, ContactSums& sums) {
+    if (!block.corners.empty()) share_corner_forces(pass, block, sums);
+    BlockContact part = block.contact;
+    for (std::size_t k = 0; k < block.seen.size(); ++k) {
+        const NodeLoads of = select_loads(block.nearest, k, block.contact, part.pressure);
+        if (!(of.normal_force > 0.0)) continue;
+        ObstacleSums& to = sums.obstacles[block.seen[k]];
+        to.contact += {Vec3(of.x, of.y, of.z), Vec3(of.tx, of.ty, of.tz)};
+        to.normal_force += of.normal_force;
+        apply_friction(pass, block.seen[k], block.contact.places(), part, block, sums);
+    }
+}
+
+void store_loads(const ContactPass& pass, Trial& trial) {
+    UnitState& now = trial.state.units[pass.unit_index];
+    const ContactSums& sums = trial.skin.sums;
+    const Mat3 R = now.body.orientation.toRotationMatrix();
+    SkinForces& skin = now.skin;
+    skin = {};
+    skin.rubbed = {R * pass.motion.velocity, R * pass.motion.angular_velocity};
+    std::vector<ContactLoad>& loads = trial.skin.contact_loads;
+    loads.clear();
+    add(sums.several, skin);
+    for (std::size_t k = 0; k < pass.near.size(); ++k) {
+        if (!sums.obstacles[k].seen) continue;
+        trial.seen.push_back(pass.near[k].index);
+        const ContactLoad load = load_on(pass, k, sums, R, skin);
+        if (load.normal_force > 0.0) loads.push_back(load);
+    }
+    if (skin.resistance.trace() > 0.0) skin.resistance = turned(skin.resistance, R);
+    keep_ended_loads(pass.before.contact_loads, loads);
+    now.contact_loads = loads;
 }
 
 }  // namespace birm3d

@@ -1,147 +1,112 @@
-// What skin_forces and its dents share: one unit's skin within one step.
+// One unit's contacts at one instant, in body axes: what is constant meanwhile, and what changes from block to block.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "birm3d/contact/trial.hpp"
+#include "birm3d/contact/contact_memory.hpp"
 #include "birm3d/kernels/detect.hpp"
+#include "birm3d/scene/obstacles.hpp"
 #include "contact/corner.hpp"
 
 namespace birm3d {
 
-// A node that was let go and stopped on its way.
-struct Stopped {
+// Place of an obstacle that stands for several.
+inline constexpr std::size_t several_obstacles = static_cast<std::size_t>(-1);
+
+// Parameters. They are constant while the blocks are gone through.
+struct ContactPass {
+    const Scene& scene;
+    const std::size_t unit_index;
+    const Unit& unit;
+    const TrussMesh& mesh;
+    const UnitState& before;           // the unit at the start of the step
+    const State& now;                  // all bodies have drifted
+    const bool along_trusses;          // the paper's rule for the direction of forces
+    const double full_friction_speed;  // see kernels/friction.hpp (m/s)
+    const double margin;               // how far a held node can have left its surface within the step (m)
+    Twist motion = {};  // of the unit at the end of the step, where friction or a rate asks for it
+    std::span<const NearObstacle> near = {};      // what the unit can touch
+    std::span<const Twist> relative_motion = {};  // parallel to near: the unit's, seen from the obstacle
+    std::span<const IndentedPanel> indentations = {};
+    std::uint8_t indented_before = 0;  // panels that posts had indented before the step, bit by bit
+    double greatest_following = 0.0;   // no node follows these further outwards within the step (m)
+
+    const Obstacle& obstacle(std::size_t k) const { return scene.obstacles[near[k].index]; }
+    const Shape& shape(std::size_t k) const { return obstacle(k).shape; }
+    // Tire nodes meet the barrier only: the wheels stand on the ground as rigid contacts.
+    bool meets(std::size_t block, std::size_t k) const {
+        return block < mesh.shell_blocks || near[k].index != scene.ground;
+    }
+};
+
+// A released node that another surface stopped on its way.
+struct StoppedNode {
     std::size_t lane;
     Vec3 place;
     double deflection, residual, peak_deflection, force;  // of its truss there
-    double work;                                          // on it, up to the release (J)
+    double work;                                          // on its truss up to the release (J)
 };
 
-// One unit's skin within one step; body axes.
-class Skin {
-  public:
-    Skin(const Scene& scene, std::size_t u, const State& from, Trial& trial, bool far = false);
+// The block of nodes at hand. One object serves all blocks: what belongs to a block is set anew by begin().
+struct ContactBlock {
+    explicit ContactBlock(ContactMemory& memory)
+        : seen(memory.block_near), indentations(memory.block_indentations) {}
 
-    void press_blocks();
-    // Has a node sprung to an obstacle that was not taken for near? Then all is to be found anew, by a skin that looks
-    // `far`.
-    bool overlooks() const { return overlooks_; }
-
-    void hand_over();  // sums and touches, to the trial
-
-  private:
-    static constexpr std::size_t several = static_cast<std::size_t>(-1);
-    static constexpr double infinite = std::numeric_limits<double>::infinity();
-
-    bool look_about_group(std::size_t g);
-    void press(std::size_t b);
-    void note_met(std::size_t b);
-    void look_about(std::size_t b);
-    void spring_back(std::size_t b);
-    const TrussBlockState& from(std::size_t b) const {
-        return sprung_back_ ? sprung_ : before_.trusses.block[b];
+    void begin(std::size_t block, const TrussBlockState& at_start, TrussBlockState& at_end) {
+        index = block;
+        start = &at_start;
+        end = &at_end;
     }
-    const Shape& near_shape(std::size_t near) const { return scene_.obstacles[near_[near].index].shape; }
-    void find_dents();
-    Dented dents_of(std::size_t near);
-    bool was_before(std::size_t near, std::size_t panel);
-    double reach_of_dent(const DentedPanel& dented, std::uint8_t of, const Box& box, bool touching) const;
-    bool find_dents_of_block(std::size_t b);
-    bool is_left_to_dents(std::uint8_t of, std::size_t near) const;
-    void leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) const;
-    void draw_in(std::size_t b, const TrussBlockState& block);
-    // Does the block meet what is near? Treads meet the barrier only: the wheels stand on the ground.
-    bool meets(std::size_t b, std::size_t near) const {
-        return b < mesh_.shell_blocks || near_[near].index != scene_.ground;
+    // The start of the step in a copy, where nodes can be placed elsewhere.
+    TrussBlockState& alter() {
+        if (!is_altered()) altered = *start;
+        start = &altered;
+        return altered;
     }
-    void find_seen(std::size_t b, double margin);
-    bool sees(std::uint8_t of, std::size_t near, const Box& box, double margin) const;
-    PlaneSums* plane_of(std::size_t near, std::size_t b);
-    PlaneSums& sums_of_plane(std::size_t near, const HalfSpace& plane);
-    void press_plane(PlaneSums& plane, std::size_t b);
-    void press_shapes(std::size_t b);
-    void press_again(std::size_t b);
-    bool crush_plane(const PlaneSums& plane, std::size_t b, CrushSums& sums);
-    bool crush_shapes(std::size_t b, std::size_t at, CrushSums& sums);
-    void rub_shapes(std::size_t at, std::size_t b);
-    std::size_t where_met(const Lanes& force) const;
-    TrussBlockState& altered(std::size_t b);
-    bool find_stopped(std::size_t b, const FlatContact* plane);
-    bool springs_off(std::size_t b) const;
-    bool springs_off(std::size_t b, std::size_t i) const;
-    void stop(std::size_t b);
-    void look_further();
-    std::optional<Vec3> stop_on_way(std::size_t b, std::size_t i, const Vec3& start, const Vec3& end) const;
-    bool is_solid_to(std::size_t b, std::size_t i, std::size_t near) const;
-    void look(std::size_t b);
-    bool look_at_surfaces(std::size_t b, const TrussBlockState& block);
-    void look_at(std::size_t b, const TrussBlockState& block);
-    bool stay_on_planes(const TrussBlockState& block) const;
-    void turn_flat_faces();
-    void settle_in_corners(std::size_t b);
-    void settle(std::size_t b, std::size_t i);
-    CornerFace own_face(std::size_t i) const;
-    CornerFace face_at(std::size_t k, const Vec3& place, const Vec3& node) const;
-    bool stood_on(std::size_t k, const Vec3& normal, const Vec3& node) const;
-    bool was_on(const CornerFace& face, const Vec3& node) const;
-    void add_pushed(std::size_t b, const Vec3& node, const CornerFace& own, bool stays, Corner& corner) const;
-    void add_driving(std::size_t b, const Vec3& node, Corner& corner) const;
-    void place(std::size_t b, const Corner& corner, const Vec3& to);
-    void share_out_corners(std::size_t b, const TrussBlockState& next);
-    bool find_entered_faces(const TrussBlockState& block);
-    void share_out(std::size_t b, const TrussBlockState& next);
-    void rub(std::size_t near, std::size_t b, const TrussBlockState& next, const Places& places,
-             const BlockContact& contact);
-    void note_treads(std::size_t near, std::size_t b, const Places& places, const BlockContact& contact);
-    void rub_treads();
-    // `near`: place in near_ of the obstacle that the block sees, or `several`.
-    template <class Crush>
-    void crush_with_rate(std::size_t near, const TrussBlockState& next, const Places& places, CrushSums& sums,
-                         const Crush& crush);
-    void find_rate_factor(std::size_t near, const TrussBlockState& next, const Places& places,
-                          Lanes& factor) const;
+    bool is_altered() const { return start == &altered; }
+    // `before`: at the start of the step.
+    void set_normals(std::size_t i, const Vec3& now, const Vec3& before) {
+        contact.nx[i] = now.x(), contact.ny[i] = now.y(), contact.nz[i] = now.z();
+        faces.bx[i] = before.x(), faces.by[i] = before.y(), faces.bz[i] = before.z();
+    }
 
-    const Scene& scene_;
-    const Unit& unit_;
-    const TrussMesh& mesh_;
-    const UnitState& before_;
-    UnitState& now_;
-    Trial& trial_;
-    const std::size_t u_;
-    const Mat3 R_;
-    const bool along_;
-    const double full_speed_;  // see kernels/friction.hpp (m/s)
-    double margin_;            // how far a held node can have come off its surface within the step (m)
-    Twist motion_;             // body axes; only friction and the rate of deflection ask for it
-    CrushSums shared_;         // of blocks that saw several obstacles
+    std::size_t index = 0;
+    const TrussBlockState* start = nullptr;  // as the step finds the block, or `altered`
+    TrussBlockState* end = nullptr;          // as the step leaves it
+    TrussBlockState altered;
+    std::vector<std::size_t>& seen;               // places in ContactPass::near of what the block can meet
+    std::vector<BlockIndentation>& indentations;  // that it can reach
 
-    // See SkinMemory.
-    std::vector<NearObstacle>& near_;
-    std::vector<Twist>& away_;
-    std::vector<ObstacleSums>& obstacles_;
-    std::vector<PlaneSums>& planes_;
-    std::vector<DentedPanel>& dents_;
-    std::vector<TreadContact>& treads_;
-    std::vector<std::size_t>&group_near_, &group_dents_, &seen_;
-    std::vector<BlockDent>& block_dents_;
+    NodeFaces faces;
+    BlockContact contact;
+    std::array<std::size_t, lanes> nearest;  // place in `seen` of each node's obstacle
+    alignas(64) Lanes second_gap;            // of each node, to the second nearest of several obstacles (m)
+    alignas(64) Lanes released;              // nodes that an indentation releases (1, else 0)
+    std::optional<Vec3> flat_normal;         // of all nodes in `contact`, where they met one plane
+    std::vector<Corner> corners;             // nodes that several surfaces hold
+    std::vector<StoppedNode> stopped;
+};
 
-    TrussBlockState sprung_;  // the block at hand, if some of its nodes have sprung back or stand in corners
-    bool sprung_back_ = false;
-    std::vector<Corner> corners_;  // of the block at hand
-    std::vector<NearObstacle> further_;
-    bool looked_further_ = false, overlooks_ = false;
-    std::vector<Stopped> stopped_;  // the same
-    std::uint8_t dented_ = 0;       // panels that posts dented before the step, bit by bit
-    double furthest_ = infinite;    // that a node of these can follow its dent outwards within the step (m)
-    alignas(64) Lanes second_gap_;  // of each node, to the second nearest of several obstacles (m)
-    alignas(64) Lanes let_go_;      // nodes that a dent lets go (1, else 0)
-    NodeFaces faces_;
-    BlockContact contact_;
-    std::optional<Vec3> plane_normal_;        // of all nodes in contact_, where they saw one plane
-    std::array<std::size_t, lanes> nearest_;  // place in seen_ of each node's obstacle
+// Obstacles to which only a released node can get: they are looked for when one is released.
+struct DistantObstacles {
+    std::vector<NearObstacle> list;
+    bool are_found = false;
+    bool were_met =
+        false;  // has a node got to one? Then the pass is done again with these among the near ones.
+};
+
+// Everything that a pass changes.
+struct ContactState {
+    explicit ContactState(ContactMemory& memory) : sums(memory.sums), block(memory) {}
+
+    ContactSums& sums;
+    ContactBlock block;
+    DistantObstacles distant;
 };
 
 }  // namespace birm3d

@@ -1,11 +1,11 @@
-// Posts that dent the skin: see kernels/dent.hpp.
+// Posts that indent the skin: see kernels/dent.hpp.
+#include "contact/indentation.hpp"
+
 #include <algorithm>
 #include <array>
 #include <limits>
 
 #include "birm3d/scene/indentation_gaps.hpp"
-#include "birm3d/scene/obstacles.hpp"
-#include "contact/contact_pass.hpp"
 
 namespace birm3d {
 
@@ -13,54 +13,51 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-}  // namespace
-
-void Skin::find_dents() {
-    if (mesh_.dent_reach == 0.0) return;
-    for (std::size_t k = 0; k < near_.size(); ++k) {
-        if (!std::holds_alternative<Post>(scene_.obstacles[near_[k].index].shape)) continue;
-        const Dented dented = dents_of(k);
-        if ((dented.panels | dented.passed) != 0) now_.dented.push_back(dented);
-    }
-    for (const Dented& before : before_.dented)
-        dented_ |= before.panels;
-    if (dented_ == 0) return;
-    furthest_ = 2.0 * margin_;
-    for (const DentedPanel& dented : dents_)
-        furthest_ = std::max(furthest_, dented.way);
+// Did the post stand in front of the panel at the start of the step?
+bool stood_before(const ContactPass& pass, std::size_t k, std::size_t p) {
+    const Panel& panel = pass.mesh.panel[p];
+    const Dent then(std::get<Post>(pass.shape(k)), pass.near[k].before, panel, pass.mesh.dent_reach);
+    return then.beside(panel) < 0.0 && gap_of_panel(then, p, pass.mesh, pass.before, 0.0, 0.0) > 0.0;
 }
 
-// Which panels does the post dent? Those that it comes into from in front, until it has let go of them.
-Dented Skin::dents_of(std::size_t k) {
-    const std::size_t obstacle = near_[k].index;
-    const Post& post = std::get<Post>(scene_.obstacles[obstacle].shape);
-    const auto known = std::find_if(before_.dented.begin(), before_.dented.end(),
-                                    [=](const Dented& d) { return d.obstacle == obstacle; });
-    const Dented last = known != before_.dented.end() ? *known : Dented{obstacle};
-    const bool pushes = std::any_of(
-        before_.contact_loads.begin(), before_.contact_loads.end(),
-        [=](const ContactLoad& touch) { return touch.obstacle == obstacle && touch.normal_force > 0.0; });
-    Dented now{obstacle};
+// Does any node of the unit push on the obstacle?
+bool pushed_before(const ContactPass& pass, std::size_t obstacle) {
+    const std::vector<ContactLoad>& loads = pass.before.contact_loads;
+    return std::any_of(loads.begin(), loads.end(), [=](const ContactLoad& load) {
+        return load.obstacle == obstacle && load.normal_force > 0.0;
+    });
+}
+
+// Which panels the post indents: those that it comes into from in front, until it has released them.
+Dented find_indented_panels(const ContactPass& pass, std::size_t k, std::vector<IndentedPanel>& list) {
+    const TrussMesh& mesh = pass.mesh;
+    const NearObstacle& near = pass.near[k];
+    const Post& post = std::get<Post>(pass.shape(k));
+    const std::vector<Dented>& all = pass.before.dented;
+    const auto known =
+        std::find_if(all.begin(), all.end(), [&](const Dented& d) { return d.obstacle == near.index; });
+    const Dented last = known != all.end() ? *known : Dented{near.index};
+    const bool pushes = pushed_before(pass, near.index);
+    Dented now{near.index};
     for (std::size_t p = 0; p < panels; ++p) {
-        const Panel& panel = mesh_.panel[p];
+        const Panel& panel = mesh.panel[p];
         const auto bit = static_cast<std::uint8_t>(1U << p);
-        const bool dents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
-        if (!panel.any || !stands_across(near_[k].now, panel, dents)) continue;
-        const Dent dent(post, near_[k].now, panel, mesh_.dent_reach);
-        if (!dents && !(dent.beside(panel) < 0.0)) continue;
-        if (!dents && dent.is_beyond(panel)) {
+        const bool indents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
+        if (!panel.any || !stands_across(near.now, panel, indents)) continue;
+        const Dent dent(post, near.now, panel, mesh.dent_reach);
+        if (!indents && !(dent.beside(panel) < 0.0)) continue;
+        if (!indents && dent.is_beyond(panel)) {
             now.passed |= bit;
             continue;
         }
-        // How far in a post can have come within the step, and nodes off its dent; of one that was in before, does it
-        // touch?
-        const double way = 2.0 * margin_ * dent.fastest_growth(panel);
-        const double deepest = dents || passed ? 0.0 : way;
-        const double gap = dents && pushes ? 0.0 : gap_of_panel(dent, p, mesh_, before_, 0.0, -deepest);
+        // A post can have come in this far within the step, and nodes can have left it. One that was in before must touch.
+        const double growth = 2.0 * pass.margin * dent.fastest_growth(panel);
+        const double deepest = indents || passed ? 0.0 : growth;
+        const double gap = indents && pushes ? 0.0 : gap_of_panel(dent, p, mesh, pass.before, 0.0, -deepest);
         if (gap > 0.0) continue;
-        if (dents || (!passed && (gap > -deepest || was_before(k, p)))) {
+        if (indents || (!passed && (gap > -deepest || stood_before(pass, k, p)))) {
             now.panels |= bit;
-            dents_.push_back({k, p, dent, Dent(post, near_[k].before, panel, mesh_.dent_reach), way});
+            list.push_back({k, p, dent, Dent(post, near.before, panel, mesh.dent_reach), growth});
         } else {
             now.passed |= bit;
         }
@@ -68,104 +65,112 @@ Dented Skin::dents_of(std::size_t k) {
     return now;
 }
 
-// Did the post stand in front of the panel an instant before?
-bool Skin::was_before(std::size_t k, std::size_t p) {
-    const Post& post = std::get<Post>(scene_.obstacles[near_[k].index].shape);
-    const Panel& panel = mesh_.panel[p];
-    const Dent then(post, near_[k].before, panel, mesh_.dent_reach);
-    return then.beside(panel) < 0.0 && gap_of_panel(then, p, mesh_, before_, 0.0, 0.0) > 0.0;
-}
+}  // namespace
 
-// How near can nodes of some panels, bit by bit, within a box come to a dent (m)? Infinite where it can not reach them.
-// What pushes stays at its dent until it is released: it can have come off within the step.
-double Skin::reach_of_dent(const DentedPanel& dented, std::uint8_t of, const Box& box, bool touching) const {
-    if ((of >> dented.panel & 1U) == 0) return infinity;
-    const double gap = -most_inside(dented.dent, box);
-    if (touching && spans(dented.dent, box)) return -infinity;
-    return gap <= (touching ? dented.way : 0.0) ? gap : infinity;
-}
-
-// Which dents can reach the block? Their posts are among what it sees, then.
-bool Skin::find_dents_of_block(std::size_t b) {
-    block_dents_.clear();
-    for (const std::size_t d : group_dents_) {
-        const double gap = reach_of_dent(dents_[d], mesh_.panels_of[b], from(b).box, from(b).touching);
-        if (gap == infinity) continue;
-        block_dents_.push_back({d, gap});
-        const std::size_t near = dents_[d].near;
-        if (std::find(seen_.begin(), seen_.end(), near) == seen_.end())
-            seen_.insert(std::lower_bound(seen_.begin(), seen_.end(), near), near);
+void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list, std::vector<Dented>& now) {
+    list.clear();
+    now.clear();
+    pass.greatest_following = infinity;
+    if (pass.mesh.dent_reach == 0.0) return;
+    for (std::size_t k = 0; k < pass.near.size(); ++k) {
+        if (!std::holds_alternative<Post>(pass.shape(k))) continue;
+        const Dented indented = find_indented_panels(pass, k, list);
+        if ((indented.panels | indented.passed) != 0) now.push_back(indented);
     }
-    std::sort(block_dents_.begin(), block_dents_.end(), [](const BlockDent& x, const BlockDent& y) {
-        return x.gap != y.gap ? x.gap < y.gap : x.dent < y.dent;
-    });
-    return !block_dents_.empty();
+    pass.indentations = list;
+    for (const Dented& before : pass.before.dented)
+        pass.indented_before |= before.panels;
+    if (pass.indented_before == 0) return;
+    pass.greatest_following = 2.0 * pass.margin;
+    for (const IndentedPanel& indented : list)
+        pass.greatest_following = std::max(pass.greatest_following, indented.growth);
 }
 
-// Are all nodes of some panels, bit by bit, on one that this post dents?
-bool Skin::is_left_to_dents(std::uint8_t of, std::size_t near) const {
-    return std::any_of(dents_.begin(), dents_.end(), [&](const DentedPanel& dented) {
-        return dented.near == near && of == 1U << dented.panel;
-    });
+double gap_to_indentation(const IndentedPanel& indented, std::uint8_t of, const Box& box, bool touching) {
+    if ((of >> indented.panel & 1U) == 0) return infinity;
+    const double gap = -most_inside(indented.dent, box);
+    if (touching && spans(indented.dent, box)) return -infinity;
+    return gap <= (touching ? indented.growth : 0.0) ? gap : infinity;
+}
+
+void find_block_indentations(const ContactPass& pass, const std::vector<std::size_t>& of_group,
+                             ContactBlock& block) {
+    block.indentations.clear();
+    for (const std::size_t d : of_group) {
+        const IndentedPanel& indented = pass.indentations[d];
+        const double gap = gap_to_indentation(indented, pass.mesh.panels_of[block.index], block.start->box,
+                                              block.start->touching);
+        if (gap == infinity) continue;
+        block.indentations.push_back({d, gap});
+        if (std::find(block.seen.begin(), block.seen.end(), indented.near) == block.seen.end())
+            block.seen.insert(std::lower_bound(block.seen.begin(), block.seen.end(), indented.near),
+                              indented.near);
+    }
+    std::sort(block.indentations.begin(), block.indentations.end(),
+              [](const BlockIndentation& x, const BlockIndentation& y) {
+                  return x.gap != y.gap ? x.gap < y.gap : x.indentation < y.indentation;
+              });
+}
+
+bool only_indented(const ContactPass& pass, std::uint8_t of, std::size_t k) {
+    return std::any_of(
+        pass.indentations.begin(), pass.indentations.end(),
+        [&](const IndentedPanel& indented) { return indented.near == k && of == 1U << indented.panel; });
 }
 
 namespace {
 
-BIRM3D_LANE_LOOP void leave_out(const Lanes& panel_of, double panel, Lanes& gap) {
+BIRM3D_LANE_LOOP void omit_panel(const Lanes& panel_of, double panel, Lanes& gap) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i)
         gap[i] = panel_of[i] == panel ? infinity : gap[i];
 }
 
-}  // namespace
-
-// Nodes of a panel that a post dents do not see the post itself, near or far.
-void Skin::leave_to_dents(std::size_t b, std::size_t near, NearestLanes& found) const {
-    for (const DentedPanel& dented : dents_)
-        if (dented.near == near && (mesh_.panels_of[b] >> dented.panel & 1U) != 0)
-            leave_out(mesh_.block[b].panel, static_cast<double>(dented.panel), found.gap);
-}
-
-namespace {
-
-BIRM3D_LANE_LOOP void note_nearest(const Lanes& hangs, std::size_t seen,
+BIRM3D_LANE_LOOP void note_nearest(const Lanes& follows, std::size_t seen,
                                    std::array<std::size_t, lanes>& nearest) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i)
-        nearest[i] = hangs[i] > 0.0 ? seen : nearest[i];
+        nearest[i] = follows[i] > 0.0 ? seen : nearest[i];
 }
 
-// What a node stood at before it came to hang on a dent can hold it as well: the ground below a bumper.
-BIRM3D_LANE_LOOP void note_second(const Lanes& hangs, const Lanes& gap, Lanes& second) {
+// What a node stood at before it followed an indentation can hold it as well: the ground below a bumper.
+BIRM3D_LANE_LOOP void note_second(const Lanes& follows, const Lanes& gap, Lanes& second) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i)
-        second[i] = hangs[i] > 0.0 && gap[i] < second[i] ? gap[i] : second[i];
+        second[i] = follows[i] > 0.0 && gap[i] < second[i] ? gap[i] : second[i];
 }
 
-BIRM3D_LANE_LOOP void note_let_go(const Lanes& hangs, Lanes& let_go) {
+BIRM3D_LANE_LOOP void note_released(const Lanes& follows, Lanes& released) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i)
-        let_go[i] = hangs[i] > 0.0 ? hangs[i] - 1.0 : let_go[i];
+        released[i] = follows[i] > 0.0 ? follows[i] - 1.0 : released[i];
 }
 
 }  // namespace
 
-void Skin::draw_in(std::size_t b, const TrussBlockState& block) {
-    alignas(64) Lanes hangs, rank;
-    let_go_.fill(0.0);
+void omit_indented(const ContactPass& pass, std::size_t b, std::size_t k, NearestLanes& found) {
+    for (const IndentedPanel& indented : pass.indentations)
+        if (indented.near == k && (pass.mesh.panels_of[b] >> indented.panel & 1U) != 0)
+            omit_panel(pass.mesh.block[b].panel, static_cast<double>(indented.panel), found.gap);
+}
+
+void follow_indentations(const ContactPass& pass, ContactBlock& block) {
+    alignas(64) Lanes follows, rank;
+    block.released.fill(0.0);
     rank.fill(infinity);
-    for (const BlockDent& reached : block_dents_) {
-        const DentedPanel& dented = dents_[reached.dent];
-        const Lanes& panel_of = mesh_.block[b].panel;
-        if (reached.dent != block_dents_.front().dent &&
-            reached.gap > furthest_off(block, panel_of, dented.panel, faces_.gap))
+    const Lanes& panel_of = pass.mesh.block[block.index].panel;
+    for (const BlockIndentation& reached : block.indentations) {
+        const IndentedPanel& indented = pass.indentations[reached.indentation];
+        const bool first = reached.indentation == block.indentations.front().indentation;
+        if (!first && reached.gap > furthest_off(*block.start, panel_of, indented.panel, block.faces.gap))
             continue;
-        alignas(64) const Lanes gap = faces_.gap;
-        hang_on(dented.dent, dented.then, block, panel_of, dented.panel, faces_, contact_, rank, hangs);
-        note_second(hangs, gap, second_gap_);
-        note_let_go(hangs, let_go_);
-        const auto seen = std::find(seen_.begin(), seen_.end(), dented.near) - seen_.begin();
-        if (seen_.size() > 1) note_nearest(hangs, static_cast<std::size_t>(seen), nearest_);
+        alignas(64) const Lanes gap = block.faces.gap;
+        hang_on(indented.dent, indented.before, *block.start, panel_of, indented.panel, block.faces,
+                block.contact, rank, follows);
+        note_second(follows, gap, block.second_gap);
+        note_released(follows, block.released);
+        const auto seen = std::find(block.seen.begin(), block.seen.end(), indented.near) - block.seen.begin();
+        if (block.seen.size() > 1) note_nearest(follows, static_cast<std::size_t>(seen), block.nearest);
     }
 }
 

@@ -1,12 +1,13 @@
-// What the nodes of a block see of the obstacles about them: gaps and normals now, and normals an instant before.
+#include "contact/nearest_surface.hpp"
+
 #include <algorithm>
 #include <array>
 #include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/contact/entered_face.hpp"
-#include "birm3d/scene/obstacles.hpp"
-#include "contact/contact_pass.hpp"
+#include "contact/corner_contacts.hpp"
+#include "contact/indentation.hpp"
 
 namespace birm3d {
 
@@ -17,8 +18,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Cosine above which the normals of two instants are of the same face.
 constexpr double same_face = 0.9;
 
-BIRM3D_LANE_LOOP void see_nothing(NodeFaces& faces, BlockContact& contact,
-                                  std::array<std::size_t, lanes>& nearest) {
+BIRM3D_LANE_LOOP void set_nothing_met(NodeFaces& faces, BlockContact& contact,
+                                      std::array<std::size_t, lanes>& nearest) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < lanes; ++i) {
         faces.gap[i] = infinity;
@@ -108,75 +109,6 @@ BIRM3D_LANE_LOOP double find_doubtful(const NodeFaces& faces, const BlockContact
     return lane_sum(sum);
 }
 
-}  // namespace
-
-// What each node of a block sees: the nearest of the surfaces in its reach.
-void Skin::look(std::size_t b) {
-    const TrussBlockState& block = from(b);
-    see_nothing(faces_, contact_, nearest_);
-    plane_normal_.reset();
-    corners_.clear();
-    const bool only_dents = std::all_of(
-        seen_.begin(), seen_.end(), [&](std::size_t k) { return is_left_to_dents(mesh_.panels_of[b], k); });
-    const bool changed = !only_dents && look_at_surfaces(b, block);
-    draw_in(b, block);
-    // Of one obstacle the nearest place lies in no corner.
-    if (changed || seen_.size() > 1) settle_in_corners(b);
-}
-
-// Has any node gone in by another face than the nearest?
-bool Skin::look_at_surfaces(std::size_t b, const TrussBlockState& block) {
-    look_at(b, block);
-    const bool changed = find_entered_faces(block);
-    if (block.touching) turn_flat_faces();
-    return changed;
-}
-
-void Skin::look_at(std::size_t b, const TrussBlockState& block) {
-    alignas(64) NearestLanes found;
-    second_gap_.fill(infinity);
-    for (std::size_t k = 0; k < seen_.size(); ++k) {
-        if (is_left_to_dents(mesh_.panels_of[b], seen_[k])) continue;
-        const NearObstacle& obstacle = near_[seen_[k]];
-        const Shape& shape = scene_.obstacles[obstacle.index].shape;
-        nearest_of(shape, obstacle.now, obstacle.before, block.x, block.y, block.z, found, &block.force);
-        leave_to_dents(b, seen_[k], found);
-        if (k > 0) take_second(found, faces_, second_gap_);
-        take_nearer(found, k, faces_, contact_, nearest_);
-    }
-    faces_.bx = contact_.nx, faces_.by = contact_.ny, faces_.bz = contact_.nz;
-    // What pushes on no more than dents had their direction then, too; nodes that stay on a plane have its own.
-    if (!block.touching || !any_meets(block.force, faces_.gap) || stay_on_planes(block)) return;
-    // Of all surfaces at that instant: segments of a wall take over from each other.
-    alignas(64) Lanes gap_before;
-    gap_before.fill(infinity);
-    for (const std::size_t k : seen_) {
-        if (is_left_to_dents(mesh_.panels_of[b], k)) continue;
-        const NearObstacle& obstacle = near_[k];
-        nearest_of(scene_.obstacles[obstacle.index].shape, obstacle.before, obstacle.before, block.x, block.y,
-                   block.z, found, &block.force);
-        leave_to_dents(b, k, found);
-        take_nearer_before(found, gap_before, faces_);
-    }
-}
-
-// Have all nodes that push on what they see done so on the plane that they see now?
-bool Skin::stay_on_planes(const TrussBlockState& block) const {
-    for (std::size_t k = 0; k < seen_.size(); ++k) {
-        const NearObstacle& obstacle = near_[seen_[k]];
-        if (std::holds_alternative<Post>(scene_.obstacles[obstacle.index].shape)) return false;
-        const Mat3 to_body = obstacle.now.rotation.transpose();
-        const Mat3 turn = to_body * obstacle.before.rotation - Mat3::Identity();
-        const Vec3 shift = to_body * (obstacle.before.position - obstacle.now.position);
-        const double off =
-            furthest_off_plane(turn.data(), shift.data(), k, block, faces_, contact_, nearest_);
-        if (!(off <= tolerance::touching_gap)) return false;
-    }
-    return true;
-}
-
-namespace {
-
 // Normals that nodes of one obstacle had before, by its turn since.
 BIRM3D_LANE_LOOP void turn_back(const double* turn, std::size_t seen,
                                 const std::array<std::size_t, lanes>& nearest, const BlockContact& contact,
@@ -193,39 +125,109 @@ BIRM3D_LANE_LOOP void turn_back(const double* turn, std::size_t seen,
     }
 }
 
-}  // namespace
+// Have all nodes that push on what they see done so on the plane that they see now?
+bool stay_on_planes(const ContactPass& pass, const ContactBlock& block) {
+    for (std::size_t k = 0; k < block.seen.size(); ++k) {
+        if (std::holds_alternative<Post>(pass.shape(block.seen[k]))) return false;
+        const NearObstacle& near = pass.near[block.seen[k]];
+        const Mat3 to_body = near.now.rotation.transpose();
+        const Mat3 turn = to_body * near.before.rotation - Mat3::Identity();
+        const Vec3 shift = to_body * (near.before.position - near.now.position);
+        const double off = furthest_off_plane(turn.data(), shift.data(), k, *block.start, block.faces,
+                                              block.contact, block.nearest);
+        if (!(off <= tolerance::touching_gap)) return false;
+    }
+    return true;
+}
 
-// A flat face, or an edge, had the same normal in its own axes an instant before, whatever was nearest then.
-void Skin::turn_flat_faces() {
-    for (std::size_t k = 0; k < seen_.size(); ++k) {
-        const NearObstacle& obstacle = near_[seen_[k]];
-        if (std::holds_alternative<Post>(scene_.obstacles[obstacle.index].shape)) continue;
-        const Mat3 turn = obstacle.before.rotation.transpose() * obstacle.now.rotation;
-        turn_back(turn.data(), k, nearest_, contact_, faces_);
+// The nearest of all surfaces now, but those whose indentations the nodes follow.
+void find_surfaces_now(const ContactPass& pass, ContactBlock& block) {
+    const TrussBlockState& nodes = *block.start;
+    alignas(64) NearestLanes found;
+    block.second_gap.fill(infinity);
+    for (std::size_t k = 0; k < block.seen.size(); ++k) {
+        const std::size_t at = block.seen[k];
+        if (only_indented(pass, pass.mesh.panels_of[block.index], at)) continue;
+        nearest_of(pass.shape(at), pass.near[at].now, pass.near[at].before, nodes.x, nodes.y, nodes.z, found,
+                   &nodes.force);
+        omit_indented(pass, block.index, at, found);
+        if (k > 0) take_second(found, block.faces, block.second_gap);
+        take_nearer(found, k, block.faces, block.contact, block.nearest);
     }
 }
 
-// The nearest face can be the wrong one to nodes beside an edge: those that arrive, and those that seem to have changed
-// over to another face. Meshes do the like with all that come in. Was it the wrong one to any?
-bool Skin::find_entered_faces(const TrussBlockState& block) {
+// The same of the start of the step: segments of a wall take over from each other.
+void find_surfaces_before(const ContactPass& pass, ContactBlock& block) {
+    const TrussBlockState& nodes = *block.start;
+    alignas(64) NearestLanes found;
+    alignas(64) Lanes gap_before;
+    gap_before.fill(infinity);
+    for (const std::size_t at : block.seen) {
+        if (only_indented(pass, pass.mesh.panels_of[block.index], at)) continue;
+        const Placement& before = pass.near[at].before;
+        nearest_of(pass.shape(at), before, before, nodes.x, nodes.y, nodes.z, found, &nodes.force);
+        omit_indented(pass, block.index, at, found);
+        take_nearer_before(found, gap_before, block.faces);
+    }
+}
+
+// A flat face, or an edge, had the same normal in its own axes at the start of the step, whatever was nearest then.
+void turn_flat_faces(const ContactPass& pass, ContactBlock& block) {
+    for (std::size_t k = 0; k < block.seen.size(); ++k) {
+        if (std::holds_alternative<Post>(pass.shape(block.seen[k]))) continue;
+        const NearObstacle& near = pass.near[block.seen[k]];
+        const Mat3 turn = near.before.rotation.transpose() * near.now.rotation;
+        turn_back(turn.data(), k, block.nearest, block.contact, block.faces);
+    }
+}
+
+// The nearest face can be the wrong one to nodes beside an edge: to those that arrive, and to those that seem to have
+// changed to another face. Returns whether it was wrong to any. Meshes tell by themselves.
+bool find_entered_faces(const ContactPass& pass, ContactBlock& block) {
     bool changed = false;
     alignas(64) Lanes doubtful;
-    if (find_doubtful(faces_, contact_, block.force, doubtful) == 0.0) return false;
+    if (find_doubtful(block.faces, block.contact, block.start->force, doubtful) == 0.0) return false;
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!(doubtful[i] > 0.0)) continue;
-        const Shape& shape = scene_.obstacles[near_[seen_[nearest_[i]]].index].shape;
+        const Shape& shape = pass.shape(block.seen[block.nearest[i]]);
         if (std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<TriangleMesh>(shape)) continue;
-        const auto entered = entered_face(scene_, near_, seen_, {block.x[i], block.y[i], block.z[i]},
-                                          nearest_[i], contact_.normal(i));
+        const Vec3 node(block.start->x[i], block.start->y[i], block.start->z[i]);
+        const auto entered =
+            entered_face(pass.scene, pass.near, block.seen, node, block.nearest[i], block.contact.normal(i));
         if (!entered) continue;
         changed = true;
-        nearest_[i] = entered->seen;
-        const Vec3 &n = entered->now.normal, &m = entered->normal_before;
-        faces_.gap[i] = entered->now.gap;
-        contact_.nx[i] = n.x(), contact_.ny[i] = n.y(), contact_.nz[i] = n.z();
-        faces_.bx[i] = m.x(), faces_.by[i] = m.y(), faces_.bz[i] = m.z();
+        block.nearest[i] = entered->seen;
+        block.faces.gap[i] = entered->now.gap;
+        block.set_normals(i, entered->now.normal, entered->normal_before);
     }
     return changed;
+}
+
+// Returns whether any node has gone in through another face than the nearest.
+bool find_surfaces(const ContactPass& pass, ContactBlock& block) {
+    find_surfaces_now(pass, block);
+    block.faces.bx = block.contact.nx, block.faces.by = block.contact.ny, block.faces.bz = block.contact.nz;
+    // Nodes that push on indentations only need no other direction; nodes that stay on a plane keep its own.
+    const bool pushes = block.start->touching && any_meets(block.start->force, block.faces.gap);
+    if (pushes && !stay_on_planes(pass, block)) find_surfaces_before(pass, block);
+    const bool changed = find_entered_faces(pass, block);
+    if (block.start->touching) turn_flat_faces(pass, block);
+    return changed;
+}
+
+}  // namespace
+
+void find_nearest_surface(const ContactPass& pass, ContactBlock& block) {
+    set_nothing_met(block.faces, block.contact, block.nearest);
+    block.flat_normal.reset();
+    block.corners.clear();
+    const std::uint8_t of = pass.mesh.panels_of[block.index];
+    const bool all_indented = std::all_of(block.seen.begin(), block.seen.end(),
+                                          [&](std::size_t k) { return only_indented(pass, of, k); });
+    const bool changed = !all_indented && find_surfaces(pass, block);
+    follow_indentations(pass, block);
+    // Of one obstacle the nearest place lies in no corner.
+    if (changed || block.seen.size() > 1) resolve_corner_contacts(pass, block);
 }
 
 }  // namespace birm3d

@@ -1,31 +1,33 @@
-// Friction of tyres at the barrier: see kernels/friction_tread.hpp.
+#include "contact/tire_contact.hpp"
+
 #include <algorithm>
 
 #include "birm3d/kernels/friction_tread.hpp"
-#include "contact/contact_pass.hpp"
 
 namespace birm3d {
 
-// How fast a wheel turns follows from the friction of all its nodes. So friction is added when all of them are known.
-void Skin::note_treads(std::size_t near, std::size_t b, const Places& places, const BlockContact& contact) {
-    const std::size_t first = mesh_.first[b] - mesh_.shell;
+void note_tire_nodes(const ContactPass& pass, std::size_t k, std::size_t b, const Places& places,
+                     const BlockContact& contact, ContactSums& sums) {
+    if (!(pass.scene.settings.mu_tire_barrier > 0.0)) return;
+    const std::size_t first = pass.mesh.first[b] - pass.mesh.shell;
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!(contact.pressure[i] > 0.0)) continue;
-        treads_.push_back(tread_contact(mesh_.tread[first + i], near, away_[near],
-                                        {places.x[i], places.y[i], places.z[i]}, contact.normal(i),
-                                        contact.pressure[i]));
+        sums.tire_nodes.push_back(tread_contact(pass.mesh.tread[first + i], k, pass.relative_motion[k],
+                                                places[i], contact.normal(i), contact.pressure[i]));
     }
 }
 
-void Skin::rub_treads() {
-    const double mu = scene_.settings.mu_tire_barrier;
-    // They come wheel by wheel, as their blocks do.
-    for (auto first = treads_.begin(); first != treads_.end();) {
-        const auto end = std::find_if(first, treads_.end(),
+void add_tire_friction(const ContactPass& pass, ContactSums& sums) {
+    const double mu = pass.scene.settings.mu_tire_barrier;
+    const double full_speed = pass.full_friction_speed;
+    // The nodes come wheel by wheel, as their blocks do.
+    for (auto first = sums.tire_nodes.begin(); first != sums.tire_nodes.end();) {
+        const auto end = std::find_if(first, sums.tire_nodes.end(),
                                       [&](const TreadContact& node) { return node.wheel != first->wheel; });
-        const double turning = scene_.settings.braking < 1.0 ? free_turning(full_speed_, {first, end}) : 0.0;
+        const double turning =
+            pass.scene.settings.braking < 1.0 ? free_turning(full_speed, {first, end}) : 0.0;
         for (; first != end; ++first)
-            add_tread_friction(mu, full_speed_, turning, *first, obstacles_[first->near].rubbing);
+            add_tread_friction(mu, full_speed, turning, *first, sums.obstacles[first->near].rubbing);
     }
 }
 

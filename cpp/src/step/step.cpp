@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "birm3d/contact/skin_contact.hpp"
+#include "birm3d/contact/contact_forces.hpp"
 #include "birm3d/kernels/integrate.hpp"
 #include "birm3d/step/energy_balance.hpp"
 #include "birm3d/step/half_kick.hpp"
@@ -41,7 +41,7 @@ void move_unit(const Scene& scene, std::size_t u, const State& from, Trial& tria
     UnitState& moved = now.units[u];
     now.energies.potential += trial.dt * unit.body.mass * scene.settings.gravity * moved.body.velocity.z();
     drift(unit.body, trial.dt, moved.body);
-    if (!scene.obstacles.empty()) skin_forces(scene, u, from, trial);
+    if (!scene.obstacles.empty()) find_contact_forces(scene, u, from, trial);
     if (skin_touches_barrier(scene, moved)) now.touched = true;
     trial.error = std::max(trial.error, correct_loads(scene, u, from.units[u], trial));
     trial.critical_step = std::min(trial.critical_step, critical_step(scene, unit.body, moved));

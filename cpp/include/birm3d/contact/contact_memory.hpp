@@ -1,4 +1,4 @@
-// Memory of skin_forces, which finds it and leaves it with nothing of meaning: so that a step allocates nothing.
+// Memory of find_contact_forces(). It outlives the step so that a step allocates nothing; no value in it does.
 #pragma once
 
 #include <cstddef>
@@ -12,47 +12,61 @@
 
 namespace birm3d {
 
-// Sums over blocks that saw one plane, or (by general detection) one obstacle; `near`: its place in SkinMemory.
+// Sums over blocks that met one plane only. `near`: place of its obstacle in ContactMemory::near.
 struct PlaneSums {
     std::size_t near;
     FlatContact surface;
     CrushSums sums;
 };
+
+// Sums over the other blocks, for one obstacle.
 struct ObstacleSums {
-    CrushSums sums;
+    CrushSums sums;     // of blocks that met no other obstacle
     Wrench by_trusses;  // of the paper's rule, in place of the projected force
-    Wrench contact;     // of blocks that saw several obstacles
+    Wrench contact;     // of blocks that met several obstacles
     double normal_force = 0.0;
     Rubbing rubbing;
     bool seen = false;  // by any block
 };
 
-// A post and a panel that it dents.
-struct DentedPanel {
-    std::size_t near;
-    std::size_t panel;
-    Dent dent, then;  // now, and an instant before
-    double way;       // how far it can have come in within the step, and nodes off it (m)
+// What the blocks of a unit add up to.
+struct ContactSums {
+    std::vector<ObstacleSums> obstacles;  // parallel to ContactMemory::near
+    std::vector<PlaneSums> planes;
+    std::vector<TreadContact> tire_nodes;  // that push on the barrier
+    CrushSums several;                     // of blocks that met several obstacles
+
+    void clear(std::size_t near) {
+        obstacles.assign(near, {});
+        planes.clear();
+        tire_nodes.clear();
+        several = {};
+    }
 };
 
-// One of the dents that the block at hand may reach; no node is nearer to it than this (m).
-struct BlockDent {
-    std::size_t dent;
+// A post and a panel that it indents.
+struct IndentedPanel {
+    std::size_t near;
+    std::size_t panel;
+    Dent dent, before;  // at the end and at the start of the step
+    double growth;      // how far it can have come in within the step, and nodes off it (m)
+};
+
+// An indentation that the block at hand may reach. None of its nodes is nearer to it than `gap` (m).
+struct BlockIndentation {
+    std::size_t indentation;
     double gap;
 };
 
-struct SkinMemory {
-    std::vector<std::size_t> about;  // obstacles that may be near
-    std::vector<NearObstacle> near;
-    std::vector<Twist>
-        away;  // parallel to near: the unit's motion from an obstacle that moves too, body axes
-    std::vector<ObstacleSums> obstacles;  // the same
-    std::vector<PlaneSums> planes;
-    std::vector<DentedPanel> dents;
-    std::vector<TreadContact> treads;  // that push
-    // What the group of blocks at hand may see, places in near and dents; and the block at hand.
-    std::vector<std::size_t> group_near, group_dents, seen;
-    std::vector<BlockDent> block_dents;  // the nearest first
+struct ContactMemory {
+    std::vector<std::size_t> about;      // obstacles that may be near
+    std::vector<NearObstacle> near;      // in the order of the obstacles
+    std::vector<Twist> relative_motion;  // parallel to near: the unit's, seen from the obstacle, body axes
+    std::vector<IndentedPanel> indentations;
+    ContactSums sums;
+    // Places in `near` and `indentations` that the group at hand may reach, then the block at hand.
+    std::vector<std::size_t> group_near, group_indentations, block_near;
+    std::vector<BlockIndentation> block_indentations;  // the nearest first
     std::vector<ContactLoad> contact_loads;
 };
 

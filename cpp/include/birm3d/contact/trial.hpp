@@ -122,7 +122,7 @@ struct Trial {
     Column drift_velocity_z;                // (units) vertical velocity in the drift (m/s)
     Impact at_start, at_end;
     std::vector<std::size_t> seen;  // obstacles that blocks of nodes had in reach, once for each unit
-    SkinMemory skin;
+    ContactMemory skin;
     std::vector<LoadHistory>
         histories;  // working memory of correct_loads(), so that a step allocates nothing
     std::vector<Load> loads;

@@ -1,0 +1,148 @@
+#include "contact/block_crush.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "contact/contact_loads.hpp"
+#include "contact/nearest_surface.hpp"
+#include "contact/released_nodes.hpp"
+
+namespace birm3d {
+
+namespace {
+
+PlaneSums& sums_of_plane(const ContactPass& pass, std::size_t k, const HalfSpace& plane,
+                         std::vector<PlaneSums>& planes) {
+    for (PlaneSums& known : planes)
+        if (known.near == k && known.surface.face.normal == plane.normal) return known;
+    const NearObstacle& near = pass.near[k];
+    HalfSpace before = plane;
+    before.normal = near.before.rotation.transpose() * (near.now.rotation * plane.normal);
+    planes.push_back({k, FlatContact(pass.unit.body, plane, before), {}});
+    return planes.back();
+}
+
+// `at`: the obstacle that the nodes meet, or several_obstacles.
+void find_rate_factor(const ContactPass& pass, const ContactBlock& block, std::size_t at,
+                      const Places& places, Lanes& factor) {
+    const auto set = [&](const Twist& motion, Lanes& to) {
+        set_rate_factor(pass.mesh.rate_sensitivity, block.end->force, motion, places, block.contact, to);
+    };
+    if (at != several_obstacles) return set(pass.relative_motion[at], factor);
+    if (pass.now.segments.empty()) return set(pass.motion, factor);
+    alignas(64) Lanes own;
+    for (std::size_t k = 0; k < block.seen.size(); ++k) {
+        set(pass.relative_motion[block.seen[k]], own);
+        for (std::size_t i = 0; i < lanes; ++i)
+            if (block.nearest[i] == k) factor[i] = own[i];
+    }
+}
+
+// The rate of deflection is that of where the nodes will be. So a rate-sensitive block is first crushed without it.
+template <class Crush>
+bool crush_with_rate(const ContactPass& pass, const ContactBlock& block, std::size_t at, const Places& places,
+                     CrushSums& sums, const Crush& crush) {
+    if (pass.mesh.rate_sensitivity == 0.0) return crush(nullptr, sums);
+    CrushSums without;
+    crush(nullptr, without);
+    alignas(64) Lanes factor;
+    find_rate_factor(pass, block, at, places, factor);
+    return crush(&factor, sums);
+}
+
+// Returns whether any node ceased to push.
+bool crush_on(const ContactPass& pass, const PlaneSums& plane, ContactBlock& block, CrushSums& to) {
+    return crush_with_rate(pass, block, plane.near, {block.end->x, block.end->y, block.end->z}, to,
+                           [&](const Lanes* factor, CrushSums& sums) {
+                               return crush(plane.surface, pass.mesh, block.index, factor, *block.start,
+                                            *block.end, block.contact, sums);
+                           });
+}
+
+// The same; `at`: the obstacle that the nodes meet, or several_obstacles.
+bool crush_on(const ContactPass& pass, std::size_t at, ContactBlock& block, CrushSums& to) {
+    return crush_with_rate(pass, block, at, block.contact.places(), to,
+                           [&](const Lanes* factor, CrushSums& sums) {
+                               return crush(block.faces, pass.unit.body, pass.mesh, block.index, factor,
+                                            *block.start, *block.end, block.contact, sums);
+                           });
+}
+
+// The one obstacle that all nodes which push or are inside meet, or several_obstacles.
+std::size_t obstacle_met(const ContactBlock& block) {
+    if (block.seen.size() == 1) return block.seen[0];
+    std::optional<std::size_t> only;
+    for (std::size_t i = 0; i < lanes; ++i) {
+        if (!(block.start->force[i] > 0.0 || block.faces.gap[i] < 0.0)) continue;
+        if (only && *only != block.nearest[i]) return several_obstacles;
+        only = block.nearest[i];
+    }
+    return block.seen[only.value_or(0)];
+}
+
+void add_friction_and_shares(const ContactPass& pass, std::size_t at, ContactBlock& block,
+                             ContactSums& sums) {
+    if (!block.end->touching) return;
+    if (at != several_obstacles)
+        apply_friction(pass, at, block.contact.places(), block.contact, block, sums);
+    else
+        share_loads(pass, block, sums);
+}
+
+// Crushes the block anew from where other surfaces have stopped the released nodes.
+void crush_stopped(const ContactPass& pass, ContactState& state) {
+    stop_nodes(pass, state.block, state.sums);
+    find_nearest_surface(pass, state.block);
+    crush_on(pass, several_obstacles, state.block, state.sums.several);
+    add_friction_and_shares(pass, several_obstacles, state.block, state.sums);
+}
+
+}  // namespace
+
+PlaneSums* only_plane(const ContactPass& pass, const ContactBlock& block, ContactSums& sums) {
+    if (block.seen.size() != 1 || !block.indentations.empty()) return nullptr;
+    const std::size_t k = block.seen[0];
+    const Shape& shape = pass.shape(k);
+    if (std::holds_alternative<HalfSpace>(shape) && !sums.planes.empty() && sums.planes.back().near == k)
+        return &sums.planes.back();  // the same plane to all blocks
+    const auto plane = flat_part(shape, pass.near[k].now, block.start->box);
+    return plane ? &sums_of_plane(pass, k, *plane, sums.planes) : nullptr;
+}
+
+void crush_on_plane(const ContactPass& pass, PlaneSums& plane, ContactState& state) {
+    ContactBlock& block = state.block;
+    const Vec3& normal = plane.surface.face.normal;
+    if (!block.flat_normal || *block.flat_normal != normal)
+        block.contact.set_normal(block.flat_normal.emplace(normal));
+    const bool ceased = crush_on(pass, plane, block, plane.sums);
+    if (may_release(pass, block, ceased) && find_stopped(pass, &plane.surface, block, state.distant)) {
+        CrushSums undone;
+        crush_on(pass, plane, block, undone);
+        plane.sums -= undone;
+        return crush_stopped(pass, state);
+    }
+    if (block.end->touching)
+        apply_friction(pass, plane.near, {block.end->x, block.end->y, block.end->z}, block.contact, block,
+                       state.sums);
+}
+
+void crush_on_surfaces(const ContactPass& pass, ContactState& state) {
+    ContactBlock& block = state.block;
+    // A node that goes into one obstacle may find itself at another one, too; posts stand apart.
+    const bool may_enter_another = std::any_of(block.seen.begin(), block.seen.end(), [&](std::size_t k) {
+        return std::holds_alternative<Prism>(pass.shape(k));
+    });
+    const bool fixed = block.corners.empty() && (block.seen.size() == 1 || !may_enter_another);
+    const std::size_t at = fixed ? obstacle_met(block) : several_obstacles;
+    CrushSums& to = at != several_obstacles ? state.sums.obstacles[at].sums : state.sums.several;
+    const bool ceased = crush_on(pass, at, block, to);
+    if (may_release(pass, block, ceased) && find_stopped(pass, nullptr, block, state.distant)) {
+        CrushSums undone;
+        crush_on(pass, at, block, undone);
+        to -= undone;
+        return crush_stopped(pass, state);
+    }
+    add_friction_and_shares(pass, at, block, state.sums);
+}
+
+}  // namespace birm3d

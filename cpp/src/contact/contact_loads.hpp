@@ -1,0 +1,19 @@
+// The loads of a unit on each obstacle, with friction, and their sums for the step.
+#pragma once
+
+#include "birm3d/contact/trial.hpp"
+#include "contact/contact_pass.hpp"
+
+namespace birm3d {
+
+// Adds the friction of a crushed block's nodes on the k-th near obstacle. `places`: where the forces in `contact` act.
+void apply_friction(const ContactPass& pass, std::size_t k, const Places& places, const BlockContact& contact,
+                    const ContactBlock& block, ContactSums& sums);
+
+// Gives each obstacle that the block's nodes push on the loads of its own nodes, with friction.
+void share_loads(const ContactPass& pass, ContactBlock& block, ContactSums& sums);
+
+// Stores the sums as the unit's loads, world axes.
+void store_loads(const ContactPass& pass, Trial& trial);
+
+}  // namespace birm3d

@@ -1,0 +1,15 @@
+// Friction of tires at the barrier: see kernels/friction_tread.hpp.
+#pragma once
+
+#include "contact/contact_pass.hpp"
+
+namespace birm3d {
+
+// Notes the nodes of a block of tire nodes that push on the k-th near obstacle.
+void note_tire_nodes(const ContactPass& pass, std::size_t k, std::size_t block, const Places& places,
+                     const BlockContact& contact, ContactSums& sums);
+
+// Adds the friction of all noted nodes. How fast a wheel turns follows from all its nodes, so none is added earlier.
+void add_tire_friction(const ContactPass& pass, ContactSums& sums);
+
+}  // namespace birm3d
