@@ -13,6 +13,7 @@ import pytest
 from birm3d import ArticulatedVehicle, Barrier, Joint, Result, Settings, Simulation, Vehicle, scenes
 from birm3d.base.fingerprint import fingerprint
 from birm3d.scene_parameters import parameter_names, value_of, varied
+from birm3d.vehicle import build
 
 G = 9.80665
 
@@ -104,7 +105,7 @@ def test_changes_reach_the_units_that_they_concern() -> None:
         ratio = raised.mass_center_height / vehicle.mass_center_height
         assert unit.mass_center_height == pytest.approx(ratio * was.mass_center_height, rel=1e-12)
     np.testing.assert_allclose(raised.nodes + raised.center_of_mass, vehicle.nodes + vehicle.center_of_mass)
-    assert vehicle.draft().with_rate_sensitivity(0.1).finished() == vehicle.with_rate_sensitivity(0.1)
+    assert build(vehicle.recipe.each(rate_sensitivity=0.1)) == vehicle.with_rate_sensitivity(0.1)
 
 
 def test_units_from_files_keep_their_joint_when_they_are_loaded() -> None:

@@ -29,7 +29,6 @@ WITH: dict[str, Callable[[Vehicle], Vehicle]] = {
     "reach": lambda v: v.with_dent_reach(0.5),
     "tyres": lambda v: v.without_tire_contact(),
     "zone": lambda v: v.with_zones({"bumper": v.zones["bumper"].scaled(1.2)}),
-    "draft": lambda v: v.draft().finished(),
 }
 # Others of every public field.
 OTHERS: dict[str, Callable[[Vehicle], Any]] = {
@@ -190,7 +189,7 @@ def test_far_heights_still_have_an_inertia_that_can_be(share: float) -> None:
     assert a + b > c
 
 
-@pytest.mark.parametrize("method", ["gvw", "payload", "scaled", "mesh", "rate", "tyres", "draft"])
+@pytest.mark.parametrize("method", ["gvw", "payload", "scaled", "mesh", "rate", "tyres"])
 @pytest.mark.parametrize("vehicle", [TRUCK, SEMI], ids=["one", "two"])
 def test_a_height_that_was_asked_for_stays(vehicle: Vehicle, method: str) -> None:
     change = WITH[method]

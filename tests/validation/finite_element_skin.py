@@ -20,6 +20,7 @@ import birm3d
 import numpy as np
 import numpy.typing as npt
 import tomlkit
+from birm3d.vehicle import build
 from birm3d.vehicle.zone_law import ZoneLaw
 
 Floats = npt.NDArray[np.float64]
@@ -196,9 +197,9 @@ def zones(skin: Skin, values: Mapping[str, float]) -> dict[str, birm3d.Zone]:
 
 def changed(vehicle: birm3d.Vehicle, skin: Skin, values: Mapping[str, float]) -> birm3d.Vehicle:
     """A vehicle of :func:`vehicle_with` with other numbers, without a look at its file."""
-    draft = vehicle.draft().with_zones(zones(skin, values))
-    draft = draft.with_rate_sensitivity(values["rate sensitivity"])
-    return draft.with_dent_reach(values["dent reach"]).finished()
+    recipe = vehicle.recipe.with_zones(zones(skin, values))
+    numbers = {"rate_sensitivity": values["rate sensitivity"], "dent_reach": values["dent reach"]}
+    return build(recipe.each(**numbers))
 
 
 def vehicle_with(skin: Skin, values: Mapping[str, float], fit: str) -> birm3d.Vehicle:

@@ -147,13 +147,13 @@ def _members(result: RunAnalysis, report: str | None) -> dict[str, bytes]:
 
 def _vehicle_file(vehicle: Vehicle) -> bytes | None:
     """Return the vehicle as a file; ``None`` where it is one that only a result can hold."""
-    from ..vehicle.vehicle_writer import check_savable, save_vehicle  # pydantic takes long to load
+    from ..vehicle.vehicle_writer import check_savable  # pydantic takes long to load
 
     try:
         check_savable(vehicle)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / _VEHICLE
-            save_vehicle(vehicle, path)
+            vehicle.save(path)
             return path.read_bytes()
     except ValueError:  # from arrays: the result holds it by value
         return None

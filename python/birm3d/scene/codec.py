@@ -112,6 +112,7 @@ def decode(plain: Any, arrays: Arrays) -> Any:
         return articulate(**fields)
     if kind.__name__ == "Vehicle":  # as files of 0.1.0 have it
         fields.pop("_mesh", None)
+        fields.pop("_draft", None)
         if fields.pop("_raised", 0.0) != 0.0:
             fields["_height"] = fields["mass_center_height"]
     known = {field.name for field in dataclasses.fields(kind)}

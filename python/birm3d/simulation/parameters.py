@@ -260,30 +260,31 @@ def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -
     if groups.keys().isdisjoint(("zone", "truss", "vehicle")):
         return vehicle
     numbers = groups.get("vehicle", {})
-    if tuple(numbers) == ("gvw",) and groups.keys().isdisjoint(("zone", "truss")) and vehicle.joint is None:
-        return vehicle._with_mass(
-            positive("gvw", si("gvw", numbers["gvw"], "mass"))
-        )  # one change needs no draft
-    changed = vehicle.draft()
+    recipe = vehicle._description
     zones: dict[str, dict[str, Any]] = {}
     for rest, value in groups.get("zone", {}).items():
         zone, number = rest.rsplit(".", 1)
         zones.setdefault(zone, {})[number] = value
     if zones:
-        changed = changed.with_zones({name: _zone(changed.zones[name], new) for name, new in zones.items()})
+        recipe = recipe.with_zones({name: _zone(vehicle.zones[name], new) for name, new in zones.items()})
     if "truss" in groups:
-        changed = changed.with_truss_law(**groups["truss"])
+        recipe = recipe.with_truss_law(**groups["truss"])
     if "mesh_density" in numbers:
-        changed = changed.with_mesh_density(numbers["mesh_density"])
+        recipe = recipe.with_mesh_density(numbers["mesh_density"])
     if "rate_sensitivity" in numbers:
-        changed = changed.with_rate_sensitivity(numbers["rate_sensitivity"])
+        recipe = recipe.each(
+            rate_sensitivity=si("rate_sensitivity", numbers["rate_sensitivity"], "time per length")
+        )
     if "dent_reach" in numbers:
-        changed = changed.with_dent_reach(numbers["dent_reach"])
+        recipe = recipe.each(dent_reach=si("dent_reach", numbers["dent_reach"], "length"))
     if "gvw" in numbers:
-        changed = changed.with_gvw(numbers["gvw"])
+        recipe = recipe.with_mass(positive("gvw", si("gvw", numbers["gvw"], "mass")))
     if "mass_center_height" in numbers:
-        changed = changed.with_mass_center_height(numbers["mass_center_height"])
-    return changed.finished()
+        height = numbers["mass_center_height"]
+        recipe = recipe.with_mass_center_height(
+            None if height is None else si("mass_center_height", height, "length")
+        )
+    return vehicle._changed(recipe)
 
 
 def _zone_numbers(zone: Zone) -> tuple[str, ...]:

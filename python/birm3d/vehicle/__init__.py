@@ -3,7 +3,19 @@
 from __future__ import annotations
 
 from .articulated import ArticulatedVehicle, Joint
+from .builder import build
+from .combination_recipe import CombinationRecipe
+from .recipe import VehicleArrays, VehicleRecipe
 from .vehicle import Vehicle
 from .zone import Zone
 
-__all__ = ["ArticulatedVehicle", "Joint", "Vehicle", "Zone"]
+__all__ = [
+    "ArticulatedVehicle",
+    "CombinationRecipe",
+    "Joint",
+    "Vehicle",
+    "VehicleArrays",
+    "VehicleRecipe",
+    "Zone",
+    "build",
+]

@@ -12,20 +12,20 @@ import numpy as np
 from ..io.atomic_write import whole_file
 
 if TYPE_CHECKING:
-    from .vehicle import Vehicle
+    from .variants import VehicleVariants
 
 __all__ = ["export_core"]
 
 VERSION = 1
 
 
-def export_core(vehicle: Vehicle, path: str | Path) -> None:
+def export_core(vehicle: VehicleVariants, path: str | Path) -> None:
     """Write a prepared vehicle; see :meth:`birm3d.Vehicle.export_core`."""
     with whole_file(path) as part:
         part.write_text("\n".join(_lines(vehicle)) + "\n", encoding="ascii", newline="\n")
 
 
-def _lines(vehicle: Vehicle) -> Iterator[str]:
+def _lines(vehicle: VehicleVariants) -> Iterator[str]:
     arguments = vehicle._core_arguments()
     yield f"birm3d-vehicle {VERSION}"
     yield f"units {len(arguments)}"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from .vehicle import Vehicle
+    from .vehicle_fields import VehicleFields
 
 __all__ = ["as_built", "changed_by_hand", "check_parts"]
 
@@ -21,12 +21,12 @@ _DERIVED = (
 _OF_UNITS = (*_DERIVED, "zones", "rate_sensitivity", "dent_reach")
 
 
-def as_built(vehicle: Vehicle) -> Mapping[str, Any]:
+def as_built(vehicle: VehicleFields) -> Mapping[str, Any]:
     """Return the fields that follow from a vehicle's file, or from its units."""
     return {name: getattr(vehicle, name) for name in _OF_UNITS}
 
 
-def changed_by_hand(vehicle: Vehicle, built: Mapping[str, Any]) -> tuple[str, ...]:
+def changed_by_hand(vehicle: VehicleFields, built: Mapping[str, Any]) -> tuple[str, ...]:
     """Names of the fields that are not as they were built: ``dataclasses.replace()`` was given others.
 
     Raises
@@ -44,7 +44,7 @@ def changed_by_hand(vehicle: Vehicle, built: Mapping[str, Any]) -> tuple[str, ..
     return tuple(name for name in names if not _same(getattr(vehicle, name), built[name]))
 
 
-def check_parts(vehicle: Vehicle) -> None:
+def check_parts(vehicle: VehicleFields) -> None:
     """Refuse fields of a vehicle that contradict each other.
 
     Raises

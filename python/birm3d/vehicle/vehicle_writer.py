@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
 from ..io.atomic_write import whole_file
 from ..io.toml import plain
-from .vehicle_changes import changes_of
+from .file_recipe import changes_of
 
 if TYPE_CHECKING:
-    from .vehicle import Vehicle
+    from .variants import VehicleVariants
+    from .vehicle_fields import VehicleFields
 
 __all__ = ["check_savable", "save_vehicle"]
 
@@ -22,11 +24,9 @@ _HEAD = (
 )
 
 
-def save_vehicle(vehicle: Vehicle, path: str | Path) -> None:
-    """Write a vehicle to a file; see :meth:`birm3d.Vehicle.save`."""
+def save_vehicle(vehicle: VehicleVariants, path: str | Path, read: Callable[[Path], VehicleVariants]) -> None:
+    """Write a vehicle to a file that `read` gives back; see :meth:`birm3d.Vehicle.save`."""
     import tomlkit
-
-    from .vehicle import Vehicle
 
     check_savable(vehicle)
     document = tomlkit.document()
@@ -37,7 +37,7 @@ def save_vehicle(vehicle: Vehicle, path: str | Path) -> None:
         document.add(key, tomlkit.item(value))
     with whole_file(path) as part:
         part.write_text(tomlkit.dumps(document), encoding="utf-8", newline="\n")
-        lost = _differences(vehicle, Vehicle.from_file(part))
+        lost = _differences(vehicle, read(part))
         if lost:
             raise ValueError(
                 f"vehicle must differ from its file only in what a file can hold (see the methods with_...), "
@@ -45,7 +45,7 @@ def save_vehicle(vehicle: Vehicle, path: str | Path) -> None:
             )
 
 
-def check_savable(vehicle: Vehicle) -> None:
+def check_savable(vehicle: VehicleVariants) -> None:
     """Refuse a vehicle that has no file.
 
     Raises
@@ -59,11 +59,9 @@ def check_savable(vehicle: Vehicle) -> None:
                 f"vehicle must come from a preset or a file to be saved as one, got {unit.name!r} from "
                 "arrays; Result.save() and pickle keep it by value"
             )
-        if unit._draft:
-            raise ValueError(f"vehicle must be finished to be saved, got the draft {unit.name!r}")
 
 
-def _of_one_unit(vehicle: Vehicle) -> dict[str, Any]:
+def _of_one_unit(vehicle: VehicleFields) -> dict[str, Any]:
     file = vehicle._file
     assert file is not None  # see check_savable
     content = plain(file)
@@ -72,7 +70,7 @@ def _of_one_unit(vehicle: Vehicle) -> dict[str, Any]:
     return {**content, "changes": changes} if changes else content
 
 
-def _of_two_units(vehicle: Vehicle) -> dict[str, Any]:
+def _of_two_units(vehicle: VehicleVariants) -> dict[str, Any]:
     joint = vehicle.joint
     assert joint is not None  # else there is one unit
     units = [_of_one_unit(unit) for unit in vehicle.units]
@@ -101,7 +99,7 @@ def _of_two_units(vehicle: Vehicle) -> dict[str, Any]:
     }
 
 
-def _differences(vehicle: Vehicle, other: Vehicle) -> list[str]:
+def _differences(vehicle: VehicleVariants, other: VehicleVariants) -> list[str]:
     """Names of the fields in which two vehicles differ; of units where there are two."""
     if vehicle == other:
         return []

@@ -14,7 +14,7 @@ import numpy as np
 from .. import _core
 from ..base.arguments import checked
 
-__all__ = ["KNEE", "OPTIONAL", "TRUSS_LAW", "Zone", "positive"]
+__all__ = ["KNEE", "LAW_QUANTITIES", "OPTIONAL", "TRUSS_LAW", "Zone", "positive"]
 
 KNEE = ("k_initial", "knee", "k_hardening", "f_max")
 """The numbers of the paper's loading envelope (Fig. 3)."""
@@ -24,6 +24,18 @@ OPTIONAL = ("elastic_recovery", "tail_depth", "tail_slope")
 
 TRUSS_LAW = ("k_initial", "knee", "k_hardening", "f_max", "k_unloading")
 """The numbers of the paper's law (Fig. 3)."""
+
+LAW_QUANTITIES = {
+    "k_initial": "pressure per length",
+    "knee": "length",
+    "k_hardening": "pressure per length",
+    "f_max": "pressure",
+    "k_unloading": "pressure per length",
+    "elastic_recovery": "length",
+    "tail_depth": "length",
+    "tail_slope": "pressure per length",
+}
+"""Number of a zone's law -> its quantity, as :func:`birm3d.units.si` has it."""
 
 
 @checked

@@ -1,0 +1,99 @@
+"""A vehicle's arguments for the core: its trusses, and its rigid body with wheels and core boxes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _core
+from .payload import core_ranges
+
+if TYPE_CHECKING:
+    from .vehicle_fields import VehicleFields
+
+__all__ = ["core_unit", "is_shape", "unit_arguments"]
+
+Floats = npt.NDArray[np.float64]
+
+
+def core_unit(vehicle: VehicleFields, offset: Floats) -> _core.Unit:
+    """Return the rigid body for the core; offset of its mass centre along the ground (3,) [m]."""
+    shape = vehicle._shape
+    if shape is not None and is_shape(vehicle):
+        trusses = shape.trusses(vehicle.zones, vehicle.rate_sensitivity, vehicle.dent_reach)
+        origin = vehicle.center_of_mass
+    else:
+        trusses, origin = _core.TrussMesh(**_truss_arguments(vehicle)), np.zeros(3)
+    return _core.Unit(**_body_arguments(vehicle, offset), trusses=trusses, origin=origin)
+
+
+def unit_arguments(vehicle: VehicleFields, offset: Floats) -> dict[str, Any]:
+    """Return what :func:`core_unit` gives the core, with the arguments of its TrussMesh as "trusses"."""
+    shape = vehicle._shape
+    if shape is not None and is_shape(vehicle):
+        laws = (vehicle.zones, vehicle.rate_sensitivity, vehicle.dent_reach)
+        trusses, origin = shape.truss_arguments(*laws), vehicle.center_of_mass
+    else:
+        trusses, origin = _truss_arguments(vehicle), np.zeros(3)
+    return {**_body_arguments(vehicle, offset), "trusses": trusses, "origin": origin}
+
+
+def is_shape(vehicle: VehicleFields) -> bool:
+    """Whether the arrays are those of the shape, nodes and anchors seen from the mass centre."""
+    shape = vehicle._shape
+    if shape is None:
+        return False
+    names = ("area", "zone_of_node", "wheel_of_node", "along_of_node")
+    pairs = [(getattr(vehicle, name), getattr(shape, name)) for name in names]
+    seen = shape.seen_from(vehicle.center_of_mass)
+    pairs += zip((vehicle.nodes, vehicle.anchors), seen, strict=True)
+    return all(own is other or np.array_equal(own, other) for own, other in pairs)
+
+
+def _body_arguments(vehicle: VehicleFields, offset: Floats) -> dict[str, Any]:
+    return {
+        "mass": vehicle.mass,
+        "inertia": vehicle.inertia,
+        "wheels": vehicle.wheels,
+        "mass_center_height": vehicle.mass_center_height,
+        "offset": offset,
+        "core": _core_boxes(vehicle),
+    }
+
+
+def _truss_arguments(vehicle: VehicleFields) -> dict[str, Any]:
+    """Return the trusses for the core, body axes."""
+    if vehicle._truss_laws is not None:
+        laws, which = vehicle._truss_laws[:1], np.zeros(vehicle.n_nodes, int)
+        if not (vehicle._truss_laws == laws).all():  # sorting them takes longer than a short run
+            laws, which = np.unique(vehicle._truss_laws, axis=0, return_inverse=True)
+        curves = [
+            _core.knee_curve(k_initial=a, knee=d, k_hardening=b, f_max=f, k_unloading=u)
+            for a, d, b, f, u in laws.tolist()
+        ]
+        curve_of = which.reshape(-1)
+    else:
+        curves = [zone.curve for zone in vehicle.zones.values()]
+        curve_of = vehicle.zone_of_node
+    return {
+        "nodes": vehicle.nodes,
+        "anchors": vehicle.anchors,
+        "curves": curves,
+        "curve_of": curve_of,
+        "scale": vehicle.area,
+        "wheels": vehicle.wheels,
+        "rate_sensitivity": vehicle.rate_sensitivity,
+        "dent_reach": vehicle.dent_reach,
+        "wheel_of": vehicle.wheel_of_node,
+        "along_of": vehicle.along_of_node,
+    }
+
+
+def _core_boxes(vehicle: VehicleFields) -> Floats:
+    """Return middles and half edges of the rigid body's boxes, body axes, shape (k, 6) [m]."""
+    if vehicle._file is None:
+        return np.empty((0, 6))
+    low, high = core_ranges(vehicle._file).transpose(2, 0, 1) - vehicle.center_of_mass
+    return np.hstack([0.5 * (low + high), 0.5 * (high - low)])

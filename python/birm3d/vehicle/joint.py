@@ -1,0 +1,78 @@
+"""What holds two units of a vehicle together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from ..base.arguments import checked
+
+__all__ = ["Joint"]
+
+Floats = npt.NDArray[np.float64]
+Place = tuple[float, float, float]
+
+# Places of a joint on its two units may differ in height by this much [m]; the core's limit too.
+_FIT = 1e-3
+
+
+@checked
+@dataclass(frozen=True)
+class Joint:
+    """How a trailing unit hangs on a leading one.
+
+    Parameters
+    ----------
+    place_on_leading, place_on_trailing
+        The joint on each unit in the axes of its own file, position of rest: x forward, y left, z above the
+        ground [m]. Of a vehicle from arrays the origin is on the ground below its mass centre. The trailing
+        unit stands where both places are one.
+    kind
+        ``"fifth_wheel"``: force in three directions; pitch and yaw are free, roll only within
+        ``roll_limit``, beyond which the plates touch and carry a moment. ``"welded"``: all six are held.
+    roll_limit
+        Greatest relative roll of a fifth wheel to either side [deg], 0 to below 90. UN Regulation 55 speaks
+        of up to 3 deg for a plate that does not oscillate; the default is an estimate within that.
+    """
+
+    place_on_leading: Place
+    place_on_trailing: Place
+    kind: Literal["fifth_wheel", "welded"] = "fifth_wheel"
+    roll_limit: float = 2.0
+
+    def __post_init__(self) -> None:
+        for name in ("place_on_leading", "place_on_trailing"):
+            place = np.asarray(getattr(self, name), float)
+            if place.shape != (3,) or not np.isfinite(place).all():
+                raise ValueError(f"{name} must be three finite numbers (m), got {getattr(self, name)}")
+            object.__setattr__(self, name, tuple(place.tolist()))
+        if self.kind not in ("fifth_wheel", "welded"):
+            raise ValueError(f"kind must be 'fifth_wheel' or 'welded', got {self.kind!r}")
+        if not 0.0 <= self.roll_limit < 90.0:
+            raise ValueError(f"roll_limit must be >= 0 and < 90 deg, got {self.roll_limit}")
+        apart = abs(self.place_on_leading[2] - self.place_on_trailing[2])
+        if not apart <= _FIT:
+            raise ValueError(
+                f"height of the joint on the trailing unit must be that on the leading one "
+                f"({self.place_on_leading[2]} m) within {_FIT} m, got {self.place_on_trailing[2]} m"
+            )
+
+    def scaled(self, factors: Sequence[float]) -> Joint:
+        """Return the joint with its places times factors along the vehicle, across and upwards."""
+        places = (self.place_on_leading, self.place_on_trailing)
+        ahead, behind = (_product(factors, place) for place in places)
+        return replace(self, place_on_leading=ahead, place_on_trailing=behind)
+
+    @property
+    def shift(self) -> Floats:
+        """From the origin of the leading unit's axes to that of the trailing one's, shape (3,) [m]."""
+        return np.subtract(self.place_on_leading, self.place_on_trailing)
+
+
+def _product(factors: Sequence[float], place: Place) -> Place:
+    x, y, z = (factor * coordinate for factor, coordinate in zip(factors, place, strict=True))
+    return (x, y, z)

@@ -1,0 +1,292 @@
+"""Vehicles changed in one thing: each method makes another recipe, of which the vehicle is built."""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from ..base.arguments import caller_level, checked
+from ..unit_check import Usual, given, warn_if_unusual
+from ..units import Quantity, Stated, si
+from .scaling import factors_of, sizes_given
+from .vehicle_data import VehicleData
+from .zone import KNEE, LAW_QUANTITIES, OPTIONAL, Zone, positive
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+    from .combination_recipe import CombinationRecipe
+    from .recipe import VehicleRecipe
+
+__all__ = ["VehicleVariants"]
+
+# A mass beyond these shares of that of the file is most likely in another unit.
+_LEAST, _MOST = 0.05, 10.0
+
+
+@checked
+class VehicleVariants(VehicleData):
+    """The methods of a :class:`birm3d.Vehicle` that return another one; the vehicle itself stays as it is."""
+
+    @property
+    def units(self) -> tuple[VehicleVariants, ...]:
+        """The rigid bodies, each as a vehicle of its own; (self,) where there is one."""
+        return (self,)
+
+    @property
+    def recipe(self) -> VehicleRecipe | CombinationRecipe:
+        """What the vehicle is made of: :func:`birm3d.vehicle.build` makes it again.
+
+        Raises
+        ------
+        ValueError
+            If ``dataclasses.replace()`` was given arrays that do not follow from a file.
+        """
+        self._require_as_built()
+        return self._description
+
+    def _require_as_built(self) -> None:
+        for unit in self.units:
+            if unit.has_file and unit._own:
+                raise ValueError(
+                    f"{', '.join(unit._own)} of {unit.name!r} must be changed after what is made from its "
+                    "file, or the change is lost: call with_gvw, with_payload, scaled_to, with_mesh_density "
+                    "and with_mass_center_height first, dataclasses.replace() last"
+                )
+
+    def _changed(self, recipe: VehicleRecipe | CombinationRecipe) -> Self:
+        """Return the vehicle of another recipe; what it shares with this one is not made again."""
+        from .builder import rebuilt
+
+        return rebuilt(self, recipe)
+
+    def _mass_given(self, name: str, mass: Quantity) -> float:
+        """Return a mass [kg] > 0, with a word if it is far from that of the vehicle's file."""
+        number = positive(name, si(name, mass, "mass"))
+        usual = self._description.file_mass
+        if not isinstance(mass, (str, Stated)) and usual is not None:
+            warn_if_unusual(name, number, Usual(usual * _LEAST, usual * _MOST, "kg", "t"))
+        return number
+
+    def with_gvw(self, gvw: Quantity) -> Self:
+        """Return the vehicle with another mass [kg]; every mass property follows.
+
+        Payload is rescaled first: goods in a load space keep their density and stand higher, see
+        :meth:`with_payload`; below the unladen mass the structure is rescaled, without payload.
+        A height given by :meth:`with_mass_center_height` stays. A vehicle made from arrays keeps its mass
+        centre and scales its inertia.
+
+        Raises
+        ------
+        ValueError
+            If the mass is not > 0, or a change by ``dataclasses.replace()`` would be lost.
+        UnitWarning
+            As a warning, if the mass is most likely in another unit.
+        """
+        return self._changed(self._description.with_mass(self._mass_given("gvw", gvw)))
+
+    def with_payload(
+        self, payload: Quantity, *, density: Quantity | None = None, height: Quantity | None = None
+    ) -> Self:
+        """Return the vehicle with its structure as it is and another payload [kg], 0 for none.
+
+        Goods in a load space (of a cargo truck) cover its floor and stand as high as mass and density say, so
+        that the mass centre rises as the load grows; in a full space they are packed denser. Other payload,
+        as people on seats, gets heavier where it is.
+
+        Parameters
+        ----------
+        payload
+            All of it [kg], >= 0.
+        density, height
+            Of the goods [kg/m^3], or of their top above the floor [m], at most that of the space. Neither:
+            the density stays. A later :meth:`with_gvw` keeps the density. Where
+            :meth:`with_mass_center_height` has given the height of the mass centre, that one stays.
+
+        Raises
+        ------
+        ValueError
+            If the vehicle has no payload, or no load space for a density or a height, or if the goods do not
+            fit.
+        """
+        payload = given("payload", payload)
+        density = None if density is None else si("density", density, "density")
+        height = None if height is None else si("height", height, "length")
+        return self._changed(self._description.with_payload(payload, density, height))
+
+    def scaled_to(
+        self,
+        mass: Quantity,
+        *,
+        length: Quantity | None = None,
+        width: Quantity | None = None,
+        height: Quantity | None = None,
+        wheelbase: Quantity | None = None,
+        mass_center_height: Quantity | None = None,
+    ) -> Self:
+        """Return another vehicle of the same class: this one as its file loads it, of another mass and size.
+
+        All solids get heavier in proportion, and so do all forces of the zones: at the same size the same
+        crash is met with the same deceleration and the same crush. So predicted, the crush of 37 vehicles
+        that no zone was fitted to has a median error of 7 % (``tests/bench/bench_blind.py``). For a load in
+        this vehicle see :meth:`with_gvw` and :meth:`with_payload`, which leave the zones alone.
+
+        Shape, solids, wheels, core, zones and named points go to the new size together, so that the inertia
+        follows: every radius of gyration goes with the dimensions across it. What is crushed is stretched
+        with the structure, and forces follow from mass over depth: :mod:`birm3d.vehicle.scaling`.
+
+        Parameters
+        ----------
+        mass
+            [kg]; the zones hold at the mass that the file says, as a rule that of a tested vehicle.
+        length, width, height
+            [m], overall; ``None``: stays. A quarter to four times the present one.
+        wheelbase
+            From the first to the last axle [m]; ``None``: in proportion to the length. What lies between the
+            axles goes with it, overhangs with what is left of the length; the first axle stays in place.
+        mass_center_height
+            Above the ground [m], as :meth:`with_mass_center_height` has it; ``None``: in proportion to the
+            height.
+
+        Raises
+        ------
+        ValueError
+            If a number is out of range, the vehicle has no file, or a change by ``dataclasses.replace()``
+            would be lost.
+        """
+        mass = self._mass_given("mass", mass)
+        if wheelbase is not None and self.joint is not None:
+            raise ValueError(
+                f"wheelbase must be None for {self.name!r}: it goes with the length of its two units; "
+                f"got {wheelbase}"
+            )
+        wanted = sizes_given(length=length, width=width, height=height, wheelbase=wheelbase)
+        recipe = self._description.scaled_to(mass, factors_of(wanted, self._sizes, self.name))
+        if mass_center_height is not None:
+            recipe = recipe.with_mass_center_height(si("mass_center_height", mass_center_height, "length"))
+        return self._changed(recipe)
+
+    def with_rate_sensitivity(self, rate_sensitivity: Quantity) -> Self:
+        """Return the vehicle with loading envelopes that grow with speed; at 0 that is left out.
+
+        What is crushed has inertia and rate strength, which the paper's massless trusses lack: an envelope
+        grows by 1 + (rate_sensitivity * rate of deflection)^2 while it is loaded [s/m], >= 0. Finite-element
+        vehicles were met with 0.05 to 0.07 s/m (``tests/bench/README.md``).
+        """
+        rate = si("rate_sensitivity", rate_sensitivity, "time per length")
+        return self._changed(self._description.each(rate_sensitivity=rate))
+
+    def with_dent_reach(self, dent_reach: Quantity) -> Self:
+        """Return the vehicle with a skin that a post draws in beside itself; at 0 that is left out.
+
+        A post (bollard, pole) that has come a depth d into a front, side or rear draws in the skin to either
+        side of it and above it with a slope of about d / dent_reach, at a touch 0.25: its dent reaches about
+        dent_reach [m] beyond it, as far as the beams and panels there carry. The paper's trusses know nothing
+        of each other, and between them a narrow post passes to the rigid core. Walls and meshes make no dent.
+        ``>= 0``.
+        """
+        return self._changed(self._description.each(dent_reach=given("dent_reach", dent_reach)))
+
+    def without_tire_contact(self) -> Self:
+        """Return the vehicle with tyres that meet the ground only; see :mod:`birm3d.vehicle.tire_nodes`."""
+        if (self.wheel_of_node < 0).all():
+            return self
+        return self._changed(self._description.without_tire_contact())
+
+    def with_mesh_density(self, mesh_density: float) -> Self:
+        """Return the vehicle with another number of shell elements, relative to its file's choice."""
+        return self._changed(self._description.with_mesh_density(mesh_density))
+
+    def with_mass_center_height(self, height: Quantity | None) -> Self:
+        """Return the vehicle with its mass centre at another height above the ground [m].
+
+        All parts of the mass go up or down in proportion to their height above the ground and keep their
+        place in plan: of the solids z becomes z times the ratio of the heights. So the inertia about the mass
+        centre follows (:mod:`birm3d.vehicle.mass_center`): vertical second moments grow with the square
+        of the ratio, the yaw inertia stays. Skin, core and wheels stay where they are. The height holds for
+        every later mass and payload, and for a vehicle of another mass (:meth:`scaled_to`).
+
+        Parameters
+        ----------
+        height
+            [m], > 0 and below the vehicle's top; ``None``: what the solids of its file give.
+
+        Raises
+        ------
+        ValueError
+            If the height is out of range, or the mass centre of a vehicle from arrays is on the ground, where
+            no ratio leads away from.
+        """
+        number = None if height is None else si("mass_center_height", height, "length")
+        return self._changed(self._description.with_mass_center_height(number))
+
+    def with_zone(self, name: str, **changes: Any) -> Self:
+        """Return the vehicle with other stiffness numbers in one zone (see :class:`Zone`).
+
+        Text with a unit is taken too, as ``knee="20 cm"`` or ``f_max="1.1 MPa"`` (``k_initial`` in MPa/m).
+        A zone with an envelope becomes one with a knee when ``k_initial``, ``knee`` and ``k_hardening`` are
+        given, and the other way round when ``envelope`` is. Such a law is a new one, and so is one of which
+        all of Fig. 3 but ``f_max`` is given: ``elastic_recovery`` and the tail of the old one do not go on,
+        unless they are given too.
+        """
+        if name not in self.zones:
+            known = ", ".join(self.zones) or "none: the vehicle was made from arrays"
+            raise ValueError(f"zone must be one of {known}; got {name!r}")
+        known = ", ".join((*KNEE, "k_unloading", "envelope", *OPTIONAL))
+        for key in changes:
+            if key not in known.split(", "):
+                raise ValueError(f"zone parameter must be one of {known}; got {key!r}")
+        if "envelope" in changes:
+            changes = {**dict.fromkeys((*KNEE, *OPTIONAL)), **changes}
+        elif self.zones[name].envelope is not None and any(key in changes for key in KNEE):
+            missing = [key for key in KNEE[:3] if key not in changes]
+            if missing:
+                raise ValueError(
+                    f"{missing[0]} must be given too: zone {name!r} has an envelope, "
+                    f"which needs {', '.join(KNEE[:3])} to take its place; got {', '.join(changes)}"
+                )
+            changes = {"envelope": None, **dict.fromkeys(OPTIONAL), **changes}
+        elif {*KNEE[:3], "k_unloading"} <= changes.keys():
+            changes = {**dict.fromkeys(OPTIONAL), **changes}
+        for key, quantity in LAW_QUANTITIES.items():
+            if isinstance(changes.get(key), str):
+                changes[key] = si(key, changes[key], quantity)
+        return self.with_zones({name: dataclasses.replace(self.zones[name], **changes)})
+
+    def with_zones(self, zones: Mapping[str, Zone]) -> Self:
+        """Return the vehicle with some of its zones replaced."""
+        for name in zones:
+            if name not in self.zones:
+                raise ValueError(f"zone must be one of {', '.join(self.zones) or 'none'}; got {name!r}")
+            if zones[name] != self.zones[name] and name not in self.zones_met:
+                raise ValueError(
+                    f"zone must be one that trusses belong to ({', '.join(self.zones_met)}), or its change "
+                    f"has no effect; got {name!r}"
+                )
+        return self._changed(self._description.with_zones(zones))
+
+    def with_truss_law(self, **changes: float) -> Self:
+        """Return a vehicle made from arrays with another law, given for all trusses together.
+
+        Stiffnesses and forces [N/m, N] are sums over the trusses and are shared as the present ones are; a
+        knee [m] goes to every truss.
+        """
+        return self._changed(self._description.with_truss_law(**changes))
+
+    def draft(self) -> Self:
+        """Return the vehicle itself: the name of an earlier version."""
+        return self._needs_no_draft("draft")
+
+    def finished(self) -> Self:
+        """Return the vehicle itself: the name of an earlier version."""
+        return self._needs_no_draft("finished")
+
+    def _needs_no_draft(self, name: str) -> Self:
+        warnings.warn(
+            f"{name}() is not needed any more: every change of a vehicle is one of its recipe",
+            DeprecationWarning,
+            stacklevel=caller_level(),
+        )
+        return self
