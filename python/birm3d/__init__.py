@@ -41,13 +41,16 @@ from .simulation import parameters as scene_parameters
 from .simulation import presets as scenes
 from .simulation.rerun import Rerun, rerun
 from .study import Study
+from .study.design_limits import greatest_gap, least_height, least_segment_mass
 from .study.ensemble import ensemble
 from .study.fragility import fragility
 from .study.impact_point import critical_impact_point
+from .study.limit_search import Limit, NotInRangeError
 from .study.monte_carlo import monte_carlo
 from .study.runner import StudyInterrupted, StudyStoppedError
 from .study.sobol import sobol
 from .study.sweep import sweep
+from .study.worst_offset import WorstOffset, worst_offset
 from .unit_check import UnitWarning
 from .vehicle import ArticulatedVehicle, Joint, Vehicle, Zone
 
@@ -65,6 +68,8 @@ __all__ = [
     "FreeStanding",
     "Joint",
     "LedgerWarning",
+    "Limit",
+    "NotInRangeError",
     "OccupantRisk",
     "OverlapWarning",
     "Rating",
@@ -80,6 +85,7 @@ __all__ = [
     "UnitWarning",
     "UnstableError",
     "Vehicle",
+    "WorstOffset",
     "Zone",
     "__version__",
     "calibrate",
@@ -91,7 +97,10 @@ __all__ = [
     "ensemble",
     "filters",
     "fragility",
+    "greatest_gap",
     "lateral_load",
+    "least_height",
+    "least_segment_mass",
     "load",
     "metrics",
     "monte_carlo",
@@ -110,6 +119,7 @@ __all__ = [
     "test_data",
     "test_matrix",
     "units",
+    "worst_offset",
     "write_capsule",
 ]
 

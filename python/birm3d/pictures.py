@@ -23,10 +23,12 @@ if TYPE_CHECKING:
     from .signals.compare import CurveComparison
     from .study.fragility import Fragility
     from .study.impact_point import CriticalImpactPoint
+    from .study.limit_search import Limit
     from .study.sobol import SobolIndices
     from .study.table import Study
     from .study.verification.precision_result import WorkPrecision
     from .study.verification.stability_result import Stability
+    from .study.worst_offset import WorstOffset
 
 __all__ = [
     "Color",
@@ -42,6 +44,7 @@ __all__ = [
     "plot_fit",
     "plot_fragility",
     "plot_histories",
+    "plot_limit",
     "plot_plan",
     "plot_profiles",
     "plot_requested_vs_achieved",
@@ -50,6 +53,7 @@ __all__ = [
     "plot_stability",
     "plot_study",
     "plot_work_precision",
+    "plot_worst_offset",
     "render",
     "result_html",
     "show",
@@ -206,6 +210,20 @@ def plot_design_load(loads: DesignLoad) -> Figure:
     from .plotting.design_loads import plot_design_load
 
     return plot_design_load(loads)
+
+
+def plot_limit(limit: Limit) -> Figure:
+    """Return a figure of the runs of a search over what was searched, with the limit."""
+    from .plotting.searches import plot_limit
+
+    return plot_limit(limit)
+
+
+def plot_worst_offset(found: WorstOffset) -> Figure:
+    """Return a figure of a metric over the offset for each spacing, and of its greatest values."""
+    from .plotting.searches import plot_worst_offset
+
+    return plot_worst_offset(found)
 
 
 def plot_sobol(indices: SobolIndices, metrics: Sequence[str] | None) -> Figure:

@@ -20,6 +20,7 @@ from .loads import loads
 from .rate import STANDARD_HELP, assessed, assessments_as_json, print_assessments, rate
 from .rerun import rerun
 from .scene import scene_options, simulation_of
+from .search import search
 from .sweep import sweep
 from .table import print_table
 
@@ -164,6 +165,7 @@ def _as_json(result: Result) -> dict[str, Any]:
     }
 
 
+_cli.add_command(search)
 _cli.add_command(sweep)
 
 

@@ -1,0 +1,305 @@
+"""Searches that a designer asks for by name: greatest gap, least height, least mass of a segment."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from ..barrier.base import Barrier
+from ..barrier.kinds import Bollards, Jersey, RigidWall
+from ..base.arguments import checked
+from ..simulation.simulation import Simulation
+from ..units import Quantity, si
+from .limit_search import CONTAINED, Limit, Question, search_limit
+
+__all__ = ["OFFSETS", "greatest_gap", "least_height", "least_segment_mass"]
+
+OFFSETS = (-0.25, 0.0, 0.25, 0.5)
+"""Impact offsets over the spacing, from the middle of a row of posts: at a post, in a gap, and between."""
+
+_SKIN = "Computed, not tested. The vehicle's skin does not tear and its parts stay on: leave a margin."
+_OVER = (
+    "Computed, not tested. The vehicle has no suspension that dives or rises, and the barrier does not give "
+    "way under it: leave a margin."
+)
+_SLIDES = (
+    "Computed, not tested. Segments slide but do not tip, and their joints do not break: look at "
+    "max_overturning_ratio too."
+)
+
+
+@checked
+def greatest_gap(
+    simulation: Simulation,
+    gaps: Sequence[Quantity] = (0.5, 3.0),
+    *,
+    penetration: Quantity | None = None,
+    offsets: Sequence[float] = OFFSETS,
+    points: int = 11,
+    resolution: Quantity | None = None,
+    executor: Any = None,
+    progress: bool | None = None,
+) -> Limit:
+    """Return the greatest clear gap between bollards that still stops the vehicle at every offset.
+
+    The gap is ``spacing - diameter``. At each gap the vehicle is run at several offsets, head-on at a post
+    and at the middle of a gap among them. A gap holds if no run gets past the row: its outcome is
+    ``stopped``, ``redirected`` or ``rolled_over``.
+
+    Parameters
+    ----------
+    simulation
+        A scene with a row of at least two bollards, wider than the vehicle at every gap. Its own
+        ``impact_offset`` counts for nothing.
+    gaps
+        (least, greatest) [m].
+    penetration
+        Greatest ``vehicle_penetration`` [m] that is allowed as well; ``None``: any.
+    offsets
+        Over the spacing, counted from the row's middle.
+    points
+        Of the scan of the range, >= 2; a bisection follows.
+    resolution
+        Width at which the bisection stops [m]; ``None``: a hundredth of the range.
+    executor, progress
+        See :func:`birm3d.study.runner.run_study`.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, its limit and the value; :class:`birm3d.NotInRangeError` if the least gap does
+        not hold.
+    StudyInterrupted
+        With the finished runs.
+
+    Examples
+    --------
+    >>> found = birm3d.greatest_gap(sim, gaps=(0.8, 2.5))
+    >>> found.value, found.fails_at, found.monotonic
+    """
+    row = _row(simulation)
+    question = Question(
+        "clear gap",
+        "gaps",
+        "m",
+        True,
+        "barrier.spacing",
+        lambda gap: gap + row.diameter,
+        _along_row(row, offsets, lambda gap: gap + row.diameter),
+        "vehicle_penetration",
+        _at_most("penetration", penetration),
+        _SKIN,
+    )
+    limits = [si("gaps", gap, "length") for gap in gaps]
+    _check_width(simulation, row, limits)
+    return search_limit(
+        simulation,
+        question,
+        limits,
+        points=points,
+        resolution=_resolution(resolution, "length"),
+        executor=executor,
+        progress=progress,
+    )
+
+
+@checked
+def least_height(
+    simulation: Simulation,
+    heights: Sequence[Quantity] = (0.3, 1.3),
+    *,
+    penetration: Quantity | None = None,
+    offsets: Sequence[float] | None = None,
+    points: int = 11,
+    resolution: Quantity | None = None,
+    executor: Any = None,
+    progress: bool | None = None,
+) -> Limit:
+    """Return the least height of a barrier that the vehicle does not get over.
+
+    A height holds if no run gets past the barrier, be it over or through it.
+
+    Parameters
+    ----------
+    simulation
+        A scene with bollards, a rigid wall or a Jersey barrier.
+    heights
+        (least, greatest) [m], within what the barrier can have.
+    penetration
+        Greatest ``vehicle_penetration`` [m] that is allowed as well; ``None``: any.
+    offsets
+        Of a row of posts over its spacing, counted from the row's middle, else of other barriers along their
+        line from their origin [m]. ``None``: four over the spacing of posts, the scene's own of others.
+    points, resolution, executor, progress
+        See :func:`greatest_gap`.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, its limit and the value; :class:`birm3d.NotInRangeError` if the greatest height
+        does not hold.
+    StudyInterrupted
+        With the finished runs.
+    """
+    barrier = _barrier(simulation)
+    if not isinstance(barrier, (Bollards, RigidWall, Jersey)):
+        raise ValueError(
+            f"simulation must have bollards, a rigid wall or a Jersey barrier, got {type(barrier).__name__}"
+        )
+    if isinstance(barrier, Jersey) and not isinstance(barrier.profile, str):
+        raise ValueError("simulation must have a barrier of a named profile, got one of points")
+    question = Question(
+        "height",
+        "heights",
+        "m",
+        False,
+        "barrier.height",
+        float,
+        _usual_offsets(simulation, barrier, offsets),
+        "vehicle_penetration",
+        _at_most("penetration", penetration),
+        _OVER,
+    )
+    return search_limit(
+        simulation,
+        question,
+        [si("heights", height, "length") for height in heights],
+        points=points,
+        resolution=_resolution(resolution, "length"),
+        executor=executor,
+        progress=progress,
+    )
+
+
+@checked
+def least_segment_mass(
+    simulation: Simulation,
+    masses: Sequence[Quantity] = (500.0, 8000.0),
+    *,
+    deflection: Quantity,
+    offsets: Sequence[float] | None = None,
+    points: int = 11,
+    resolution: Quantity | None = None,
+    executor: Any = None,
+    progress: bool | None = None,
+) -> Limit:
+    """Return the least mass of a free-standing segment at which the barrier moves no further than a limit.
+
+    A mass holds if no run gets over or through the barrier, and ``barrier_deflection`` is within the limit.
+    A vehicle that slides to the end of pinned segments and passes it there is no failure, but it is said. The
+    segments keep their shape; their density changes.
+
+    Parameters
+    ----------
+    simulation
+        A scene with a free-standing Jersey barrier, so long that the vehicle does not reach its end.
+    masses
+        Of one segment: (least, greatest) [kg].
+    deflection
+        Greatest ``barrier_deflection`` [m].
+    offsets
+        Along the line from the barrier's origin [m]; ``None``: the scene's own.
+    points, resolution, executor, progress
+        See :func:`greatest_gap`; the resolution in kg.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, its limit and the value; :class:`birm3d.NotInRangeError` if the greatest mass
+        does not hold.
+    StudyInterrupted
+        With the finished runs.
+    """
+    barrier = _barrier(simulation)
+    if not isinstance(barrier, Jersey) or barrier.free_standing is None:
+        raise ValueError(f"simulation must have a free-standing Jersey barrier, got {barrier}")
+    free = barrier.free_standing
+    length = barrier.length / barrier.segments
+    question = Question(
+        "segment mass",
+        "masses",
+        "kg",
+        False,
+        "barrier.free_standing",
+        lambda mass: dataclasses.replace(free, density=None, mass_per_length=mass / length),
+        _usual_offsets(simulation, barrier, offsets),
+        "barrier_deflection",
+        _at_most("deflection", deflection),
+        _SLIDES,
+        # Between pinned segments nothing passes: who is past the barrier and not over it has slid to its end.
+        (*CONTAINED, "passed") if barrier.is_pinned else CONTAINED,
+    )
+    return search_limit(
+        simulation,
+        question,
+        [si("masses", mass, "mass") for mass in masses],
+        points=points,
+        resolution=_resolution(resolution, "mass"),
+        executor=executor,
+        progress=progress,
+    )
+
+
+def _barrier(simulation: Simulation) -> Barrier:
+    barrier = simulation.scene.barrier
+    if barrier is None:
+        raise ValueError("simulation must have a barrier, got none")
+    return barrier
+
+
+def _row(simulation: Simulation) -> Bollards:
+    barrier = _barrier(simulation)
+    if not isinstance(barrier, Bollards) or barrier.count < 2:
+        raise ValueError(f"simulation must have a row of at least two bollards, got {barrier}")
+    return barrier
+
+
+def _check_width(simulation: Simulation, row: Bollards, gaps: Sequence[float]) -> None:
+    """Refuse a row that the vehicle could pass beside."""
+    width = simulation.scene.vehicle.width
+    covered = (row.count - 1) * (gaps[0] + row.diameter) if gaps else 0.0
+    if width is not None and gaps and covered < width:
+        raise ValueError(
+            f"gaps must leave a row wider than the vehicle ({width:.3g} m), got {gaps[0]:g} m between "
+            f"{row.count} bollards: give more bollards"
+        )
+
+
+def _usual_offsets(
+    simulation: Simulation, barrier: Barrier, offsets: Sequence[float] | None
+) -> Callable[[float], list[float]]:
+    """Return the offsets of a search in which the spacing does not change."""
+    if isinstance(barrier, Bollards) and barrier.count > 1:
+        return _along_row(barrier, OFFSETS if offsets is None else offsets, lambda _: barrier.spacing)
+    if offsets is None:
+        own = simulation.scene.impact_offset
+        return lambda _: [own]
+    _check_offsets(offsets)
+    return lambda _: [barrier.station() + offset for offset in offsets]
+
+
+def _along_row(
+    row: Bollards, offsets: Sequence[float], spacing: Callable[[float], float]
+) -> Callable[[float], list[float]]:
+    """Return the offsets [m] at a value, from those over the spacing."""
+    _check_offsets(offsets)
+    return lambda value: [row.station() + share * spacing(value) for share in offsets]
+
+
+def _check_offsets(offsets: Sequence[float]) -> None:
+    if len(offsets) == 0:
+        raise ValueError("offsets must be at least one, got an empty list")
+
+
+def _at_most(name: str, value: Quantity | None) -> float | None:
+    if value is None:
+        return None
+    found = si(name, value, "length")
+    if not found >= 0.0:
+        raise ValueError(f"{name} must be >= 0 m, got {found}")
+    return found
+
+
+def _resolution(value: Quantity | None, quantity: str) -> float | None:
+    return None if value is None else si("resolution", value, quantity)

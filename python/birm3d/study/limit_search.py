@@ -1,0 +1,363 @@
+"""The greatest or least value of something at which a barrier still does what it should.
+
+A coarse scan of the whole range comes first, then bisection of the change that governs. An outcome need not
+be monotonic, so the answer counts from the safe end of the range: up to it all values hold that were tried.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from .. import pictures
+from ..base.checks import number
+from ..simulation.simulation import Simulation
+from .distributions import check_count
+from .runner import StudyInterrupted, run_study
+from .table import Study
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+__all__ = ["CONTAINED", "Limit", "NotInRangeError", "Question", "SearchRun", "search_limit"]
+
+CONTAINED = ("stopped", "redirected", "rolled_over")
+"""Outcomes of a vehicle that did not get past the barrier."""
+
+
+class SearchRun(NamedTuple):
+    """A run of a search.
+
+    Attributes
+    ----------
+    value : float
+        Of what is searched.
+    impact_offset : float
+        [m].
+    outcome : str
+        See :mod:`birm3d.result.event`.
+    measure : float
+        What has a limit, as the penetration [m]; NaN where the run has none.
+    holds : bool
+        Whether the barrier did what it should.
+    """
+
+    value: float
+    impact_offset: float
+    outcome: str
+    measure: float
+    holds: bool
+
+
+class Question(NamedTuple):
+    """What is searched, and by which runs."""
+
+    name: str  # as "clear gap"
+    argument: str  # that has the range, as "gaps"
+    unit: str
+    greatest: bool  # whether the greatest value is sought that holds, or the least
+    parameter: str  # of the scene, as "barrier.spacing"
+    of_value: Callable[[float], Any]  # value of the parameter
+    offsets: Callable[[float], Sequence[float]]  # impact offsets [m]
+    measure: str  # metric
+    most: float | None  # of the metric
+    caution: str  # what the model leaves out that bears on the answer
+    outcomes: tuple[str, ...] = CONTAINED  # that hold
+
+    @property
+    def criterion(self) -> str:
+        """When a value holds, in words."""
+        text = "the vehicle does not get past the barrier"
+        if "passed" in self.outcomes:
+            text += " but at its end"
+        return text if self.most is None else f"{text}, {self.measure.replace('_', ' ')} <= {self.most:g} m"
+
+
+class NotInRangeError(ValueError):
+    """No value of the range holds from its safe end on; ``runs`` has all runs, ``study`` their table."""
+
+    def __init__(self, message: str, runs: tuple[SearchRun, ...], study: Study) -> None:
+        super().__init__(message)
+        self.runs = runs
+        self.study = study
+
+
+class Limit:
+    """The greatest (or least) value at which a barrier still does what it should.
+
+    Attributes
+    ----------
+    name : str
+        What was searched, as ``"clear gap"``.
+    unit : str
+    value : float
+        The last value that holds, counted from the safe end of the range; all that were tried on the way
+        hold.
+    fails_at : float or None
+        The nearest value tried beyond it, which does not hold; ``None``: all of the range holds, and the
+        limit lies beyond it.
+    resolution : float
+        Width that the bisection stops at, >= ``abs(fails_at - value)``.
+    monotonic : bool
+        Whether no value tried beyond ``fails_at`` holds again. Where one does, it is in ``exceptions``.
+    exceptions : tuple of float
+        Values beyond ``fails_at`` that hold again.
+    criterion : str
+        When a value holds.
+    caution : str
+        What the model leaves out that bears on the answer.
+    greatest : bool
+        Whether the greatest value was sought.
+    runs : tuple of SearchRun
+        All of them, by value and offset.
+    study : Study
+        The same with their metrics, in the order in which they were made.
+    """
+
+    def __init__(
+        self,
+        question: Question,
+        value: float,
+        fails_at: float | None,
+        resolution: float,
+        runs: tuple[SearchRun, ...],
+        study: Study,
+    ) -> None:
+        self.name, self.unit = question.name, question.unit
+        self.greatest, self.criterion = question.greatest, question.criterion
+        self.measure, self.most, self.caution = question.measure, question.most, question.caution
+        self.value, self.fails_at, self.resolution = value, fails_at, resolution
+        self.runs, self.study = runs, study
+        holds = _held(runs)
+        beyond = [v for v, held in holds.items() if held and (v > value if self.greatest else v < value)]
+        self.exceptions = tuple(beyond)
+        self.monotonic = not beyond
+
+    @property
+    def at_bound(self) -> bool:
+        """Whether all of the range holds: the limit lies beyond it."""
+        return self.fails_at is None
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return all runs, SI.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        import pandas as pd
+
+        names = [self.name.replace(" ", "_"), "impact_offset", "outcome", self.measure, "holds"]
+        return pd.DataFrame(list(self.runs), columns=names)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all of it as plain values, SI; what a run does not have is ``None``."""
+        names = ("name", "unit", "value", "fails_at", "resolution", "monotonic", "exceptions", "criterion")
+        runs = [run._asdict() for run in self.runs]
+        for run in runs:
+            run["measure"] = None if math.isnan(run["measure"]) else run["measure"]
+        return {**{name: getattr(self, name) for name in names}, "caution": self.caution, "runs": runs}
+
+    def summary(self) -> str:
+        """Return the answer, how sure it is, and the worst run of each value as text."""
+        head = (
+            f"{self.name} [{self.unit}]",
+            "runs that hold",
+            "worst offset [m]",
+            "outcome",
+            f"{_words(self.measure)} [m]",
+            "",
+        )
+        cells = [head]
+        for value, runs in _by_value(self.runs).items():
+            worst = min(runs, key=lambda run: (run.holds, -run.measure if run.measure >= 0.0 else -math.inf))
+            cells.append(
+                (
+                    f"{value:.6g}",
+                    f"{sum(run.holds for run in runs)} of {len(runs)}",
+                    f"{worst.impact_offset:.4g}",
+                    worst.outcome,
+                    "" if math.isnan(worst.measure) else f"{worst.measure:.3f}",
+                    "holds" if worst.holds else "fails",
+                )
+            )
+        widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
+        rows = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in cells]
+        return "\n".join([self.headline, *self.remarks, "", *rows])
+
+    __str__ = summary
+
+    @property
+    def headline(self) -> str:
+        """The answer in one line."""
+        word = "greatest" if self.greatest else "least"
+        shown = f"{self.value:.6g} {self.unit}"
+        if self.fails_at is None:
+            bound = "at least" if self.greatest else "at most"
+            return f"{word} {self.name}: {bound} {shown}, the end of the range"
+        return f"{word} {self.name}: {shown} holds, {self.fails_at:.6g} {self.unit} fails"
+
+    @property
+    def remarks(self) -> list[str]:
+        """What the answer rests on, a sentence each."""
+        values = len(_held(self.runs))
+        lines = [f"Holds: {self.criterion}. {len(self.runs)} runs at {values} values."]
+        if self.exceptions:
+            those = ", ".join(f"{value:.6g}" for value in self.exceptions)
+            lines.append(
+                f"Not monotonic: {those} {self.unit} holds again. The answer is before the first failure."
+            )
+        else:
+            lines.append(
+                "Monotonic at the values tried. A change and its reverse between two of them can be missed."
+            )
+        ends = sum(run.holds and run.outcome == "passed" for run in self.runs)
+        if ends:
+            lines.append(
+                f"In {ends} of the runs that hold the vehicle passes the barrier's end: give it more length."
+            )
+        return [*lines, f"Caution: {self.caution}"]
+
+    def plot(self) -> Figure:
+        """Return all runs over what was searched, and the limit."""
+        return pictures.plot_limit(self)
+
+    def _repr_html_(self) -> str:
+        return pictures.text_html(self.summary(), self.plot(), self.name)
+
+    def __repr__(self) -> str:
+        return f"Limit({self.headline}; {len(self.runs)} runs)"
+
+
+def search_limit(
+    simulation: Simulation,
+    question: Question,
+    limits: Sequence[float],
+    *,
+    points: int,
+    resolution: float | None,
+    executor: Any,
+    progress: bool | None,
+) -> Limit:
+    """Scan a range, then bisect where the value that is sought stops to hold.
+
+    Raises
+    ------
+    ValueError
+        If the range, the number of points or the resolution is none, or a run can not be made.
+    NotInRangeError
+        If the safe end of the range does not hold.
+    StudyInterrupted
+        With the finished runs.
+    """
+    low, high = _range(question, limits)
+    check_count("points", points, least=2)
+    resolution = (high - low) / 100.0 if resolution is None else number("resolution", resolution)
+    if not 0.0 < resolution < math.inf:
+        raise ValueError(f"resolution must be finite and > 0 {question.unit}, got {resolution}")
+    studies: list[Study] = []
+    runs: list[SearchRun] = []
+
+    def tried(values: Sequence[float]) -> list[bool]:
+        """Run values and return which of them hold."""
+        rows = [(value, offset) for value in values for offset in question.offsets(value)]
+        try:
+            study = run_study(
+                simulation,
+                (question.parameter, "impact_offset"),
+                [(question.of_value(value), offset) for value, offset in rows],
+                metrics=[question.measure],
+                executor=executor,
+                progress=progress if len(values) > 1 else False,
+                title=question.name,
+            )
+        except StudyInterrupted as stopped:
+            raise StudyInterrupted(str(stopped), Study.joined([*studies, stopped.study])) from None
+        studies.append(study)
+        new = [_judged(question, row, study, i) for i, row in enumerate(rows)]
+        runs.extend(new)
+        held = _held(new)
+        return [held[value] for value in values]
+
+    grid = np.linspace(low, high, points).tolist()
+    order = grid if question.greatest else grid[::-1]
+    flags = dict(zip(grid, tried(grid), strict=True))
+    first = next((i for i, value in enumerate(order) if not flags[value]), None)
+    if first == 0:
+        raise _not_in_range(question, order, flags, tuple(sorted(runs)), Study.joined(studies))
+    value, fails_at = order[-1 if first is None else first - 1], None if first is None else order[first]
+    while fails_at is not None and abs(fails_at - value) > resolution:
+        middle = 0.5 * (value + fails_at)
+        if middle in (value, fails_at):
+            break  # nothing is between two neighbours
+        if tried([middle])[0]:
+            value = middle
+        else:
+            fails_at = middle
+    return Limit(question, value, fails_at, resolution, tuple(sorted(runs)), Study.joined(studies))
+
+
+def _judged(question: Question, row: tuple[float, float], study: Study, run: int) -> SearchRun:
+    value, offset = row
+    if study.error[run]:
+        raise ValueError(
+            f"{question.argument} must be values that can be run, got {value:g} {question.unit}: "
+            f"{study.error[run]}"
+        )
+    measure = float(study[question.measure][run])
+    within = question.most is None or measure <= question.most  # a NaN is not
+    return SearchRun(
+        value, offset, study.outcome[run], measure, within and study.outcome[run] in question.outcomes
+    )
+
+
+def _by_value(runs: Sequence[SearchRun]) -> dict[float, list[SearchRun]]:
+    found: dict[float, list[SearchRun]] = {}
+    for run in runs:
+        found.setdefault(run.value, []).append(run)
+    return found
+
+
+def _held(runs: Sequence[SearchRun]) -> dict[float, bool]:
+    """Return which values hold at all their offsets."""
+    return {value: all(run.holds for run in those) for value, those in _by_value(runs).items()}
+
+
+def _not_in_range(
+    question: Question,
+    order: Sequence[float],
+    flags: dict[float, bool],
+    runs: tuple[SearchRun, ...],
+    study: Study,
+) -> NotInRangeError:
+    end = "least" if question.greatest else "greatest"
+    others = [f"{value:.6g}" for value in order if flags[value]]
+    also = f"; {', '.join(others)} {question.unit} hold, which is not monotonic" if others else ""
+    worst = next(run for run in runs if run.value == order[0] and not run.holds)
+    where = f"{worst.outcome} at offset {worst.impact_offset:.4g} m"
+    measured = "" if math.isnan(worst.measure) else f", {_words(question.measure)} {worst.measure:.3f} m"
+    return NotInRangeError(
+        f"{question.argument} must have a {end} value that holds ({question.criterion}), got "
+        f"{order[0]:.6g} {question.unit}: {where}{measured}{also}",
+        runs,
+        study,
+    )
+
+
+def _range(question: Question, limits: Sequence[float]) -> tuple[float, float]:
+    if len(limits) != 2 or not 0.0 < limits[0] < limits[1] < math.inf:
+        shown = tuple(limits)
+        raise ValueError(
+            f"{question.argument} must be (least, greatest), finite, > 0 {question.unit} and increasing; "
+            f"got {shown}"
+        )
+    return float(limits[0]), float(limits[1])
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")

@@ -1,0 +1,311 @@
+"""Searches for limits of a barrier and for the worst offset: exact cases, brackets, what is refused."""
+
+from __future__ import annotations
+
+import json
+import math
+from concurrent.futures import ThreadPoolExecutor
+
+import birm3d
+import numpy as np
+import pytest
+from birm3d import (
+    Barrier,
+    FreeStanding,
+    Limit,
+    NotInRangeError,
+    Settings,
+    Simulation,
+    StudyInterrupted,
+    Vehicle,
+)
+from birm3d.cli import main
+from birm3d.simulation.parameters import varied
+from birm3d.study import limit_search
+
+FREE = Settings(gravity=0.0, ground=False)
+
+
+def car() -> Vehicle:
+    return Vehicle.preset("passenger_car", mesh_density=0.3)
+
+
+def one_node(height: float) -> Vehicle:
+    """One stiff truss ahead of the mass centre: it meets what is higher than its line, or nothing."""
+    return Vehicle.from_arrays(
+        mass=1000.0,
+        inertia=1000.0 * np.eye(3),
+        nodes=[[1.0, 0.0, 0.0]],
+        anchors=[[0.0, 0.0, 0.0]],
+        k_initial=1e6,
+        k_unloading=1e6,
+        mass_center_height=height,
+    )
+
+
+@pytest.fixture(scope="module")
+def height() -> Limit:
+    wall = Barrier.rigid_wall(width=6.0, height=1.0, friction=0.0)
+    simulation = Simulation(one_node(0.637), wall, 5.0, settings=FREE)
+    return birm3d.least_height(simulation, (0.2, 1.2), resolution=0.002)
+
+
+def test_least_height_is_that_of_the_node(height: Limit) -> None:
+    """Exact: without gravity a body of one node is stopped by every wall above its line, by none below."""
+    assert height.fails_at is not None
+    assert height.fails_at <= 0.637 <= height.value
+    assert height.value - height.fails_at <= height.resolution == 0.002
+    assert height.monotonic
+    assert not height.at_bound
+    assert height.exceptions == ()
+    assert all(run.holds == (run.value > 0.637) for run in height.runs)
+
+
+def test_what_a_limit_says(height: Limit) -> None:
+    text = height.summary()
+    assert text.startswith("least height: ")
+    assert f"{height.value:.6g} m holds" in text
+    assert "Monotonic at the values tried" in text
+    assert "Caution: " in text
+    assert len(height.study) == len(height.runs) == len(height.to_dataframe())
+    values = [run.value for run in height.runs]
+    assert values == sorted(values)
+    assert "<img" in height._repr_html_()
+    assert json.loads(json.dumps(height.to_dict()))["value"] == height.value
+    assert height.plot().axes[0].get_xlabel() == "height [m]"
+
+
+def test_all_of_the_range_holds(height: Limit) -> None:
+    wall = Barrier.rigid_wall(width=6.0, height=1.0, friction=0.0)
+    simulation = Simulation(one_node(0.2), wall, 5.0, settings=FREE)
+    found = birm3d.least_height(simulation, (0.3, 1.0), points=3)
+    assert (found.value, found.fails_at, found.at_bound) == (0.3, None, True)
+    assert found.headline == "least height: at most 0.3 m, the end of the range"
+    assert len(found.runs) == 3
+
+
+def test_nothing_of_the_range_holds() -> None:
+    wall = Barrier.rigid_wall(width=6.0, height=1.0, friction=0.0)
+    simulation = Simulation(one_node(1.4), wall, 5.0, settings=FREE)
+    with pytest.raises(
+        NotInRangeError, match=r"heights must have a greatest value that holds .* got 1 m: "
+    ) as no:
+        birm3d.least_height(simulation, (0.3, 1.0), points=3)
+    assert len(no.value.runs) == len(no.value.study) == 3
+
+
+@pytest.fixture(scope="module")
+def gap() -> Limit:
+    simulation = Simulation(car(), Barrier.bollards(count=5, diameter=0.3), 10.0)
+    with ThreadPoolExecutor(2) as executor:
+        return birm3d.greatest_gap(simulation, (0.8, 2.6), points=7, resolution=0.05, executor=executor)
+
+
+def test_greatest_gap(gap: Limit) -> None:
+    """A gap that is wider than the car stops nothing at its middle; one of half the width stops the car."""
+    assert gap.fails_at is not None
+    assert 0.5 * 1.837 < gap.value < gap.fails_at < 1.837 + 0.15
+    assert gap.fails_at - gap.value <= 0.05
+    base = Simulation(car(), Barrier.bollards(count=5, diameter=0.3), 10.0)
+    for value, stops in ((gap.value, True), (gap.fails_at, False)):
+        spacing = value + 0.3
+        outcomes = [
+            varied(base, {"barrier.spacing": spacing, "impact_offset": share * spacing}).run().outcome
+            for share in (-0.25, 0.0, 0.25, 0.5)
+        ]
+        assert all(outcome in ("stopped", "redirected") for outcome in outcomes) == stops
+    assert len(gap.plot().axes) == 2
+    assert "4 of 4" in gap.summary()
+
+
+def test_gap_counts_from_the_row_wherever_it_stands(gap: Limit) -> None:
+    barrier = Barrier.bollards(count=5, diameter=0.3, origin=(3.0, -5.0, 0.0), heading=40.0)
+    simulation = Simulation(car(), barrier, 10.0, 90.0, barrier.station())
+    found = birm3d.greatest_gap(simulation, (0.8, 2.6), points=7, resolution=0.05)
+    assert found.value == pytest.approx(gap.value, abs=0.051)
+
+
+def test_penetration_is_a_limit_too() -> None:
+    simulation = Simulation(car(), Barrier.bollards(count=5), 8.0)
+    found = birm3d.greatest_gap(simulation, (0.8, 1.2), points=2, penetration="0.4 m", offsets=[0.0, 0.5])
+    assert found.most == 0.4
+    assert "vehicle penetration <= 0.4 m" in found.criterion
+    assert all(run.measure <= 0.4 for run in found.runs if run.holds)
+
+
+def test_least_segment_mass() -> None:
+    """The mass that the search gives keeps the deflection; the next one tried does not."""
+    barrier = Barrier.jersey(length=40.0, segments=10, free_standing=FreeStanding(ground_friction=0.6))
+    simulation = Simulation(car(), barrier, 15.0, 25.0)
+    found = birm3d.least_segment_mass(
+        simulation, (500.0, 6000.0), deflection="40 cm", points=4, resolution=400
+    )
+    assert found.fails_at is not None
+    assert 0.0 < found.value - found.fails_at <= 400.0
+    for mass, holds in ((found.value, True), (found.fails_at, False)):
+        free = FreeStanding(mass_per_length=mass / 4.0, ground_friction=0.6)
+        heavier = Barrier.jersey(length=40.0, segments=10, free_standing=free)
+        metrics = Simulation(car(), heavier, 15.0, 25.0).run().metrics
+        assert (metrics["barrier_deflection"] <= 0.4) == holds
+    assert found.monotonic
+    deflections = [run.measure for run in found.runs]
+    assert deflections == sorted(deflections, reverse=True)
+
+
+def test_a_vehicle_that_passes_the_end_is_said() -> None:
+    """Whether it reaches the end says nothing of the mass that the deflection asks for."""
+    limits = []
+    for length, segments in ((24.0, 6), (60.0, 15)):
+        barrier = Barrier.jersey(length=length, segments=segments, free_standing=True)
+        found = birm3d.least_segment_mass(
+            Simulation(car(), barrier, 15.0, 25.0), (1000.0, 7000.0), deflection=0.4, points=4, resolution=600
+        )
+        ends = sum(run.holds and run.outcome == "passed" for run in found.runs)
+        assert ("passes the barrier's end" in found.summary()) == (ends > 0)
+        limits.append(found.value)
+    assert limits[0] == pytest.approx(limits[1], rel=0.4)
+
+
+def test_an_answer_that_is_not_monotonic(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where a value beyond the first failure holds again, the answer stays before it and that is said."""
+    real = limit_search._judged
+
+    def judged(question, row, study, run):  # type: ignore[no-untyped-def]
+        found = real(question, row, study, run)
+        return found._replace(holds=found.value < 1.0 or 1.4 < found.value < 1.7)
+
+    monkeypatch.setattr(limit_search, "_judged", judged)
+    simulation = Simulation(car(), Barrier.bollards(count=5), 8.0, duration=0.01)
+    found = birm3d.greatest_gap(simulation, (0.5, 2.5), points=9, offsets=[0.0], resolution=0.01)
+    assert found.value < 1.0 <= found.fails_at <= found.value + 0.01
+    assert not found.monotonic
+    assert found.exceptions == (1.5,)
+    assert "Not monotonic: 1.5 m holds again" in found.summary()
+    assert "not monotonic" in found.plot().axes[0].get_title()
+    with pytest.raises(NotInRangeError, match=r"1.5 m hold, which is not monotonic"):
+        birm3d.greatest_gap(simulation, (1.0, 2.5), points=7, offsets=[0.0])
+
+
+@pytest.fixture(scope="module")
+def worst() -> birm3d.WorstOffset:
+    simulation = Simulation(car(), Barrier.bollards(count=6), 10.0)
+    return birm3d.worst_offset(simulation, [1.0, 1.4], metric="peak_element_force_50ms", points=5, max_runs=8)
+
+
+def test_worst_offset_of_each_spacing(worst: birm3d.WorstOffset) -> None:
+    assert worst.spacing.tolist() == [1.0, 1.4]
+    for row in worst.rows:
+        base = Simulation(car(), Barrier.bollards(count=6, spacing=row.spacing), 10.0)
+        run = varied(base, {"impact_offset": row.offset}).run()
+        assert row.value == pytest.approx(run.metrics["peak_element_force_50ms"], rel=1e-9)
+        assert row.outcome == run.outcome
+        assert row.value == max(
+            np.nanmax(study["peak_element_force_50ms"]) for study in (row.search.grid, row.search.refinement)
+        )
+        assert abs(row.offset) <= 0.5 * row.spacing
+        # Six posts: a gap is in the middle, posts are half a spacing from it.
+        assert row.share == pytest.approx(0.5 - abs(row.offset) / row.spacing, abs=1e-12)
+    assert worst.resolution == (0.25, 0.35)
+    assert worst.worst.value == worst.value.max()
+
+
+def test_what_a_worst_offset_says(worst: birm3d.WorstOffset) -> None:
+    assert "peak element force 50ms [N]" in worst.summary()
+    assert "Scanned every 0.35 m or finer" in worst.summary()
+    assert list(worst.to_dataframe()["peak_element_force_50ms"]) == worst.value.tolist()
+    assert len(worst.plot().axes) == 2
+    assert "<img" in worst._repr_html_()
+    assert json.loads(json.dumps(worst.to_dict()))["spacings"][0]["spacing"] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda sim: birm3d.greatest_gap(sim, (2.0, 1.0)), "gaps must be .*increasing; got"),
+        (lambda sim: birm3d.greatest_gap(sim, (1.0, math.nan)), "gaps must be"),
+        (lambda sim: birm3d.greatest_gap(sim, (-1.0, 2.0)), "gaps must"),
+        (lambda sim: birm3d.greatest_gap(sim, (0.01, 2.0)), "gaps must leave a row wider than the vehicle"),
+        (lambda sim: birm3d.greatest_gap(sim, points=1), "points must be an integer >= 2, got 1"),
+        (lambda sim: birm3d.greatest_gap(sim, resolution=0.0), "resolution must be finite and > 0 m, got 0"),
+        (lambda sim: birm3d.greatest_gap(sim, offsets=[]), "offsets must be at least one"),
+        (lambda sim: birm3d.greatest_gap(sim, penetration=-1.0), "penetration must be >= 0 m, got -1"),
+        (lambda sim: birm3d.greatest_gap(sim, ("1 kg", "2 m")), "gaps"),
+        (lambda sim: birm3d.least_height(sim, (0.0, 1.0)), "heights must be"),
+        (
+            lambda sim: birm3d.least_segment_mass(sim, deflection=0.5),
+            "must have a free-standing Jersey barrier",
+        ),
+        (lambda sim: birm3d.worst_offset(sim, []), "spacings must be at least one"),
+        (lambda sim: birm3d.worst_offset(sim, [0.1]), "spacings must be finite and above the diameter"),
+        (lambda sim: birm3d.worst_offset(sim, metric="beauty"), "metric must be one of"),
+        (lambda sim: birm3d.worst_offset(sim, points=2), "points must be"),
+    ],
+)
+def test_refused(call, message) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(ValueError, match=message):
+        call(Simulation(car(), Barrier.bollards(), 10.0))
+
+
+def test_refused_barriers() -> None:
+    wall = Simulation(car(), Barrier.rigid_wall(), 10.0)
+    jersey = Simulation(car(), Barrier.jersey(), 10.0, 25.0)
+    for search in (birm3d.greatest_gap, birm3d.worst_offset):
+        with pytest.raises(ValueError, match="must have a row of at least two bollards"):
+            search(wall)
+    with pytest.raises(ValueError, match="must have bollards, a rigid wall or a Jersey barrier, got Pole"):
+        birm3d.least_height(Simulation(car(), Barrier.pole(), 10.0))
+    with pytest.raises(
+        ValueError, match=r"heights must be values that can be run, got 0.2 m: .*height must be"
+    ):
+        birm3d.least_height(jersey, (0.2, 0.8), points=2)
+    with pytest.raises(ValueError, match="must have a barrier, got none"):
+        birm3d.least_height(Simulation(car(), None, 10.0, duration=0.1))
+
+
+def test_interrupted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C in the bisection: the runs of the scan are not lost."""
+    real, calls = limit_search.run_study, []
+
+    def run_study(*arguments, **options):  # type: ignore[no-untyped-def]
+        study = real(*arguments, **options)
+        calls.append(study)
+        if len(calls) == 2:
+            raise StudyInterrupted("stopped: 1 of 1 runs are finished", study)
+        return study
+
+    monkeypatch.setattr(limit_search, "run_study", run_study)
+    wall = Barrier.rigid_wall(width=6.0, height=1.0, friction=0.0)
+    simulation = Simulation(one_node(0.637), wall, 5.0, settings=FREE)
+    with pytest.raises(StudyInterrupted) as stopped:
+        birm3d.least_height(simulation, (0.2, 1.2), points=5)
+    assert len(stopped.value.study) == 6
+
+
+def command(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
+    try:
+        main()
+    except SystemExit as stop:
+        return int(stop.code or 0)
+    return 0
+
+
+def test_command_line(monkeypatch, capsys, tmp_path) -> None:
+    scene = ["--vehicle", "passenger_car", "--mesh-density", "0.3", "--speed", "10m/s"]
+    row = [*scene, "--barrier", "bollards"]
+    figure = tmp_path / "height.png"
+    search = ["search", "height", *row, "--range", "0.2:100cm", "--points", "4"]
+    assert command(monkeypatch, *search, "--plot", str(figure)) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith("least height: ")
+    assert f"figure: {figure}" in err
+    assert command(monkeypatch, "search", "gap", *row, "--range", "0.8:2.4", "--points", "3", "--json") == 0
+    assert json.loads(capsys.readouterr().out)["name"] == "clear gap"
+    assert command(monkeypatch, "search", "offset", *row, "--spacings", "1.2,1.4", "--json") == 0
+    assert [r["spacing"] for r in json.loads(capsys.readouterr().out)["spacings"]] == [1.2, 1.4]
+    free = [*scene, "--barrier", "jersey", "--length", "40", "--segments", "10", "--free-standing"]
+    arguments = [*free, "--angle", "25", "--deflection", "0.5", "--points", "3", "--range", "1t:6t"]
+    assert command(monkeypatch, "search", "segment-mass", *arguments) == 0
+    assert "segment mass" in capsys.readouterr().out
+    assert command(monkeypatch, "search", "gap", *row, "--range", "1") == 2
+    assert "--range must be LEAST:GREATEST, got '1'" in capsys.readouterr().err
