@@ -58,6 +58,16 @@ def design_loads() -> Figure:
     return birm3d.design_load(crash, natural_period=0.05, ductility=3, offsets=offsets).plot()
 
 
+def limits() -> Figure:
+    """The greatest gap on the page on limits."""
+    import birm3d
+    from birm3d import units
+
+    truck = birm3d.Vehicle.preset("cargo_truck")
+    crash = birm3d.Simulation(truck, birm3d.Barrier.bollards(count=7), impact_speed=units.mph(30))
+    return birm3d.greatest_gap(crash).plot()
+
+
 def truss_law() -> Figure:
     """Fig. 3: loading, unloading, reloading, computed by the core."""
     import numpy as np
@@ -191,6 +201,7 @@ MADE: dict[str, Callable[[], Figure]] = {
         sedan,
         tutorial,
         design_loads,
+        limits,
         truss_law,
         architecture,
         work_precision,

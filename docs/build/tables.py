@@ -194,6 +194,42 @@ def tutorial_report() -> str:
     return f"```text\n{result.report()}\n```"
 
 
+def design_loads() -> str:
+    """The table of the page on design loads, of the elements that are touched."""
+    import birm3d
+    from birm3d import units
+
+    truck = birm3d.Vehicle.preset("cargo_truck")
+    crash = birm3d.Simulation(truck, birm3d.Barrier.bollards(), impact_speed=units.mph(30))
+    offsets = [0.0, 0.15, 0.3, 0.45, 0.6]
+    loads = birm3d.design_load(crash, natural_period="50 ms", ductility=3, offsets=offsets)
+    lines = [line for line in loads.to_markdown().splitlines() if line.startswith("|")]
+    return "\n".join([*lines[:2], *(line for row, line in zip(loads, lines[2:], strict=True) if row.touched)])
+
+
+def limits() -> str:
+    """The answers of the page on limits."""
+    import birm3d
+    from birm3d import units
+
+    truck = birm3d.Vehicle.preset("cargo_truck")
+    crash = birm3d.Simulation(truck, birm3d.Barrier.bollards(count=7), impact_speed=units.mph(30))
+    row = birm3d.Barrier.jersey(length=60.0, segments=15, free_standing=True)
+    pickup = birm3d.Simulation(birm3d.Vehicle.preset("pickup"), row, impact_speed="100 km/h", impact_angle=25)
+    found = (
+        birm3d.greatest_gap(crash, gaps=(0.5, 3.0)),
+        birm3d.least_height(crash, heights=(0.3, 1.3)),
+        birm3d.least_segment_mass(pickup, masses=(500, 8000), deflection=0.8),
+    )
+    worst = birm3d.worst_offset(crash, spacings=[1.2, 1.5, 1.8, 2.1])
+    rows = [(limit.headline, str(len(limit.runs))) for limit in found]
+    for one in worst.rows:
+        runs = len(one.search.grid) + len(one.search.refinement)
+        text = f"worst offset at a spacing of {one.spacing:g} m: {one.share:.2f} of it from a post"
+        rows.append((f"{text}, {one.value / 1e3:.0f} kN m", str(runs)))
+    return table(("answer", "runs"), rows)
+
+
 def _plain(text: str) -> str:
     return re.sub(r":\w+:`~?([^`]+)`", r"`\1`", " ".join(text.split()))
 
@@ -202,7 +238,7 @@ MADE: dict[str, Callable[[], str]] = {
     made.__name__: made
     for made in (
         accuracy_errors, accuracy_claims, mesh, rivals, determinism, blind, finite_element, robustness,
-        metrics, settings, barriers, tutorial_report,
+        metrics, settings, barriers, tutorial_report, design_loads, limits,
     )
 }  # fmt: skip
 
