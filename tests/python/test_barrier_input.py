@@ -30,6 +30,11 @@ SIZES: dict[str, dict[str, tuple[Any, ...]]] = {
         "rows": (0, 1.5, NAN),
         "row_offset": (NAN, INF),
     },
+    "planter": {
+        "length": (0.0, -1.0, NAN, INF),
+        "width": (0.0, -1.0, NAN, INF),
+        "height": (0.0, -1.0, NAN, INF),
+    },
     "jersey": {
         "height": (0.0, 0.33, 1.6, NAN, INF),
         "length": (0.0, -1.0, NAN),

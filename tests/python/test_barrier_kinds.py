@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import dataclasses
+import inspect
 import json
 import math
 import pickle
 from pathlib import Path
+from typing import Any
 
 import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, FreeStanding, Simulation, Vehicle
+from birm3d.barrier.kinds import KINDS as ALL_KINDS
 from birm3d.barrier.surfaces import barrier_surfaces
 from birm3d.base.fingerprint import fingerprint
 from birm3d.scene.codec import decode, encode
@@ -44,6 +47,14 @@ KINDS: dict[str, tuple[Barrier, Barrier]] = {
     "profile": (
         Barrier.jersey(profile=((0.3, 0.0), (0.1, 0.6)), length=5.0),
         Barrier.jersey(profile=((0.3, 0.0), (0.1, 0.7)), length=5.0),
+    ),
+    "rounded wall": (
+        Barrier.rigid_wall(width=3.0, height=1.1, edge_radius=0.15),
+        Barrier.rigid_wall(width=3.0, height=1.1, edge_radius=0.14),
+    ),
+    "planter": (
+        Barrier.planter(length=1.5, width=0.8, height=0.9, heading=15.0),
+        Barrier.planter(length=1.5, width=0.9, height=0.9, heading=15.0),
     ),
     "mesh": (
         Barrier.from_mesh(WEDGE, SIDES, heading=10.0),
@@ -158,6 +169,66 @@ def test_a_drawn_segment_is_the_one_that_is_met() -> None:
     assert np.abs(gap[beside]).min() == pytest.approx(0.0, abs=1e-6)
 
 
+# ---- a planter, and where a kind is known ------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("height", "angle"), [(1.0, 90.0), (0.6, 70.0)], ids=["face and edges", "face, edges and top"]
+)
+def test_a_planter_is_the_box_of_its_sizes(height: float, angle: float) -> None:
+    """The same as a wall of those sizes to the last bit, and as twelve triangles but for the last digits."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.3)
+    place: dict[str, Any] = {"origin": (1.0, 2.0, 0.0), "heading": 20.0}
+    below, length, width = -1.0, 1.5, 1.2
+    box = np.array(
+        [[x, y, z] for x in (0.0, width) for y in (-length / 2, length / 2) for z in (below, height)]
+    )
+    quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    triangles = np.array([[quad[i] for i in corners] for quad in quads for corners in ((0, 1, 2), (0, 2, 3))])
+    planter, wall, mesh = (
+        Simulation(car, barrier, 12.0, angle, 0.4, duration=0.15).run()
+        for barrier in (
+            Barrier.planter(length=length, width=width, height=height, **place),
+            Barrier.rigid_wall(width=length, thickness=width, height=height, **place),
+            Barrier.from_mesh(box, triangles, **place),
+        )
+    )
+    assert planter.state_hash == wall.state_hash
+    assert planter.velocity == pytest.approx(mesh.velocity, abs=1e-8)
+    assert np.linalg.norm(planter.velocity[-1] - planter.velocity[0]) > 5.0
+
+
+def test_a_planter_is_met_where_it_stands() -> None:
+    """Turned and moved with the path it does the same; a length further along its line it is missed."""
+    here = Simulation(lab(), Barrier.planter(length=1.5), 6.0, duration=0.2).run()
+    place: dict[str, Any] = {"origin": (5.0, -3.0, 0.0), "heading": 40.0}
+    barrier = Barrier.planter(length=1.5, **place)
+    there = Simulation(lab(), barrier, 6.0, impact_offset=barrier.station(), duration=0.2).run()
+    turned = math.radians(40.0)
+    lost = here.velocity[-1] - here.velocity[0]
+    expected = [lost[0] * math.cos(turned), lost[0] * math.sin(turned), lost[2]]
+    assert there.velocity[-1] - there.velocity[0] == pytest.approx(expected, rel=1e-6, abs=1e-6)
+    missed = Simulation(lab(), Barrier.planter(length=1.5, origin=(0.0, 1.5, 0.0)), 6.0, duration=0.2).run()
+    assert not missed.element_loads[0].touched
+    assert here.element_loads[0].touched
+
+
+def test_a_kind_is_known_in_three_files() -> None:
+    """The class, the function of ``Barrier`` that makes it, and its row in the list of all kinds."""
+    package = Path(birm3d.__file__).parent
+    known = [path for path in package.rglob("*.py") if "planter" in path.read_text(encoding="utf-8").lower()]
+    there = sorted(str(path.relative_to(package)) for path in known)
+    assert there == ["barrier/base.py", "barrier/kinds.py", "barrier/planter.py"]
+
+
+def test_every_size_is_an_argument_and_every_kind_can_be_made() -> None:
+    for kind, made in ALL_KINDS.items():
+        arguments = inspect.signature(getattr(Barrier, kind)).parameters
+        placed = {"friction", "origin", "heading"}
+        assert {size.name for size in made.sizes} == set(arguments) - placed
+        assert isinstance(getattr(Barrier, kind)(), made)
+
+
 # ---- names of numbers --------------------------------------------------------------------------------------
 
 
@@ -236,6 +307,14 @@ angle = "60 deg"
             Barrier.rigid_wall(width=5.0, height=1.2, thickness=0.4, segments=5),
         ),
         ("kind = 'pole'\ndiameter_m = 0.254", Barrier.pole(diameter=0.254)),
+        (
+            "kind = 'planter'\nlength_m = 1.5\nwidth_m = 0.8\nheight_m = 0.9\norigin_m = [0.0, 0.4, 0.0]",
+            Barrier.planter(length=1.5, width=0.8, height=0.9, origin=(0.0, 0.4, 0.0)),
+        ),
+        (
+            "kind = 'rigid_wall'\nwidth_m = 3.0\nedge_radius_m = 0.1",
+            Barrier.rigid_wall(width=3.0, edge_radius=0.1),
+        ),
     ],
 )  # fmt: skip
 def test_scene_files(text: str, barrier: Barrier, tmp_path: Path) -> None:
@@ -254,6 +333,8 @@ def test_scene_files(text: str, barrier: Barrier, tmp_path: Path) -> None:
         ("kind = 'jersey'\nprofile = 'vertical'", ["profile", "new_jersey", "vertical"]),
         ("kind = 'jersey'\nsegments = 2", ["segments", "infinite length", "2"]),
         ("kind = 'pole'\ncolour = 'red'", ["colour"]),
+        ("kind = 'planter'\nheight_m = 0.0", ["height", "> 0 m", "0.0"]),
+        ("kind = 'planter'\nsegments = 2", ["segments", "rigid_wall or jersey", "planter"]),
     ],
 )
 def test_scene_files_that_can_not_be(text: str, parts: list[str], tmp_path: Path) -> None:

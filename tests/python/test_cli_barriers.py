@@ -45,6 +45,10 @@ def birm3d(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
             "--barrier rigid_wall --width 4 --height 1.5 --thickness 0.3 --segments 2 --friction 0.1",
             Barrier.rigid_wall(width=4.0, height=1.5, thickness=0.3, segments=2, friction=0.1),
         ),
+        (
+            "--barrier planter --length 1.5 --width 80cm --height 36in",
+            Barrier.planter(length=1.5, width=0.8, height=36 * units.inch),
+        ),
     ],
 )  # fmt: skip
 def test_the_options_are_the_scene(

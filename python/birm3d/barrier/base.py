@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -16,14 +16,17 @@ from ..base.arguments import check_fields, checked
 from ..base.checks import MOST_ELEMENTS, whole_number
 from ..unit_check import USUAL, given, warn_if_mesh_unusual
 from ..units import Quantity, si
+from .description import SeenPart, Size
 
 if TYPE_CHECKING:
     from .free_standing import FreeStanding
-    from .kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
+    from .kinds import Bollards, Jersey, MeshBarrier, Planter, Pole, RigidWall
 
-__all__ = ["Barrier"]
+__all__ = ["Barrier", "Surface"]
 
 Point = tuple[float, float, float]
+Surface: TypeAlias = "tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]"
+"""Vertices (n, 3), world axes [m], and triangles (m, 3), counter-clockwise seen from outside."""
 
 
 @checked
@@ -54,6 +57,16 @@ class Barrier:
     heading: float = 0.0
 
     _counts: ClassVar[tuple[str, ...]] = ()  # fields that are whole numbers
+
+    title: ClassVar[str] = "barrier"
+    """What help texts call this kind."""
+    sizes: ClassVar[tuple[Size, ...]] = ()
+    """Its arguments: scene files, the command line and names of parameters are made of them."""
+    is_straight: ClassVar[bool] = False
+    """Whether its face is straight along the line: it redirects, and moments are about the line."""
+    has_posts: ClassVar[bool] = False
+    """Whether it is made of posts, which dent the skin beside them."""
+    why_no_dents: ClassVar[str] = "the barrier has no posts"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "origin", _point(self.origin))
@@ -273,6 +286,45 @@ class Barrier:
         )
 
     @staticmethod
+    def planter(
+        *,
+        length: Quantity = 2.0,
+        width: Quantity = 1.0,
+        height: Quantity = 1.0,
+        friction: float = 0.2,
+        origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
+        heading: Quantity = 0.0,
+    ) -> Planter:
+        """Return a planter: a rigid, fixed, solid block; its middle along the line is at the origin.
+
+        Parameters
+        ----------
+        length
+            Along the line [m], > 0.
+        width
+            Square to the line, away from the traffic [m], > 0.
+        height
+            [m], > 0.
+        friction, origin, heading
+            See :class:`Barrier`.
+
+        Raises
+        ------
+        ValueError
+            If a number is out of range; the message names argument, limit and value.
+        """
+        from .kinds import Planter
+
+        return Planter(
+            float(friction),
+            _point(origin),
+            given("heading", heading),
+            length=given("length", length),
+            width=given("width", width),
+            height=given("height", height),
+        )
+
+    @staticmethod
     def from_mesh(
         vertices: npt.ArrayLike,
         faces: npt.ArrayLike,
@@ -316,7 +368,7 @@ class Barrier:
 
     def elements(self) -> list[_core.Element]:
         """Return the elements for the core; a kind of barrier says which."""
-        raise TypeError("a Barrier is made with rigid_wall, pole, bollards, jersey or from_mesh")
+        raise TypeError("a Barrier is made with rigid_wall, pole, bollards, jersey, planter or from_mesh")
 
     @property
     def element_names(self) -> tuple[str, ...]:
@@ -344,6 +396,29 @@ class Barrier:
     def stands_free(self) -> _core.FreeStanding | None:
         """Return how its elements stand free, for the core; ``None`` where they are fixed."""
         return None
+
+    # ---- how a kind describes itself ----------------------------------------------------------------------
+
+    @property
+    def text(self) -> str:
+        """Kind, count and sizes in a few words, for titles."""
+        return type(self).__name__
+
+    @property
+    def is_bottomless(self) -> bool:
+        """Whether it goes on below the ground without end."""
+        return False
+
+    def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
+        """Return the closed surfaces that pictures show, one for each element.
+
+        What has no top is drawn up to ``top``, what has no end between the marks ``seen`` of the line [m].
+        """
+        raise TypeError(f"no surface of a {type(self).__name__}")
+
+    def seen_parts(self, angle: float) -> Iterator[SeenPart]:
+        """Yield the parts that a path at an angle to the line meets [rad]: how wide each is."""
+        raise TypeError(f"no parts of a {type(self).__name__}")
 
     @property
     def is_pinned(self) -> bool:

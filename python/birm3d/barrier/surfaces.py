@@ -1,26 +1,28 @@
-"""Surfaces of barriers for pictures: the one place that knows how each kind of barrier looks."""
+"""Surfaces of barriers for pictures, and what the kinds make them of."""
 
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from .kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall, drawn_up
+from .base import Barrier, Surface
 
-if TYPE_CHECKING:
-    from .base import Barrier
-
-__all__ = ["Surface", "barrier_axes", "barrier_surfaces"]
+__all__ = [
+    "Surface",
+    "barrier_axes",
+    "barrier_surfaces",
+    "cylinder",
+    "drawn_up",
+    "ends",
+    "extruded",
+    "placed",
+]
 
 Floats = npt.NDArray[np.float64]
-Surface: TypeAlias = "tuple[Floats, npt.NDArray[np.int64]]"
-"""Vertices (n, 3), world axes [m], and triangles (m, 3), counter-clockwise seen from outside."""
 
 # What the model leaves open is drawn so, m.
-_WALL_DEPTH = 0.4
 _BEYOND = 1.0  # an endless wall, past what stands before it
 _ABOVE = 0.3  # an endless wall or pole, above what stands before it
 _LEAST_HEIGHT = 1.0
@@ -55,39 +57,21 @@ def barrier_surfaces(barrier: Barrier | None, around: npt.ArrayLike) -> list[Sur
     top = max(_LEAST_HEIGHT, float((points - origin)[:, 2].max()) + _ABOVE)
     along = (points - origin) @ barrier_axes(barrier)[0]
     seen = (float(along.min()) - _BEYOND, float(along.max()) + _BEYOND)
-    if isinstance(barrier, Pole):
-        return [_cylinder(origin, 0.5 * barrier.diameter, top)]
-    if isinstance(barrier, Bollards):
-        radius, height = 0.5 * barrier.diameter, min(barrier.height, top)
-        return [_cylinder(barrier.place(*place), radius, height) for place in barrier.places()]
-    if isinstance(barrier, RigidWall):
-        endless = np.isinf(barrier.width) and np.isinf(barrier.height)
-        if barrier.edge_radius > 0.0:
-            return [_rounded_wall(barrier, min(barrier.height, top))]
-        depth = _WALL_DEPTH if endless else barrier.thickness
-        sides = (np.zeros(2), np.full(2, depth), np.array([0.0, min(barrier.height, top)]))
-        return _extruded(barrier, *sides, _ends(barrier.width, barrier.segments, seen))
-    if isinstance(barrier, Jersey):
-        half, level = barrier.half_profile().T
-        ends = _ends(barrier.length, barrier.segments, seen)
-        return _extruded(barrier, half[0] - half, half[0] + half, level, ends)
-    if isinstance(barrier, MeshBarrier):
-        return [(_placed(barrier, barrier.vertices), barrier.faces)]
-    raise TypeError(f"no surface of a {type(barrier).__name__}")
+    return barrier.surfaces(top, seen)
 
 
-def _ends(length: float, segments: int, seen: tuple[float, float]) -> Floats:
+def ends(length: float, segments: int, seen: tuple[float, float]) -> Floats:
     """Return where segments along the barrier's line begin and end; without end, where it is seen."""
     return np.array(seen) if np.isinf(length) else np.linspace(-0.5, 0.5, segments + 1) * length
 
 
-def _placed(barrier: Barrier, points: Floats) -> Floats:
+def placed(barrier: Barrier, points: Floats) -> Floats:
     """Return points (n, 3) in world axes from across, along and up of the barrier."""
     along, out, up = barrier_axes(barrier)
     return np.asarray(barrier.origin + points @ np.stack([-out, along, up]))
 
 
-def _extruded(barrier: Barrier, front: Floats, back: Floats, height: Floats, ends: Floats) -> list[Surface]:
+def extruded(barrier: Barrier, front: Floats, back: Floats, height: Floats, ends: Floats) -> list[Surface]:
     """Return closed segments between `ends`; at heights (n,), foot first, they reach from front to back."""
     # Round the section, up the back and down the front: counter-clockwise seen from the low end.
     across, up = np.concatenate([back, front[::-1]]), np.concatenate([height, height[::-1]])
@@ -99,17 +83,28 @@ def _extruded(barrier: Barrier, front: Floats, back: Floats, height: Floats, end
     surfaces = []
     for low, high in itertools.pairwise(ends):
         sections = [np.stack([across, np.full(n, end), up], axis=1) for end in (low, high)]
-        surfaces.append((_placed(barrier, np.vstack(sections)), faces))
+        surfaces.append((placed(barrier, np.vstack(sections)), faces))
     return surfaces
 
 
-def _rounded_wall(barrier: RigidWall, height: float) -> Surface:
-    """Return a wall with rounded upright edges."""
-    vertices, faces = drawn_up(barrier.outline(), 0.0, height)
-    return _placed(barrier, vertices), faces
+def drawn_up(outline: Floats, low: float, high: float) -> Surface:
+    """Return vertices and triangles of a solid with a convex plan (n, 2), counter-clockwise from above."""
+    n = len(outline)
+    i = np.arange(n)
+    j = (i + 1) % n
+    fan = np.arange(1, n - 1)
+    first = np.zeros_like(fan)
+    faces = [
+        np.stack([i, j, j + n], axis=1),
+        np.stack([i, j + n, i + n], axis=1),
+        np.stack([first, fan + 1, fan], axis=1),
+        np.stack([first + n, fan + n, fan + 1 + n], axis=1),
+    ]
+    vertices = np.vstack([np.column_stack([outline, np.full(n, z)]) for z in (low, high)])
+    return vertices, np.vstack(faces).astype(np.int64)
 
 
-def _cylinder(foot: Floats, radius: float, height: float) -> Surface:
+def cylinder(foot: Floats, radius: float, height: float) -> Surface:
     """Return an upright cylinder."""
     angle = np.linspace(0.0, 2.0 * np.pi, _POLE_SIDES, endpoint=False)
     ring = radius * np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=1)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from .. import units
+from ..barrier.kinds import KINDS
 
 if TYPE_CHECKING:
     from ..simulation.simulation import Simulation
@@ -34,13 +35,30 @@ class QuantityOption(click.ParamType):  # type: ignore[type-arg,unused-ignore]
             self.fail(str(error), param, ctx)
 
 
-# Kind of barrier -> the options that give its sizes.
-_SIZES = {
-    "rigid_wall": ("width", "height", "thickness", "segments", "edge_radius"),
-    "pole": ("diameter",),
-    "bollards": ("count", "diameter", "height", "spacing", "rows", "row_spacing", "row_offset"),
-    "jersey": ("profile", "height", "length", "segments", "free_standing", "density"),
+_TYPES: dict[str, Any] = {
+    "count": int,
+    "length": QuantityOption("length"),
+    "density": QuantityOption("density"),
 }
+
+
+def _size_options() -> Iterator[Callable[[Command], Command]]:
+    """Yield the options of all sizes that kinds of barriers have."""
+    sizes = {size.name: size for kind in KINDS.values() for size in kind.sizes}
+    for name, size in sizes.items():
+        titles = [kind.title for kind in KINDS.values() if any(other.name == name for other in kind.sizes)]
+        hints = dict.fromkeys(
+            other.hint for kind in KINDS.values() for other in kind.sizes if other.name == name and other.hint
+        )
+        text = f"Of {' or '.join(titles)}{''.join(', ' + hint for hint in hints)}."
+        option = f"--{name.replace('_', '-')}"
+        if size.quantity == "flag":
+            yield click.option(option, is_flag=True, default=None, help=text)
+        elif size.quantity == "choice":
+            yield click.option(option, type=click.Choice(size.choices), help=text)
+        else:
+            yield click.option(option, type=_TYPES[size.quantity], help=text)
+
 
 _OPTIONS = (
     click.argument("scene", required=False, type=click.Path(exists=True, dir_okay=False, path_type=Path)),
@@ -53,40 +71,11 @@ _OPTIONS = (
     ),
     click.option(
         "--barrier",
-        type=click.Choice([*_SIZES, "none"]),
+        type=click.Choice([*KINDS, "none"]),
         default="rigid_wall",
         show_default=True,
     ),
-    click.option("--width", type=QuantityOption("length"), help="Of the wall.  [default: without end]"),
-    click.option("--height", type=QuantityOption("length"), help="Of wall, bollards or Jersey barrier."),
-    click.option("--thickness", type=QuantityOption("length"), help="Of a wall with an end or a top."),
-    click.option("--edge-radius", type=QuantityOption("length"), help="Of a wall's upright edges."),
-    click.option("--diameter", type=QuantityOption("length"), help="Of pole or bollards."),
-    click.option("--count", type=int, help="Bollards in a row."),
-    click.option("--spacing", type=QuantityOption("length"), help="Of bollards, centre to centre."),
-    click.option("--rows", type=int, help="Of bollards."),
-    click.option("--row-spacing", type=QuantityOption("length"), help="Of rows of bollards, axis to axis."),
-    click.option(
-        "--row-offset", type=QuantityOption("length"), help="Shift of each row from the one before it."
-    ),
-    click.option(
-        "--profile", type=click.Choice(["new_jersey", "f_shape", "single_slope"]), help="Of a Jersey barrier."
-    ),
-    click.option(
-        "--length", type=QuantityOption("length"), help="Of a Jersey barrier.  [default: without end]"
-    ),
-    click.option("--segments", type=int, help="Of a wall or Jersey barrier that has ends."),
-    click.option(
-        "--free-standing",
-        is_flag=True,
-        default=None,
-        help="Segments of a Jersey barrier slide on the ground, pinned end to end.",
-    ),
-    click.option(
-        "--density",
-        type=QuantityOption("density"),
-        help="Of a free-standing Jersey barrier, kg/m^3.  [default: 2400]",
-    ),
+    *_size_options(),
     click.option("--friction", type=float, default=0.2, show_default=True, help="Vehicle on barrier."),
     click.option("--speed", type=QuantityOption("speed"), help="With its unit: 50mph, 57.09km/h or 15.9m/s."),
     click.option(
@@ -168,11 +157,12 @@ def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
     make = Vehicle.from_file if options["vehicle"].endswith(".toml") else Vehicle.preset
     vehicle = make(options["vehicle"], gvw=options["gvw"], mesh_density=options["mesh_density"])
     kind = options["barrier"]
-    known = dict.fromkeys(name for names in _SIZES.values() for name in names)
+    names_of = {name: [size.name for size in made.sizes] for name, made in KINDS.items()}
+    known = dict.fromkeys(name for names in names_of.values() for name in names)
     sizes = {name: options[name] for name in known if options[name] is not None}
     for name in sizes:
-        if name not in _SIZES.get(kind, ()):
-            kinds = " or ".join(other for other, names in _SIZES.items() if name in names)
+        if name not in names_of.get(kind, ()):
+            kinds = " or ".join(other for other, names in names_of.items() if name in names)
             raise click.UsageError(f"--{name.replace('_', '-')}: of {kinds}, not of {kind}")
     barrier = None
     if kind != "none":

@@ -14,7 +14,6 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from ..barrier.kinds import Jersey, RigidWall
 from ..result.segment_motion import base_corners
 from ..result.skin import Skin, skins_at
 from ..vehicle.silhouette import rings, silhouette
@@ -184,7 +183,7 @@ def draw_barrier(axes: Axes, view: PlanAxes, world: Floats, drawn: list[Floats],
 
 def _redirected(result: Result) -> bool:
     scene = result.scene
-    flat = isinstance(scene.barrier, (RigidWall, Jersey))
+    flat = scene.barrier is not None and scene.barrier.is_straight
     return is_oblique(result) and flat and "exit_angle" in result.metrics
 
 

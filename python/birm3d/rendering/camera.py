@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, NamedTuple, get_args
 import numpy as np
 import numpy.typing as npt
 
-from ..barrier.kinds import Bollards, Pole
 from ..barrier.surfaces import barrier_axes
 from ..pictures import View
 from ..plotting.plan_axes import is_oblique
@@ -79,7 +78,8 @@ def outside_camera(
     out = barrier_axes(result.scene.barrier)[1]
     # The side of the path that the barrier does not hide.
     side = left if left @ out >= -1e-9 else -left
-    ahead_of_it = is_oblique(result) or isinstance(result.scene.barrier, (Bollards, Pole))
+    barrier = result.scene.barrier
+    ahead_of_it = is_oblique(result) or (barrier is not None and barrier.has_posts)
     aside = side + (0.7 if ahead_of_it else -0.55) * ahead if crushed is None else crushed
     look, up = {
         "three_quarter": (aside + 0.3 * np.linalg.norm(aside) * _UP, _UP),

@@ -13,7 +13,6 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import units
-from ..barrier.kinds import Bollards, Pole
 from ..barrier.surfaces import Surface, barrier_axes, barrier_surfaces
 from ..plotting.style import title
 from ..result.skin import Skin, skins_at
@@ -139,7 +138,7 @@ class Stage:
     def _is_behind(self) -> bool:
         """Whether the barrier is between the camera and the vehicle, and hides more than a post would."""
         barrier = self._result.scene.barrier
-        if barrier is None or self._view == "driver" or isinstance(barrier, (Bollards, Pole)):
+        if barrier is None or self._view == "driver" or barrier.has_posts:
             return False
         camera = self._outside(self._skins)
         return float((camera.place - camera.target) @ barrier_axes(barrier)[1]) < -1e-6
@@ -252,7 +251,7 @@ def _quiet() -> Iterator[None]:
 def _posts_near(barrier: Barrier | None, surfaces: Sequence[Surface], around: Floats) -> Floats:
     """Return the corners (k, 3) of the posts beside what is shown: they are to be seen whole."""
     near = [np.empty((0, 3))]
-    if isinstance(barrier, (Bollards, Pole)):
+    if barrier is not None and barrier.has_posts:
         low, high = around.min(axis=0)[:2] - _NEAR, around.max(axis=0)[:2] + _NEAR
         axes = [(v.min(axis=0) + v.max(axis=0))[:2] / 2.0 for v, _ in surfaces]
         inside = [((low <= axis) & (axis <= high)).all() for axis in axes]

@@ -9,7 +9,6 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from ..barrier.kinds import Jersey, RigidWall
 from ..signals.filters import moving_average
 from .record import RunRecord
 from .unit_result import read_only
@@ -167,7 +166,7 @@ def element_loads(result: RunRecord) -> tuple[ElementLoad, ...]:
     nothing = read_only(np.zeros((len(result.time), 3)))
     interval = result.scene.settings.output_interval
     line = None
-    if isinstance(barrier, (RigidWall, Jersey)):
+    if barrier.is_straight:
         angle = np.radians(barrier.heading)
         line = read_only(np.array([-np.sin(angle), np.cos(angle), 0.0]))
     return tuple(

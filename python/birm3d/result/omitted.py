@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from .. import _core
-from ..barrier.kinds import Bollards, MeshBarrier, Pole
 from .event import DECIDED
 from .metrics import METRIC_UNITS
 
@@ -127,9 +126,8 @@ def _skin(result: RunAnalysis) -> Iterator[str]:
 
 
 def _dents(barrier: Barrier, reaches: list[float]) -> Iterator[str]:
-    if not isinstance(barrier, Pole | Bollards):
-        why = "triangles make none" if isinstance(barrier, MeshBarrier) else "the barrier has no posts"
-        yield f"dents beside posts ({why})"
+    if not barrier.has_posts:
+        yield f"dents beside posts ({barrier.why_no_dents})"
     elif 0.0 in reaches:
         units = "" if not any(reaches) else f" of {_of(reaches.count(0.0), len(reaches))} units"
         yield f"dents beside posts{units} (dent_reach is 0)"

@@ -25,7 +25,7 @@ Arrays = Mapping[str, npt.NDArray[Any]]
 def _classes() -> Mapping[str, type[Any]]:
     """Return the classes that scenes are made of by the names they have in files."""
     from ..barrier.free_standing import FreeStanding
-    from ..barrier.kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
+    from ..barrier.kinds import KINDS, MeshBarrier
     from ..vehicle.articulated import ArticulatedVehicle, Joint
     from ..vehicle.mesher import ExteriorMesh
     from ..vehicle.vehicle import Vehicle, Zone
@@ -35,7 +35,8 @@ def _classes() -> Mapping[str, type[Any]]:
 
     known: tuple[type[Any], ...] = (
         *(ArticulatedVehicle, Joint, Vehicle, VehicleFile, ExteriorMesh, Zone),
-        *(RigidWall, Pole, Bollards, Jersey, MeshBarrier, FreeStanding),
+        *KINDS.values(),
+        *(MeshBarrier, FreeStanding),
         *(Scene, Settings),
     )
     return {kind.__name__: kind for kind in known}

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from ..barrier.kinds import Bollards, Jersey, MeshBarrier, Pole, RigidWall
+from ..barrier.description import SeenPart
 from ..base.complaints import Complaint
 
 if TYPE_CHECKING:
-    from ..barrier.base import Barrier
     from ..vehicle.vehicle import Vehicle
     from .scene import Scene
 
@@ -39,16 +35,6 @@ class CoarseSkinWarning(UserWarning):
     """
 
 
-@dataclass(frozen=True)
-class _Part:
-    """Of a barrier: its width seen along the path, and between which heights it is [m]."""
-
-    name: str
-    width: float
-    low: float
-    high: float
-
-
 def warn_if_coarse(scene: Scene) -> None:
     """Warn with :class:`CoarseSkinWarning` of the narrowest part of the barrier that can pass through."""
     for complaint in coarse_skins(scene):
@@ -60,10 +46,10 @@ def coarse_skins(scene: Scene) -> Iterator[Complaint]:
     if scene.barrier is None:
         return
     units = scene.vehicle.units
-    if isinstance(scene.barrier, Pole | Bollards):
+    if scene.barrier.has_posts:
         units = tuple(unit for unit in units if unit.dent_reach == 0.0)
     parts = [
-        part for part in _parts(scene.barrier, math.radians(scene.impact_angle)) if part.width < math.inf
+        part for part in scene.barrier.seen_parts(math.radians(scene.impact_angle)) if part.width < math.inf
     ]
     for unit in units if parts else ():
         low, high = unit.skin_bounds
@@ -80,31 +66,7 @@ def coarse_skins(scene: Scene) -> Iterator[Complaint]:
             return
 
 
-def _parts(barrier: Barrier, angle: float) -> Iterator[_Part]:
-    """Of a path at this angle to the barrier's line [rad]."""
-    base, sine, cosine = barrier.origin[2], abs(math.sin(angle)), abs(math.cos(angle))
-
-    def drawn(name: str, thickness: float, length: float, height: float) -> _Part:
-        width = math.inf if math.isinf(length) else thickness * cosine + length * sine
-        return _Part(name, width, -math.inf, base + height)
-
-    if isinstance(barrier, Pole):
-        yield _Part("pole", barrier.diameter, -math.inf, math.inf)
-    elif isinstance(barrier, Bollards):
-        yield _Part("bollards", barrier.diameter, -math.inf, base + barrier.height)
-    elif isinstance(barrier, RigidWall):
-        yield drawn("wall", barrier.thickness, barrier.width, barrier.height)
-    elif isinstance(barrier, Jersey):
-        half, height = barrier.half_profile().T
-        yield drawn("barrier", 2.0 * half.max(), barrier.length, height.max())
-    elif isinstance(barrier, MeshBarrier):
-        for points in barrier.parts:
-            across = points[:, 0] * math.cos(angle) - points[:, 1] * math.sin(angle)
-            low, high = points[:, 2].min(), points[:, 2].max()
-            yield _Part("mesh", float(np.ptp(across)), base + low, base + high)
-
-
-def _told(scene: Scene, unit: Vehicle, part: _Part) -> str:
+def _told(scene: Scene, unit: Vehicle, part: SeenPart) -> str:
     remedies = []
     if unit.has_file:
         # Elements along an edge are whole ones: half as many more than in proportion are enough.
@@ -114,7 +76,7 @@ def _told(scene: Scene, unit: Vehicle, part: _Part) -> str:
         remedies.append("nodes that are nearer to each other")
     if part.name == "mesh":
         remedies.append("where it is a post, Barrier.pole or bollards in its place, which dent the skin")
-    elif isinstance(scene.barrier, Pole | Bollards):
+    elif scene.barrier is not None and scene.barrier.has_posts:
         remedies.append("with_dent_reach(0.65), by which posts dent the skin between nodes too")
     apart = "no neighbours beside them" if math.isinf(unit.node_spacing) else f"{unit.node_spacing:.3g} m"
     return (

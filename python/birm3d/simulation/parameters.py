@@ -34,6 +34,7 @@ from difflib import get_close_matches
 from functools import lru_cache
 from typing import Any
 
+from ..barrier.kinds import KINDS
 from ..base.arguments import checked
 from ..scene.scene import APPROACH, Scene
 from ..scene.settings import Settings
@@ -63,15 +64,12 @@ _UNITS = {
     "duration": "s",
     "barrier.origin": "m",
     "barrier.heading": "deg",
-    "barrier.width": "m",
-    "barrier.height": "m",
-    "barrier.diameter": "m",
-    "barrier.thickness": "m",
-    "barrier.edge_radius": "m",
-    "barrier.spacing": "m",
-    "barrier.row_spacing": "m",
-    "barrier.row_offset": "m",
-    "barrier.length": "m",
+    **{
+        f"barrier.{size.name}": size.unit
+        for kind in KINDS.values()
+        for size in kind.sizes
+        if size.unit == "m"
+    },
     "settings.time_step": "s",
     "settings.output_interval": "s",
     "settings.gravity": "m/s^2",

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import Field, ValidationInfo, create_model, field_validator, model_validator
 
 from .. import units
 from ..barrier.base import Barrier
 from ..barrier.free_standing import FreeStanding
+from ..barrier.kinds import KINDS
 from ..io.file_format import reads
 from ..io.toml import Document, DocumentError, Strict, frozen, reject
 from ..scene.settings import Settings
@@ -38,36 +39,6 @@ class _Vehicle(Strict):
         return self
 
 
-# Kind of barrier -> keys of the file and the arguments of Barrier.<kind> that they are.
-_BARRIERS: dict[str, dict[str, str]] = {
-    "rigid_wall": {
-        "width_m": "width",
-        "height_m": "height",
-        "thickness_m": "thickness",
-        "segments": "segments",
-        "edge_radius_m": "edge_radius",
-    },
-    "pole": {"diameter_m": "diameter"},
-    "bollards": {
-        "count": "count",
-        "diameter_m": "diameter",
-        "height_m": "height",
-        "spacing_m": "spacing",
-        "rows": "rows",
-        "row_spacing_m": "row_spacing",
-        "row_offset_m": "row_offset",
-    },
-    "jersey": {
-        "profile": "profile",
-        "height_m": "height",
-        "length_m": "length",
-        "segments": "segments",
-        "free_standing": "free_standing",
-        "density_kg_m3": "density",
-    },
-}
-
-
 class _FreeStanding(Strict):
     """A table in place of ``free_standing = true``; see :class:`birm3d.FreeStanding`."""
 
@@ -86,34 +57,26 @@ class _FreeStanding(Strict):
         )
 
 
-class _Barrier(Strict):
-    """One of the kinds of :class:`birm3d.Barrier`; what is not given has that kind's default."""
+class _Placed(Strict):
+    """What every kind of barrier has; the sizes of the kinds are added below."""
 
-    kind: Literal["rigid_wall", "pole", "bollards", "jersey"]
+    kind: str
     friction: Annotated[float, Field(ge=0.0)] = 0.2
     origin_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     heading_deg: float = 0.0
-    width_m: float | None = None
-    height_m: float | None = None
-    thickness_m: float | None = None
-    segments: int | None = None
-    edge_radius_m: float | None = None
-    diameter_m: float | None = None
-    count: int | None = None
-    spacing_m: float | None = None
-    rows: int | None = None
-    row_spacing_m: float | None = None
-    row_offset_m: float | None = None
-    profile: str | tuple[tuple[float, float], ...] | None = None
-    length_m: float | None = None
-    free_standing: bool | _FreeStanding = False
-    density_kg_m3: float | None = None
+
+    @field_validator("kind")
+    @classmethod
+    def _known(cls, kind: str) -> str:
+        if kind not in KINDS:
+            reject("", f"must be one of {', '.join(KINDS)}, got {kind!r}")
+        return kind
 
     @model_validator(mode="after")
-    def _check(self) -> _Barrier:
+    def _check(self) -> _Placed:
         for key in self.model_fields_set - {"kind", "friction", "origin_m", "heading_deg"}:
-            if key not in _BARRIERS[self.kind]:
-                kinds = [kind for kind, keys in _BARRIERS.items() if key in keys]
+            if key not in _keys(self.kind):
+                kinds = [kind for kind in KINDS if key in _keys(kind)]
                 reject(key, f"belongs to {' or '.join(kinds)}, not to {self.kind}")
         self.made()  # refuses what the kind can not have
         return self
@@ -122,15 +85,41 @@ class _Barrier(Strict):
         """Return the barrier."""
         given = {
             argument: getattr(self, key)
-            for key, argument in _BARRIERS[self.kind].items()
+            for key, argument in _keys(self.kind).items()
             if key in self.model_fields_set
         }
-        if isinstance(self.free_standing, _FreeStanding):
-            given["free_standing"] = self.free_standing.made()
+        for argument, value in given.items():
+            if isinstance(value, _FreeStanding):
+                given[argument] = value.made()
         barrier: Barrier = getattr(Barrier, self.kind)(
             friction=self.friction, origin=self.origin_m, heading=self.heading_deg, **given
         )
         return barrier
+
+
+_SIZES = {size.key: size for kind in KINDS.values() for size in kind.sizes}
+_OF_QUANTITY: dict[str, Any] = {
+    "length": float | None,
+    "density": float | None,
+    "count": int | None,
+    "flag": bool | _FreeStanding,
+    "choice": str | tuple[tuple[float, float], ...] | None,  # a profile may be points too
+}
+_FIELDS: dict[str, Any] = {
+    key: (_OF_QUANTITY[size.quantity], False if size.quantity == "flag" else None)
+    for key, size in _SIZES.items()
+}
+_Barrier: type[_Placed] = create_model(
+    "_Barrier",
+    __base__=_Placed,
+    __doc__="One of the kinds of :class:`birm3d.Barrier`; what is not given has that kind's default.",
+    **_FIELDS,
+)
+
+
+def _keys(kind: str) -> dict[str, str]:
+    """Return the keys of a kind of barrier, and the arguments of ``Barrier.<kind>()`` that they are."""
+    return {size.key: size.name for size in KINDS[kind].sizes}
 
 
 class _Impact(Strict):
@@ -193,7 +182,7 @@ class _Settings(Strict):
 
 class _Scene(Strict):
     vehicle: _Vehicle
-    barrier: _Barrier | None = None
+    barrier: _Barrier | None = None  # type: ignore[valid-type]
     impact: _Impact
     settings: _Settings = _Settings()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...barrier.base import Barrier
-from ...barrier.kinds import Bollards, MeshBarrier, Pole, RigidWall
+from ...barrier.mesh import MeshBarrier
 from ...barrier.surfaces import barrier_axes, barrier_surfaces
 
 __all__ = ["triangulated"]
@@ -27,15 +27,11 @@ def triangulated(barrier: Barrier | None) -> MeshBarrier | None:
     origin = np.asarray(barrier.origin)
     along, out, up = barrier_axes(barrier)
     # Where the exact shape goes on below the ground, which blocks of laboratories do not have.
-    bottomless = isinstance(barrier, Pole | Bollards) or (
-        isinstance(barrier, RigidWall)
-        and (barrier.edge_radius > 0.0 or (np.isinf(barrier.width) and np.isinf(barrier.height)))
-    )
     far = origin + np.array([_ALONG * along, -_ALONG * along, _UP * up])
     vertices, faces, count = [], [], 0
     for points, triangles in barrier_surfaces(barrier, far):
         local = (points - origin) @ np.stack([-out, along, up]).T
-        if bottomless:
+        if barrier.is_bottomless:
             local[local[:, 2] == 0.0, 2] = -_UP
         vertices.append(local)
         faces.append(triangles + count)

@@ -1,0 +1,156 @@
+"""Poles and bollards: upright cylinders."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from .. import _core
+from ..base.checks import MOST_ELEMENTS
+from .base import Barrier, Surface
+from .blocks import numbered, positive, positive_and_finite
+from .description import SeenPart, Size, height_text
+from .surfaces import cylinder
+
+__all__ = ["Bollards", "Pole"]
+
+
+@dataclass(frozen=True)
+class Pole(Barrier):
+    """One rigid, upright cylinder, taller than any vehicle; the barrier's line runs through its axis."""
+
+    diameter: float = 0.3
+
+    title: ClassVar = "pole"
+    sizes: ClassVar = (Size("diameter"),)
+    has_posts: ClassVar = True
+    is_bottomless: ClassVar = True
+
+    def elements(self) -> list[_core.Element]:
+        """Return the pole."""
+        positive_and_finite("diameter", self.diameter)
+        return [
+            _core.Element.post(
+                radius=0.5 * self.diameter,
+                height=math.inf,
+                position=self.from_origin(0.0, 0.0),
+                heading=math.radians(self.heading),
+            )
+        ]
+
+    @property
+    def element_names(self) -> tuple[str, ...]:
+        """``pole``."""
+        return ("pole",)
+
+    @property
+    def text(self) -> str:
+        """Sizes in a few words."""
+        return f"pole, Ø {self.diameter:g} m"
+
+    def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
+        """Return the pole, as high as is seen."""
+        return [cylinder(np.asarray(self.origin), 0.5 * self.diameter, top)]
+
+    def seen_parts(self, angle: float) -> Iterator[SeenPart]:
+        """Yield the pole."""
+        yield SeenPart("pole", self.diameter, -math.inf, math.inf)
+
+
+@dataclass(frozen=True)
+class Bollards(Barrier):
+    """Rigid bollards in rows.
+
+    A bollard draws in the skin beside it, see :meth:`birm3d.Vehicle.with_dent_reach`.
+    """
+
+    count: int = 5
+    diameter: float = 0.32
+    height: float = 1.0
+    spacing: float = 1.2
+    rows: int = 1
+    row_spacing: float = 1.2
+    row_offset: float = 0.0
+
+    _counts: ClassVar = ("count", "rows")
+    title: ClassVar = "bollards"
+    sizes: ClassVar = (
+        Size("count", "count", "in each row"),
+        Size("diameter"),
+        Size("height"),
+        Size("spacing", hint="centre to centre"),
+        Size("rows", "count"),
+        Size("row_spacing", hint="from row to row, axis to axis"),
+        Size("row_offset", hint="shift of each row from the one before it"),
+    )
+    has_posts: ClassVar = True
+    is_bottomless: ClassVar = True
+
+    def elements(self) -> list[_core.Element]:
+        """Return the bollards, row by row from the front, each from low y to high y."""
+        if self.count * self.rows > MOST_ELEMENTS:
+            raise ValueError(
+                f"count must make at most {MOST_ELEMENTS:,} bollards with {self.rows} rows, got {self.count}"
+            )
+        positive_and_finite("diameter", self.diameter)
+        positive("height", self.height)
+        for name, number in (("spacing", self.count), ("row_spacing", self.rows)):
+            value = getattr(self, name)
+            if number > 1 and not (math.isfinite(value) and value > self.diameter):
+                raise ValueError(
+                    f"{name} must be finite and above the diameter ({self.diameter:g} m), got {value}"
+                )
+        if not math.isfinite(self.row_offset):
+            raise ValueError(f"row_offset must be finite, got {self.row_offset}")
+        return [
+            _core.Element.post(
+                radius=0.5 * self.diameter,
+                height=self.height,
+                position=self.from_origin(across, along),
+                heading=math.radians(self.heading),
+            )
+            for across, along in self.places()
+        ]
+
+    def places(self) -> list[tuple[float, float]]:
+        """Return the axes of the bollards across and along the line [m], see :meth:`Barrier.place`."""
+        return [
+            (
+                row * self.row_spacing if row else 0.0,
+                ((i - 0.5 * (self.count - 1)) * self.spacing if self.count > 1 else 0.0)
+                + row * self.row_offset,
+            )
+            for row in range(self.rows)
+            for i in range(self.count)
+        ]
+
+    @property
+    def element_names(self) -> tuple[str, ...]:
+        """``bollard 1``, ... from low y to high y, or ``row 1, bollard 1``, ..."""
+        if self.rows == 1:
+            return numbered("bollard", "bollard", self.count)
+        return tuple(f"row {r + 1}, bollard {i + 1}" for r in range(self.rows) for i in range(self.count))
+
+    @property
+    def text(self) -> str:
+        """Count and sizes in a few words."""
+        many = self.count * self.rows > 1
+        rows = f"{self.rows} rows of " if self.rows > 1 else ""
+        text = f"{rows}{self.count} bollard{'s' if many else ''}, Ø {self.diameter:g} m"
+        text += f", {height_text(self.height)}"
+        if self.count > 1:
+            text += f", {self.spacing:g} m apart"
+        return text + (f", rows {self.row_spacing:g} m apart" if self.rows > 1 else "")
+
+    def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
+        """Return the bollards."""
+        radius, height = 0.5 * self.diameter, min(self.height, top)
+        return [cylinder(self.place(*place), radius, height) for place in self.places()]
+
+    def seen_parts(self, angle: float) -> Iterator[SeenPart]:
+        """Yield one for all: they are equal."""
+        yield SeenPart("bollards", self.diameter, -math.inf, self.origin[2] + self.height)

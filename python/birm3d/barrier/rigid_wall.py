@@ -1,0 +1,149 @@
+"""A flat, rigid wall."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _core
+from .base import Barrier, Surface
+from .blocks import FOOT, along_line, numbered, positive, positive_and_finite, seen_block
+from .description import SeenPart, Size, height_text, length_text, segments_text
+from .surfaces import drawn_up, ends, extruded, placed
+
+__all__ = ["RigidWall"]
+
+Floats = npt.NDArray[np.float64]
+
+# A wall of finite width without a top has it here, above anything that could come [m].
+_HIGH = 100.0
+# Of the polygon that an arc of 90 degrees is made of.
+_SIDES_OF_QUARTER = 15
+# A wall without end, which is a half-space, is drawn so deep [m].
+_DRAWN_DEPTH = 0.4
+
+
+@dataclass(frozen=True)
+class RigidWall(Barrier):
+    """A flat, rigid, vertical wall.
+
+    Without end in width and height it is a half-space. Else it has a ``thickness``, with ends, a top and a
+    back that can be met like the face. Its upright edges are sharp, or rounded by ``edge_radius``: then it is
+    one closed mesh, see :meth:`outline`, whose faces go over into arcs without a seam.
+    """
+
+    width: float = math.inf
+    height: float = math.inf
+    thickness: float = 0.5
+    segments: int = 1
+    edge_radius: float = 0.0
+
+    _counts: ClassVar = ("segments",)
+    title: ClassVar = "wall"
+    sizes: ClassVar = (
+        Size("width", hint="[default: without end]"),
+        Size("height"),
+        Size("thickness", hint="where it has an end or a top"),
+        Size("segments", "count", "where it has ends"),
+        Size("edge_radius", hint="of the upright edges"),
+    )
+    is_straight: ClassVar = True
+
+    def elements(self) -> list[_core.Element]:
+        """Return the segments, from low y to high y."""
+        positive("width", self.width)
+        positive("height", self.height)
+        positive_and_finite("thickness", self.thickness)
+        self._check_edges()
+        heading = math.radians(self.heading)
+        top = self.height if math.isfinite(self.height) else _HIGH
+        if self.edge_radius > 0.0:
+            vertices, faces = drawn_up(self.outline(), -FOOT, top)
+            return [
+                _core.Element.mesh(
+                    vertices=vertices,
+                    faces=faces.tolist(),
+                    position=self.from_origin(0.0, 0.0),
+                    heading=heading,
+                )
+            ]
+        if math.isinf(self.width) and self.segments > 1:
+            raise ValueError(f"segments must be 1 for a wall of infinite width, got {self.segments}")
+        if math.isinf(self.width) and math.isinf(self.height):
+            return [_core.Element.plane(position=self.from_origin(0.0, 0.0), heading=heading)]
+        corners = [(0.0, -FOOT), (self.thickness, -FOOT), (self.thickness, top), (0.0, top)]
+        return along_line(self, np.array(corners), 0.0, self.width, self.segments)
+
+    def outline(self) -> Floats:
+        """Return the plan of a wall with rounded edges: across and along of its corners, shape (n, 2) [m].
+
+        The arcs are polygons of 6 degrees a side with their corners on the arc. At the radius r they lie
+        within 0.0014 r of it.
+        """
+        quarter = np.linspace(0.0, 0.5 * np.pi, _SIDES_OF_QUARTER + 1)
+        arc = self.edge_radius * np.stack([np.cos(quarter), np.sin(quarter)], axis=1)
+        middle = np.array([0.5 * self.thickness, 0.0])
+        corner = np.array([middle[0], 0.5 * self.width]) - self.edge_radius
+        parts = []
+        for c, s, sides in ((1, 0, (1, 1)), (0, 1, (-1, 1)), (-1, 0, (-1, -1)), (0, -1, (1, -1))):
+            parts.append(middle + corner * sides + arc @ np.array([[c, s], [-s, c]]))
+        ring = np.vstack(parts)
+        # Where the radius is half of the wall, arcs end where the next ones begin.
+        apart = np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1) > 1e-9
+        return np.asarray(ring[apart])
+
+    def _check_edges(self) -> None:
+        radius = self.edge_radius
+        most = 0.5 * min(self.thickness, self.width)
+        if not 0.0 <= radius <= most:
+            raise ValueError(
+                f"edge_radius must be >= 0 m and at most half of thickness and width ({most:g} m), "
+                f"got {radius}"
+            )
+        if radius > 0.0 and math.isinf(self.width):
+            raise ValueError(f"edge_radius must be 0 m for a wall of infinite width, got {radius}")
+        if radius > 0.0 and self.segments > 1:
+            raise ValueError(f"edge_radius must be 0 m for a wall of several segments, got {radius}")
+
+    @property
+    def element_names(self) -> tuple[str, ...]:
+        """``wall``, or its segments from low y to high y."""
+        return numbered("wall", "segment", self.segments)
+
+    @property
+    def is_endless(self) -> bool:
+        """Whether it has neither ends nor a top."""
+        return math.isinf(self.width) and math.isinf(self.height)
+
+    @property
+    def is_bottomless(self) -> bool:
+        """Whether it goes on below the ground without end."""
+        return self.is_endless or self.edge_radius > 0.0
+
+    @property
+    def text(self) -> str:
+        """Sizes in a few words."""
+        if self.is_endless:
+            return "rigid wall without end"
+        length = f"{length_text(self.width)}{segments_text(self.segments)}"
+        edges = f", edges rounded by {self.edge_radius:g} m" if self.edge_radius > 0.0 else ""
+        return f"rigid wall {length}, {height_text(self.height)}, {self.thickness:g} m thick{edges}"
+
+    def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
+        """Return closed segments."""
+        height = min(self.height, top)
+        if self.edge_radius > 0.0:
+            vertices, faces = drawn_up(self.outline(), 0.0, height)
+            return [(placed(self, vertices), faces)]
+        depth = _DRAWN_DEPTH if self.is_endless else self.thickness
+        sides = (np.zeros(2), np.full(2, depth), np.array([0.0, height]))
+        return extruded(self, *sides, ends(self.width, self.segments, seen))
+
+    def seen_parts(self, angle: float) -> Iterator[SeenPart]:
+        """Yield the wall as one part."""
+        yield seen_block(self, angle, "wall", self.thickness, self.width, self.height)
