@@ -207,6 +207,20 @@ def design_loads() -> str:
     return "\n".join([*lines[:2], *(line for row, line in zip(loads, lines[2:], strict=True) if row.touched)])
 
 
+def parapet_loads() -> str:
+    """Test 3-11 of MASH at a rigid barrier, beside the design force of AASHTO."""
+    import birm3d
+
+    tests = birm3d.test_matrix("MASH TL-3", barrier=birm3d.Barrier.jersey())
+    (row,) = birm3d.design_load(tests, natural_period=0.1)
+    rows = (
+        ("MASH TL-3 tests at a rigid New Jersey barrier, computed", row.force_50ms, row.height),
+        ("AASHTO LRFD, Table A13.2-1, TL-3 (54 kip at 24 in)", birm3d.lateral_load.TL_3_FORCE, 24 * 0.0254),
+    )
+    body = [(name, f"{force / 1e3:.0f}", f"{height:.2f}") for name, force, height in rows]
+    return table(("", "50-ms force [kN]", "height [m]"), body)
+
+
 def limits() -> str:
     """The answers of the page on limits."""
     import birm3d
@@ -238,7 +252,7 @@ MADE: dict[str, Callable[[], str]] = {
     made.__name__: made
     for made in (
         accuracy_errors, accuracy_claims, mesh, rivals, determinism, blind, finite_element, robustness,
-        metrics, settings, barriers, tutorial_report, design_loads, limits,
+        metrics, settings, barriers, tutorial_report, design_loads, parapet_loads, limits,
     )
 }  # fmt: skip
 

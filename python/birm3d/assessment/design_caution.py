@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ..result.result import Result
 from ..signals.filters import cfc
 from .element_design import peak_filter
 
-__all__ = ["barrier_caution", "run_cautions"]
+__all__ = ["barrier_caution", "merged", "run_cautions"]
 
 _ONE_BODY = (
     "The vehicle is one rigid body with a crushable skin: engine, frame and cargo do not stop one after the "
@@ -26,7 +26,16 @@ _FREE = (
 )
 _MOVING = "The barrier gives way: its loads hold for the stiffness and strength that it was given."
 
-_BLOW = 2.0  # unfiltered over filtered peak
+_ACTS = "On {elements} a load still acts when the run ends: it is taken as zero from there on."
+_ALONG = "On {elements} the force along the line is greater than that across it, which the table has."
+_BLOW = (
+    "On {elements} a crush zone is used up and the rigid body strikes, a blow of a few milliseconds. "
+    "The peak and the equivalent static force rest on it and are too high, most at short natural periods."
+)
+_UNDECIDED = "The outcome was not decided when a run ended: later loads on {elements} are missing."
+
+_LEAST_SHARE = 0.01  # of the greatest load
+_OF_FILTERED = 2.0  # unfiltered over filtered peak of a blow
 _STILL_ACTS = 0.05  # share of the peak force at the end of the run
 
 
@@ -41,20 +50,28 @@ def barrier_caution(barrier: Barrier) -> list[str]:
     return ["Computed, not tested: check it against a test or a code of practice.", kind, _ONE_BODY]
 
 
-def run_cautions(result: Result) -> Iterator[str]:
-    """Yield what is to be said of the loads of one run, each text the same for all runs it holds for."""
+def run_cautions(result: Result) -> dict[str, tuple[str, ...]]:
+    """Return what is to be said of the loads of one run: text -> names of the elements that it is said of.
+
+    Elements with less than a hundredth of the greatest load are left alone.
+    """
     loads = touched_elements(result.element_loads)
+    least = _LEAST_SHARE * max((load.peak_force for load in loads), default=0.0)
+    loads = [load for load in loads if load.peak_force > least]
+    kinds = ((_ACTS, _acts_at_end), (_ALONG, _is_along), (_BLOW, _has_blow))
+    found = {text: tuple(load.name for load in loads if holds(load)) for text, holds in kinds}
     if result.outcome == "undecided":
-        yield "The outcome of a run was not decided when it ended: later loads are missing."
-    if any(_acts_at_end(load) for load in loads):
-        yield "A load still acts when its run ends: it is taken as zero from there on."
-    if any(_is_along(load) for load in loads):
-        yield "A wall takes more force along its line than across it: the table has that across only."
-    if any(_has_blow(load) for load in loads):
-        yield (
-            "Where a crush zone is used up the rigid body strikes: a blow of a few milliseconds is in the "
-            "equivalent static force. It is not reliable at natural periods below 50 ms."
-        )
+        found[_UNDECIDED] = ("the barrier",)
+    return {text: names for text, names in found.items() if names}
+
+
+def merged(runs: Iterable[Mapping[str, tuple[str, ...]]]) -> list[str]:
+    """Return the texts of several runs, each once with all its elements."""
+    names: dict[str, dict[str, None]] = {}
+    for run in runs:
+        for text, elements in run.items():
+            names.setdefault(text, {}).update(dict.fromkeys(elements))
+    return [text.format(elements=", ".join(elements)) for text, elements in names.items()]
 
 
 def _acts_at_end(load: ElementLoad) -> bool:
@@ -75,4 +92,4 @@ def _has_blow(load: ElementLoad) -> bool:
     if peak_filter(load.interval) == "unfiltered":
         return False
     filtered = cfc(load.force, 60, load.interval)
-    return load.peak_force > _BLOW * float(np.linalg.norm(filtered, axis=1).max())
+    return load.peak_force > _OF_FILTERED * float(np.linalg.norm(filtered, axis=1).max())

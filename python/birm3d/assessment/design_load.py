@@ -20,7 +20,7 @@ from ..simulation.parameters import in_si, varied_scene
 from ..simulation.simulation import Simulation
 from ..unit_check import warn_if_any_unusual
 from ..units import Quantity, si
-from .design_caution import barrier_caution, run_cautions
+from .design_caution import barrier_caution, merged, run_cautions
 from .design_table import DesignLoad, LoadScene
 from .element_design import ElementDesign, System, element_design, envelope, peak_filter
 from .oscillator import LEAST_INTERVALS
@@ -52,7 +52,7 @@ class _Found(NamedTuple):
     """What one run adds to the envelope."""
 
     rows: list[ElementDesign]
-    cautions: list[str]
+    cautions: dict[str, tuple[str, ...]]
 
 
 @checked
@@ -139,8 +139,14 @@ def design_load(
     def table() -> DesignLoad:
         runs = sorted(found)
         elements = range(len(barrier.element_names))
-        cautions = [text for run in runs for text in found[run].cautions]
-        if any(row.dynamic_load_factor > _MOST_OF_ONE_PULSE for run in runs for row in found[run].rows):
+        least = 0.01 * max(row.peak_force for run in runs for row in found[run].rows)
+        cautions = merged(found[run].cautions for run in runs)
+        if any(
+            row.dynamic_load_factor > _MOST_OF_ONE_PULSE
+            for run in runs
+            for row in found[run].rows
+            if row.peak_force > least
+        ):
             cautions.append(_ADDED)
         load = DesignLoad(
             tuple(envelope({run: found[run].rows[i] for run in runs}) for i in elements),
@@ -151,6 +157,7 @@ def design_load(
             barrier=barrier_text(barrier),
             normal=-np.asarray(barrier.core.normal),
             caution="",
+            finished=len(found),
         )
         load.caution = " ".join(dict.fromkeys([*general, *cautions, *_at_ends(load, varied)]))
         return load
@@ -180,7 +187,7 @@ def design_load(
 
 def _look(result: Result, normal: Floats, system: System) -> _Found:
     rows = [element_design(load, normal, system) for load in result.element_loads]
-    return _Found(rows, list(run_cautions(result)))
+    return _Found(rows, run_cautions(result))
 
 
 def _values(name: str, values: Iterable[Quantity]) -> list[float]:

@@ -25,6 +25,7 @@ __all__ = ["DesignLoad", "LoadScene"]
 
 Floats = npt.NDArray[np.float64]
 
+_SHOWN = 0.005  # kN, kN s, kN m: less is shown as 0
 _NUMBERS = ("impulse", "peak_force", "force_50ms", "height", "direction", "moment", "equivalent_static_force")
 
 
@@ -81,6 +82,8 @@ class DesignLoad:
         Horizontal unit vector square to the barrier's line, into the barrier.
     caution : str
         What the numbers rest on, where it matters.
+    finished : int
+        Scenes that the envelope is made of; fewer than there are after Ctrl-C, or where some failed.
     """
 
     def __init__(
@@ -94,6 +97,7 @@ class DesignLoad:
         barrier: str,
         normal: Floats,
         caution: str,
+        finished: int,
     ) -> None:
         self.rows = rows
         self.natural_period, self.ductility, self.damping = system
@@ -103,6 +107,7 @@ class DesignLoad:
         self.barrier = barrier
         self.normal = normal
         self.caution = caution
+        self.finished = finished
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -169,7 +174,7 @@ class DesignLoad:
         """What the table is of, in one line."""
         if len(self.scenes) == 1:
             return f"Design loads: {self.barrier}; {self.scenes[0]}"
-        return f"Design loads: {self.barrier}; envelope of {len(self.scenes) - len(self.failed)} scenes"
+        return f"Design loads: {self.barrier}; envelope of {self.finished} scenes"
 
     @property
     def basis(self) -> str:
@@ -210,13 +215,15 @@ class DesignLoad:
                 self._cell(row, "equivalent_static_force"),
                 f"{row.dynamic_load_factor:.2f}",
             )
-            if row.touched
+            if row.force_50ms >= 1e3 * _SHOWN
             else (row.name, "0", "0", "0", "", "", "0", "0", "")
             for row in self.rows
         ]
 
     def _cell(self, row: ElementDesign, name: str) -> str:
         value = getattr(row, name) / 1e3
+        if abs(value) < _SHOWN:
+            return "0"
         text = f"{value:,.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
         return text if len(self.scenes) == 1 else f"{text} ({row.scene[name]})"
 
@@ -304,9 +311,7 @@ class DesignLoad:
         return table_html(self.title, self._head(), self._cells(), foot)
 
     def __repr__(self) -> str:
-        return (
-            f"DesignLoad({len(self.rows)} elements, {len(self.scenes)} scenes, greatest: {self.governing!r})"
-        )
+        return f"DesignLoad({len(self.rows)} elements, {self.finished} scenes, greatest: {self.governing!r})"
 
 
 _VECTOR = ("impulse_x", "impulse_y", "impulse_z")
