@@ -14,7 +14,7 @@ from .. import _core
 from .base import Barrier, Surface
 from .blocks import FOOT, along_line, numbered, positive, positive_and_finite, seen_block
 from .description import SeenPart, Size, height_text, length_text, segments_text
-from .surfaces import drawn_up, ends, extruded, placed
+from .surfaces import cylinder, drawn_up, ends, extruded, placed
 
 __all__ = ["RigidWall"]
 
@@ -33,8 +33,9 @@ class RigidWall(Barrier):
     """A flat, rigid, vertical wall.
 
     Without end in width and height it is a half-space. Else it has a ``thickness``, with ends, a top and a
-    back that can be met like the face. Its upright edges are sharp, or rounded by ``edge_radius``: then it is
-    one closed mesh, see :meth:`outline`, whose faces go over into arcs without a seam.
+    back that can be met like the face. Its upright edges are sharp, or rounded by ``edge_radius``, see
+    :meth:`outline`. A sharp edge cuts the skin. Rounded edges on the traffic's side are posts: like bollards
+    they draw in the skin beside them, and each has its own load.
     """
 
     width: float = math.inf
@@ -63,21 +64,36 @@ class RigidWall(Barrier):
         heading = math.radians(self.heading)
         top = self.height if math.isfinite(self.height) else _HIGH
         if self.edge_radius > 0.0:
-            vertices, faces = drawn_up(self.outline(), -FOOT, top)
-            return [
-                _core.Element.mesh(
-                    vertices=vertices,
-                    faces=faces.tolist(),
-                    position=self.from_origin(0.0, 0.0),
-                    heading=heading,
-                )
-            ]
+            vertices, faces = drawn_up(self._between_edges(), -FOOT, top)
+            wall = _core.Element.mesh(
+                vertices=vertices,
+                faces=faces.tolist(),
+                position=self.from_origin(0.0, 0.0),
+                heading=heading,
+            )
+            return [wall, *self._edges(heading)]
         if math.isinf(self.width) and self.segments > 1:
             raise ValueError(f"segments must be 1 for a wall of infinite width, got {self.segments}")
         if math.isinf(self.width) and math.isinf(self.height):
             return [_core.Element.plane(position=self.from_origin(0.0, 0.0), heading=heading)]
         corners = [(0.0, -FOOT), (self.thickness, -FOOT), (self.thickness, top), (0.0, top)]
         return along_line(self, np.array(corners), 0.0, self.width, self.segments)
+
+    def _edges(self, heading: float) -> list[_core.Element]:
+        return [
+            _core.Element.post(
+                radius=self.edge_radius,
+                height=self.height,
+                position=axis,
+                heading=heading,
+            )
+            for axis in self._edge_axes()
+        ]
+
+    def _edge_axes(self) -> list[Floats]:
+        """Axes of the rounded edges on the traffic's side, from low y to high y; from the origin [m]."""
+        beside = 0.5 * self.width - self.edge_radius
+        return [self.from_origin(self.edge_radius, along) for along in (-beside, beside)]
 
     def outline(self) -> Floats:
         """Return the plan of a wall with rounded edges: across and along of its corners, shape (n, 2) [m].
@@ -97,6 +113,13 @@ class RigidWall(Barrier):
         apart = np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1) > 1e-9
         return np.asarray(ring[apart])
 
+    def _between_edges(self) -> Floats:
+        """Plan of the wall without the arcs that the posts at its edges fill: chords instead; as :meth:`outline`."""
+        ring = self.outline()
+        beside = np.abs(ring[:, 1]) - (0.5 * self.width - self.edge_radius)
+        arc = (ring[:, 0] > 1e-9) & (ring[:, 0] < self.edge_radius - 1e-9) & (beside > 1e-9)
+        return np.asarray(ring[~arc])
+
     def _check_edges(self) -> None:
         radius = self.edge_radius
         most = 0.5 * min(self.thickness, self.width)
@@ -112,7 +135,9 @@ class RigidWall(Barrier):
 
     @property
     def element_names(self) -> tuple[str, ...]:
-        """``wall``, or its segments from low y to high y."""
+        """``wall``, or its segments from low y to high y; rounded edges as the traffic sees them."""
+        if self.edge_radius > 0.0:
+            return ("wall", "right edge", "left edge")
         return numbered("wall", "segment", self.segments)
 
     @property
@@ -139,7 +164,9 @@ class RigidWall(Barrier):
         height = min(self.height, top)
         if self.edge_radius > 0.0:
             vertices, faces = drawn_up(self.outline(), 0.0, height)
-            return [(placed(self, vertices), faces)]
+            origin = np.asarray(self.origin)
+            edges = [cylinder(origin + axis, self.edge_radius, height) for axis in self._edge_axes()]
+            return [(placed(self, vertices), faces), *edges]
         depth = _DRAWN_DEPTH if self.is_endless else self.thickness
         sides = (np.zeros(2), np.full(2, depth), np.array([0.0, height]))
         return extruded(self, *sides, ends(self.width, self.segments, seen))
