@@ -114,7 +114,7 @@ class RigidWall(Barrier):
         return np.asarray(ring[apart])
 
     def _between_edges(self) -> Floats:
-        """Plan of the wall without the arcs that the posts at its edges fill: chords instead; as :meth:`outline`."""
+        """Plan with chords for the arcs that the posts at its edges fill; see :meth:`outline`."""
         ring = self.outline()
         beside = np.abs(ring[:, 1]) - (0.5 * self.width - self.edge_radius)
         arc = (ring[:, 0] > 1e-9) & (ring[:, 0] < self.edge_radius - 1e-9) & (beside > 1e-9)
