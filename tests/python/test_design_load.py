@@ -196,6 +196,22 @@ def test_same_by_any_executor_and_with_results(envelope: DesignLoad) -> None:
     assert again.to_markdown().split("Caution")[0] == envelope.to_markdown().split("Caution")[0]
 
 
+def test_quantile_of_a_study() -> None:
+    """Of ten speeds the value that nine do not exceed is that of the ninth; its scene is named."""
+    simulation = Simulation(car(), Barrier.rigid_wall(), 10.0)
+    study = birm3d.sweep(simulation, impact_speed=[*np.linspace(6.0, 15.0, 10), -1.0])
+    assert len(study.failed) == 1
+    ordered = sorted(
+        birm3d.design_load(study.simulation(i), natural_period=0.05).impulse[0] for i in range(10)
+    )
+    for quantile, place in ((0.9, 8), (0.85, 8), (0.5, 4), (1.0, 9), (0.01, 0)):
+        loads = birm3d.design_load(study, natural_period=0.05, quantile=quantile)
+        assert loads.impulse[0] == ordered[place]
+        assert loads.scenes[loads[0].scene["impulse"]].impact_speed == pytest.approx(6.0 + place)
+    assert "0.01 quantile of 10 scenes" in loads.title
+    assert birm3d.design_load(study).title.endswith("envelope of 10 scenes")
+
+
 def test_several_vehicles() -> None:
     barrier = Barrier.rigid_wall()
     cases = [Simulation(car().with_gvw(mass), barrier, 12.0) for mass in (1500.0, 2200.0)]
@@ -312,6 +328,8 @@ def test_a_scene_that_fails_is_named() -> None:
         ({"ductility": math.nan}, "ductility must be"),
         ({"damping": 1.0}, "damping must be >= 0 and < 1, got 1.0"),
         ({"damping": -0.1}, "damping must be"),
+        ({"quantile": 0.0}, "quantile must be > 0 and <= 1, got 0.0"),
+        ({"quantile": math.nan}, "quantile must be"),
         ({"offsets": []}, "impact_offset must have at least one value, got an empty list"),
         ({"impact_angles": [math.nan]}, "impact_angle must be finite, got nan"),
         ({"impact_speeds": ["fast"]}, "impact_speed"),
@@ -383,6 +401,13 @@ def test_command_line(monkeypatch, capsys, tmp_path) -> None:
     assert found["natural_period"] == 0.05
     assert birm3d_command(monkeypatch, *command, "--markdown") == 0
     assert capsys.readouterr().out.startswith("**Design loads")
+    saved = tmp_path / "run.npz"
+    assert birm3d_command(monkeypatch, "run", *scene, "--speed", "12m/s", "--save", str(saved)) == 0
+    first = capsys.readouterr().out
+    assert birm3d_command(monkeypatch, "loads", str(saved), "--period", "50ms", "--ductility", "2") == 0
+    assert capsys.readouterr().out == out
+    assert first != out
+    assert birm3d_command(monkeypatch, "loads", str(saved), "--offsets", "0,1") == 2
     assert birm3d_command(monkeypatch, *command, "--markdown", "--json") == 2
     assert birm3d_command(monkeypatch, *command[:-1], "0.5") == 2
     assert "ductility must be" in capsys.readouterr().err

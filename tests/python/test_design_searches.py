@@ -61,6 +61,15 @@ def test_least_height_is_that_of_the_node(height: Limit) -> None:
     assert all(run.holds == (run.value > 0.637) for run in height.runs)
 
 
+def test_least_height_of_other_barriers() -> None:
+    """A planter and a row of posts of the same height stop the same body."""
+    for barrier in (Barrier.planter(friction=0.0), Barrier.bollards(count=3, friction=0.0)):
+        simulation = Simulation(one_node(0.637), barrier, 5.0, settings=FREE)
+        found = birm3d.least_height(simulation, (0.2, 1.2), resolution=0.02, points=3, offsets=[0.0])
+        assert found.fails_at is not None
+        assert found.fails_at <= 0.637 <= found.value
+
+
 def test_what_a_limit_says(height: Limit) -> None:
     text = height.summary()
     assert text.startswith("least height: ")
@@ -252,7 +261,7 @@ def test_refused_barriers() -> None:
     for search in (birm3d.greatest_gap, birm3d.worst_offset):
         with pytest.raises(ValueError, match="must have a row of at least two bollards"):
             search(wall)
-    with pytest.raises(ValueError, match="must have bollards, a rigid wall or a Jersey barrier, got Pole"):
+    with pytest.raises(ValueError, match=r"must have a barrier with a height, .* got Pole"):
         birm3d.least_height(Simulation(car(), Barrier.pole(), 10.0))
     with pytest.raises(
         ValueError, match=r"heights must be values that can be run, got 0.2 m: .*height must be"

@@ -18,6 +18,7 @@ from ..base.checks import check_runs, number
 from ..result.result import Result
 from ..simulation.parameters import in_si, varied_scene
 from ..simulation.simulation import Simulation
+from ..study.table import Study
 from ..unit_check import warn_if_any_unusual
 from ..units import Quantity, si
 from .design_caution import barrier_caution, merged, run_cautions
@@ -57,7 +58,7 @@ class _Found(NamedTuple):
 
 @checked
 def design_load(
-    cases: Simulation | Result | Sequence[Simulation | Result],
+    cases: Simulation | Result | Study | Sequence[Simulation | Result],
     *,
     natural_period: Quantity | None = None,
     ductility: float = 1.0,
@@ -65,6 +66,7 @@ def design_load(
     offsets: Iterable[Quantity] | None = None,
     impact_angles: Iterable[Quantity] | None = None,
     impact_speeds: Iterable[Quantity] | None = None,
+    quantile: float = 1.0,
     executor: Any = None,
     progress: bool | None = None,
 ) -> DesignLoad:
@@ -82,7 +84,8 @@ def design_load(
     Parameters
     ----------
     cases
-        A scene, or several at the same barrier, as of several vehicles; results are taken as they are.
+        A scene, or several at the same barrier, as of several vehicles; results are taken as they are. Of a
+        study, as one of :func:`birm3d.monte_carlo`, all runs that did not fail.
     natural_period
         Of an element on its foundation [s]; at least 4 output intervals. ``None``: 0.1 s is assumed, and the
         caution says so.
@@ -93,6 +96,9 @@ def design_load(
     offsets, impact_angles, impact_speeds
         Lists of ``impact_offset`` [m], ``impact_angle`` [deg] and ``impact_speed`` [m/s], or texts with
         units: each scene is run with all combinations. ``None``: the scene's own.
+    quantile
+        Which value of all scenes counts, > 0 and <= 1: 1 is the greatest, 0.9 the one that 90 % of the scenes
+        do not exceed. It is that of a scene, which the table names.
     executor
         Any :class:`concurrent.futures.Executor`, or a ``dask.distributed.Client``; ``None``: a thread for
         each core of the machine.
@@ -118,7 +124,9 @@ def design_load(
     from ..study.executors import ExecutorError
     from ..study.whole_runs import look_at_runs
 
-    listed = [cases] if isinstance(cases, (Simulation, Result)) else list(cases)
+    listed = _listed(cases)
+    if not 0.0 < quantile <= 1.0:
+        raise ValueError(f"quantile must be > 0 and <= 1, got {quantile}")
     lists = {"impact_offset": offsets, "impact_angle": impact_angles, "impact_speed": impact_speeds}
     varied = {name: _values(name, values) for name, values in lists.items() if values is not None}
     barrier = _common_barrier(listed, varied)
@@ -149,7 +157,7 @@ def design_load(
         ):
             cautions.append(_ADDED)
         load = DesignLoad(
-            tuple(envelope({run: found[run].rows[i] for run in runs}) for i in elements),
+            tuple(envelope({run: found[run].rows[i] for run in runs}, quantile) for i in elements),
             system,
             peak_filter=peak_filter(max(scene.settings.output_interval for _, scene in plan)),
             scenes=tuple(LoadScene.of(scene) for _, scene in plan),
@@ -158,6 +166,7 @@ def design_load(
             normal=-np.asarray(barrier.core.normal),
             caution="",
             finished=len(found),
+            quantile=quantile,
         )
         load.caution = " ".join(dict.fromkeys([*general, *cautions, *_at_ends(load, varied)]))
         return load
@@ -183,6 +192,14 @@ def design_load(
     if not found:
         raise ValueError(f"cases must have a scene that can be run, got none: {failed[min(failed)]}")
     return table()
+
+
+def _listed(cases: Simulation | Result | Study | Sequence[Simulation | Result]) -> list[Simulation | Result]:
+    if isinstance(cases, (Simulation, Result)):
+        return [cases]
+    if isinstance(cases, Study):
+        return [cases.simulation(row) for row, error in enumerate(cases.error) if not error]
+    return list(cases)
 
 
 def _look(result: Result, normal: Floats, system: System) -> _Found:

@@ -82,6 +82,8 @@ class DesignLoad:
         Horizontal unit vector square to the barrier's line, into the barrier.
     caution : str
         What the numbers rest on, where it matters.
+    quantile : float
+        Which value of all scenes counts; 1 is the greatest.
     finished : int
         Scenes that the envelope is made of; fewer than there are after Ctrl-C, or where some failed.
     """
@@ -98,6 +100,7 @@ class DesignLoad:
         normal: Floats,
         caution: str,
         finished: int,
+        quantile: float = 1.0,
     ) -> None:
         self.rows = rows
         self.natural_period, self.ductility, self.damping = system
@@ -108,6 +111,7 @@ class DesignLoad:
         self.normal = normal
         self.caution = caution
         self.finished = finished
+        self.quantile = quantile
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -174,7 +178,8 @@ class DesignLoad:
         """What the table is of, in one line."""
         if len(self.scenes) == 1:
             return f"Design loads: {self.barrier}; {self.scenes[0]}"
-        return f"Design loads: {self.barrier}; envelope of {self.finished} scenes"
+        kind = "envelope" if self.quantile == 1.0 else f"{self.quantile:g} quantile"
+        return f"Design loads: {self.barrier}; {kind} of {self.finished} scenes"
 
     @property
     def basis(self) -> str:
@@ -225,7 +230,7 @@ class DesignLoad:
         if abs(value) < _SHOWN:
             return "0"
         text = f"{value:,.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
-        return text if len(self.scenes) == 1 else f"{text} ({row.scene[name]})"
+        return f"{text} ({row.scene[name]})" if len(self.scenes) > 1 and name in row.scene else text
 
     def _legend(self) -> list[str]:
         """Return the scenes that the table names, and those that failed."""
@@ -279,6 +284,7 @@ class DesignLoad:
             "ductility": self.ductility,
             "damping": self.damping,
             "peak_filter": self.peak_filter,
+            "quantile": self.quantile,
             "scenes": [scene._asdict() for scene in self.scenes],
             "failed": {str(number): reason for number, reason in self.failed.items()},
             "elements": [row.to_dict() for row in self.rows],

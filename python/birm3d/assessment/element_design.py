@@ -183,21 +183,29 @@ def degrees_between(normal: Floats, direction: Floats) -> float:
     return math.degrees(math.atan2(across, float(normal @ direction)))
 
 
-def envelope(rows: Mapping[int, ElementDesign]) -> ElementDesign:
-    """Return the greatest of each value of one element over scenes, by their numbers, with its scene."""
-    touched = {scene: row for scene, row in sorted(rows.items()) if row.touched}
-    if not touched:
-        return next(iter(rows.values()))
-    # The first of equal ones.
-    best = {name: max(touched, key=lambda scene: abs(getattr(touched[scene], name))) for name in ENVELOPED}
-    force = touched[best["force_50ms"]]
+def envelope(rows: Mapping[int, ElementDesign], quantile: float = 1.0) -> ElementDesign:
+    """Return of each value of one element the greatest over scenes, by their numbers, with its scene.
+
+    With a quantile below 1 the least value of a scene that this share of the scenes does not exceed.
+    """
+    place = math.ceil(quantile * len(rows) - 1e-9)  # 0.9 of 10 is the ninth, in spite of rounding
+    best = {name: _scene_at(rows, name, place) for name in ENVELOPED}
+    force = rows[best["force_50ms"]]
+    named = {name: scene for name, scene in best.items() if rows[scene].touched}
     return ElementDesign(
         force.index,
         force.name,
-        **{name: getattr(touched[scene], name) for name, scene in best.items()},
-        impulse_vector=touched[best["impulse"]].impulse_vector,
+        **{name: getattr(rows[scene], name) for name, scene in best.items()},
+        impulse_vector=rows[best["impulse"]].impulse_vector,
         height=force.height,
         direction=force.direction,
-        scene=FrozenMapping(best),
-        load=touched[best["equivalent_static_force"]].load,
+        scene=FrozenMapping(named),
+        load=rows[best["equivalent_static_force"]].load,
     )
+
+
+def _scene_at(rows: Mapping[int, ElementDesign], name: str, place: int) -> int:
+    """Return the scene with the value at a place of the values in order, the first of equal ones."""
+    sizes = {scene: abs(getattr(row, name)) for scene, row in rows.items()}
+    wanted = sorted(sizes.values())[place - 1]
+    return min(scene for scene, size in sizes.items() if size == wanted)

@@ -6,14 +6,19 @@ import json
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..io.atomic_write import whole_file
 from .files import CSV, PICTURE
+from .rate import is_result, loaded
 from .scene import QuantityOption, scene_options, simulation_of
 from .sweep import values
+
+if TYPE_CHECKING:
+    from ..result.result import Result
+    from ..simulation.simulation import Simulation
 
 __all__ = ["loads"]
 
@@ -50,7 +55,7 @@ def loads(
     jobs: int | None,
     **options: Any,
 ) -> None:
-    """Compute design loads of each post or segment: a SCENE file, or the options --vehicle and --speed.
+    """Compute design loads of each element: a SCENE file, a result (.npz), or --vehicle and --speed.
 
     Forces, heights and moments as 50-ms means, and the equivalent static force of a system with the given
     natural period and ductility. With lists of offsets, angles or speeds: the envelope of all combinations.
@@ -69,10 +74,11 @@ def loads(
     }
     if scene is None and options["speed"] is None and lists["impact_speeds"]:
         options["speed"] = lists["impact_speeds"][0]
-    simulation = simulation_of(scene, options)
+    case: Simulation | Result
+    case = loaded(scene, options) if scene is not None and is_result(scene) else simulation_of(scene, options)
     with nullcontext() if jobs is None else ThreadPoolExecutor(jobs) as executor:
         found = design_load(
-            simulation,
+            case,
             natural_period=period,
             ductility=ductility,
             damping=damping,

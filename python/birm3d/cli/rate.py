@@ -55,8 +55,18 @@ def rate(
 
 
 def _result(scene: Path | None, options: dict[str, Any]) -> Result:
-    if scene is None or scene.suffix.lower() not in (".npz", ".birm3d"):
+    if scene is None or not is_result(scene):
         return simulation_of(scene, options).run(progress=True)
+    return loaded(scene, options)
+
+
+def is_result(scene: Path) -> bool:
+    """Whether a file is a result or a capsule, by its ending."""
+    return scene.suffix.lower() in (".npz", ".birm3d")
+
+
+def loaded(scene: Path, options: dict[str, Any]) -> Result:
+    """Return the result in a file; options of a scene beside it are refused."""
     from ..result.result import load
 
     given = click.get_current_context()

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..barrier.base import Barrier
-from ..barrier.kinds import Bollards, Jersey, RigidWall
+from ..barrier.kinds import Bollards, Jersey
 from ..base.arguments import checked
 from ..simulation.simulation import Simulation
 from ..units import Quantity, si
@@ -123,7 +123,7 @@ def least_height(
     Parameters
     ----------
     simulation
-        A scene with bollards, a rigid wall or a Jersey barrier.
+        A scene with a barrier that has a height: bollards, a rigid wall, a planter, a Jersey barrier.
     heights
         (least, greatest) [m], within what the barrier can have.
     penetration
@@ -143,9 +143,10 @@ def least_height(
         With the finished runs.
     """
     barrier = _barrier(simulation)
-    if not isinstance(barrier, (Bollards, RigidWall, Jersey)):
+    if "height" not in (field.name for field in dataclasses.fields(barrier)):
         raise ValueError(
-            f"simulation must have bollards, a rigid wall or a Jersey barrier, got {type(barrier).__name__}"
+            f"simulation must have a barrier with a height, as bollards or a wall, "
+            f"got {type(barrier).__name__}"
         )
     if isinstance(barrier, Jersey) and not isinstance(barrier.profile, str):
         raise ValueError("simulation must have a barrier of a named profile, got one of points")
