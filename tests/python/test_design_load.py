@@ -212,6 +212,18 @@ def test_quantile_of_a_study() -> None:
     assert birm3d.design_load(study).title.endswith("envelope of 10 scenes")
 
 
+def test_histories_are_those_of_the_governing_scene(envelope: DesignLoad) -> None:
+    row = envelope.governing
+    scene = envelope.scenes[row.scene["equivalent_static_force"]]
+    barrier = Barrier.bollards(count=3, spacing=1.3)
+    result = Simulation(car(), barrier, scene.impact_speed, 90.0, scene.impact_offset).run()
+    assert row.load is not None
+    assert np.array_equal(row.load.force, result.element_loads[row.index].force)
+    (single,) = birm3d.design_load(Simulation(car(), Barrier.rigid_wall(), 10.0).run())
+    assert single.load is not None
+    assert single.load.force.shape[1] == 3
+
+
 def test_several_vehicles() -> None:
     barrier = Barrier.rigid_wall()
     cases = [Simulation(car().with_gvw(mass), barrier, 12.0) for mass in (1500.0, 2200.0)]

@@ -137,6 +137,7 @@ def design_load(
         for case in listed
         for row in itertools.product(*varied.values())
     ]
+    sources = [case if isinstance(case, Result) else scene for case, scene in plan]
     look = partial(_look, normal=-np.asarray(barrier.core.normal), system=system)
     found: dict[int, _Found] = {}
     failed: dict[int, str] = {}
@@ -157,7 +158,7 @@ def design_load(
         ):
             cautions.append(_ADDED)
         load = DesignLoad(
-            tuple(envelope({run: found[run].rows[i] for run in runs}, quantile) for i in elements),
+            tuple(envelope({run: found[run].rows[i] for run in runs}, sources, quantile) for i in elements),
             system,
             peak_filter=peak_filter(max(scene.settings.output_interval for _, scene in plan)),
             scenes=tuple(LoadScene.of(scene) for _, scene in plan),

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +13,10 @@ import numpy.typing as npt
 
 from ..base.frozen_mapping import FrozenMapping
 from ..result.element_loads import ElementLoad, overturning, resultant_height
+from ..result.result import Result
+from ..scene.scene import Scene
 from ..signals.filters import cfc, moving_average
+from ..simulation.simulation import run_scene
 from .oscillator import resistance
 
 __all__ = [
@@ -77,8 +81,10 @@ class ElementDesign:
         unfiltered load along ``direction`` [N]; it acts at ``height``.
     scene : mapping of str to int
         Each of the values above that are enveloped -> number of the scene that it comes from.
-    load : ElementLoad or None
-        Histories in the scene that ``equivalent_static_force`` comes from; ``None`` if never touched.
+    touched : bool
+        Whether the scene of ``equivalent_static_force`` loads it.
+    case : Result, Scene or None
+        That result, or the scene where no result was given.
     """
 
     index: int
@@ -92,17 +98,24 @@ class ElementDesign:
     moment: float = 0.0
     equivalent_static_force: float = 0.0
     scene: Mapping[str, int] = field(default_factory=dict)
-    load: ElementLoad | None = None
+    touched: bool = False
+    case: Result | Scene | None = None
 
     @property
     def dynamic_load_factor(self) -> float:
         """``equivalent_static_force`` over ``peak_force``; 0 without load."""
         return self.equivalent_static_force / self.peak_force if self.peak_force > 0.0 else 0.0
 
-    @property
-    def touched(self) -> bool:
-        """Whether a scene loads it."""
-        return self.load is not None
+    @cached_property
+    def load(self) -> ElementLoad | None:
+        """Histories in the scene of ``equivalent_static_force``; ``None`` if nothing touches it there.
+
+        Histories of many scenes would take much memory: this scene is run again, to the same bits.
+        """
+        if not self.touched or self.case is None:
+            return None
+        result = self.case if isinstance(self.case, Result) else run_scene(self.case)
+        return result.element_loads[self.index]
 
     def to_dict(self) -> dict[str, object]:
         """Return all values as plain ones, SI."""
@@ -166,7 +179,7 @@ def element_design(load: ElementLoad, normal: Floats, system: System) -> Element
         direction=degrees_between(normal, direction),
         moment=float(overturning(moment, load.line).max()),
         equivalent_static_force=resistance(load.force[1:] @ direction, load.interval, *system),
-        load=load,
+        touched=True,
     )
 
 
@@ -183,9 +196,12 @@ def degrees_between(normal: Floats, direction: Floats) -> float:
     return math.degrees(math.atan2(across, float(normal @ direction)))
 
 
-def envelope(rows: Mapping[int, ElementDesign], quantile: float = 1.0) -> ElementDesign:
+def envelope(
+    rows: Mapping[int, ElementDesign], cases: Sequence[Result | Scene], quantile: float = 1.0
+) -> ElementDesign:
     """Return of each value of one element the greatest over scenes, by their numbers, with its scene.
 
+    ``cases`` has all scenes, or the results that were given for them.
     With a quantile below 1 the least value of a scene that this share of the scenes does not exceed.
     """
     place = math.ceil(quantile * len(rows) - 1e-9)  # 0.9 of 10 is the ninth, in spite of rounding
@@ -200,7 +216,8 @@ def envelope(rows: Mapping[int, ElementDesign], quantile: float = 1.0) -> Elemen
         height=force.height,
         direction=force.direction,
         scene=FrozenMapping(named),
-        load=rows[best["equivalent_static_force"]].load,
+        touched=rows[best["equivalent_static_force"]].touched,
+        case=cases[best["equivalent_static_force"]],
     )
 
 

@@ -19,7 +19,7 @@ from ..unit_check import given
 from ..units import Quantity, si
 from ..vehicle.vehicle import Vehicle
 
-__all__ = ["Simulation"]
+__all__ = ["Simulation", "run_scene"]
 
 
 @checked
@@ -266,6 +266,14 @@ class Simulation:
             f"Simulation({scene.vehicle.name}, {scene.barrier}, {scene.impact_speed:g} m/s, "
             f"{scene.impact_angle:g} deg)"
         )
+
+
+def run_scene(scene: Scene) -> Result:
+    """Return the result of a scene without a word of warning: whoever ran it before was told."""
+    core = scene.start()
+    with core:
+        core.run()
+        return Result._of(scene, core, 0.0)
 
 
 def _stepped(scene: Scene, steps: int, state_hash: int, version: str) -> Simulation:
