@@ -30,8 +30,8 @@ def test_tyre_reactions_carry_the_weight(name: str, speed: float, duration: floa
 
     left = vehicle.wheels[:, 1] > 0.0
     assert reaction[:, left].sum(axis=1) == pytest.approx(reaction[:, ~left].sum(axis=1), rel=1e-6)
-    if len(vehicle.units) > 1:
-        return  # see the test of the semi truck
+    if len(vehicle.units) > 1 or len(vehicle.wheels) > 4:
+        return  # see the test of the semi truck; three axles carry as their springs share
     # Lever rule about the axles.
     front = vehicle.wheels[:, 0] > 0.0
     a, b = vehicle.wheels[front, 0].mean(), -vehicle.wheels[~front, 0].mean()

@@ -33,8 +33,8 @@ _PRESETS: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(("2270P", "PU", "P"), ("mash_2270p", "pickup")),
     **dict.fromkeys(("10000S", "10-t rigid HGV"), ("mash_10000s", "cargo_truck")),
     **dict.fromkeys(("36000V", "36000T", "38-t articulated HGV"), ("mash_36000v", "semi_truck")),
-    **dict.fromkeys(("900-kg car", "1,300-kg car"), ("small_car", "passenger_car")),
-    **dict.fromkeys(("1,500-kg car", "M1"), ("sedan_1500", "passenger_car")),
+    "900-kg car": ("small_car", "passenger_car"),
+    **dict.fromkeys(("1,300-kg car", "1,500-kg car", "M1"), ("sedan_1500", "passenger_car")),
     "13-t bus": ("bus_13t",),
     **dict.fromkeys(("16-t rigid HGV", "30-t rigid HGV", "H", "N3G"), ("heavy_truck_29500",)),
     "FS": ("passenger_car",),
@@ -201,13 +201,13 @@ def _vehicle(wanted: StandardVehicle, mesh_density: float) -> Vehicle:
             f"vehicles must give {wanted.words}: the package has no preset of its kind, got none"
         )
     vehicle = Vehicle.preset(preset, mesh_density=mesh_density)
+    if wanted.code in _BALLAST:
+        return ballasted(vehicle, wanted.mass, _BALLAST[wanted.code])
     if vehicle.mass == wanted.mass:
         return vehicle
     if vehicle.kind not in _LOADED:
         return vehicle.scaled_to(wanted.mass)
-    if wanted.code not in _BALLAST:
-        return vehicle.with_gvw(wanted.mass)
-    return ballasted(vehicle, wanted.mass, _BALLAST[wanted.code])
+    return vehicle.with_gvw(wanted.mass)
 
 
 def ballasted(vehicle: Vehicle, mass: float, height: float) -> Vehicle:

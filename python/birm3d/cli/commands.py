@@ -142,8 +142,8 @@ def vehicles(as_json: bool) -> None:
     for name, v in rows.items():
         sizes = (v.length, v.width, v.height, v.wheelbase, v.track, v.mass_center_height)
         cells = ("none" if size is None else f"{size:.3f}" for size in sizes)
-        inertia = ", ".join(f"{1e-3 * value:.4g}" for value in v.inertia.diagonal())
-        table.add_row(name, f"{v.mass:,.1f}", *cells, inertia, f"{v.n_elements:,}")
+        inertia = ", ".join(f"{1e-3 * value:.3g}" for value in v.inertia.diagonal())
+        table.add_row(name, f"{v.mass:,.0f}", *cells, inertia, f"{v.n_elements:,}")
     print_table(table)
     for name, v in rows.items():
         click.echo(f"zones of {name}: {', '.join(v.zones)}")

@@ -8,7 +8,7 @@ __all__ = ["print_table"]
 
 
 def print_table(table: object) -> None:
-    """Print a table of rich, 120 columns wide where stdout is no terminal."""
+    """Print a table of rich, 132 columns wide where stdout is no terminal."""
     from rich.console import Console
 
-    Console(width=None if sys.stdout.isatty() else 120).print(table)
+    Console(width=None if sys.stdout.isatty() else 132).print(table)

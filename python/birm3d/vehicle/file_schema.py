@@ -336,19 +336,22 @@ class Scaled(Block):
 
     The numbers are those of :meth:`birm3d.Vehicle.scaled_to`. In place of length_m and wheelbase_m, x_m may
     have rows [place of the vehicle extended, place here], and so may z_m in place of height_m: places between
-    go in proportion. Zones hold at mass_kg. without: names of solids, wheels, points, core boxes and zones of
-    the vehicle extended that have no place here. Solids, wheels, points and core boxes of the file take the
-    place of those of the same name, others are added.
+    go in proportion. Zones hold at mass_kg; solids weigh solids_kg where that is given. element_size_m: of
+    the shell, see Exterior. without: what of the vehicle extended has no place here, names of solids, wheels,
+    points and core boxes, and of zones as "zone.hood". Solids, wheels, points and core boxes of the file take
+    the place of those of the same name, others are added.
     """
 
     mass_kg: Positive
+    solids_kg: Positive | None = None
     length_m: Positive | None = None
     width_m: Positive | None = None
     height_m: Positive | None = None
     wheelbase_m: Positive | None = None
     x_m: Annotated[tuple[Range, ...], Field(min_length=2)] | None = None
     z_m: Annotated[tuple[Range, ...], Field(min_length=2)] | None = None
-    without: tuple[Name, ...] = ()
+    element_size_m: Annotated[float, Field(ge=0.01, le=1.0)] | None = None
+    without: tuple[Annotated[str, Field(pattern=r"^(zone\.)?[a-z][a-z0-9_]*$")], ...] = ()
 
     @model_validator(mode="after")
     def _check(self) -> Scaled:

@@ -190,15 +190,19 @@ class VehicleFile(Strict):
             factors[zone.along_name] = panels["along"]
         return {name: one._replace(stress=strength * one.stress) for name, one in factors.items()}
 
-    def scaled_to(self, mass: float, scaling: Scaling = _SAME_SIZE) -> VehicleFile:
+    def scaled_to(
+        self, mass: float, scaling: Scaling = _SAME_SIZE, solids: float | None = None
+    ) -> VehicleFile:
         """Return the file of a vehicle of another mass [kg] and size (:mod:`birm3d.vehicle.scaling`).
 
-        Masses of the solids go in proportion; targets are left out, as they are not met any more.
+        Masses of the solids go in proportion, or to another sum [kg] than the zones. Targets are left out, as
+        they are not met any more.
         """
-        to = Resize(scaling, self.extent, mass / self.gvw_kg)
+        solids = mass if solids is None else solids
+        to = Resize(scaling, self.extent, solids / self.gvw_kg)
         factors = self.law_factors(mass, scaling)
         changes: dict[str, Any] = {
-            "gvw_kg": mass,
+            "gvw_kg": solids,
             "zones_at_kg": mass,
             "targets": (),
             "solids": tuple(to.solid(solid) for solid in self.solids),
@@ -309,17 +313,18 @@ class _VehicleDocument(ZonesInOrder):
             scaling = scaled.scaling_of(file.extent, file.name)
         except ValueError as error:
             raise self.fault(("scaled",), f"scaled: {error}") from error
-        data = plain(file.scaled_to(scaled.mass_kg, scaling))
-        names = {block["name"] for key in (*_NAMED, "zone") for block in data.get(key, ())}
+        data = plain(file.scaled_to(scaled.mass_kg, scaling, scaled.solids_kg))
+        names = {block["name"] for key in _NAMED for block in data.get(key, ())}
+        zones = {zone.pop("name"): zone for zone in data["zone"]}
         with self.placed(("scaled", "without")):
-            check_known("scaled.without", scaled.without, names)
-        data["zone"] = {
-            name: zone for zone in data["zone"] if (name := zone.pop("name")) not in scaled.without
-        }
+            check_known("scaled.without", scaled.without, names | {f"zone.{name}" for name in zones})
+        data["zone"] = {name: zone for name, zone in zones.items() if f"zone.{name}" not in scaled.without}
         for key in _NAMED:
             data[key] = [block for block in data.get(key, ()) if block["name"] not in scaled.without]
             if isinstance(self.data.get(key), list):
                 self._merge(key, data[key])
+        if scaled.element_size_m is not None:
+            data["exterior"]["element_size_m"] = scaled.element_size_m
         origin = {"source": list(scaled.source), "status": scaled.status}
         data["dimensions"] = {**data["dimensions"], **origin}
         base.data = data
@@ -360,12 +365,17 @@ def read_vehicle_file(path: str | Path) -> VehicleFile:
         return document.validate(VehicleFile, document.zones_in_order())
 
 
-# By weight, then the replication target.
-_ORDER = ("passenger_car", "minivan", "pickup", "cargo_truck", "semi_truck", "paper_pickup")
+# The weights of the paper, its replication target, then the vehicles of the standards by weight.
+_ORDER = (
+    *("passenger_car", "minivan", "pickup", "cargo_truck", "semi_truck", "paper_pickup"),
+    *("small_car", "mash_1100c", "sedan_1500", "mash_2270p", "pickup_4x4_2500", "heavy_pickup", "van_3500"),
+    *("cabover_7200", "cabover_7500", "mash_10000s", "bus_13t", "heavy_truck_29500", "mash_36000v"),
+)
+_TWO_UNITS = ("semi_truck", "mash_36000v")
 
 
 def preset_names() -> tuple[str, ...]:
-    """Names of the vehicle files that come with the package, the library's five first, by weight."""
+    """Names of the vehicle files that come with the package, in the order of the docs."""
     folder = resources.files("birm3d") / "data"
     names = {f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")}
     return (*(name for name in _ORDER if name in names), *sorted(names.difference(_ORDER)))
@@ -382,5 +392,5 @@ def unit_paths() -> dict[str, Path]:
     """Files of one unit that come with the package, by their names: presets, and the units of the others."""
     folder = Path(str(resources.files("birm3d") / "data"))
     units = {path.stem: path for path in sorted((folder / "units").glob("*.toml"))}
-    single = {name: preset_path(name) for name in preset_names() if name != "semi_truck"}
+    single = {name: preset_path(name) for name in preset_names() if name not in _TWO_UNITS}
     return {**single, **units}
