@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from concurrent.futures import ThreadPoolExecutor
 
 import birm3d
@@ -73,7 +74,10 @@ def test_least_height_of_other_barriers() -> None:
 def test_what_a_limit_says(height: Limit) -> None:
     text = height.summary()
     assert text.startswith("least height: ")
-    assert f"{height.value:.6g} m holds" in text
+    assert "m holds, " in text
+    assert re.match(r"least height: 0\.6\d{3} m holds, 0\.6\d{3} m fails$", height.headline)
+    shown = [float(number) for number in re.findall(r"0\.\d+", height.headline)]
+    assert shown[1] <= 0.637 <= shown[0]
     assert "Monotonic at the values tried" in text
     assert "Caution: " in text
     assert len(height.study) == len(height.runs) == len(height.to_dataframe())
@@ -89,7 +93,7 @@ def test_all_of_the_range_holds(height: Limit) -> None:
     simulation = Simulation(one_node(0.2), wall, 5.0, settings=FREE)
     found = birm3d.least_height(simulation, (0.3, 1.0), points=3)
     assert (found.value, found.fails_at, found.at_bound) == (0.3, None, True)
-    assert found.headline == "least height: at most 0.3 m, the end of the range"
+    assert found.headline == "least height: at most 0.300 m, the end of the range"
     assert len(found.runs) == 3
 
 
@@ -136,7 +140,9 @@ def test_gap_counts_from_the_row_wherever_it_stands(gap: Limit) -> None:
 
 def test_penetration_is_a_limit_too() -> None:
     simulation = Simulation(car(), Barrier.bollards(count=5), 8.0)
-    found = birm3d.greatest_gap(simulation, (0.8, 1.2), points=2, penetration="0.4 m", offsets=[0.0, 0.5])
+    found = birm3d.greatest_gap(
+        simulation, (0.8, 1.2), points=2, penetration="0.4 m", offset_shares=[0.0, 0.5]
+    )
     assert found.most == 0.4
     assert "vehicle penetration <= 0.4 m" in found.criterion
     assert all(run.measure <= 0.4 for run in found.runs if run.holds)
@@ -185,14 +191,14 @@ def test_an_answer_that_is_not_monotonic(monkeypatch: pytest.MonkeyPatch) -> Non
 
     monkeypatch.setattr(limit_search, "_judged", judged)
     simulation = Simulation(car(), Barrier.bollards(count=5), 8.0, duration=0.01)
-    found = birm3d.greatest_gap(simulation, (0.5, 2.5), points=9, offsets=[0.0], resolution=0.01)
+    found = birm3d.greatest_gap(simulation, (0.5, 2.5), points=9, offset_shares=[0.0], resolution=0.01)
     assert found.value < 1.0 <= found.fails_at <= found.value + 0.01
     assert not found.monotonic
     assert found.exceptions == (1.5,)
     assert "Not monotonic: 1.5 m holds again" in found.summary()
     assert "not monotonic" in found.plot().axes[0].get_title()
     with pytest.raises(NotInRangeError, match=r"1.5 m hold, which is not monotonic"):
-        birm3d.greatest_gap(simulation, (1.0, 2.5), points=7, offsets=[0.0])
+        birm3d.greatest_gap(simulation, (1.0, 2.5), points=7, offset_shares=[0.0])
 
 
 @pytest.fixture(scope="module")
@@ -236,7 +242,13 @@ def test_what_a_worst_offset_says(worst: birm3d.WorstOffset) -> None:
         (lambda sim: birm3d.greatest_gap(sim, (0.01, 2.0)), "gaps must leave a row wider than the vehicle"),
         (lambda sim: birm3d.greatest_gap(sim, points=1), "points must be an integer >= 2, got 1"),
         (lambda sim: birm3d.greatest_gap(sim, resolution=0.0), "resolution must be finite and > 0 m, got 0"),
-        (lambda sim: birm3d.greatest_gap(sim, offsets=[]), "offsets must be at least one"),
+        (lambda sim: birm3d.greatest_gap(sim, offset_shares=[]), "offset_shares must be at least one"),
+        (
+            lambda sim: birm3d.greatest_gap(sim, offset_shares=[math.nan]),
+            "offset_shares must be finite, got nan",
+        ),
+        (lambda sim: birm3d.least_height(sim, offsets=[]), "offsets must be at least one"),
+        (lambda sim: birm3d.least_height(sim, offsets=["1 kg"]), "offsets"),
         (lambda sim: birm3d.greatest_gap(sim, penetration=-1.0), "penetration must be >= 0 m, got -1"),
         (lambda sim: birm3d.greatest_gap(sim, ("1 kg", "2 m")), "gaps"),
         (lambda sim: birm3d.least_height(sim, (0.0, 1.0)), "heights must be"),

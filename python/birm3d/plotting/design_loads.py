@@ -27,7 +27,7 @@ Floats = npt.NDArray[np.float64]
 
 _MOST_BARS = 12
 _PERIODS = (0.005, 2.0)  # s
-_POINTS, _SOFT_POINTS = 240, 30  # of the elastic spectrum, and of the one that takes its time
+_POINTS, _SOFT_POINTS = 240, 20  # of the elastic spectrum, and of the one that takes its time
 _LOAD_SHARE, _ROOM = 0.01, 1.08  # where a history ends, and the room after it
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -13,9 +14,9 @@ from ..simulation.simulation import Simulation
 from ..units import Quantity, si
 from .limit_search import CONTAINED, Limit, Question, search_limit
 
-__all__ = ["OFFSETS", "greatest_gap", "least_height", "least_segment_mass"]
+__all__ = ["OFFSET_SHARES", "greatest_gap", "least_height", "least_segment_mass"]
 
-OFFSETS = (-0.25, 0.0, 0.25, 0.5)
+OFFSET_SHARES = (-0.25, 0.0, 0.25, 0.5)
 """Impact offsets over the spacing, from the middle of a row of posts: at a post, in a gap, and between."""
 
 _SKIN = "Computed, not tested. The vehicle's skin does not tear and its parts stay on: leave a margin."
@@ -35,7 +36,7 @@ def greatest_gap(
     gaps: Sequence[Quantity] = (0.5, 3.0),
     *,
     penetration: Quantity | None = None,
-    offsets: Sequence[float] = OFFSETS,
+    offset_shares: Sequence[float] = OFFSET_SHARES,
     points: int = 11,
     resolution: Quantity | None = None,
     executor: Any = None,
@@ -56,8 +57,8 @@ def greatest_gap(
         (least, greatest) [m].
     penetration
         Greatest ``vehicle_penetration`` [m] that is allowed as well; ``None``: any.
-    offsets
-        Over the spacing, counted from the row's middle.
+    offset_shares
+        Impact offsets over the spacing, counted from the row's middle.
     points
         Of the scan of the range, >= 2; a bisection follows.
     resolution
@@ -86,7 +87,7 @@ def greatest_gap(
         True,
         "barrier.spacing",
         lambda gap: gap + row.diameter,
-        _along_row(row, offsets, lambda gap: gap + row.diameter),
+        _along_row(row, offset_shares, lambda gap: gap + row.diameter),
         "vehicle_penetration",
         _at_most("penetration", penetration),
         _SKIN,
@@ -110,7 +111,7 @@ def least_height(
     heights: Sequence[Quantity] = (0.3, 1.3),
     *,
     penetration: Quantity | None = None,
-    offsets: Sequence[float] | None = None,
+    offsets: Sequence[Quantity] | None = None,
     points: int = 11,
     resolution: Quantity | None = None,
     executor: Any = None,
@@ -129,8 +130,8 @@ def least_height(
     penetration
         Greatest ``vehicle_penetration`` [m] that is allowed as well; ``None``: any.
     offsets
-        Of a row of posts over its spacing, counted from the row's middle, else of other barriers along their
-        line from their origin [m]. ``None``: four over the spacing of posts, the scene's own of others.
+        ``impact_offset`` of the runs [m]. ``None``: in a row of posts those of :func:`greatest_gap`, else the
+        scene's own.
     points, resolution, executor, progress
         See :func:`greatest_gap`.
 
@@ -179,7 +180,7 @@ def least_segment_mass(
     masses: Sequence[Quantity] = (500.0, 8000.0),
     *,
     deflection: Quantity,
-    offsets: Sequence[float] | None = None,
+    offsets: Sequence[Quantity] | None = None,
     points: int = 11,
     resolution: Quantity | None = None,
     executor: Any = None,
@@ -200,7 +201,7 @@ def least_segment_mass(
     deflection
         Greatest ``barrier_deflection`` [m].
     offsets
-        Along the line from the barrier's origin [m]; ``None``: the scene's own.
+        ``impact_offset`` of the runs [m]; ``None``: the scene's own.
     points, resolution, executor, progress
         See :func:`greatest_gap`; the resolution in kg.
 
@@ -268,29 +269,33 @@ def _check_width(simulation: Simulation, row: Bollards, gaps: Sequence[float]) -
 
 
 def _usual_offsets(
-    simulation: Simulation, barrier: Barrier, offsets: Sequence[float] | None
-) -> Callable[[float], list[float]]:
+    simulation: Simulation, barrier: Barrier, offsets: Sequence[Quantity] | None
+) -> Callable[[float], Sequence[float]]:
     """Return the offsets of a search in which the spacing does not change."""
+    if offsets is not None:
+        listed = [si("offsets", offset, "length") for offset in offsets]
+        _check_offsets("offsets", listed)
+        return lambda _: listed
     if isinstance(barrier, Bollards) and barrier.count > 1:
-        return _along_row(barrier, OFFSETS if offsets is None else offsets, lambda _: barrier.spacing)
-    if offsets is None:
-        own = simulation.scene.impact_offset
-        return lambda _: [own]
-    _check_offsets(offsets)
-    return lambda _: [barrier.station() + offset for offset in offsets]
+        return _along_row(barrier, OFFSET_SHARES, lambda _: barrier.spacing)
+    own = simulation.scene.impact_offset
+    return lambda _: [own]
 
 
 def _along_row(
-    row: Bollards, offsets: Sequence[float], spacing: Callable[[float], float]
-) -> Callable[[float], list[float]]:
+    row: Bollards, shares: Sequence[float], spacing: Callable[[float], float]
+) -> Callable[[float], Sequence[float]]:
     """Return the offsets [m] at a value, from those over the spacing."""
-    _check_offsets(offsets)
-    return lambda value: [row.station() + share * spacing(value) for share in offsets]
+    _check_offsets("offset_shares", shares)
+    return lambda value: [row.station() + share * spacing(value) for share in shares]
 
 
-def _check_offsets(offsets: Sequence[float]) -> None:
+def _check_offsets(name: str, offsets: Sequence[float]) -> None:
     if len(offsets) == 0:
-        raise ValueError("offsets must be at least one, got an empty list")
+        raise ValueError(f"{name} must be at least one, got an empty list")
+    for offset in offsets:
+        if not math.isfinite(offset):
+            raise ValueError(f"{name} must be finite, got {offset}")
 
 
 def _at_most(name: str, value: Quantity | None) -> float | None:

@@ -196,11 +196,20 @@ class Limit:
     def headline(self) -> str:
         """The answer in one line."""
         word = "greatest" if self.greatest else "least"
-        shown = f"{self.value:.6g} {self.unit}"
+        shown = f"{self._rounded(self.value)} {self.unit}"
         if self.fails_at is None:
             bound = "at least" if self.greatest else "at most"
             return f"{word} {self.name}: {bound} {shown}, the end of the range"
-        return f"{word} {self.name}: {shown} holds, {self.fails_at:.6g} {self.unit} fails"
+        return (
+            f"{word} {self.name}: {shown} holds, {self._rounded(self.fails_at, fails=True)} {self.unit} fails"
+        )
+
+    def _rounded(self, value: float, *, fails: bool = False) -> str:
+        """Return a value to a quarter of the resolution or finer: what holds to the safe side."""
+        digits = max(0, math.ceil(-math.log10(0.25 * self.resolution)))
+        scaled = value * 10.0**digits
+        rounded = math.floor(scaled + 1e-6) if self.greatest != fails else math.ceil(scaled - 1e-6)
+        return f"{rounded / 10.0**digits:.{digits}f}"
 
     @property
     def remarks(self) -> list[str]:
