@@ -86,6 +86,7 @@ Plotly.newPlot(plot, [...shapes, ...paths, ...first, ...outlines, ...centers], {
   yaxis: { ...axis, title: { text: plan.labels[1] }, range: plan.range[1], scaleanchor: "x" },
 }, config);
 
+const replay = replayPanel(document.getElementById("replay"), data.replay);
 const slider = document.getElementById("slider");
 const now = document.getElementById("now");
 slider.max = plan.time.length - 1;
@@ -98,6 +99,7 @@ function move() {
   Plotly.restyle(plot, { x, y }, x.map((_, i) => still + i));
   const line = { type: "line", x0: t, x1: t, yref: "paper", y0: 0, y1: 1, line: { color: "#7F7F7F", width: 1 } };
   for (const div of panels) Plotly.relayout(div, { shapes: [line] });
+  replay.show(t);
 }
 slider.addEventListener("input", move);
 move();

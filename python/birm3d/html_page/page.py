@@ -71,6 +71,8 @@ def write_html(result: Result, path: str | Path, *, frames: int = 61) -> None:
         "CRUSH": _crush_pictures(result) or "<p>None.</p>",
         "REPORT": escape(result.report()),
         "ROWS": "" if content["every"] == 1 else f"One row in {content['every']} is shown.",
+        "REPLAY": here.joinpath("replay.js").read_text(encoding="utf-8"),
+        "REPLAYSTYLE": here.joinpath("replay.css").read_text(encoding="utf-8"),
         "SCRIPT": here.joinpath("page.js").read_text(encoding="utf-8"),
         "DATA": data,
         "PLOTLY": get_plotlyjs(),

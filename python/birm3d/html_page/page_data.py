@@ -16,6 +16,7 @@ from ..result.skin import skins_at
 from ..signals.filters import moving_average
 from ..vehicle.silhouette import rings, silhouette
 from ..vehicle.unit_shapes import unit_shapes
+from .replay import replay_data
 
 if TYPE_CHECKING:
     from ..result.result import Result
@@ -55,6 +56,7 @@ def page_data(result: Result, frames: int) -> dict[str, Any]:
         "every": every,
         "panels": panels,
         "plan": _plan(result, frames),
+        "replay": replay_data(result, frames),
     }
 
 

@@ -1,0 +1,164 @@
+"""Numbers of the three-dimensional replay: skin, wheels and barrier at some instants, packed for a page."""
+
+from __future__ import annotations
+
+import base64
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..barrier.kinds import Bollards, Pole
+from ..barrier.surfaces import barrier_axes, barrier_surfaces
+from ..result.skin import Skin, skins_at
+from ..vehicle.unit_shapes import UnitShape, unit_shapes
+
+if TYPE_CHECKING:
+    from ..result.result import Result
+
+__all__ = ["CRUSH_COLORS", "replay_data", "replay_times"]
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+CRUSH_COLORS = ("#DCE2E8", "#FFE08A", "#FDAE4B", "#E8502E", "#B0101A", "#5E0008")
+"""Of the skin: grey where there is no crush, so that little of it shows too."""
+
+_LEAST_SCALE = 0.05  # of the colours of crush, m
+_STEP = 1e-3  # of packed lengths, m
+_MOVES = 5e-4  # a node that moves by less stays, m
+_AROUND = 6.0  # ground past what is shown, m
+_MARGIN = 1.25  # of the picture around what is shown
+_HALF_ANGLE = 0.3  # of the lens, rad; as in replay.js
+
+
+def replay_times(result: Result, frames: int) -> Floats:
+    """Return the instants of the frames [s]: two thirds of them until a little after the separation."""
+    end = float(result.time[-1])
+    parted = min(end, 1.1 * result.metrics["time_of_separation"]) if _parts(result) else end
+    if parted > 0.6 * end:
+        return np.linspace(float(result.time[0]), end, frames)
+    near = max(2, (2 * frames) // 3)
+    times = [np.linspace(float(result.time[0]), parted, near), np.linspace(parted, end, frames - near + 1)]
+    return np.unique(np.concatenate(times))
+
+
+def _parts(result: Result) -> bool:
+    return "time_of_separation" in result.metrics
+
+
+def replay_data(result: Result, frames: int = 60) -> dict[str, Any]:
+    """Return what replay.js draws: millimetres in 16 bits, only of nodes that move.
+
+    Parameters
+    ----------
+    result
+        The run; one without frames is run once more.
+    frames
+        Number of instants, >= 2; the replay is linear between them.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than 2 frames, or the scene does not run the same way again.
+    """
+    if frames < 2:
+        raise ValueError(f"frames must be >= 2, got {frames}")
+    times = replay_times(result, frames)
+    skins = skins_at(result, times)
+    shapes = unit_shapes(result.scene.vehicle)
+    corners = [np.unique(shape.quads) for shape in shapes]
+    world = np.vstack(
+        [
+            skin.world[shown] if len(shown) else skin.world
+            for one in skins
+            for skin, shown in zip(one, corners, strict=True)
+        ]
+    )
+    crushed = [
+        float(skin.crush[shown].max(initial=0.0))
+        for one in skins
+        for skin, shown in zip(one, corners, strict=True)
+    ]
+    low, high = np.floor(world.min(axis=0) - _AROUND), np.ceil(world.max(axis=0) + _AROUND)
+    return {
+        "unit": _STEP,
+        "time": [round(1e3 * float(t), 3) for t in times],
+        "units": [_unit(shape, [one[i] for one in skins]) for i, shape in enumerate(shapes)],
+        "barrier": _barrier(result, times, world),
+        "hasGround": bool(result.scene.settings.ground),
+        "ground": [low[:2].tolist(), high[:2].tolist()],
+        "greatest": max(_LEAST_SCALE, *crushed),
+        "colors": list(CRUSH_COLORS),
+        **_cameras(result, skins, world),
+    }
+
+
+def _packed(lengths: npt.ArrayLike) -> str:
+    return _text(np.round(np.asarray(lengths, float) / _STEP).astype("<i2"))
+
+
+def _text(array: npt.NDArray[Any]) -> str:
+    return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode("ascii")
+
+
+def _unit(shape: UnitShape, skins: list[Skin]) -> dict[str, Any]:
+    from scipy.spatial.transform import Rotation
+
+    moved = np.stack([skin.displacement for skin in skins])
+    moving = np.flatnonzero(np.abs(moved).max(axis=(0, 2)) > _MOVES)
+    turns = Rotation.from_matrix(np.stack([skin.turn for skin in skins])).as_quat()[:, [3, 0, 1, 2]]
+    for before, after in zip(turns[:-1], turns[1:], strict=True):  # the shorter way between two frames
+        after *= math.copysign(1.0, float(before @ after))
+    faces = np.vstack([shape.quads[:, [0, 1, 2]], shape.quads[:, [0, 2, 3]]])
+    return {
+        "rest": _packed(shape.nodes),
+        "faces": _text(faces.astype("<u4")),
+        "moving": _text(moving.astype("<u4")),
+        "moved": _packed(moved[:, moving]),
+        "center": np.round([skin.center for skin in skins], 4).tolist(),
+        "turn": np.round(turns, 6).tolist(),
+        "wheels": np.round(shape.wheels, 4).tolist(),
+    }
+
+
+def _barrier(result: Result, times: Floats, world: Floats) -> list[dict[str, Any]]:
+    """Return the surfaces of the barrier; free-standing segments with where they are over time."""
+    parts: list[dict[str, Any]] = []
+    for i, (vertices, faces) in enumerate(barrier_surfaces(result.scene.barrier, world)):
+        part: dict[str, Any] = {"vertices": _packed(vertices), "faces": _text(faces.astype("<u4"))}
+        if i < result.segment_position.shape[1]:
+            place = result.segment_position[:, i]
+            foot = [np.interp(times, result.time, place[:, axis]) for axis in (0, 1)]
+            yaw = np.radians(np.interp(times, result.time, result.segment_yaw[:, i]))
+            part |= {"foot": np.round(np.transpose(foot), 4).tolist(), "yaw": np.round(yaw, 6).tolist()}
+        parts.append(part)
+    return parts
+
+
+def _cameras(result: Result, skins: list[tuple[Skin, ...]], world: Floats) -> dict[str, Any]:
+    """Return the point that is looked at, the camera at first, and others by name."""
+    barrier = result.scene.barrier
+    along, out, _ = barrier_axes(barrier)
+    low, high = world.min(axis=0), world.max(axis=0)
+    radius = 0.5 * float(np.linalg.norm(high - low))
+    oblique = not 45.0 <= result.scene.impact_angle <= 135.0
+    if oblique:
+        first = 0.9 * out + 0.45 * along
+    else:  # posts can be looked past: what they do to the front shows
+        first = along + (-0.45 if isinstance(barrier, (Bollards, Pole)) else 0.45) * out
+    far = _MARGIN * radius / math.tan(_HALF_ANGLE)
+    around = math.atan2(first[1], first[0])
+    beside = out if oblique else along
+    towards = along if oblique else out
+    return {
+        "target": [*(0.5 * (low + high))[:2].tolist(), float(0.35 * (low[2] + high[2]))],
+        "camera": {"around": around, "up": 0.42, "far": 0.7 * far},
+        "views": {
+            "three quarters": {},
+            "side": {"around": math.atan2(beside[1], beside[0]), "up": 0.05},
+            "above": {"around": math.atan2(out[1], out[0]), "up": 1.5},
+            "along the path": {"around": math.atan2(towards[1], towards[0]), "up": 0.12},
+        },
+    }
