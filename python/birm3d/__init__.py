@@ -23,6 +23,7 @@ from .assessment import (
 from .barrier import Barrier, FreeStanding, lateral_load
 from .calibration import calibrate
 from .io.file_format import FileFormatError
+from .reporting import dossier
 from .result import Result, metrics
 from .result.element_loads import ElementLoad
 from .result.energy_balance import LedgerWarning
@@ -94,6 +95,7 @@ __all__ = [
     "compare_curves",
     "critical_impact_point",
     "design_load",
+    "dossier",
     "ensemble",
     "filters",
     "fragility",

@@ -183,10 +183,12 @@ def test_script_runs(text: str, tmp_path: Path) -> None:
         document.getElementById("data").textContent = scripts[0];
         global.Plotly = { newPlot: (div, traces) => calls.push([div.id, traces.length]),
           restyle: (div, update, traces) => calls.push(["restyle", update.x[0][0], traces]), relayout() {} };
+        const shown = [];
+        global.replayPanel = (box, data) => ({ show: (ms) => shown.push([box.id, data.time.length, ms]) });
         eval(scripts.at(-1));
         elements.slider.value = "5";
         elements.slider.handlers.input();
-        console.log(JSON.stringify({ calls, now: elements.now.value, max: elements.slider.max }));
+        console.log(JSON.stringify({ calls, shown, now: elements.now.value, max: elements.slider.max }));
         """,
         encoding="utf-8",
     )
@@ -198,6 +200,7 @@ def test_script_runs(text: str, tmp_path: Path) -> None:
     # JavaScript rounds 222.25 up, Python to the even digit.
     assert re.fullmatch(r"\d+\.\d ms", outcome["now"])
     assert abs(float(outcome["now"].split()[0]) - data["plan"]["time"][5]) <= 0.05 + 1e-9
+    assert outcome["shown"][-1] == ["replay", 11, data["plan"]["time"][5]]
     names = [call[0] for call in outcome["calls"]]
     assert names == ["panel"] * len(data["panels"]) + ["plan", "restyle", "restyle"]
     # barrier, path and first outline stay; outline and mass centre move

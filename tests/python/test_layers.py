@@ -29,6 +29,7 @@ LAYERS = (
     ("assessment",),
     ("plotting",),
     ("rendering", "html_page"),
+    ("reporting",),
     ("cli",),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}

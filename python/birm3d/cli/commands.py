@@ -18,6 +18,7 @@ from .calibrate import calibrate_file
 from .files import CAPSULE, HTML, MOVIE, PICTURE, RESULT, TABLE
 from .loads import loads
 from .rate import STANDARD_HELP, assessed, assessments_as_json, print_assessments, rate
+from .report import report
 from .rerun import rerun
 from .scene import scene_options, simulation_of
 from .search import search
@@ -39,6 +40,7 @@ def _cli() -> None:
 _cli.add_command(calibrate_file)
 _cli.add_command(loads)
 _cli.add_command(rate)
+_cli.add_command(report)
 _cli.add_command(rerun)
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..assessment import OccupantRisk, Rating
     from ..result.result import Result
 
-__all__ = ["STANDARD_HELP", "assessed", "assessments_as_json", "print_assessments", "rate"]
+__all__ = ["STANDARD_HELP", "assessed", "assessments_as_json", "print_assessments", "rate", "result_of"]
 
 STANDARD_HELP = (
     'Standard: "ASTM F2656", "ASTM F2656-07", "SD-STD-02.01", "IWA 14-1", "ISO 22343-1", "PAS 68", "MASH" or '
@@ -46,7 +46,7 @@ def rate(
 
     Always indicative: a rating needs a test.
     """
-    result = _result(scene, options)
+    result = result_of(scene, options)
     ratings, risk = assessed(result, standards, with_risk, vehicle_class, reference_point)
     if as_json:
         click.echo(json.dumps(assessments_as_json(ratings, risk), indent=2))
@@ -54,7 +54,8 @@ def rate(
         print_assessments(ratings, risk)
 
 
-def _result(scene: Path | None, options: dict[str, Any]) -> Result:
+def result_of(scene: Path | None, options: dict[str, Any]) -> Result:
+    """Return the result of a scene file, of a file that holds a result, or of the options."""
     if scene is None or not is_result(scene):
         return simulation_of(scene, options).run(progress=True)
     return loaded(scene, options)

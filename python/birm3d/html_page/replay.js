@@ -63,6 +63,7 @@ function makeReplay(box, data) {
       vec4 p = view * pose * vec4(place, 1.0);
       seen = p.xyz; depth = crush;
       gl_Position = lens * p;
+      gl_PointSize = 5.0; // of a vehicle that is nodes without a skin
     }`;
   const fragmentText = `#version 300 es
     precision highp float;
@@ -153,7 +154,8 @@ function makeReplay(box, data) {
   for (const unit of units) {
     unit.now = unit.rest.slice();
     unit.crush = new Float32Array(unit.rest.length / 3);
-    unit.skin = body(unit.now, unit.faces);
+    unit.skin = unit.faces.length > 0 ? body(unit.now, unit.faces)
+      : body(unit.now, Uint32Array.from(unit.crush.keys()), gl.POINTS);
     unit.tires = unit.wheels.map(cylinder);
     // Quads come as two halves of the list of triangles, abc and acd: edges ab, bc, cd, da.
     const half = unit.faces.length / 2, edges = [];

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import itertools
 import math
 from typing import TYPE_CHECKING, Any
 
@@ -81,10 +82,13 @@ def replay_data(result: Result, frames: int = 60) -> dict[str, Any]:
         for one in skins
         for skin, shown in zip(one, corners, strict=True)
     ]
+    deepest = [max(crushed[k * len(shapes) : (k + 1) * len(shapes)]) for k in range(len(times))]
+    instant = int(np.argmax(np.array(deepest) >= 0.999 * max(deepest)))
     low, high = np.floor(world.min(axis=0) - _AROUND), np.ceil(world.max(axis=0) + _AROUND)
     return {
         "unit": _STEP,
         "time": [round(1e3 * float(t), 3) for t in times],
+        "instant": round(1e3 * float(times[instant]), 3),
         "units": [_unit(shape, [one[i] for one in skins]) for i, shape in enumerate(shapes)],
         "barrier": _barrier(result, times, world),
         "hasGround": bool(result.scene.settings.ground),
@@ -109,7 +113,7 @@ def _unit(shape: UnitShape, skins: list[Skin]) -> dict[str, Any]:
     moved = np.stack([skin.displacement for skin in skins])
     moving = np.flatnonzero(np.abs(moved).max(axis=(0, 2)) > _MOVES)
     turns = Rotation.from_matrix(np.stack([skin.turn for skin in skins])).as_quat()[:, [3, 0, 1, 2]]
-    for before, after in zip(turns[:-1], turns[1:], strict=True):  # the shorter way between two frames
+    for before, after in itertools.pairwise(turns):  # the shorter way between two frames
         after *= math.copysign(1.0, float(before @ after))
     faces = np.vstack([shape.quads[:, [0, 1, 2]], shape.quads[:, [0, 2, 3]]])
     return {

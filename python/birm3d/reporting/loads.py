@@ -1,0 +1,63 @@
+"""Loads on each element of the barrier: tables, histories and files to hand on."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+from ..result.element_loads import touched_elements
+from ..result.metrics import METRIC_UNITS
+from ..result.result import Result
+from ..result.summary import ELEMENT_COLUMNS, element_rows
+from .blocks import Block, Caution, Items, Section, Table, Text
+from .figures import figure
+from .study_case import Case
+
+__all__ = ["load_section", "loads_csv", "metrics_csv"]
+
+_RIGID = (
+    "The barrier is rigid: it takes the greatest force that the vehicle can press it with. A barrier that "
+    "gives way takes less force over a longer time. Unfiltered peaks hold for one output interval; design "
+    "with the 50-ms means or with a response of the element."
+)
+
+
+def load_section(case: Case) -> Section:
+    """Return what each element that was touched has to carry."""
+    rows = element_rows(case.result)
+    if case.result.scene.barrier is None or not rows:
+        return Section("Loads on the barrier", "loads", [Text("Nothing of a barrier was touched.")])
+    blocks: list[Block] = [
+        Table("Loads on each element that was touched", ELEMENT_COLUMNS, rows, numbers=True),
+        figure(case.result.plot_elements(), "Loads on the elements over time"),
+        Caution(_RIGID),
+        Items(links=(("The same table with all digits, SI", "loads.csv"),)),
+    ]
+    return Section("Loads on the barrier", "loads", blocks)
+
+
+def loads_csv(result: Result) -> bytes:
+    """Return the loads as a file, SI, all digits."""
+    names = (
+        *("peak_force", "peak_force_50ms", "height_at_peak"),
+        *("peak_overturning_moment", "peak_overturning_moment_50ms"),
+    )
+    units = ("N", "N", "m", "N m", "N m")
+    head = ["element", *(f"{name} [{unit}]" for name, unit in zip(names, units, strict=True))]
+    rows = [
+        [load.name, *(repr(getattr(load, name)) for name in names)]
+        for load in touched_elements(result.element_loads)
+    ]
+    return _csv([head, *rows])
+
+
+def metrics_csv(result: Result) -> bytes:
+    """Return all metrics as a file, SI and degrees, all digits."""
+    rows = [[name, repr(value), METRIC_UNITS.get(name, "")] for name, value in result.metrics.items()]
+    return _csv([["metric", "value", "unit"], *rows])
+
+
+def _csv(rows: list[list[str]]) -> bytes:
+    stream = io.StringIO()
+    csv.writer(stream, lineterminator="\n").writerows(rows)
+    return stream.getvalue().encode()

@@ -1,0 +1,141 @@
+"""All that a dossier is about, computed once: run, assessments, nearby tests, the same run more finely."""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from dataclasses import dataclass
+
+from ..assessment import OccupantRisk, Rating, RatingStudy, occupant_risk, rate
+from ..result.result import Result
+from ..simulation import Simulation
+from ..study import Study
+from .given_tests import Compared, nearest
+
+__all__ = ["Case", "case_of", "is_oblique"]
+
+SECURITY = ("ASTM F2656", "ISO 22343-1", "IWA 14-1", "PAS 68", "SD-STD-02.01")
+ROADSIDE = ("MASH", "EN 1317")
+_FRAMES = 60  # of the replay
+_FINER = 1e-2  # of the tolerance
+_LEAST_TOLERANCE = 1e-8
+_MOST_RATED = 2000  # runs of a study that are run once more to be rated
+
+
+@dataclass(frozen=True)
+class Case:
+    """What a dossier is about.
+
+    Attributes
+    ----------
+    run : Result
+        As it was given: its report and its capsule are part of the dossier.
+    result : Result
+        The same with frames.
+    study : Study or None
+        Runs with other inputs.
+    ratings : tuple of Rating
+    not_rated : mapping of str to str
+        Standard -> why it does not rate the run.
+    rating_study : RatingStudy or None
+        Of the study, by the first standard that rates the run.
+    risk : OccupantRisk or str
+        Or why there is none.
+    tests : list of Compared
+    finer : Result
+        The same scene with a hundredth of the tolerance.
+    warnings : list of str
+        Of the run.
+    """
+
+    run: Result
+    result: Result
+    study: Study | None
+    ratings: tuple[Rating, ...]
+    not_rated: dict[str, str]
+    rating_study: RatingStudy | None
+    risk: OccupantRisk | str
+    tests: list[Compared]
+    finer: Result
+    warnings: list[str]
+
+
+def is_oblique(result: Result) -> bool:
+    """Whether the path is within 45 degrees of the barrier's line: a roadside impact."""
+    return not 45.0 <= result.scene.impact_angle <= 135.0
+
+
+def case_of(result: Result, study: Study | None, standards: tuple[str, ...] | None) -> Case:
+    """Return the case of a run.
+
+    Raises
+    ------
+    ValueError
+        If the scene does not run again to the same bits, or a standard that was asked for does not know it.
+    """
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        again = Simulation.from_scene(result.scene).run()
+    if again.state_hash != result.state_hash:
+        raise ValueError(
+            f"result must run again to the same bits, got state {again.state_hash:016x} after "
+            f"{result.state_hash:016x} (result of birm3d {result.version}): run its scene anew"
+        )
+    framed = result if result.frames is not None else result.with_frames(min(_FRAMES, len(result.time)))
+    ratings, reasons = _rated(framed, standards)
+    return Case(
+        run=result,
+        result=framed,
+        study=study,
+        ratings=ratings,
+        not_rated=reasons,
+        rating_study=None if study is None or not ratings else _rated_study(study, ratings[0].standard),
+        risk=_risk(framed),
+        tests=[] if result.scene.barrier is None else nearest(result.scene),
+        finer=_finer(result),
+        warnings=list(dict.fromkeys(str(one.message) for one in told)),
+    )
+
+
+def _rated(result: Result, standards: tuple[str, ...] | None) -> tuple[tuple[Rating, ...], dict[str, str]]:
+    if standards is not None:
+        return tuple(rate(result, standard) for standard in standards), {}
+    if result.scene.barrier is None:
+        return (), {}
+    ratings, reasons = [], {}
+    for standard in ROADSIDE if is_oblique(result) else SECURITY:
+        try:
+            ratings.append(rate(result, standard))
+        except ValueError as reason:  # it does not know the vehicle
+            reasons[standard] = str(reason)
+    ratings.sort(key=lambda rating: "no rating" in rating.designation)
+    return tuple(ratings), reasons
+
+
+def _rated_study(study: Study, standard: str) -> RatingStudy | None:
+    if len(study) > _MOST_RATED or not study.parameters or study._scene is None:
+        return None
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of its runs; the study has told them
+        try:
+            return rate(study, standard)
+        except ValueError:  # none of its runs is one that the standard knows
+            return None
+
+
+def _risk(result: Result) -> OccupantRisk | str:
+    try:
+        risk = occupant_risk(result)
+        _ = risk.criteria
+    except ValueError as reason:
+        return str(reason)
+    return risk
+
+
+def _finer(result: Result) -> Result:
+    settings = result.scene.settings
+    tolerance = max(_LEAST_TOLERANCE, _FINER * settings.tolerance)
+    finer = dataclasses.replace(settings, time_step=None, tolerance=tolerance)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # told by the run itself
+        return Simulation.from_scene(dataclasses.replace(result.scene, settings=finer)).run()

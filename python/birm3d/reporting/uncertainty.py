@@ -1,0 +1,121 @@
+"""How sure it is: computing error, and the spread of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..plotting.style import shown_unit
+from ..result.metrics import METRIC_UNITS
+from ..result.summary import HEADLINES
+from ..study import Study
+from .blocks import Block, Caution, Section, Table, Text
+from .study_case import Case
+
+__all__ = ["computing_error", "uncertainty_section"]
+
+_ROUNDING = 1e-9  # angles and lengths below are rounding errors
+_NOTHING = 1e-6  # a metric as small as this has no relative error
+
+
+def computing_error(case: Case) -> Iterator[tuple[str, float, float, float | None]]:
+    """Yield metric, value, value with a hundredth of the tolerance, and the relative difference."""
+    ours, finer = case.result.metrics, case.finer.metrics
+    for name in HEADLINES:
+        if name in ours and name in finer:
+            value, better = (0.0 if abs(x) < _ROUNDING else x for x in (ours[name], finer[name]))
+            error = abs(value - better) / abs(better) if abs(better) > _NOTHING else None
+            yield name, value, better, error
+
+
+def uncertainty_section(case: Case) -> Section:
+    """Return computing error, scatter of vehicles and what a study says."""
+    settings = case.result.scene.settings
+    how = (
+        f"a fixed step of {settings.time_step:g} s"
+        if settings.time_step
+        else f"steps chosen by a tolerance of {settings.tolerance:g}"
+    )
+    rows = []
+    for name, value, better, error in computing_error(case):
+        size, unit = shown_unit(METRIC_UNITS.get(name, ""))
+        difference = "below 1e-6" if error is None else f"{error:.1e}"
+        rows.append((name.replace("_", " "), f"{value / size:.5g}", f"{better / size:.5g}", unit, difference))
+    blocks: list[Block] = [
+        Text(
+            f"Computing error: the run has {how}. The same scene was run once more with a tolerance of "
+            f"{case.finer.scene.settings.tolerance:g}."
+        ),
+        Table(
+            "Computing error of the headline numbers",
+            ("quantity", "this run", "refined", "unit", "relative difference"),
+            rows,
+            numbers=True,
+        ),
+        Caution(
+            "The error of the model is larger than that of the computation. Vehicles of one class differ: "
+            "displacements of tests at 56 km/h scatter by about 20 % either way. The table of given tests "
+            "shows errors of this model in tests like this scene."
+        ),
+    ]
+    if case.study is None:
+        blocks.append(
+            Text(
+                "No study was given: the numbers of this dossier are those of one run. Spread of inputs "
+                "comes from birm3d.monte_carlo(), birm3d.sweep() and dossier(result, folder, study=study)."
+            )
+        )
+    else:
+        blocks += _study_blocks(case, case.study)
+    return Section("Uncertainty", "uncertainty", blocks)
+
+
+def _study_blocks(case: Case, study: Study) -> Iterator[Block]:
+    failed = f"; {len(study.failed)} runs failed" if study.failed else ""
+    yield Text(f"Study: {len(study):,} runs of {study.title}{failed}. These inputs were varied:")
+    rows = []
+    for name, values in study.parameters.items():
+        size, unit = shown_unit(study.units.get(name, ""))
+        if values.dtype.kind == "f":
+            low, high = float(np.min(values)) / size, float(np.max(values)) / size
+            rows.append((name.replace("_", " "), f"{low:.5g} to {high:.5g}", unit))
+        else:
+            kinds = ", ".join(dict.fromkeys(str(value) for value in values.tolist()))
+            rows.append((name.replace("_", " "), kinds, unit))
+    yield Table("Inputs of the study", ("input", "range", "unit"), rows)
+    done = [word for word in study.outcome if word]
+    counts = [(word, f"{n:,}", f"{n / len(done):.1%}") for word, n in study.outcomes.items()]
+    yield Table("Outcomes of the study", ("outcome", "runs", "share"), counts, numbers=True)
+    yield _percentiles(case, study)
+    if case.rating_study is not None:
+        rated = case.rating_study
+        shares = []
+        for name, share in rated.probability.items():
+            low, high = rated.interval(share)
+            shares.append((name, f"{share:.1%}", f"{low:.1%} to {high:.1%}"))
+        yield Table(
+            f"Probability of each class by {rated.ratings[0].standard}, indicative",
+            ("class", "share of runs", "95 % interval of the share"),
+            shares,
+            note=f"{len(rated.ratings):,} runs were rated.",
+            numbers=True,
+        )
+
+
+def _percentiles(case: Case, study: Study) -> Table:
+    rows = []
+    for name, found in study.summary().items():
+        if name not in HEADLINES:
+            continue
+        size, unit = shown_unit(study.units.get(name, ""))
+        own = case.result.metrics.get(name) if name in case.result.metrics else None
+        numbers = (own, found.p05, found.median, found.p95, found.mean, found.standard_deviation)
+        cells = ("–" if number is None else f"{number / size:.4g}" for number in numbers)
+        rows.append((name.replace("_", " "), *cells, unit, f"{found.n:,}"))
+    return Table(
+        "Percentiles of the study beside this run",
+        ("quantity", "this run", "5 %", "median", "95 %", "mean", "st. dev.", "unit", "runs"),
+        rows,
+        numbers=True,
+    )

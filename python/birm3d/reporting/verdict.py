@@ -1,0 +1,128 @@
+"""Verdict first: outcome, rating, loads, occupants, and how sure it is, each in one line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from statistics import median
+
+from ..assessment.criteria import Criterion
+from ..assessment.rating import MODEL_CAUTION
+from ..result.element_loads import touched_elements
+from ..result.summary import headline_rows
+from .blocks import Block, Caution, Section, Table, Text
+from .given_tests import errors
+from .study_case import Case, is_oblique
+from .uncertainty import computing_error
+
+__all__ = ["criteria_table", "risk_section", "verdict_section"]
+
+_NO_BARRIER = "There is no barrier in this scene: nothing is rated."
+
+
+def verdict_section(case: Case) -> Section:
+    """Return what a reader wants to know first."""
+    result = case.result
+    blocks: list[Block] = [
+        Table("At a glance", ("question", "answer"), list(_glance(case))),
+        Table(
+            "Headline numbers",
+            ("quantity", "value", "unit"),
+            [row for row in headline_rows(result) if row[0]][1:],
+            numbers=True,
+        ),
+    ]
+    if result.scene.barrier is None:
+        blocks.append(Text(_NO_BARRIER))
+    for rating in case.ratings:
+        blocks.append(criteria_table(f"Rating, {rating.title}", rating.criteria))
+    if case.not_rated:
+        rows = [(name, reason.partition("; got ")[0]) for name, reason in case.not_rated.items()]
+        blocks.append(Table("Standards that do not rate this run", ("standard", "why"), rows))
+    if case.ratings:
+        own = (f"{one.standard}: {one.caution.replace(MODEL_CAUTION, '').strip()}" for one in case.ratings)
+        blocks += [Caution(text) for text in (MODEL_CAUTION, *own) if not text.endswith(":")]
+    return Section("Verdict", "verdict", blocks)
+
+
+def criteria_table(caption: str, criteria: tuple[Criterion, ...]) -> Table:
+    """Return values beside their limits."""
+    rows = [(one.name, one.shown, one.limit, one.verdict) for one in criteria]
+    return Table(caption, ("criterion", "value", "limit", "verdict"), rows)
+
+
+def _glance(case: Case) -> Iterator[tuple[str, str]]:
+    result = case.result
+    yield "What happens to the vehicle?", f"{result.outcome}: {result.outcome_detail}"
+    for rating in case.ratings:
+        contained = "contained" if rating.contained else "NOT contained"
+        yield (
+            f"Rating by {rating.standard}, indicative",
+            f"{rating.designation} (vehicle {rating.vehicle_class}); {contained}, "
+            f"{_penetration(rating.penetration)}",
+        )
+    loads = touched_elements(result.element_loads)
+    if loads:
+        most = max(loads, key=lambda load: load.peak_force_50ms)
+        yield (
+            "What does the barrier have to carry?",
+            f"up to {most.peak_force_50ms / 1e3:,.0f} kN (50-ms mean) at {most.height_at_peak:.2f} m on "
+            f"{most.name}, with an overturning moment of {most.peak_overturning_moment_50ms / 1e3:,.0f} kN m",
+        )
+    yield "Would occupants be at risk?", _risk_line(case)
+    yield "How well is it computed?", _computed_line(case)
+    found = errors(case.tests)
+    rights = [one.right for one in case.tests if one.right is not None]
+    told = []
+    if rights:
+        told.append(f"containment as in {sum(rights)} of {len(rights)} tests")
+    if found:
+        told.append(f"median error {median(map(abs, found)):.0%} in {len(found)} values that were not fitted")
+    if told:
+        yield "How well does the model do in given tests nearby?", "; ".join(told)
+
+
+def _penetration(distance: float) -> str:
+    if distance < 0.0:
+        return f"its reference point stays {-distance:.2f} m short of the datum"
+    return f"penetration {distance:.2f} m"
+
+
+def _risk_line(case: Case) -> str:
+    if isinstance(case.risk, str):
+        return f"not computed: {case.risk}"
+    standard = "EN 1317" if is_oblique(case.result) and not case.risk.missing else "MASH"
+    failed = [one.name for one in case.risk.criteria if one.passed is False and f"({standard}" in one.name]
+    if not failed:
+        return f"the limits of {standard} are met; severity and every value are in the section on occupants"
+    return f"limits of {standard} are exceeded: {', '.join(failed)}"
+
+
+def _computed_line(case: Case) -> str:
+    metrics = case.result.metrics
+    text = (
+        f"energy closes to {metrics['energy_residual']:.1e} of the initial kinetic energy, momentum to "
+        f"{metrics['momentum_residual']:.1e} of the greatest force"
+    )
+    worst = max((error for *_, error in computing_error(case) if error is not None), default=None)
+    return text if worst is None else f"{text}; headline numbers change by at most {worst:.2%} when refined"
+
+
+def risk_section(case: Case) -> Section:
+    """Return what the occupants undergo."""
+    from ..assessment.occupant import CAUTION
+
+    if isinstance(case.risk, str):
+        return Section("Occupant risk", "occupants", [Text(f"Not computed: {case.risk}")])
+    strike = case.risk.time_of_strike
+    when = (
+        "The occupant strikes nothing."
+        if strike is None
+        else (f"The occupant strikes the compartment {strike * 1e3:.1f} ms after the first touch.")
+    )
+    blocks: list[Block] = [
+        Text(when),
+        criteria_table("Occupant risk, each value beside its limit", case.risk.criteria),
+        *(Text(text) for text in case.risk.missing),
+        Caution(CAUTION),
+    ]
+    return Section("Occupant risk", "occupants", blocks)

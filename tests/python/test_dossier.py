@@ -1,0 +1,414 @@
+"""The dossier: every number is that of the API, nothing comes from elsewhere, folders are not mixed."""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+import json
+import re
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import birm3d
+import numpy as np
+import pytest
+from birm3d import Barrier, Result, Settings, Simulation, Study, Vehicle, scenes
+from birm3d.cli import main
+from birm3d.reporting.given_tests import Facts, errors, given_tests, nearest
+from birm3d.result.skin import skins_at
+from birm3d.result.summary import element_rows, headline_rows
+
+VOID = {"meta", "input", "img", "link", "br"}
+FACTS = {"project": "Plaza <north>", "client": "City", "author": "A. Engineer", "date": "2030-01-02"}
+
+
+class Page(HTMLParser):
+    """Tables by their captions, texts by tag, tags in order; refuses tags that do not close."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.texts: dict[str, list[str]] = {}
+        self.attributes: list[tuple[str, dict[str, str | None]]] = []
+        self.tables: dict[str, list[list[str]]] = {}
+        self.source = path.read_text(encoding="utf-8")
+        self.feed(self.source)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.attributes.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+            self.texts.setdefault(tag, []).append("")
+        if tag == "tr":
+            self.rows.append([])
+        if tag == "table":
+            self.rows: list[list[str]] = []
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+        if tag == "caption":
+            self.tables[re.sub(r"^Table \d+\. ", "", self.texts["caption"][-1])] = self.rows
+        if tag in ("td", "th"):
+            self.rows[-1].append(self.texts[tag][-1])
+
+    def handle_data(self, data: str) -> None:
+        if self.open:
+            self.texts[self.open[-1]][-1] += data
+
+    def table(self, beginning: str) -> list[list[str]]:
+        """Rows of the table whose caption begins so, without the head."""
+        (found,) = [rows for caption, rows in self.tables.items() if caption.startswith(beginning)]
+        return found[1:]
+
+
+def tidy(text: str) -> str:
+    return text.replace("+-", "±").replace("<=", "≤").replace(">=", "≥").replace("^2", "²")
+
+
+def crash(**settings: Any) -> Simulation:
+    truck = Vehicle.preset("cargo_truck", mesh_density=0.15)
+    return Simulation(truck, Barrier.bollards(), 22.352, settings=Settings(**settings))
+
+
+@pytest.fixture(scope="module")
+def result() -> Result:
+    return crash().run()
+
+
+@pytest.fixture(scope="module")
+def folder(result: Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("dossier") / "report"
+    assert birm3d.dossier(result, folder, title="Posts", **FACTS) == folder / "index.html"
+    return folder
+
+
+@pytest.fixture(scope="module")
+def page(folder: Path) -> Page:
+    return Page(folder / "index.html")
+
+
+def test_verdict_comes_first(page: Page, result: Result) -> None:
+    headings = page.texts["h2"]
+    assert headings[0] == "1. Verdict"
+    assert [re.sub(r"^\d+\. ", "", text) for text in headings[1:5]] == [
+        "Scene", "Motion and crush", "Loads on the barrier", "Occupant risk",
+    ]  # fmt: skip
+    glance = dict(page.table("At a glance"))
+    assert glance["What happens to the vehicle?"] == f"{result.outcome}: {result.outcome_detail}"
+    rating = birm3d.rate(result, "ASTM F2656")
+    assert glance["Rating by ASTM F2656, indicative"].startswith(
+        f"{rating.designation} (vehicle M); contained"
+    )
+    most = max(result.element_loads, key=lambda load: load.peak_force_50ms)
+    assert f"up to {most.peak_force_50ms / 1e3:,.0f} kN" in glance["What does the barrier have to carry?"]
+    assert page.texts["h1"] == ["Posts"]
+    assert page.texts["dd"][:4] == list(FACTS.values())
+
+
+def test_ratings_and_risk_are_those_of_the_api(page: Page, result: Result) -> None:
+    for standard in ("ASTM F2656", "SD-STD-02.01"):
+        rating = birm3d.rate(result, standard)
+        rows = [[one.name, tidy(one.shown), tidy(one.limit), one.verdict] for one in rating.criteria]
+        assert page.table(f"Rating, {rating.title}") == rows
+    assert [row[0] for row in page.table("Standards that do not rate")] == [
+        "ISO 22343-1",
+        "IWA 14-1",
+        "PAS 68",
+    ]
+    risk = birm3d.occupant_risk(result)
+    rows = [[one.name, one.shown, tidy(one.limit), one.verdict] for one in risk.criteria]
+    assert page.table("Occupant risk") == rows
+    cautions = " ".join(page.texts["p"])
+    assert "Indicative" in cautions
+    assert birm3d.rate(result, "ASTM F2656").caution.partition(" Indicative")[0] in cautions
+
+
+def test_numbers_are_those_of_the_api(page: Page, result: Result, folder: Path) -> None:
+    assert (
+        page.table("Headline numbers")
+        == [list(map(tidy, row)) for row in headline_rows(result) if row[0]][1:]
+    )
+    assert page.table("Loads on each element") == [list(row) for row in element_rows(result)]
+    cells = {row[0]: row[1] for row in page.table("All metrics")}
+    assert cells == {name: f"{value:.6g}" for name, value in result.metrics.items()}
+    lines = (folder / "metrics.csv").read_text(encoding="utf-8").splitlines()[1:]
+    values = {line.split(",")[0]: float(line.split(",")[1]) for line in lines}
+    assert values == dict(result.metrics)
+    (load, *_) = [load for load in result.element_loads if load.touched]
+    row = (folder / "loads.csv").read_text(encoding="utf-8").splitlines()[1].split(",")
+    assert row[0] == load.name
+    assert float(row[2]) == load.peak_force_50ms
+    energy = {row[0]: row for row in page.table("Energy balance")}
+    for name, history in result.energy.items():
+        if name != "residual":
+            assert energy[name.replace("_", " ")][2] == f"{history[-1] / 1e3:,.2f}"
+    assert page.texts["pre"] == [result.report()]
+    facts = dict(page.table("Reproduction"))
+    assert facts["state hash"] == f"{result.state_hash:016x}"
+    settings = dict(page.table("Settings"))
+    assert settings["tolerance"] == f"{result.scene.settings.tolerance:g}"
+    assert len(settings) == len(dataclasses.fields(Settings))
+
+
+def test_momentum_balance_closes(page: Page, result: Result) -> None:
+    rows = {row[0]: row[1:] for row in page.table("Momentum balance")}
+    change = result.scene.vehicle.mass * (result.velocity[-1] - result.velocity[0]) / 1e3
+    assert [float(cell.replace(",", "")) for cell in rows["change of momentum"]] == pytest.approx(
+        change, abs=1e-3
+    )
+    assert all(abs(float(cell)) < 1e-9 for cell in rows["difference"])
+
+
+def test_verification_says_what_applies(page: Page, result: Result) -> None:
+    rows = {row[0]: row[1:] for row in page.table("Verification")}
+    (energy,) = [row for name, row in rows.items() if "10 %" in name]
+    assert energy == [f"{result.metrics['energy_residual']:.1e}", "10 %", "pass"]
+    assert sum(row[-1].startswith("not applicable") for row in rows.values()) == 3
+    assert not any(row[-1].startswith("FAIL") for row in rows.values())
+
+
+def test_vehicle_has_its_sources_and_bands(page: Page, result: Result) -> None:
+    file = result.scene.vehicle._file
+    assert file is not None
+    assert [row[0] for row in page.table("cargo_truck: sources")] == [source.id for source in file.sources]
+    bands = page.table("cargo_truck: mass properties")
+    assert len(bands) == len(file.targets)
+    assert all("±" in row[1] for row in bands)
+    zones = [row[0].replace(" ", "_") for row in page.table("cargo_truck: stiffness zones")]
+    assert zones == list(result.scene.vehicle.zones)
+
+
+def test_given_tests_are_computed_by_this_version(page: Page, result: Result) -> None:
+    found = nearest(result.scene)
+    rows = page.table("Given tests nearest")
+    assert [row[0] for row in rows] == [one.test.name for one in found]
+    assert [row[6] for row in rows] == ["yes" if one.test.fitted else "no" for one in found]
+    (pitch,) = [row for row in rows if row[0] == "15,000-lb truck, bollards"]
+    own = scenes.truck_at_bollards().run().metrics["max_pitch"]
+    assert pitch[3:6] == ["23 deg", f"{own:.3g} deg", f"{own / 23.0 - 1.0:+.0%}"]
+    glance = dict(page.table("At a glance"))["How well does the model do in given tests nearby?"]
+    assert f"median error {median(map(abs, errors(found))):.0%} in {len(errors(found))} values" in glance
+    wrong = [row for row in rows if row[5] == "WRONG"]
+    assert [row[0] for row in wrong] == ["8-in posts with a rail, 43.5 mph"]  # a rigid post can not give way
+
+
+def test_given_tests_nearest_to_scenes() -> None:
+    tests = given_tests()
+    assert len({test.name for test in tests}) > 40
+    for test in (tests[0], tests[3], tests[-3], tests[-12]):
+        scene = test.simulation().scene
+        assert Facts.of(scene) == Facts.of(scene)
+        first = nearest(scene, 1)
+        assert first[0].alike == ("vehicle", "barrier", "speed", "angle")
+        assert first[0].scene.vehicle.mass == pytest.approx(scene.vehicle.mass)
+    with_number = [one for one in nearest(tests[0].simulation().scene, 1)]
+    assert [one.test.quantity for one in with_number] == [
+        "peak_normal_force_cfc60", "max_displacement", "restitution",
+    ]  # fmt: skip
+    for one in with_number:
+        assert one.error == one.computed / one.test.measured - 1.0
+    assert errors(with_number) == []  # fitted: no prediction
+
+
+def test_capsule_runs_again(folder: Path, result: Result) -> None:
+    again = birm3d.rerun(folder / "run.birm3d")
+    assert again.same
+    assert again.found_hash == result.state_hash
+
+
+def test_page_needs_no_network(page: Page, folder: Path) -> None:
+    for tag, attributes in page.attributes:
+        assert (attributes.get("src") or "data:").startswith("data:"), tag
+        link = attributes.get("href") or "#"
+        if link.startswith("#"):
+            assert link == "#" or any(other.get("id") == link[1:] for _, other in page.attributes)
+        elif not link.startswith("data:"):
+            assert (folder / link).is_file()
+    assert not re.search(
+        r"@import|url\(|https?://(?!www\.w3\.org)", "".join(page.texts["style"] + page.texts["script"])
+    )
+    assert len(page.source) < 5e6
+    assert "Plaza &lt;north&gt;" in page.source
+    ids = [attributes["id"] for _, attributes in page.attributes if "id" in attributes]
+    assert len(ids) == len(set(ids))
+
+
+def test_replay_is_the_run(page: Page, result: Result) -> None:
+    data = json.loads(page.texts["script"][0])
+
+    def lengths(text: str) -> np.ndarray:
+        return np.frombuffer(base64.b64decode(text), "<i2") * data["unit"]
+
+    k = len(data["time"]) // 2
+    framed = result.with_frames(60)
+    ((skin,),) = skins_at(framed, [data["time"][k] / 1e3])
+    (unit,) = data["units"]
+    nodes = lengths(unit["rest"]).reshape(-1, 3).copy()
+    moving = np.frombuffer(base64.b64decode(unit["moving"]), "<u4")
+    nodes[moving] += lengths(unit["moved"]).reshape(len(data["time"]), -1, 3)[k]
+    assert np.abs(nodes - skin.nodes).max() < 2e-3
+    assert unit["center"][k] == pytest.approx(skin.center, abs=1e-3)
+    w, x, y, z = unit["turn"][k]
+    first_axis = [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)]
+    assert first_axis == pytest.approx(skin.turn[:, 0], abs=1e-5)
+    assert data["time"][0] <= data["instant"] <= data["time"][-1]
+    assert len(data["barrier"]) == 5
+
+
+def test_the_same_run_gives_the_same_page(folder: Path, tmp_path: Path) -> None:
+    """Also from the capsule that lies beside it; an earlier dossier is replaced."""
+    again = birm3d.load(folder / "run.birm3d")
+    page = birm3d.dossier(again, tmp_path, title="Posts", **FACTS)
+    assert page.read_bytes() == (folder / "index.html").read_bytes()
+    birm3d.dossier(again, tmp_path, title="Other", standards=["ASTM F2656-07"], date="2030-01-03")
+    other = Page(page)
+    assert other.texts["h1"] == ["Other"]
+    assert len([caption for caption in other.tables if caption.startswith("Rating, ")]) == 1
+
+
+def test_folders_are_not_mixed(
+    result: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "file"
+    file.write_text("mine", encoding="utf-8")
+    full = tmp_path / "full"
+    full.mkdir()
+    (full / "letter.txt").write_text("mine", encoding="utf-8")
+    places = {
+        file: "folder must be a folder, got the file",
+        full: "other files: letter.txt",
+        tmp_path / "none" / "deep": "must be in a folder that exists",
+    }
+    if sys.platform == "linux":
+        places[Path("/proc/dossier")] = "must be one that can be written to"
+
+    def never(*arguments: object, **more: object) -> None:
+        raise AssertionError("the run began")
+
+    monkeypatch.setattr("birm3d.reporting.study_case.case_of", never)
+    monkeypatch.setattr(Simulation, "run", never)
+    for place, message in places.items():
+        with pytest.raises(ValueError, match=message):
+            birm3d.dossier(result, place)
+        options = ["--vehicle", "passenger_car", "--speed", "30mph", "--output", str(place)]
+        assert command(monkeypatch, "report", *options) == 2
+        told = capsys.readouterr().err
+        assert "--output must" in told
+        assert message.removeprefix("folder must ") in told
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "full"]
+
+
+def test_bad_arguments(result: Result, tmp_path: Path) -> None:
+    place = tmp_path / "report"
+    with pytest.raises(ValueError, match="standard must be one of"):
+        birm3d.dossier(result, place, standards=["ASTM F9999"])
+    with pytest.raises(ValueError, match="PAS 68 knows"):
+        birm3d.dossier(result, place, standards=["PAS 68"])
+    with pytest.raises(ValueError, match="at least 2 rows"):
+        birm3d.dossier(crash().result(), place)
+    other = Simulation.from_scene(result.scene).run()
+    other.state_hash ^= 1
+    with pytest.raises(ValueError, match="must run again to the same bits"):
+        birm3d.dossier(other, place)
+    assert not place.exists()
+
+
+@pytest.fixture(scope="module")
+def study() -> Study:
+    return birm3d.sweep(crash(), impact_speed=[20.5, 21.0, 22.352], progress=False)
+
+
+def test_study(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("birm3d.reporting.build.find_spec", lambda name: None)  # no plotly: no second page
+    page = Page(birm3d.dossier(study, tmp_path / "a"))
+    summary = study.summary()
+    rows = {row[0]: row[1:] for row in page.table("Percentiles of the study")}
+    found = summary["dynamic_crush"]
+    own = crash().run().metrics["dynamic_crush"]
+    numbers = (own, found.p05, found.median, found.p95, found.mean, found.standard_deviation)
+    assert rows["dynamic crush"] == [*(f"{x:.4g}" for x in numbers if x is not None), "m", "3"]
+    assert page.table("Inputs of the study") == [["impact speed", "20.5 to 22.352", "m/s"]]
+    classes = {row[0]: row[1] for row in page.table("Probability of each class")}
+    rated = birm3d.rate(study, "ASTM F2656").probability
+    assert classes == {name: f"{share:.1%}" for name, share in rated.items()}
+    with pytest.raises(ValueError, match="got both"):
+        birm3d.dossier(study, tmp_path / "b", study=study)
+    study.save(tmp_path / "study.csv")
+    loaded = Study.load(tmp_path / "study.csv")
+    with pytest.raises(ValueError, match="knows the scene that was varied"):
+        birm3d.dossier(loaded, tmp_path / "b")
+
+
+def block() -> Simulation:
+    vehicle = scenes.laboratory_block(16, k_initial=3e6, knee=0.4, k_hardening=6e6, k_unloading=6e7)
+    return Simulation(vehicle, Barrier.rigid_wall(), 10.0, settings=Settings(ground=False, gravity=0.0))
+
+
+def alone() -> Simulation:
+    return Simulation(Vehicle.preset("passenger_car", mesh_density=0.1), None, 10.0, duration=0.05)
+
+
+def articulated() -> Simulation:
+    semi = Vehicle.preset("semi_truck", mesh_density=0.05)
+    return Simulation(semi, Barrier.jersey(height=1.07), 20.0, 20.0, duration=0.15)
+
+
+def free_standing() -> Simulation:
+    car = Vehicle.preset("passenger_car", mesh_density=0.15).with_zone("bumper", k_unloading=3e8)
+    return Simulation(
+        car, Barrier.jersey(length=12.0, segments=4, free_standing=True), 25.0, 20.0, duration=0.3
+    )
+
+
+@pytest.mark.parametrize("make", [block, alone, articulated, free_standing])
+def test_other_kinds_of_runs(make: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("birm3d.reporting.build.find_spec", lambda name: None)
+    monkeypatch.setattr("birm3d.reporting.study_case.nearest", lambda scene: nearest(scene, 1))
+    result = make().run()
+    page = Page(birm3d.dossier(result, tmp_path / "a"))
+    assert not (tmp_path / "a" / "histories.html").exists()
+    assert dict(page.table("Reproduction"))["state hash"] == f"{result.state_hash:016x}"
+    data = json.loads(page.texts["script"][0])
+    assert len(data["units"]) == len(result.scene.vehicle.units)
+    text = " ".join(page.texts["p"])
+    if make is block:
+        assert "given as arrays" in text
+    elif make is alone:
+        assert "nothing is rated" in text
+        assert "the outcome is decided" in [row[0] for row in page.table("Verification") if row[-1] == "FAIL"]
+    elif make is articulated:
+        assert [name for name, _ in page.table("Standards that do not rate")] == ["MASH", "EN 1317"]
+        assert len([caption for caption in page.tables if caption.endswith(": sources")]) == 2
+    else:
+        assert ["changed" in row for row in page.table("passenger_car: stiffness") if row[0] == "bumper"] == [
+            True
+        ]
+        moved = np.array(data["barrier"][1]["foot"])
+        assert np.abs(moved[-1] - result.segment_position[-1, 1]).max() < 1e-3
+
+
+def command(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
+    try:
+        main()
+    except SystemExit as stop:
+        return int(stop.code or 0)
+    return 0
+
+
+def test_command_line(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("birm3d.reporting.build.find_spec", lambda name: None)
+    out = tmp_path / "out"
+    assert (
+        command(monkeypatch, "report", str(folder / "run.birm3d"), "-o", str(out), "--project", "Plaza") == 0
+    )
+    assert capsys.readouterr().out.strip() == str(out / "index.html")
+    assert "Plaza" in Page(out / "index.html").texts["dd"]
+    assert command(monkeypatch, "rerun", str(out / "run.birm3d")) == 0
