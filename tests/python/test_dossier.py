@@ -155,6 +155,21 @@ def test_numbers_are_those_of_the_api(page: Page, result: Result, folder: Path) 
     assert len(settings) == len(dataclasses.fields(Settings))
 
 
+def test_design_loads_are_those_of_the_api(page: Page, result: Result, folder: Path) -> None:
+    loads = birm3d.design_load(result)
+    rows = page.table("Design loads")
+    assert [row[0] for row in rows] == [row.name for row in loads if row.touched]
+    head = page.texts["th"]
+    assert "equivalent static force [kN]" in head
+    most = loads.governing
+    answer = dict(page.table("At a glance"))["What does its foundation have to carry?"]
+    assert answer.startswith(
+        f"{most.name}: equivalent static force {most.equivalent_static_force / 1e3:,.0f} kN"
+    )
+    assert loads.caution in " ".join(page.texts["p"])
+    assert (folder / "design_loads.csv").read_text(encoding="utf-8").count("bollard") == len(loads)
+
+
 def test_momentum_balance_closes(page: Page, result: Result) -> None:
     rows = {row[0]: row[1:] for row in page.table("Momentum balance")}
     change = result.scene.vehicle.mass * (result.velocity[-1] - result.velocity[0]) / 1e3
@@ -265,8 +280,12 @@ def test_the_same_run_gives_the_same_page(folder: Path, tmp_path: Path) -> None:
     again = birm3d.load(folder / "run.birm3d")
     page = birm3d.dossier(again, tmp_path, title="Posts", **FACTS)
     assert page.read_bytes() == (folder / "index.html").read_bytes()
-    birm3d.dossier(again, tmp_path, title="Other", standards=["ASTM F2656-07"], date="2030-01-03")
+    loads = birm3d.design_load(again, natural_period=0.05, ductility=3.0)
+    birm3d.dossier(
+        again, tmp_path, title="Other", standards=["ASTM F2656-07"], design_loads=loads, date="2030-01-03"
+    )
     other = Page(page)
+    assert "ductility 3" in dict(other.table("At a glance"))["What does its foundation have to carry?"]
     assert other.texts["h1"] == ["Other"]
     assert len([caption for caption in other.tables if caption.startswith("Rating, ")]) == 1
 

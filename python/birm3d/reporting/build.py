@@ -9,6 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..assessment import DesignLoad
 from ..base.arguments import checked
 from ..result.result import Result
 from ..study import Study
@@ -29,6 +30,7 @@ def dossier(
     *,
     study: Study | None = None,
     standards: Sequence[str] | None = None,
+    design_loads: DesignLoad | None = None,
     title: str | None = None,
     project: str = "",
     client: str = "",
@@ -55,6 +57,8 @@ def dossier(
     standards
         To rate by, see :func:`birm3d.rate`. ``None``: those for security barriers where the path is within 45
         degrees of square to the barrier, else MASH and EN 1317; of them those that know the vehicle.
+    design_loads
+        What the elements have to carry, see :func:`birm3d.design_load`; ``None``: that of this run alone.
     title, project, client, author, date
         Of the title block; ``None``: the scene, and today.
 
@@ -73,7 +77,7 @@ def dossier(
         raise ValueError(f"result must be of a vehicle that moves, got {run.scene.impact_speed} m/s")
     from .study_case import case_of
 
-    case = case_of(run, beside, None if standards is None else tuple(standards))
+    case = case_of(run, beside, None if standards is None else tuple(standards), design_loads)
     facts = {
         "project": project,
         "prepared for": client,
@@ -114,5 +118,10 @@ def _files(case: Case, title: str | None, facts: dict[str, str]) -> dict[str, by
     files["metrics.csv"] = metrics_csv(case.result)
     if case.result.scene.barrier is not None:
         files["loads.csv"] = loads_csv(case.result)
+    if isinstance(case.design_loads, DesignLoad):
+        with tempfile.TemporaryDirectory() as place:
+            table = Path(place) / "design_loads.csv"
+            case.design_loads.to_csv(table)
+            files[table.name] = table.read_bytes()
     files[PAGE] = page(case, title, facts, files).encode()
     return files

@@ -30,10 +30,26 @@ def load_section(case: Case) -> Section:
     blocks: list[Block] = [
         Table("Loads on each element that was touched", ELEMENT_COLUMNS, rows, numbers=True),
         figure(case.result.plot_elements(), "Loads on the elements over time"),
+        *_design_blocks(case),
         Caution(_RIGID),
         Items(links=(("The same table with all digits, SI", "loads.csv"),)),
     ]
     return Section("Loads on the barrier", "loads", blocks)
+
+
+def _design_blocks(case: Case) -> list[Block]:
+    loads = case.design_loads
+    if isinstance(loads, str):
+        return [Text(f"Design loads are not computed: {loads}")]
+    cells = [cells for row, cells in zip(loads.rows, loads._cells(), strict=True) if row.touched]
+    return [
+        Table(
+            loads.title, loads._head(), cells, note=" ".join([*loads._legend(), loads.basis]), numbers=True
+        ),
+        figure(loads.plot(), "Design loads: elements, histories of the governing one, response spectrum"),
+        Caution(loads.caution),
+        Items(links=(("Design loads with all digits, SI", "design_loads.csv"),)),
+    ]
 
 
 def loads_csv(result: Result) -> bytes:

@@ -6,7 +6,15 @@ import dataclasses
 import warnings
 from dataclasses import dataclass
 
-from ..assessment import OccupantRisk, Rating, RatingStudy, occupant_risk, rate
+from ..assessment import (
+    DesignLoad,
+    OccupantRisk,
+    Rating,
+    RatingStudy,
+    design_load,
+    occupant_risk,
+    rate,
+)
 from ..result.result import Result
 from ..simulation import Simulation
 from ..study import Study
@@ -41,6 +49,8 @@ class Case:
         Of the study, by the first standard that rates the run.
     risk : OccupantRisk or str
         Or why there is none.
+    design_loads : DesignLoad or str
+        Or why there are none.
     tests : list of Compared
     finer : Result
         The same scene with a hundredth of the tolerance.
@@ -55,6 +65,7 @@ class Case:
     not_rated: dict[str, str]
     rating_study: RatingStudy | None
     risk: OccupantRisk | str
+    design_loads: DesignLoad | str
     tests: list[Compared]
     finer: Result
     warnings: list[str]
@@ -65,7 +76,12 @@ def is_oblique(result: Result) -> bool:
     return not 45.0 <= result.scene.impact_angle <= 135.0
 
 
-def case_of(result: Result, study: Study | None, standards: tuple[str, ...] | None) -> Case:
+def case_of(
+    result: Result,
+    study: Study | None,
+    standards: tuple[str, ...] | None,
+    design_loads: DesignLoad | None,
+) -> Case:
     """Return the case of a run.
 
     Raises
@@ -91,6 +107,7 @@ def case_of(result: Result, study: Study | None, standards: tuple[str, ...] | No
         not_rated=reasons,
         rating_study=None if study is None or not ratings else _rated_study(study, ratings[0].standard),
         risk=_risk(framed),
+        design_loads=_loads(framed) if design_loads is None else design_loads,
         tests=[] if result.scene.barrier is None else nearest(result.scene),
         finer=_finer(result),
         warnings=list(dict.fromkeys(str(one.message) for one in told)),
@@ -130,6 +147,15 @@ def _risk(result: Result) -> OccupantRisk | str:
     except ValueError as reason:
         return str(reason)
     return risk
+
+
+def _loads(result: Result) -> DesignLoad | str:
+    if result.scene.barrier is None:
+        return "there is no barrier"
+    try:
+        return design_load(result)
+    except ValueError as reason:  # rows too far apart for the assumed period
+        return str(reason)
 
 
 def _finer(result: Result) -> Result:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from statistics import median
 
+from ..assessment import DesignLoad
 from ..assessment.criteria import Criterion
 from ..assessment.rating import MODEL_CAUTION
 from ..result.element_loads import touched_elements
@@ -67,6 +68,13 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
             "What does the barrier have to carry?",
             f"up to {most.peak_force_50ms / 1e3:,.0f} kN (50-ms mean) at {most.height_at_peak:.2f} m on "
             f"{most.name}, with an overturning moment of {most.peak_overturning_moment_50ms / 1e3:,.0f} kN m",
+        )
+    if isinstance(case.design_loads, DesignLoad) and loads:
+        row, period = case.design_loads.governing, case.design_loads.natural_period
+        yield (
+            "What does its foundation have to carry?",
+            f"{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
+            f"{row.height:.2f} m, natural period {period:g} s, ductility {case.design_loads.ductility:g}",
         )
     yield "Would occupants be at risk?", _risk_line(case)
     yield "How well is it computed?", _computed_line(case)
