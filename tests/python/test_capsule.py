@@ -47,6 +47,10 @@ def mesh() -> Simulation:
     return Simulation(CAR, Barrier.from_mesh(corners, faces), 14.0)
 
 
+def planter() -> Simulation:
+    return Simulation(CAR, Barrier.planter(), 12.0)
+
+
 def every_setting() -> Simulation:
     settings = Settings(
         time_step=2e-5, output_interval=2e-4, gravity=9.7, mu_tire=0.5, mu_body=0.3, mu_tire_barrier=0.4,
@@ -66,7 +70,7 @@ def no_barrier() -> Simulation:
     return Simulation(CAR, None, 10.0, duration=0.05)
 
 
-KINDS = [preset, changed_zone, articulated, free_standing, mesh, every_setting, arrays, no_barrier]
+KINDS = [preset, changed_zone, articulated, free_standing, mesh, planter, every_setting, arrays, no_barrier]
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")  # of the paper's force law, and of a coarse skin

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 from .. import units
 from ..assessment import rate, test_matrix
 from ..barrier import Barrier
-from ..barrier.kinds import Bollards, Jersey, Pole, RigidWall
+from ..barrier.kinds import Bollards, Jersey, Planter, Pole, RigidWall
 from ..signals.reference import nhtsa_tests
 from ..simulation import Simulation, presets
 from ..vehicle import Vehicle
@@ -227,7 +227,7 @@ def family(barrier: Barrier | None) -> Family:
         return "posts"
     if isinstance(barrier, Jersey):
         return "concrete"
-    return "wall" if isinstance(barrier, RigidWall) else "other"
+    return "wall" if isinstance(barrier, (RigidWall, Planter)) else "other"
 
 
 @cache
