@@ -1,6 +1,13 @@
 #include "birm3d/model/settings.hpp"
 
 #include <pybind11/stl.h>
+#include <pybind11/typing.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <type_traits>
 
 #include "birm3d/base/tolerances.hpp"
 #include "register.hpp"
@@ -9,6 +16,51 @@ namespace birm3d::bindings {
 
 namespace py = pybind11;
 
+namespace {
+
+template <auto member>
+void set(Settings& settings, const py::handle& value) {
+    using Value = std::remove_reference_t<decltype(settings.*member)>;
+    settings.*member = value.cast<Value>();
+}
+
+struct Row {
+    std::string_view name;
+    void (*set)(Settings&, const py::handle&);
+};
+
+// One row for each setting: its name in Python, and the member that it sets.
+constexpr std::array rows = {
+    Row{"time_step", &set<&Settings::time_step>},
+    Row{"tolerance", &set<&Settings::tolerance>},
+    Row{"output_interval", &set<&Settings::output_interval>},
+    Row{"gravity", &set<&Settings::gravity>},
+    Row{"ground", &set<&Settings::ground>},
+    Row{"mu_tire", &set<&Settings::mu_tire>},
+    Row{"mu_body", &set<&Settings::mu_body>},
+    Row{"mu_tire_barrier", &set<&Settings::mu_tire_barrier>},
+    Row{"braking", &set<&Settings::braking>},
+    Row{"cornering_stiffness", &set<&Settings::cornering_stiffness>},
+    Row{"restitution", &set<&Settings::restitution>},
+    Row{"contact_model", &set<&Settings::contact_model>},
+    Row{"tire_model", &set<&Settings::tire_model>},
+};
+
+// Settings by name; what is not given has its default.
+Settings settings_from(const py::typing::Dict<py::str, py::object>& given) {
+    Settings settings;
+    for (const auto& [key, value] : given) {
+        const auto name = key.cast<std::string>();
+        const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.name == name; });
+        if (row == rows.end()) throw py::type_error("no setting has the name " + name);
+        row->set(settings, value);
+    }
+    require_valid(settings);
+    return settings;
+}
+
+}  // namespace
+
 void register_settings(py::module_& m) {
     py::enum_<ContactModel>(m, "ContactModel")
         .value("projected", ContactModel::projected)
@@ -16,21 +68,7 @@ void register_settings(py::module_& m) {
     py::enum_<TireModel>(m, "TireModel").value("slip", TireModel::slip).value("skid", TireModel::skid);
 
     py::class_<Settings>(m, "Settings", "How a scene is computed (SI). Immutable.")
-        .def(py::init([](std::optional<double> time_step, double tolerance, double output_interval,
-                         double gravity, bool ground, double mu_tire, double mu_body, double mu_tire_barrier,
-                         double braking, double cornering_stiffness, double restitution,
-                         ContactModel contact_model, TireModel tire_model) {
-                 const Settings settings{
-                     time_step,   tolerance,     output_interval, gravity, ground,
-                     mu_tire,     mu_body,       mu_tire_barrier, braking, cornering_stiffness,
-                     restitution, contact_model, tire_model};
-                 require_valid(settings);
-                 return settings;
-             }),
-             py::kw_only(), py::arg("time_step"), py::arg("tolerance"), py::arg("output_interval"),
-             py::arg("gravity"), py::arg("ground"), py::arg("mu_tire"), py::arg("mu_body"),
-             py::arg("mu_tire_barrier"), py::arg("braking"), py::arg("cornering_stiffness"),
-             py::arg("restitution"), py::arg("contact_model"), py::arg("tire_model"));
+        .def(py::init(&settings_from), py::arg("values"));
     // s: so long a run goes on once its outcome is known.
     m.attr("tail_duration") = tolerance::tail_duration;
     m.attr("along_line") = tolerance::along_line;

@@ -151,10 +151,12 @@ def robustness() -> str:
 
 
 def metrics() -> str:
-    """Every scalar with its unit."""
-    from birm3d.metrics import METRIC_UNITS
+    """Every scalar with its unit and its meaning."""
+    from birm3d.result.metric_table import GROUPS, METRICS
 
-    return table(("name", "unit"), [(f"`{name}`", unit or "–") for name, unit in METRIC_UNITS.items()])
+    ordered = sorted(METRICS.items(), key=lambda item: GROUPS.index(item[1].group))
+    rows = [(f"`{name}`", metric.unit or "–", metric.meaning) for name, metric in ordered]
+    return table(("name", "unit", "meaning"), rows)
 
 
 def settings() -> str:

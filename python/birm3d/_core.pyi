@@ -799,7 +799,7 @@ class Settings:
     """
     How a scene is computed (SI). Immutable.
     """
-    def __init__(self, *, time_step: typing.SupportsFloat | typing.SupportsIndex | None, tolerance: typing.SupportsFloat | typing.SupportsIndex, output_interval: typing.SupportsFloat | typing.SupportsIndex, gravity: typing.SupportsFloat | typing.SupportsIndex, ground: bool, mu_tire: typing.SupportsFloat | typing.SupportsIndex, mu_body: typing.SupportsFloat | typing.SupportsIndex, mu_tire_barrier: typing.SupportsFloat | typing.SupportsIndex, braking: typing.SupportsFloat | typing.SupportsIndex, cornering_stiffness: typing.SupportsFloat | typing.SupportsIndex, restitution: typing.SupportsFloat | typing.SupportsIndex, contact_model: ContactModel, tire_model: TireModel) -> None:
+    def __init__(self, **kwargs) -> None:
         ...
 class Simulation:
     """

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from .. import _core
 from ..base.arguments import check_fields
-from ..units import Quantity, si
+from ..units import Quantity, quantity_in, si
 
 __all__ = ["MU_TIRE_BARRIER", "Settings"]
 
 MU_TIRE_BARRIER = 0.6
 """Friction coefficient of tyres on a barrier where none is asked for, see :class:`Settings`."""
 
-_QUANTITIES = {"time_step": "time", "output_interval": "time", "gravity": "acceleration"}
+
+def _in(unit: str, default: float | None) -> Any:
+    """Return a field whose number has a unit; others are pure numbers or choices."""
+    return field(default=default, metadata={"unit": unit})
 
 
 @dataclass(frozen=True)
@@ -65,16 +68,16 @@ class Settings:
         Naming the argument, its limit and the value received.
     """
 
-    time_step: float | None = None
+    time_step: float | None = _in("s", None)
     tolerance: float = 1e-3
-    output_interval: float = 1e-4
-    gravity: float = 9.80665
+    output_interval: float = _in("s", 1e-4)
+    gravity: float = _in("m/s^2", 9.80665)
     ground: bool = True
     mu_tire: float = 0.8
     mu_body: float = 0.4
     mu_tire_barrier: float | None = None
     braking: float = 0.0
-    cornering_stiffness: float = 10.0
+    cornering_stiffness: float = _in("1/rad", 10.0)
     restitution: float = 0.1
     contact_model: Literal["projected", "along_truss"] = "projected"
     tire_model: Literal["slip", "skid"] = "slip"
@@ -99,10 +102,11 @@ class Settings:
         ) -> None: ...
 
     def __post_init__(self) -> None:
-        for name, quantity in _QUANTITIES.items():
-            value: object = getattr(self, name)
-            if isinstance(value, str):
-                object.__setattr__(self, name, si(name, value, quantity))
+        for one in fields(self):
+            value: object = getattr(self, one.name)
+            quantity = quantity_in(one.metadata.get("unit", ""))
+            if isinstance(value, str) and quantity is not None:
+                object.__setattr__(self, one.name, si(one.name, value, quantity))
         check_fields(self)
         _ = self.core
 
@@ -117,21 +121,12 @@ class Settings:
         ):
             if value not in known:
                 raise ValueError(f"{name} must be one of {', '.join(known)}; got {value!r}")
-        return _core.Settings(
-            time_step=self.time_step,
-            tolerance=self.tolerance,
-            output_interval=self.output_interval,
-            gravity=self.gravity,
-            ground=self.ground,
-            mu_tire=self.mu_tire,
-            mu_body=self.mu_body,
-            mu_tire_barrier=MU_TIRE_BARRIER if self.mu_tire_barrier is None else self.mu_tire_barrier,
-            braking=self.braking,
-            cornering_stiffness=self.cornering_stiffness,
-            restitution=self.restitution,
-            contact_model=contact_models[self.contact_model],
-            tire_model=tire_models[self.tire_model],
-        )
+        given: dict[str, Any] = {one.name: getattr(self, one.name) for one in fields(self)}
+        given["contact_model"] = contact_models[self.contact_model]
+        given["tire_model"] = tire_models[self.tire_model]
+        if self.mu_tire_barrier is None:
+            given["mu_tire_barrier"] = MU_TIRE_BARRIER
+        return _core.Settings(given)
 
     def __getstate__(self) -> dict[str, object]:
         return {name: value for name, value in self.__dict__.items() if name != "core"}

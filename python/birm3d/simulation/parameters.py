@@ -54,7 +54,7 @@ __all__ = [
 ]
 
 _VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity", "dent_reach")
-_UNITS = {
+_UNITS: dict[str, str] = {
     "impact_speed": "m/s",
     "impact_angle": "deg",
     "impact_offset": "m",
@@ -70,10 +70,11 @@ _UNITS = {
         for size in kind.sizes
         if size.unit == "m"
     },
-    "settings.time_step": "s",
-    "settings.output_interval": "s",
-    "settings.gravity": "m/s^2",
-    "settings.cornering_stiffness": "1/rad",
+    **{
+        f"settings.{field.name}": field.metadata["unit"]
+        for field in dataclasses.fields(Settings)
+        if "unit" in field.metadata
+    },
     "vehicle.gvw": "kg",
     "vehicle.mass_center_height": "m",
     "vehicle.rate_sensitivity": "s/m",

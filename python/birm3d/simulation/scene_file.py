@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_type_hints
 
 from pydantic import Field, ValidationInfo, create_model, field_validator, model_validator
 
@@ -164,27 +165,20 @@ def _parsed(text: str, name: str) -> float:
     return units.parse(text, quantity, plain=quantity != "speed")
 
 
-class _Settings(Strict):
-    time_step: float | None = None
-    tolerance: float = Settings.tolerance
-    output_interval: float = Settings.output_interval
-    gravity: float = Settings.gravity
-    ground: bool = Settings.ground
-    mu_tire: float = Settings.mu_tire
-    mu_body: float = Settings.mu_body
-    mu_tire_barrier: float | None = Settings.mu_tire_barrier
-    braking: float = Settings.braking
-    cornering_stiffness: float = Settings.cornering_stiffness
-    restitution: float = Settings.restitution
-    contact_model: Literal["projected", "along_truss"] = Settings.contact_model
-    tire_model: Literal["slip", "skid"] = Settings.tire_model
+_KINDS_OF_SETTINGS = get_type_hints(Settings)
+_SETTINGS: dict[str, Any] = {
+    field.name: (_KINDS_OF_SETTINGS[field.name], field.default) for field in dataclasses.fields(Settings)
+}
+_Settings: type[Strict] = create_model(
+    "_Settings", __base__=Strict, __doc__="The fields of :class:`birm3d.Settings`.", **_SETTINGS
+)
 
 
 class _Scene(Strict):
     vehicle: _Vehicle
     barrier: _Barrier | None = None  # type: ignore[valid-type]
     impact: _Impact
-    settings: _Settings = _Settings()
+    settings: _Settings = _Settings()  # type: ignore[valid-type]
 
 
 class _SceneDocument(Document):

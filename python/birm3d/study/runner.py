@@ -16,7 +16,7 @@ from .._version import __version__
 from ..base.checks import is_number
 from ..base.complaints import Complaints
 from ..base.progress import progress_bar
-from ..result.metrics import JOINT_METRICS, METRIC_UNITS, SEGMENT_METRICS
+from ..result.metrics import METRIC_UNITS, METRICS
 from ..simulation.parameters import value_of, varied
 from ..simulation.simulation import Simulation
 from .float_rows import FloatRows
@@ -207,8 +207,8 @@ def run_study(
 
 def checked_metrics(metrics: Sequence[str] | None, joined: bool, free: bool) -> tuple[str, ...]:
     """Return the metrics of a study; those of joints and segments by themselves only where there may be."""
-    absent = (() if joined else JOINT_METRICS) + (() if free else SEGMENT_METRICS)
-    usual = tuple(name for name in _STUDY_METRICS if name not in absent)
+    absent = {"joint": not joined, "segments": not free}
+    usual = tuple(name for name in _STUDY_METRICS if not absent.get(METRICS[name].of, False))
     wanted = usual if metrics is None else tuple(dict.fromkeys(metrics))
     if not wanted:
         raise ValueError("metrics must name at least one, got none")

@@ -25,15 +25,15 @@ from collections.abc import Collection, Mapping
 
 from ... import units
 from ...base.frozen_mapping import FrozenMapping
-from ...result.metrics import METRIC_UNITS
+from ...result.metrics import METRIC_UNITS, METRICS
 from ...scene.scene import Scene
 
 __all__ = ["BOOKKEEPING", "LEDGERS", "compared_metrics", "least_scales", "relative_errors"]
 
-BOOKKEEPING = frozenset({"steps", "run_time", "end_time"})
+BOOKKEEPING = frozenset(name for name, metric in METRICS.items() if metric.error == "effort")
 """How an answer was found, and how long its tail is: no part of the answer."""
 
-LEDGERS = frozenset({"energy_residual", "momentum_residual", "contact_overlap"})
+LEDGERS = frozenset(name for name, metric in METRICS.items() if metric.error == "balance")
 """Errors themselves: their converged value is nil, and they are shown as they are."""
 
 

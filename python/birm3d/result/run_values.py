@@ -1,0 +1,117 @@
+"""What several metrics of a run share, of a run with histories and of one without."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import Any
+
+from .. import _core
+from ..scene.scene import Scene
+from .record import RunRecord
+from .stored import Stored
+
+__all__ = ["ALONG_LINE", "ResultOutcome", "RunValues", "Vector", "energy_residual", "relative_to_start"]
+
+Vector = tuple[float, float, float]
+
+ALONG_LINE = _core.along_line
+"""Below this sine of its angle a path runs along the barrier's line."""
+# Residuals of a vehicle that stands are judged against the energy it has at this speed, m/s.
+_STANDSTILL = 0.1
+
+
+class ResultOutcome:
+    """What a result has in common with the outcome of a run without histories."""
+
+    def __init__(self, result: RunRecord, extremes: _core.Extremes) -> None:
+        self.extremes = extremes
+        x, y, z = result.final_velocity.tolist()
+        self.final_velocity: Vector = (x, y, z)
+        assert isinstance(result._event, _core.Event)
+        self.event: _core.Event = result._event
+        self.statistics: _core.StepStatistics | Stored = result.statistics
+        self.run_time = result.run_time
+        self._result = result
+
+    @cached_property
+    def deflection(self) -> float:
+        """At the end [m]."""
+        return greatest_deflection(self._result, "deflection")
+
+    @cached_property
+    def peak_deflection(self) -> float:
+        """Over the run [m]."""
+        return greatest_deflection(self._result, "peak_deflection")
+
+
+class RunValues:
+    """What several metrics of a run share. What the core has found is taken from it once, when asked for."""
+
+    normal_force: _core.ExtremeNormalForce
+    motion: _core.ExtremeMotion
+    attitude: _core.ExtremeAttitude
+    energy: _core.ExtremeEnergy
+    filtered_force: _core.ExtremeFilteredForce
+    element_loads: _core.ExtremeElementLoads
+
+    def __init__(self, scene: Scene, outcome: _core.Outcome | ResultOutcome) -> None:
+        self.scene = scene
+        self.outcome = outcome
+        self.extremes = outcome.extremes
+        self.event = outcome.event
+        self.statistics = outcome.statistics
+        self.barrier = scene.barrier
+
+    def __getattr__(self, group: str) -> Any:
+        found = getattr(self.extremes, group)
+        setattr(self, group, found)
+        return found
+
+    @property
+    def joined(self) -> bool:
+        """Whether the vehicle has two units."""
+        return self.scene.vehicle.joint is not None
+
+    @cached_property
+    def segments(self) -> bool:
+        """Whether the barrier stands free."""
+        return self.barrier is not None and bool(self.barrier.core.segments)
+
+    @property
+    def along(self) -> bool:
+        """Whether the path runs along the barrier's line."""
+        return abs(math.sin(math.radians(self.scene.impact_angle))) < ALONG_LINE
+
+    @property
+    def dynamic_crush(self) -> float:
+        """Greatest deflection of any truss [m]."""
+        return self.outcome.peak_deflection
+
+    @property
+    def turn_time(self) -> float | None:
+        """When the motion towards the barrier ends [s], if it began and anything was crushed."""
+        began = self.dynamic_crush > 0.0 and self.motion.approach_speed > 0.0
+        return self.motion.turn_time if began else None
+
+    @property
+    def residual_crush(self) -> float:
+        """When the vehicle had left; of one that has not, at the end."""
+        left = self.event.exit_deflection
+        return max(0.0, self.outcome.deflection if left is None else left)
+
+
+def energy_residual(scene: Scene, energy: _core.ExtremeEnergy) -> float:
+    """Greatest residual of the energy ledger, relative to the initial kinetic energy."""
+    return relative_to_start(scene, energy.residual, energy.start)
+
+
+def relative_to_start(scene: Scene, energy: float, start: float) -> float:
+    """Return an energy relative to that at the start, which counts as no less than that of a standstill."""
+    return energy / max(start, 0.5 * scene.vehicle.mass * _STANDSTILL**2)
+
+
+def greatest_deflection(result: RunRecord, name: str) -> float:
+    """Greatest deflection of all units [m]."""
+    units = range(len(result.scene.vehicle.units))
+    return max(float(getattr(result.unit(u), name).max()) for u in units)
