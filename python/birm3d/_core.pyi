@@ -799,7 +799,7 @@ class Settings:
     """
     How a scene is computed (SI). Immutable.
     """
-    def __init__(self, **kwargs) -> None:
+    def __init__(self, values: dict[str, typing.Any]) -> None:
         ...
 class Simulation:
     """
