@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import pickle
 import re
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
@@ -385,6 +386,9 @@ def test_interrupted(monkeypatch: pytest.MonkeyPatch) -> None:
     assert stopped.value.design_load is not None
     assert stopped.value.design_load.force_50ms[0] > 0.0
     assert stopped.value.design_load.finished == 2
+    again = pickle.loads(pickle.dumps(stopped.value))
+    assert again.design_load.to_dict() == stopped.value.design_load.to_dict()
+    assert str(again) == str(stopped.value)
     assert "envelope of 2 scenes" in stopped.value.design_load.title
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import pickle
 import re
 from concurrent.futures import ThreadPoolExecutor
 
@@ -85,6 +86,7 @@ def test_what_a_limit_says(height: Limit) -> None:
     assert values == sorted(values)
     assert "<img" in height._repr_html_()
     assert json.loads(json.dumps(height.to_dict()))["value"] == height.value
+    assert pickle.loads(pickle.dumps(height)).summary() == text
     assert height.plot().axes[0].get_xlabel() == "height [m]"
 
 
@@ -105,6 +107,8 @@ def test_nothing_of_the_range_holds() -> None:
     ) as no:
         birm3d.least_height(simulation, (0.3, 1.0), points=3)
     assert len(no.value.runs) == len(no.value.study) == 3
+    again = pickle.loads(pickle.dumps(no.value))
+    assert (str(again), again.runs) == (str(no.value), no.value.runs)
 
 
 @pytest.fixture(scope="module")

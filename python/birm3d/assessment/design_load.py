@@ -48,6 +48,9 @@ class DesignLoadInterrupted(KeyboardInterrupt):
         super().__init__(message)
         self.design_load = design_load
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (type(self), (self.args[0], self.design_load))
+
 
 class _Found(NamedTuple):
     """What one run adds to the envelope."""

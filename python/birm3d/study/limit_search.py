@@ -85,6 +85,9 @@ class NotInRangeError(ValueError):
         self.runs = runs
         self.study = study
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (type(self), (self.args[0], self.runs, self.study))
+
 
 class Limit:
     """The greatest (or least) value at which a barrier still does what it should.
