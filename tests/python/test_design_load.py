@@ -225,6 +225,27 @@ def test_histories_are_those_of_the_governing_scene(envelope: DesignLoad) -> Non
     assert single.load.force.shape[1] == 3
 
 
+def test_spectrum(envelope: DesignLoad) -> None:
+    """At the period of the table it is the table's force; at a long one impulse times circular frequency."""
+    row = envelope.governing
+    found = envelope.spectrum([0.02, envelope.natural_period, 20.0], row.name)
+    assert found[1] == row.equivalent_static_force
+    assert row.load is not None
+    angle = math.radians(row.direction)
+    along = np.array([math.cos(angle), math.sin(angle), 0.0])
+    impulse = row.load.interval * float(row.load.force[1:].sum(axis=0) @ along)
+    elastic = envelope.spectrum([20.0], ductility=1.0)
+    assert elastic[0] == pytest.approx(impulse * 2.0 * math.pi / 20.0, rel=0.02)
+    for arguments, message in (
+        (([1e-4],), "periods must be finite and >= 0.0004 s"),
+        (([0.1], None, 0.5), "ductility must be >= 1"),
+        (([0.1], "post"), "element must be one of"),
+        (("long",), "periods must be an array of numbers"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            envelope.spectrum(*arguments)
+
+
 def test_several_vehicles() -> None:
     barrier = Barrier.rigid_wall()
     cases = [Simulation(car().with_gvw(mass), barrier, 12.0) for mass in (1500.0, 2200.0)]

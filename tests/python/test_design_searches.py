@@ -72,6 +72,13 @@ def test_least_height_of_other_barriers() -> None:
         assert found.fails_at <= 0.637 <= found.value
 
 
+def test_usual_heights_are_those_that_the_barrier_can_have() -> None:
+    simulation = Simulation(one_node(1.0), Barrier.jersey(), 5.0, settings=FREE)
+    found = birm3d.least_height(simulation, points=2, resolution=0.5)
+    assert found.runs[0].value == pytest.approx(13 * 0.0254 + 0.02)
+    assert found.runs[-1].value == 1.3
+
+
 def test_what_a_limit_says(height: Limit) -> None:
     text = height.summary()
     assert text.startswith("least height: ")
@@ -332,5 +339,7 @@ def test_command_line(monkeypatch, capsys, tmp_path) -> None:
     arguments = [*free, "--angle", "25", "--deflection", "0.5", "--points", "3", "--range", "1t:6t"]
     assert command(monkeypatch, "search", "segment-mass", *arguments) == 0
     assert "segment mass" in capsys.readouterr().out
+    assert command(monkeypatch, "search", "height", *scene, "--barrier", "planter", "--points", "2") == 0
+    assert capsys.readouterr().out.startswith("least height: ")
     assert command(monkeypatch, "search", "gap", *row, "--range", "1") == 2
     assert "--range must be LEAST:GREATEST, got '1'" in capsys.readouterr().err

@@ -23,15 +23,13 @@ from ..unit_check import warn_if_any_unusual
 from ..units import Quantity, si
 from .design_caution import barrier_caution, merged, run_cautions
 from .design_table import DesignLoad, LoadScene
-from .element_design import ElementDesign, System, element_design, envelope, peak_filter
-from .oscillator import LEAST_INTERVALS
+from .element_design import ElementDesign, System, check_system, element_design, envelope, peak_filter
 
 __all__ = ["DesignLoadInterrupted", "design_load"]
 
 Floats = npt.NDArray[np.float64]
 
 _ASSUMED_PERIOD = 0.1  # s
-_MOST_DUCTILITY = 100.0
 _MOST_OF_ONE_PULSE = 2.0  # dynamic load factor of any single pulse, at the most
 
 
@@ -241,17 +239,9 @@ def _system(
     cases: Sequence[Simulation | Result], natural_period: Quantity | None, ductility: float, damping: float
 ) -> System:
     period = _ASSUMED_PERIOD if natural_period is None else si("natural_period", natural_period, "time")
-    least = LEAST_INTERVALS * max(case.scene.settings.output_interval for case in cases)
-    if not least <= period < math.inf:
-        raise ValueError(
-            f"natural_period must be finite and >= {least:g} s ({LEAST_INTERVALS} output intervals), "
-            f"got {period}"
-        )
-    if not 1.0 <= ductility <= _MOST_DUCTILITY:
-        raise ValueError(f"ductility must be >= 1 and <= {_MOST_DUCTILITY:g}, got {ductility}")
-    if not 0.0 <= damping < 1.0:
-        raise ValueError(f"damping must be >= 0 and < 1, got {damping}")
-    return System(float(period), float(ductility), float(damping))
+    system = System(float(period), float(ductility), float(damping))
+    check_system(system, max(case.scene.settings.output_interval for case in cases))
+    return system
 
 
 def _at_ends(load: DesignLoad, varied: Mapping[str, Sequence[float]]) -> Iterator[str]:

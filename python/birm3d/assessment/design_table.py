@@ -11,11 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import pictures, units
+from ..base.checks import array
 from ..base.frozen_mapping import FrozenMapping
 from ..io.atomic_write import whole_file
 from ..scene.scene import Scene
 from .criteria import table_html, table_text
-from .element_design import ENVELOPED, ElementDesign, System
+from .element_design import ENVELOPED, ElementDesign, System, check_system, design_direction
+from .oscillator import resistance
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -239,6 +241,39 @@ class DesignLoad:
         named = sorted({number for row in self.rows for number in row.scene.values()})
         lines = [f"({number}) {self.scenes[number]}" for number in named]
         return lines + [f"({number}) failed: {reason}" for number, reason in self.failed.items()]
+
+    def spectrum(
+        self, periods: npt.ArrayLike, element: int | str | None = None, ductility: float | None = None
+    ) -> Floats:
+        """Return the equivalent static force of an element at other natural periods, shape (n,) [N].
+
+        The load is that of the scene which governs at the period of the table.
+
+        Parameters
+        ----------
+        periods
+            Shape (n,) [s]; each at least 4 output intervals.
+        element
+            Its place or name; ``None``: the governing one.
+        ductility
+            From 1 to 100; ``None``: that of the table.
+
+        Raises
+        ------
+        ValueError
+            If a period is too short, the ductility is out of range, or nothing touches the element.
+        """
+        row = self.governing if element is None else self[element]
+        if row.load is None:
+            raise ValueError(f"element must be one that was touched, got {row.name!r}")
+        wanted = array("periods", periods, "n")
+        system = System(self.natural_period, self.ductility if ductility is None else ductility, self.damping)
+        for period in wanted.tolist():
+            check_system(system._replace(natural_period=period), row.load.interval, "periods")
+        load = row.load.force[1:] @ design_direction(row.load, self.normal)
+        return np.array(
+            [resistance(load, row.load.interval, period, *system[1:]) for period in wanted.tolist()]
+        )
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return a row an element, SI; with several scenes the one that each value comes from as text.

@@ -17,12 +17,13 @@ from ..result.result import Result
 from ..scene.scene import Scene
 from ..signals.filters import cfc, moving_average
 from ..simulation.simulation import run_scene
-from .oscillator import resistance
+from .oscillator import LEAST_INTERVALS, resistance
 
 __all__ = [
     "ENVELOPED",
     "ElementDesign",
     "System",
+    "check_system",
     "degrees_between",
     "design_direction",
     "element_design",
@@ -37,6 +38,7 @@ ENVELOPED = ("impulse", "peak_force", "force_50ms", "moment", "equivalent_static
 """Values of which the greatest over all scenes counts, each from a scene of its own."""
 
 _CLASS = 60.0
+_MOST_DUCTILITY = 100.0
 _WINDOW = 0.05  # s
 
 
@@ -134,6 +136,26 @@ class ElementDesign:
             f"ElementDesign({self.name!r}, force_50ms={self.force_50ms:.4g} N at {self.height:.2f} m, "
             f"moment={self.moment:.4g} N m, equivalent_static_force={self.equivalent_static_force:.4g} N)"
         )
+
+
+def check_system(system: System, interval: float, name: str = "natural_period") -> None:
+    """Refuse a system that has no response, or whose period is too short for loads at an interval [s].
+
+    Raises
+    ------
+    ValueError
+        Naming the argument (``name``: that of the period), its limit and the value.
+    """
+    least = LEAST_INTERVALS * interval
+    if not least <= system.natural_period < math.inf:
+        raise ValueError(
+            f"{name} must be finite and >= {least:g} s ({LEAST_INTERVALS} output intervals), "
+            f"got {system.natural_period}"
+        )
+    if not 1.0 <= system.ductility <= _MOST_DUCTILITY:
+        raise ValueError(f"ductility must be >= 1 and <= {_MOST_DUCTILITY:g}, got {system.ductility}")
+    if not 0.0 <= system.damping < 1.0:
+        raise ValueError(f"damping must be >= 0 and < 1, got {system.damping}")
 
 
 def peak_filter(interval: float) -> str:

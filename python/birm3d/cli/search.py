@@ -67,14 +67,16 @@ def gap(
 
 @search.command()
 @scene_options
-@_range("0.3:1.3", "m")
+@click.option(
+    "--range", "limits", help="LEAST:GREATEST of the search (m).  [default: 0.15:1.3, what it can have]"
+)
 @click.option("--penetration", type=QuantityOption("length"), help="Greatest that is allowed as well.")
 @_POINTS
 @_JSON
 @_PLOT
 def height(
     scene: Path | None,
-    limits: str,
+    limits: str | None,
     penetration: float | None,
     points: int,
     as_json: bool,
@@ -84,9 +86,8 @@ def height(
     """Find the least height of a barrier that the vehicle does not get over."""
     from ..study.design_limits import least_height
 
-    found = least_height(
-        simulation_of(scene, options), _limits(limits, "length"), penetration=penetration, points=points
-    )
+    wanted = None if limits is None else _limits(limits, "length")
+    found = least_height(simulation_of(scene, options), wanted, penetration=penetration, points=points)
     _show(found, as_json, plot)
 
 

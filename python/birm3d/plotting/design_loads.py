@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..assessment.element_design import degrees_between, design_direction
-from ..assessment.oscillator import LEAST_INTERVALS, resistance
+from ..assessment.oscillator import LEAST_INTERVALS
 from ..result.element_loads import overturning
 from ..signals.filters import moving_average
 from .figure import new_figure
@@ -57,7 +57,7 @@ def plot_design_load(loads: DesignLoad) -> Figure:
     for axes in (force, moment):
         axes.set_xlim(0.0, end)
         axes.set_xlabel("time [ms]")
-    _spectrum(spectrum, loads, row, row.load.force[1:] @ direction)
+    _spectrum(spectrum, loads, row)
     for axes in (bars, force, moment, spectrum):
         legend([axes])
     scene = "" if len(loads.scenes) == 1 else f"\nhistories of {loads.scenes[_scene(row)]}"
@@ -133,7 +133,7 @@ def _mark(axes: Axes, ms: npt.NDArray[np.floating[Any]], curve: Floats, unit: st
     )
 
 
-def _spectrum(axes: Axes, loads: DesignLoad, row: ElementDesign, force: Floats) -> None:
+def _spectrum(axes: Axes, loads: DesignLoad, row: ElementDesign) -> None:
     assert row.load is not None
     interval = row.load.interval
     low = max(_PERIODS[0], LEAST_INTERVALS * interval)
@@ -143,8 +143,8 @@ def _spectrum(axes: Axes, loads: DesignLoad, row: ElementDesign, force: Floats) 
         wanted.append((loads.ductility, RED, f"ductility {loads.ductility:g}", _SOFT_POINTS))
     for ductility, color, label, points in wanted:
         periods = np.unique([own, *np.geomspace(min(low, own), max(_PERIODS[1], own), points)])
-        found = [resistance(force, interval, period, ductility, loads.damping) for period in periods]
-        axes.semilogx(periods, np.array(found) / row.peak_force, color=color, ls="-", lw=1.8, label=label)
+        found = loads.spectrum(periods, row.index, ductility)
+        axes.semilogx(periods, found / row.peak_force, color=color, ls="-", lw=1.8, label=label)
     axes.plot([own], [row.dynamic_load_factor], "o", color=RED, ms=7, mec="w", ls="none", zorder=6)
     axes.annotate(
         f"{own:g} s: {row.dynamic_load_factor:.2f}",

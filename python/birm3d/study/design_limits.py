@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..barrier.base import Barrier
-from ..barrier.kinds import Bollards, Jersey
+from ..barrier.kinds import PROFILES, Bollards, Jersey
 from ..base.arguments import checked
 from ..simulation.simulation import Simulation
 from ..units import Quantity, si
@@ -19,10 +19,16 @@ __all__ = ["OFFSET_SHARES", "greatest_gap", "least_height", "least_segment_mass"
 OFFSET_SHARES = (-0.25, 0.0, 0.25, 0.5)
 """Impact offsets over the spacing, from the middle of a row of posts: at a post, in a gap, and between."""
 
-_SKIN = "Computed, not tested. The vehicle's skin does not tear and its parts stay on: leave a margin."
+_HEIGHTS, _ABOVE_BREAK, _INCH = (0.15, 1.3), 0.02, 0.0254  # m
+
+# What guidance asks for is from memory: IWA 14-2 and its forerunner PAS 69.
+_SKIN = (
+    "Computed, not tested. The vehicle's skin does not tear and its parts stay on: leave a margin. Guidance "
+    "for security bollards asks for clear gaps of 1.2 m or less, whatever is computed."
+)
 _OVER = (
     "Computed, not tested. The vehicle has no suspension that dives or rises, and the barrier does not give "
-    "way under it: leave a margin."
+    "way under it: leave a margin. Guidance for security bollards asks for 0.5 m or more."
 )
 _SLIDES = (
     "Computed, not tested. Segments slide but do not tip, and their joints do not break: look at "
@@ -108,7 +114,7 @@ def greatest_gap(
 @checked
 def least_height(
     simulation: Simulation,
-    heights: Sequence[Quantity] = (0.3, 1.3),
+    heights: Sequence[Quantity] | None = None,
     *,
     penetration: Quantity | None = None,
     offsets: Sequence[Quantity] | None = None,
@@ -126,7 +132,8 @@ def least_height(
     simulation
         A scene with a barrier that has a height: bollards, a rigid wall, a planter, a Jersey barrier.
     heights
-        (least, greatest) [m], within what the barrier can have.
+        (least, greatest) [m], within what the barrier can have; ``None``: 0.15 to 1.3 m, of a Jersey barrier
+        from just above the break of its face.
     penetration
         Greatest ``vehicle_penetration`` [m] that is allowed as well; ``None``: any.
     offsets
@@ -166,7 +173,7 @@ def least_height(
     return search_limit(
         simulation,
         question,
-        [si("heights", height, "length") for height in heights],
+        _usual_heights(barrier) if heights is None else [si("heights", h, "length") for h in heights],
         points=points,
         resolution=_resolution(resolution, "length"),
         executor=executor,
@@ -266,6 +273,13 @@ def _check_width(simulation: Simulation, row: Bollards, gaps: Sequence[float]) -
             f"gaps must leave a row wider than the vehicle ({width:.3g} m), got {gaps[0]:g} m between "
             f"{row.count} bollards: give more bollards"
         )
+
+
+def _usual_heights(barrier: Barrier) -> tuple[float, float]:
+    low, high = _HEIGHTS
+    if isinstance(barrier, Jersey) and isinstance(barrier.profile, str):
+        low = max(low, PROFILES[barrier.profile][-1][1] * _INCH + _ABOVE_BREAK)
+    return low, high
 
 
 def _usual_offsets(
