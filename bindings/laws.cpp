@@ -3,10 +3,11 @@
 #include <limits>
 
 #include "arrays.hpp"
-#include "birm3d/kernels/impulse.hpp"
-#include "birm3d/kernels/integrate.hpp"
 #include "birm3d/model/truss_law.hpp"
+#include "kernels/impulse.hpp"
+#include "kernels/integrate.hpp"
 #include "register.hpp"
+#include "state/rigid_contact.hpp"
 
 namespace birm3d::bindings {
 

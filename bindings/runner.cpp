@@ -23,10 +23,10 @@ struct Stopped {};
 
 // What a run came to, or what went wrong with it.
 struct Run {
-    Outcome outcome;
+    RunSummary outcome;
     std::exception_ptr error;
 
-    const Outcome& checked() const {
+    const RunSummary& checked() const {
         if (error) std::rethrow_exception(error);
         return outcome;
     }
@@ -68,23 +68,23 @@ void register_runner(py::module_& m) {
         .def("set", [](Stop& stop) { stop.set = true; })
         .def("is_set", [](const Stop& stop) { return stop.set.load(); });
 
-    py::class_<Outcome>(m, "Outcome", "What a run came to (SI).")
-        .def_readonly("end_reason", &Outcome::end_reason)
-        .def_readonly("state_hash", &Outcome::state_hash)
-        .def_readonly("statistics", &Outcome::statistics)
-        .def_readonly("ledger", &Outcome::ledger)
-        .def_readonly("run_time", &Outcome::run_time, "s, wall time of the stepping")
+    py::class_<RunSummary>(m, "Outcome", "What a run came to (SI).")
+        .def_readonly("end_reason", &RunSummary::end_reason)
+        .def_readonly("state_hash", &RunSummary::state_hash)
+        .def_readonly("statistics", &RunSummary::statistics)
+        .def_readonly("ledger", &RunSummary::ledger)
+        .def_readonly("run_time", &RunSummary::run_time, "s, wall time of the stepping")
         .def_property_readonly(
             "final_velocity",
-            [](const Outcome& outcome) {
+            [](const RunSummary& outcome) {
                 const Vec3& v = outcome.final_velocity;
                 return std::tuple(v.x(), v.y(), v.z());
             },
             "m/s, of unit 0, world")
-        .def_readonly("deflection", &Outcome::deflection, "m, greatest of all trusses, at the end")
-        .def_readonly("peak_deflection", &Outcome::peak_deflection, "m, and during the run")
-        .def_readonly("event", &Outcome::event, "what became of the vehicle at the barrier")
-        .def_readonly("extremes", &Outcome::extremes);
+        .def_readonly("deflection", &RunSummary::deflection, "m, greatest of all trusses, at the end")
+        .def_readonly("peak_deflection", &RunSummary::peak_deflection, "m, and during the run")
+        .def_readonly("event", &RunSummary::event, "what became of the vehicle at the barrier")
+        .def_readonly("extremes", &RunSummary::extremes);
 
     py::class_<Run>(m, "Run", "A run that is over.")
         .def("outcome", &Run::checked, py::return_value_policy::reference_internal,

@@ -22,14 +22,16 @@ std::shared_ptr<const Barrier> only(const std::vector<std::shared_ptr<Barrier>>&
 }
 
 // A column of one unit's trusses in the caller's order.
-OutputArray in_input_order(const Simulation& simulation, std::size_t unit, Lanes TrussBlockState::* column) {
+OutputArray in_input_order(const Simulation& simulation, std::size_t unit,
+                           BlockColumn TrussBlockState::* column) {
     const TrussMesh& mesh = simulation.scene().vehicle->units.at(unit).trusses;
     const TrussState& trusses = simulation.state().units.at(unit).trusses;
     OutputArray result(static_cast<py::ssize_t>(mesh.count));
     auto at = result.mutable_unchecked<1>();
     for (std::size_t truss = 0; truss < mesh.count; ++truss) {
         const std::size_t i = mesh.slot(truss);
-        at(static_cast<py::ssize_t>(mesh.input_index[truss])) = (trusses.block[i / lanes].*column)[i % lanes];
+        at(static_cast<py::ssize_t>(mesh.input_index[truss])) =
+            (trusses.block[i / block_size].*column)[i % block_size];
     }
     return read_only(std::move(result));
 }
@@ -43,8 +45,9 @@ OutputArray nodes_in_input_order(Simulation& simulation, std::size_t unit) {
     for (std::size_t truss = 0; truss < mesh.count; ++truss) {
         const std::size_t i = mesh.slot(truss);
         const auto row = static_cast<py::ssize_t>(mesh.input_index[truss]);
-        const TrussBlockState& block = trusses.block[i / lanes];
-        at(row, 0) = block.x[i % lanes], at(row, 1) = block.y[i % lanes], at(row, 2) = block.z[i % lanes];
+        const TrussBlockState& block = trusses.block[i / block_size];
+        at(row, 0) = block.x[i % block_size], at(row, 1) = block.y[i % block_size],
+                at(row, 2) = block.z[i % block_size];
     }
     return read_only(std::move(nodes));
 }
@@ -78,7 +81,7 @@ void register_simulation(py::module_& m) {
         .def_readonly("longest_step", &StepStatistics::longest_step, "s")
         .def_readonly("skin_nodes", &StepStatistics::skin_nodes,
                       "nodes of the skin in blocks that anything came into in any step")
-        .def_readonly("tread_nodes", &StepStatistics::tread_nodes, "the same of tyres")
+        .def_readonly("tread_nodes", &StepStatistics::tire_nodes, "the same of tyres")
         .def_readonly("near_elements", &StepStatistics::near_elements,
                       "of the barrier, that any node was within reach of, or the rigid body met")
         .def_readonly("free_steps", &StepStatistics::free_steps,
@@ -89,7 +92,7 @@ void register_simulation(py::module_& m) {
         .def_readonly("wheels_on_ground", &StepStatistics::wheels_on_ground,
                       "wheels that carried load, summed over the steps")
         .def_readonly("deepest_point", &StepStatistics::deepest_point,
-                      "m, of the anchors of closed trusses inside a barrier")
+                      "m, of the anchors of bottomed-out trusses inside a barrier")
         .def_readonly("greatest_overlap", &StepStatistics::greatest_overlap,
                       "m, by which the rigid body's boxes and an element of the barrier overlapped")
         .def_readonly("greatest_overlap_time", &StepStatistics::greatest_overlap_time, "s")

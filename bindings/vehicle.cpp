@@ -40,22 +40,23 @@ void register_vehicle(py::module_& m) {
         .def(py::init([](const InputArray& nodes, const InputArray& anchors,
                          const std::vector<TrussCurve>& curves, const Integers& curve_of,
                          const InputArray& scale, const InputArray& wheels, double rate_sensitivity,
-                         double dent_reach, const Integers& wheel_of, const Integers& along_of) {
+                         double indentation_length, const Integers& wheel_of, const Integers& along_of) {
                  TrussInput trusses{points(nodes, "nodes"), points(anchors, "anchors"), curves,
                                     integers<std::size_t>(curve_of, "curve_of"), numbers(scale, "scale")};
                  trusses.rate_sensitivity = rate_sensitivity;
-                 trusses.dent_reach = dent_reach;
+                 trusses.indentation_length = indentation_length;
                  trusses.wheel_of = integers<int>(wheel_of, "wheel_of");
                  trusses.along_of = integers<int>(along_of, "along_of");
                  return TrussMesh(trusses, discs(wheels));
              }),
              py::kw_only(), py::arg("nodes"), py::arg("anchors"), py::arg("curves"), py::arg("curve_of"),
-             py::arg("scale"), py::arg("wheels"), py::arg("rate_sensitivity"), py::arg("dent_reach"),
+             py::arg("scale"), py::arg("wheels"), py::arg("rate_sensitivity"), py::arg("indentation_length"),
              py::arg("wheel_of"), py::arg("along_of"),
              "nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,); wheels (w, "
              "4): "
              "centre and radius, m;\n"
-             "rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; wheel_of (n,): "
+             "rate_sensitivity s/m; indentation_length: how far an indentation reaches beyond its post (m), "
+             "0: not at all; wheel_of (n,): "
              "number of "
              "the wheel whose tread the node is on, -1 for the skin; empty: all skin; along_of (n,): number "
              "of "

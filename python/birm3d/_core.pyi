@@ -923,7 +923,7 @@ class StepStatistics:
     @property
     def deepest_point(self) -> float:
         """
-        m, of the anchors of closed trusses inside a barrier
+        m, of the anchors of bottomed-out trusses inside a barrier
         """
     @property
     def free_steps(self) -> int:
@@ -1075,10 +1075,10 @@ class TrussMesh:
     """
     The crushable skin of one rigid body. Immutable.
     """
-    def __init__(self, *, nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex, dent_reach: typing.SupportsFloat | typing.SupportsIndex, wheel_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64], along_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64]) -> None:
+    def __init__(self, *, nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex, indentation_length: typing.SupportsFloat | typing.SupportsIndex, wheel_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64], along_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64]) -> None:
         """
         nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,); wheels (w, 4): centre and radius, m;
-        rate_sensitivity s/m; dent_reach: of a dent beside its post (m), 0: none; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; empty: all skin; along_of (n,): number of the node of the skin whose second truss this is, -1 for others; empty: none.
+        rate_sensitivity s/m; indentation_length: how far an indentation reaches beyond its post (m), 0: not at all; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; empty: all skin; along_of (n,): number of the node of the skin whose second truss this is, -1 for others; empty: none.
         """
 class Unit:
     """

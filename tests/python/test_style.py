@@ -123,6 +123,50 @@ def test_layers_include_downwards_only() -> None:
     assert layering_errors(ROOT) == []
 
 
+# What a C++ user includes. Other installed headers are only what these are made of.
+PUBLIC_HEADERS = (
+    "simulation/simulation",
+    "ensemble/runner",
+    "scene/scene",
+    "record/event",
+    "record/extremes",
+    "record/recorder",
+    "model/vehicle",
+    "model/vehicle_text",
+    "model/truss_law",
+    "model/mass_properties",
+    "model/barrier",
+    "model/settings",
+    "base/error",
+    "base/rotation",
+)
+
+
+def headers_below(root: Path, public: tuple[str, ...]) -> set[str]:
+    """The headers that users include, and all that these include, relative to the installed folder."""
+    found: set[str] = set()
+    waiting = [f"{name}.hpp" for name in public]
+    while waiting:
+        name = waiting.pop()
+        if name in found:
+            continue
+        found.add(name)
+        text = (root / name).read_text(encoding="utf-8")
+        for bracket, included in INCLUDE.findall(text):
+            assert bracket == "<" or included.startswith("birm3d/"), f"{name} includes the private {included}"
+            if bracket == '"':
+                waiting.append(included.removeprefix("birm3d/"))
+    return found
+
+
+def test_only_headers_that_users_need_are_installed() -> None:
+    """Detection, contact, stepping and step control are private: their headers stand beside the sources."""
+    folder = ROOT / "cpp/include/birm3d"
+    installed = {path.relative_to(folder).as_posix() for path in folder.rglob("*.hpp")}
+    assert installed == headers_below(folder, PUBLIC_HEADERS)
+    assert not {"kernels", "contact", "step", "control"} & {name.split("/")[0] for name in installed}
+
+
 @pytest.mark.parametrize(
     ("file", "line", "finding"),
     [

@@ -1,4 +1,4 @@
-#include "birm3d/base/channel_filter.hpp"
+#include "base/channel_filter.hpp"
 
 #include <algorithm>
 #include <cmath>

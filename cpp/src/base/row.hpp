@@ -7,7 +7,8 @@
 
 #include <cstddef>
 
-#include "birm3d/base/node_sums.hpp"
+#include "base/node_sums.hpp"
+#include "birm3d/base/block_size.hpp"
 
 #if defined(__AVX512F__)
 #include <immintrin.h>
@@ -41,28 +42,28 @@ struct Row {
     Register part[parts];
 
     Row() = default;
-    BIRM3D_IN_LANE_LOOP Row(double value) {
+    BIRM3D_INLINE Row(double value) {
         for (std::size_t p = 0; p < parts; ++p)
             part[p] = value - Register{};  // is value, where value + 0.0 need not be
     }
-    BIRM3D_IN_LANE_LOOP static Row load(const double* from) {
+    BIRM3D_INLINE static Row load(const double* from) {
         Row row;
         for (std::size_t p = 0; p < parts; ++p)
             row.part[p] = *reinterpret_cast<const InMemory*>(from + p * BIRM3D_REGISTER_LENGTH);
         return row;
     }
-    BIRM3D_IN_LANE_LOOP void store(double* to) const {
+    BIRM3D_INLINE void store(double* to) const {
         for (std::size_t p = 0; p < parts; ++p)
             *reinterpret_cast<InMemory*>(to + p * BIRM3D_REGISTER_LENGTH) = part[p];
     }
 };
 
-#define BIRM3D_ROW_OPERATOR(op)                                       \
-    BIRM3D_IN_LANE_LOOP Row operator op(const Row& a, const Row& b) { \
-        Row row;                                                      \
-        for (std::size_t p = 0; p < parts; ++p)                       \
-            row.part[p] = a.part[p] op b.part[p];                     \
-        return row;                                                   \
+#define BIRM3D_ROW_OPERATOR(op)                                 \
+    BIRM3D_INLINE Row operator op(const Row& a, const Row& b) { \
+        Row row;                                                \
+        for (std::size_t p = 0; p < parts; ++p)                 \
+            row.part[p] = a.part[p] op b.part[p];               \
+        return row;                                             \
     }
 BIRM3D_ROW_OPERATOR(+)
 BIRM3D_ROW_OPERATOR(-)
@@ -71,18 +72,18 @@ BIRM3D_ROW_OPERATOR(/)
 #undef BIRM3D_ROW_OPERATOR
 
 // As in base/select.hpp.
-BIRM3D_IN_LANE_LOOP Row where_above(const Row& a, const Row& b, const Row& yes, const Row& no) {
+BIRM3D_INLINE Row where_above(const Row& a, const Row& b, const Row& yes, const Row& no) {
     Row row;
     for (std::size_t p = 0; p < parts; ++p)
         row.part[p] = a.part[p] > b.part[p] ? yes.part[p] : no.part[p];
     return row;
 }
 
-BIRM3D_IN_LANE_LOOP Row greater(const Row& a, const Row& b) {
+BIRM3D_INLINE Row greater(const Row& a, const Row& b) {
     return where_above(a, b, a, b);
 }
 
-BIRM3D_IN_LANE_LOOP Row square_root(const Row& a) {
+BIRM3D_INLINE Row square_root(const Row& a) {
     Row row;
     for (std::size_t p = 0; p < parts; ++p)
         for (std::size_t k = 0; k < BIRM3D_REGISTER_LENGTH; ++k)
@@ -90,11 +91,11 @@ BIRM3D_IN_LANE_LOOP Row square_root(const Row& a) {
     return row;
 }
 
-BIRM3D_IN_LANE_LOOP Row lesser(const Row& a, const Row& b) {
+BIRM3D_INLINE Row lesser(const Row& a, const Row& b) {
     return where_above(a, b, b, a);
 }
 
-BIRM3D_IN_LANE_LOOP bool any_above(const Row& a, const Row& b) {
+BIRM3D_INLINE bool any_above(const Row& a, const Row& b) {
 #if defined(__AVX512F__)
     return _mm512_cmp_pd_mask(a.part[0], b.part[0], _CMP_GT_OQ) != 0;
 #else
@@ -109,7 +110,7 @@ BIRM3D_IN_LANE_LOOP bool any_above(const Row& a, const Row& b) {
 #endif
 }
 
-BIRM3D_IN_LANE_LOOP double least_of(const Row& row) {
+BIRM3D_INLINE double least_of(const Row& row) {
     alignas(64) double v[row_length];
     row.store(v);
     for (std::size_t half = row_length / 2; half > 0; half /= 2)
@@ -118,7 +119,7 @@ BIRM3D_IN_LANE_LOOP double least_of(const Row& row) {
     return v[0];
 }
 
-BIRM3D_IN_LANE_LOOP double sum_of(const Row& row) {
+BIRM3D_INLINE double sum_of(const Row& row) {
     alignas(64) double v[row_length];
     row.store(v);
     return row_sum(v);

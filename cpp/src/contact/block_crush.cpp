@@ -24,16 +24,16 @@ PlaneSums& sums_of_plane(const ContactPass& pass, std::size_t k, const HalfSpace
 
 // `at`: the obstacle that the nodes meet, or several_obstacles.
 void find_rate_factor(const ContactPass& pass, const ContactBlock& block, std::size_t at,
-                      const Places& places, Lanes& factor) {
-    const auto set = [&](const Twist& motion, Lanes& to) {
+                      const Places& places, BlockColumn& factor) {
+    const auto set = [&](const Twist& motion, BlockColumn& to) {
         set_rate_factor(pass.mesh.rate_sensitivity, block.end->force, motion, places, block.contact, to);
     };
     if (at != several_obstacles) return set(pass.relative_motion[at], factor);
     if (pass.now.segments.empty()) return set(pass.motion, factor);
-    alignas(64) Lanes own;
+    alignas(64) BlockColumn own;
     for (std::size_t k = 0; k < block.seen.size(); ++k) {
         set(pass.relative_motion[block.seen[k]], own);
-        for (std::size_t i = 0; i < lanes; ++i)
+        for (std::size_t i = 0; i < block_size; ++i)
             if (block.nearest[i] == k) factor[i] = own[i];
     }
 }
@@ -45,7 +45,7 @@ bool crush_with_rate(const ContactPass& pass, const ContactBlock& block, std::si
     if (pass.mesh.rate_sensitivity == 0.0) return crush(nullptr, sums);
     CrushSums without;
     crush(nullptr, without);
-    alignas(64) Lanes factor;
+    alignas(64) BlockColumn factor;
     find_rate_factor(pass, block, at, places, factor);
     return crush(&factor, sums);
 }
@@ -53,7 +53,7 @@ bool crush_with_rate(const ContactPass& pass, const ContactBlock& block, std::si
 // Returns whether any node ceased to push.
 bool crush_on(const ContactPass& pass, const PlaneSums& plane, ContactBlock& block, CrushSums& to) {
     return crush_with_rate(pass, block, plane.near, {block.end->x, block.end->y, block.end->z}, to,
-                           [&](const Lanes* factor, CrushSums& sums) {
+                           [&](const BlockColumn* factor, CrushSums& sums) {
                                return crush(plane.surface, pass.mesh, block.index, factor, *block.start,
                                             *block.end, block.contact, sums);
                            });
@@ -62,7 +62,7 @@ bool crush_on(const ContactPass& pass, const PlaneSums& plane, ContactBlock& blo
 // The same; `at`: the obstacle that the nodes meet, or several_obstacles.
 bool crush_on(const ContactPass& pass, std::size_t at, ContactBlock& block, CrushSums& to) {
     return crush_with_rate(pass, block, at, block.contact.places(), to,
-                           [&](const Lanes* factor, CrushSums& sums) {
+                           [&](const BlockColumn* factor, CrushSums& sums) {
                                return crush(block.faces, pass.unit.body, pass.mesh, block.index, factor,
                                             *block.start, *block.end, block.contact, sums);
                            });
@@ -72,7 +72,7 @@ bool crush_on(const ContactPass& pass, std::size_t at, ContactBlock& block, Crus
 std::size_t obstacle_met(const ContactBlock& block) {
     if (block.seen.size() == 1) return block.seen[0];
     std::optional<std::size_t> only;
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         if (!(block.start->force[i] > 0.0 || block.faces.gap[i] < 0.0)) continue;
         if (only && *only != block.nearest[i]) return several_obstacles;
         only = block.nearest[i];

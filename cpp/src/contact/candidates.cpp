@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/scene/bodies.hpp"
 #include "contact/indentation.hpp"
 #include "contact/predicted_motion.hpp"
+#include "scene/bodies.hpp"
 
 namespace birm3d {
 
@@ -42,7 +42,7 @@ bool motion_matters(const Scene& scene, const TrussMesh& mesh, const std::vector
     const bool has_friction = std::any_of(near.begin(), near.end(), [&](const NearObstacle& obstacle) {
         return scene.obstacles[obstacle.index].friction > 0.0;
     });
-    const bool tires_have = !mesh.tread.empty() && scene.settings.mu_tire_barrier > 0.0 && !near.empty();
+    const bool tires_have = !mesh.tire_nodes.empty() && scene.settings.mu_tire_barrier > 0.0 && !near.empty();
     return has_friction || tires_have || mesh.rate_sensitivity > 0.0;
 }
 
@@ -92,7 +92,7 @@ ContactPass prepare_pass(const Scene& scene, std::size_t u, const State& from, R
     memory.sums.clear(memory.near.size());
     pass.near = memory.near;
     pass.relative_motion = memory.relative_motion;
-    find_indentations(pass, memory.indentations, trial.state.units[u].dented);
+    find_indentations(pass, memory.indentations, trial.state.units[u].indented);
     return pass;
 }
 

@@ -1,8 +1,8 @@
 // What a unit, a group of its blocks and one block can meet: each list is chosen from the one before it.
 #pragma once
 
-#include "birm3d/contact/trial.hpp"
 #include "contact/contact_pass.hpp"
+#include "contact/trial.hpp"
 
 namespace birm3d {
 

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 
-#include "birm3d/kernels/friction.hpp"
+#include "base/block_loop.hpp"
 #include "contact/corner_contacts.hpp"
 #include "contact/tire_contact.hpp"
+#include "kernels/friction.hpp"
 
 namespace birm3d {
 
@@ -28,11 +29,11 @@ struct NodeLoads {
 };
 
 // Keeps the pressure of nodes whose nearest obstacle is the k-th, and sums their loads.
-BIRM3D_LANE_LOOP NodeLoads select_loads(const std::array<std::size_t, lanes>& nearest, std::size_t k,
-                                        const BlockContact& contact, Lanes& pressure) {
-    alignas(64) Lanes force, x, y, z, tx, ty, tz;
+BIRM3D_BLOCK_LOOP NodeLoads select_loads(const std::array<std::size_t, block_size>& nearest, std::size_t k,
+                                         const BlockContact& contact, BlockColumn& pressure) {
+    alignas(64) BlockColumn force, x, y, z, tx, ty, tz;
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const double own = nearest[i] == k ? contact.pressure[i] : 0.0;
         pressure[i] = force[i] = own;
         x[i] = own * contact.nx[i];
@@ -42,13 +43,14 @@ BIRM3D_LANE_LOOP NodeLoads select_loads(const std::array<std::size_t, lanes>& ne
         ty[i] = own * contact.ty[i];
         tz[i] = own * contact.tz[i];
     }
-    return {lane_sum(force), lane_sum(x), lane_sum(y), lane_sum(z), lane_sum(tx), lane_sum(ty), lane_sum(tz)};
+    return {block_sum(force), block_sum(x),  block_sum(y), block_sum(z),
+            block_sum(tx),    block_sum(ty), block_sum(tz)};
 }
 
 // Skin that a post indents goes in with it and slides on it only along the panel: friction acts across that direction.
-BIRM3D_LANE_LOOP void slide_along_panel(const NodeFaces& faces, BlockContact& contact) {
+BIRM3D_BLOCK_LOOP void slide_along_panel(const NodeFaces& faces, BlockContact& contact) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const bool indented = faces.per_force[i] > 0.0;
         contact.nx[i] = indented ? faces.bx[i] : contact.nx[i];
         contact.ny[i] = indented ? faces.by[i] : contact.ny[i];

@@ -1,8 +1,9 @@
 // The loads of a unit on each obstacle, with friction, and their sums for the step.
 #pragma once
 
-#include "birm3d/contact/trial.hpp"
 #include "contact/contact_pass.hpp"
+#include "contact/trial.hpp"
+#include "state/block_contact.hpp"
 
 namespace birm3d {
 

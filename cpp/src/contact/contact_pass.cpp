@@ -1,10 +1,11 @@
 // The blocks of one unit, one after the other: each finds what it can meet, is crushed on it and adds its forces.
 #include "contact/contact_pass.hpp"
 
+#include "base/block_loop.hpp"
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/contact/contact_forces.hpp"
 #include "contact/block_crush.hpp"
 #include "contact/candidates.hpp"
+#include "contact/contact_forces.hpp"
 #include "contact/contact_loads.hpp"
 #include "contact/indentation.hpp"
 #include "contact/nearest_surface.hpp"
@@ -15,12 +16,12 @@ namespace birm3d {
 
 namespace {
 
-BIRM3D_LANE_LOOP double least(const Lanes& values) {
-    alignas(64) Lanes negative;
+BIRM3D_BLOCK_LOOP double least(const BlockColumn& values) {
+    alignas(64) BlockColumn negative;
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < block_size; ++i)
         negative[i] = -values[i];
-    return -lane_max(negative);
+    return -block_max(negative);
 }
 
 // A block that pushes nowhere and is inside nothing stays as it is.
@@ -31,7 +32,7 @@ bool stays_free(const ContactBlock& block) {
 
 void count_met_nodes(const ContactPass& pass, std::size_t b, StepStatistics& statistics) {
     if (pass.before.trusses.block[b].met) return;
-    (b < pass.mesh.shell_blocks ? statistics.skin_nodes : statistics.tread_nodes) += pass.mesh.nodes_in(b);
+    (b < pass.mesh.shell_blocks ? statistics.skin_nodes : statistics.tire_nodes) += pass.mesh.nodes_in(b);
 }
 
 // Takes one block through the step.
@@ -41,7 +42,7 @@ void apply_contact(const ContactPass& pass, std::size_t b, ContactState& state, 
     snap_back(pass, block);
     find_block_candidates(pass, trial.skin, block);
     if (block.seen.empty() && !block.is_altered()) return;
-    trial.state.statistics.node_evaluations += lanes;
+    trial.state.statistics.node_evaluations += block_size;
     for (const std::size_t k : block.seen)
         state.sums.obstacles[k].seen = true;
     PlaneSums* const plane = only_plane(pass, block, state.sums);

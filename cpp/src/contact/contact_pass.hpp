@@ -8,10 +8,11 @@
 #include <span>
 #include <vector>
 
-#include "birm3d/contact/contact_memory.hpp"
-#include "birm3d/kernels/detect.hpp"
-#include "birm3d/scene/obstacles.hpp"
+#include "contact/contact_memory.hpp"
 #include "contact/corner.hpp"
+#include "kernels/detect.hpp"
+#include "scene/obstacles.hpp"
+#include "state/block_contact.hpp"
 
 namespace birm3d {
 
@@ -84,11 +85,11 @@ struct ContactBlock {
 
     NodeFaces faces;
     BlockContact contact;
-    std::array<std::size_t, lanes> nearest;  // place in `seen` of each node's obstacle
-    alignas(64) Lanes second_gap;            // of each node, to the second nearest of several obstacles (m)
-    alignas(64) Lanes released;              // nodes that an indentation releases (1, else 0)
-    std::optional<Vec3> flat_normal;         // of all nodes in `contact`, where they met one plane
-    std::vector<Corner> corners;             // nodes that several surfaces hold
+    std::array<std::size_t, block_size> nearest;  // place in `seen` of each node's obstacle
+    alignas(64) BlockColumn second_gap;  // of each node, to the second nearest of several obstacles (m)
+    alignas(64) BlockColumn released;    // nodes that an indentation releases (1, else 0)
+    std::optional<Vec3> flat_normal;     // of all nodes in `contact`, where they met one plane
+    std::vector<Corner> corners;         // nodes that several surfaces hold
     std::vector<StoppedNode> stopped;
 };
 

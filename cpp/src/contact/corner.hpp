@@ -3,8 +3,8 @@
 //   place   u = sum of a_j h_j,             q_k . u = -g_k          for each face k
 //   force   F sum of lambda_k p_k n_k,      sum of lambda_k q_k . h_j = b . h_j  for each face j that the truss pushes on
 // with b the unit vector from the node to its anchor, g the gaps, q their gradients by the node's place, -p n those by
-// the obstacle's place and h the ways of the node (q = p n = h = n at a face; at a dent, which widens as the post goes
-// deeper, they differ, see kernels/dent.hpp). For any motion of the faces
+// the obstacle's place and h the ways of the node (q = p n = h = n at a face; at an indentation, which widens as the post goes
+// deeper, they differ, see kernels/indentation.hpp). For any motion of the faces
 //   F sum of lambda_k (-dg_k) = F b . du.
 // A truss pulls on no face: lambda >= 0. Where a face drives the node and the truss does not push on it, the node moves
 // freely there, and no work is done.
@@ -26,8 +26,8 @@ struct CornerFace {
     Vec3 way = Vec3::UnitX();       // h
     Vec3 place = Vec3::Zero();      // where the force acts (m), and the torque of a unit of normal force (m)
     Vec3 torque = Vec3::Zero();
-    bool dented = false;  // is it a dent, which says these two itself?
-    double share = 0.0;   // lambda
+    bool indented = false;  // is it an indentation, which says these two itself?
+    double share = 0.0;     // lambda
 };
 
 struct Corner {

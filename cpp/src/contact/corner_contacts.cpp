@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/block_loop.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "contact/contact_loads.hpp"
 #include "contact/indentation.hpp"
@@ -23,10 +24,10 @@ constexpr double same_face = 0.9;
 // not say which.
 constexpr double negligible_gap = 1e-30;
 
-BIRM3D_LANE_LOOP void move_out(const NodeFaces& faces, const BlockContact& contact, Lanes& x, Lanes& y,
-                               Lanes& z) {
+BIRM3D_BLOCK_LOOP void move_out(const NodeFaces& faces, const BlockContact& contact, BlockColumn& x,
+                                BlockColumn& y, BlockColumn& z) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const double way = faces.gap[i] < -tolerance::touching_gap ? faces.gap[i] : 0.0;
         x[i] -= way * contact.nx[i];
         y[i] -= way * contact.ny[i];
@@ -35,19 +36,20 @@ BIRM3D_LANE_LOOP void move_out(const NodeFaces& faces, const BlockContact& conta
 }
 
 // Flags nodes that lie inside another surface once they have been moved out of theirs; returns the number of all flags.
-BIRM3D_LANE_LOOP double note_inside(const NodeFaces& faces, const Lanes& gap, Lanes& cornered) {
+BIRM3D_BLOCK_LOOP double note_inside(const NodeFaces& faces, const BlockColumn& gap, BlockColumn& cornered) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < block_size; ++i)
         cornered[i] =
             faces.gap[i] < -tolerance::touching_gap && gap[i] < -tolerance::touching_gap ? 1.0 : cornered[i];
-    alignas(64) Lanes sum = cornered;
-    return lane_sum(sum);
+    alignas(64) BlockColumn sum = cornered;
+    return block_sum(sum);
 }
 
 // Nodes that push and are near to a second surface.
-BIRM3D_LANE_LOOP void note_pushing(const Lanes& force, const Lanes& second, double margin, Lanes& cornered) {
+BIRM3D_BLOCK_LOOP void note_pushing(const BlockColumn& force, const BlockColumn& second, double margin,
+                                    BlockColumn& cornered) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < block_size; ++i)
         cornered[i] = force[i] > 0.0 && second[i] <= margin ? 1.0 : cornered[i];
 }
 
@@ -63,7 +65,7 @@ CornerFace own_face(const ContactBlock& block, std::size_t i) {
     face.gap = faces.gap[i];
     face.normal = face.gradient = face.way = block.contact.normal(i);
     if (faces.per_force[i] > 0.0) {
-        face.dented = true;
+        face.indented = true;
         face.way = {faces.bx[i], faces.by[i], faces.bz[i]};
         face.per_force = faces.per_force[i];
         // The gap follows the node's own path in full, but the post's motion only in part: the indentation widens.
@@ -163,7 +165,7 @@ void resolve_corner(const ContactPass& pass, std::size_t i, ContactBlock& block)
     Corner corner;
     corner.lane = i;
     const CornerFace own = own_face(block, i);
-    const bool stays = own.dented || stood_on(pass, block, own.seen, own.normal, node);
+    const bool stays = own.indented || stood_on(pass, block, own.seen, own.normal, node);
     if (stays || own.gap <= tolerance::touching_gap) corner.add(own);
     if (nodes.force[i] > 0.0) {
         add_held(pass, block, node, own, stays, corner);
@@ -191,8 +193,8 @@ void add_corner_forces(const ContactPass& pass, const std::vector<double>& force
         const std::size_t i = block.corners[c].lane;
         if (of >= block.corners[c].count || face.seen != k || !(face.share * force[c] > 0.0)) continue;
         const Vec3 node(block.end->x[i], block.end->y[i], block.end->z[i]);
-        const Vec3 at = face.dented ? face.place : node;
-        const Vec3 torque = face.dented ? face.torque : Vec3(node.cross(face.normal));
+        const Vec3 at = face.indented ? face.place : node;
+        const Vec3 torque = face.indented ? face.torque : Vec3(node.cross(face.normal));
         const double pressure = force[c] * face.share * face.per_force;
         part.pressure[i] = pressure;
         part.nx[i] = face.normal.x(), part.ny[i] = face.normal.y(), part.nz[i] = face.normal.z();
@@ -211,21 +213,21 @@ void resolve_corner_contacts(const ContactPass& pass, ContactBlock& block) {
     const auto is_post = [&](std::size_t k) { return std::holds_alternative<Post>(pass.shape(k)); };
     // Posts stand apart: no node is held by two.
     if (std::all_of(block.seen.begin(), block.seen.end(), is_post)) return;
-    alignas(64) Lanes cornered;
+    alignas(64) BlockColumn cornered;
     cornered.fill(0.0);
     const TrussBlockState& nodes = *block.start;
     if (nodes.touching) note_pushing(nodes.force, block.second_gap, pass.margin, cornered);
     if (*std::min_element(block.faces.gap.begin(), block.faces.gap.end()) < -tolerance::touching_gap) {
-        alignas(64) Lanes x = nodes.x, y = nodes.y, z = nodes.z;
+        alignas(64) BlockColumn x = nodes.x, y = nodes.y, z = nodes.z;
         move_out(block.faces, block.contact, x, y, z);
-        alignas(64) NearestLanes found;
+        alignas(64) NearestOfBlock found;
         for (const std::size_t k : block.seen) {
             nearest_of(pass.shape(k), pass.near[k].now, pass.near[k].now, x, y, z, found);
             omit_indented(pass, block.index, k, found);
             note_inside(block.faces, found.gap, cornered);
         }
     }
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < block_size; ++i)
         if (cornered[i] > 0.0) resolve_corner(pass, i, block);
 }
 

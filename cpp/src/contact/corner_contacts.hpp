@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contact/contact_pass.hpp"
+#include "state/block_contact.hpp"
 
 namespace birm3d {
 

@@ -1,4 +1,4 @@
-#include "birm3d/contact/entered_face.hpp"
+#include "contact/entered_face.hpp"
 
 #include <limits>
 

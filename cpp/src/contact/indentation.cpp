@@ -1,11 +1,12 @@
-// Posts that indent the skin: see kernels/dent.hpp.
+// Posts that indent the skin: see kernels/indentation.hpp.
 #include "contact/indentation.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 
-#include "birm3d/scene/indentation_gaps.hpp"
+#include "base/block_loop.hpp"
+#include "scene/indentation_gaps.hpp"
 
 namespace birm3d {
 
@@ -16,7 +17,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Did the post stand in front of the panel at the start of the step?
 bool stood_before(const ContactPass& pass, std::size_t k, std::size_t p) {
     const Panel& panel = pass.mesh.panel[p];
-    const Dent then(std::get<Post>(pass.shape(k)), pass.near[k].before, panel, pass.mesh.dent_reach);
+    const Indentation then(std::get<Post>(pass.shape(k)), pass.near[k].before, panel,
+                           pass.mesh.indentation_length);
     return then.beside(panel) < 0.0 && gap_of_panel(then, p, pass.mesh, pass.before, 0.0, 0.0) > 0.0;
 }
 
@@ -29,35 +31,38 @@ bool pushed_before(const ContactPass& pass, std::size_t obstacle) {
 }
 
 // Which panels the post indents: those that it comes into from in front, until it has released them.
-Dented find_indented_panels(const ContactPass& pass, std::size_t k, std::vector<IndentedPanel>& list) {
+IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
+                                    std::vector<IndentedPanel>& list) {
     const TrussMesh& mesh = pass.mesh;
     const NearObstacle& near = pass.near[k];
     const Post& post = std::get<Post>(pass.shape(k));
-    const std::vector<Dented>& all = pass.before.dented;
-    const auto known =
-        std::find_if(all.begin(), all.end(), [&](const Dented& d) { return d.obstacle == near.index; });
-    const Dented last = known != all.end() ? *known : Dented{near.index};
+    const std::vector<IndentedPanels>& all = pass.before.indented;
+    const auto known = std::find_if(all.begin(), all.end(),
+                                    [&](const IndentedPanels& d) { return d.obstacle == near.index; });
+    const IndentedPanels last = known != all.end() ? *known : IndentedPanels{near.index};
     const bool pushes = pushed_before(pass, near.index);
-    Dented now{near.index};
+    IndentedPanels now{near.index};
     for (std::size_t p = 0; p < panels; ++p) {
         const Panel& panel = mesh.panel[p];
         const auto bit = static_cast<std::uint8_t>(1U << p);
         const bool indents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
         if (!panel.any || !stands_across(near.now, panel, indents)) continue;
-        const Dent dent(post, near.now, panel, mesh.dent_reach);
-        if (!indents && !(dent.beside(panel) < 0.0)) continue;
-        if (!indents && dent.is_beyond(panel)) {
+        const Indentation indentation(post, near.now, panel, mesh.indentation_length);
+        if (!indents && !(indentation.beside(panel) < 0.0)) continue;
+        if (!indents && indentation.is_beyond(panel)) {
             now.passed |= bit;
             continue;
         }
         // A post can have come in this far within the step, and nodes can have left it. One that was in before must touch.
-        const double growth = 2.0 * pass.margin * dent.fastest_growth(panel);
+        const double growth = 2.0 * pass.margin * indentation.fastest_growth(panel);
         const double deepest = indents || passed ? 0.0 : growth;
-        const double gap = indents && pushes ? 0.0 : gap_of_panel(dent, p, mesh, pass.before, 0.0, -deepest);
+        const double gap =
+            indents && pushes ? 0.0 : gap_of_panel(indentation, p, mesh, pass.before, 0.0, -deepest);
         if (gap > 0.0) continue;
         if (indents || (!passed && (gap > -deepest || stood_before(pass, k, p)))) {
             now.panels |= bit;
-            list.push_back({k, p, dent, Dent(post, near.before, panel, mesh.dent_reach), growth});
+            list.push_back(
+                {k, p, indentation, Indentation(post, near.before, panel, mesh.indentation_length), growth});
         } else {
             now.passed |= bit;
         }
@@ -67,18 +72,19 @@ Dented find_indented_panels(const ContactPass& pass, std::size_t k, std::vector<
 
 }  // namespace
 
-void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list, std::vector<Dented>& now) {
+void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list,
+                       std::vector<IndentedPanels>& now) {
     list.clear();
     now.clear();
     pass.greatest_following = infinity;
-    if (pass.mesh.dent_reach == 0.0) return;
+    if (pass.mesh.indentation_length == 0.0) return;
     for (std::size_t k = 0; k < pass.near.size(); ++k) {
         if (!std::holds_alternative<Post>(pass.shape(k))) continue;
-        const Dented indented = find_indented_panels(pass, k, list);
+        const IndentedPanels indented = find_indented_panels(pass, k, list);
         if ((indented.panels | indented.passed) != 0) now.push_back(indented);
     }
     pass.indentations = list;
-    for (const Dented& before : pass.before.dented)
+    for (const IndentedPanels& before : pass.before.indented)
         pass.indented_before |= before.panels;
     if (pass.indented_before == 0) return;
     pass.greatest_following = 2.0 * pass.margin;
@@ -88,8 +94,8 @@ void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list, std:
 
 double gap_to_indentation(const IndentedPanel& indented, std::uint8_t of, const Box& box, bool touching) {
     if ((of >> indented.panel & 1U) == 0) return infinity;
-    const double gap = -most_inside(indented.dent, box);
-    if (touching && spans(indented.dent, box)) return -infinity;
+    const double gap = -most_inside(indented.indentation, box);
+    if (touching && spans(indented.indentation, box)) return -infinity;
     return gap <= (touching ? indented.growth : 0.0) ? gap : infinity;
 }
 
@@ -120,53 +126,53 @@ bool only_indented(const ContactPass& pass, std::uint8_t of, std::size_t k) {
 
 namespace {
 
-BIRM3D_LANE_LOOP void omit_panel(const Lanes& panel_of, double panel, Lanes& gap) {
+BIRM3D_BLOCK_LOOP void omit_panel(const BlockColumn& panel_of, double panel, BlockColumn& gap) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < block_size; ++i)
         gap[i] = panel_of[i] == panel ? infinity : gap[i];
 }
 
-BIRM3D_LANE_LOOP void note_nearest(const Lanes& follows, std::size_t seen,
-                                   std::array<std::size_t, lanes>& nearest) {
+BIRM3D_BLOCK_LOOP void note_nearest(const BlockColumn& follows, std::size_t seen,
+                                    std::array<std::size_t, block_size>& nearest) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < block_size; ++i)
         nearest[i] = follows[i] > 0.0 ? seen : nearest[i];
 }
 
 // What a node stood at before it followed an indentation can hold it as well: the ground below a bumper.
-BIRM3D_LANE_LOOP void note_second(const Lanes& follows, const Lanes& gap, Lanes& second) {
+BIRM3D_BLOCK_LOOP void note_second(const BlockColumn& follows, const BlockColumn& gap, BlockColumn& second) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < block_size; ++i)
         second[i] = follows[i] > 0.0 && gap[i] < second[i] ? gap[i] : second[i];
 }
 
-BIRM3D_LANE_LOOP void note_released(const Lanes& follows, Lanes& released) {
+BIRM3D_BLOCK_LOOP void note_released(const BlockColumn& follows, BlockColumn& released) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < block_size; ++i)
         released[i] = follows[i] > 0.0 ? follows[i] - 1.0 : released[i];
 }
 
 }  // namespace
 
-void omit_indented(const ContactPass& pass, std::size_t b, std::size_t k, NearestLanes& found) {
+void omit_indented(const ContactPass& pass, std::size_t b, std::size_t k, NearestOfBlock& found) {
     for (const IndentedPanel& indented : pass.indentations)
         if (indented.near == k && (pass.mesh.panels_of[b] >> indented.panel & 1U) != 0)
             omit_panel(pass.mesh.block[b].panel, static_cast<double>(indented.panel), found.gap);
 }
 
 void follow_indentations(const ContactPass& pass, ContactBlock& block) {
-    alignas(64) Lanes follows, rank;
+    alignas(64) BlockColumn follows, rank;
     block.released.fill(0.0);
     rank.fill(infinity);
-    const Lanes& panel_of = pass.mesh.block[block.index].panel;
+    const BlockColumn& panel_of = pass.mesh.block[block.index].panel;
     for (const BlockIndentation& reached : block.indentations) {
         const IndentedPanel& indented = pass.indentations[reached.indentation];
         const bool first = reached.indentation == block.indentations.front().indentation;
         if (!first && reached.gap > furthest_off(*block.start, panel_of, indented.panel, block.faces.gap))
             continue;
-        alignas(64) const Lanes gap = block.faces.gap;
-        hang_on(indented.dent, indented.before, *block.start, panel_of, indented.panel, block.faces,
-                block.contact, rank, follows);
+        alignas(64) const BlockColumn gap = block.faces.gap;
+        follow_indentation(indented.indentation, indented.before, *block.start, panel_of, indented.panel,
+                           block.faces, block.contact, rank, follows);
         note_second(follows, gap, block.second_gap);
         note_released(follows, block.released);
         const auto seen = std::find(block.seen.begin(), block.seen.end(), indented.near) - block.seen.begin();

@@ -4,9 +4,10 @@
 #include <array>
 #include <limits>
 
+#include "base/block_loop.hpp"
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/contact/entered_face.hpp"
 #include "contact/corner_contacts.hpp"
+#include "contact/entered_face.hpp"
 #include "contact/indentation.hpp"
 
 namespace birm3d {
@@ -18,10 +19,10 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Cosine above which the normals of two instants are of the same face.
 constexpr double same_face = 0.9;
 
-BIRM3D_LANE_LOOP void set_nothing_met(NodeFaces& faces, BlockContact& contact,
-                                      std::array<std::size_t, lanes>& nearest) {
+BIRM3D_BLOCK_LOOP void set_nothing_met(NodeFaces& faces, BlockContact& contact,
+                                       std::array<std::size_t, block_size>& nearest) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         faces.gap[i] = infinity;
         faces.per_force[i] = 0.0;
         contact.nx[i] = faces.bx[i] = 1.0;
@@ -31,10 +32,10 @@ BIRM3D_LANE_LOOP void set_nothing_met(NodeFaces& faces, BlockContact& contact,
 }
 
 // Nodes to which this obstacle, the k-th, is nearer than those before.
-BIRM3D_LANE_LOOP void take_nearer(const NearestLanes& found, std::size_t k, NodeFaces& faces,
-                                  BlockContact& contact, std::array<std::size_t, lanes>& nearest) {
+BIRM3D_BLOCK_LOOP void take_nearer(const NearestOfBlock& found, std::size_t k, NodeFaces& faces,
+                                   BlockContact& contact, std::array<std::size_t, block_size>& nearest) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const bool nearer = found.gap[i] < faces.gap[i];
         nearest[i] = nearer ? k : nearest[i];
         faces.gap[i] = nearer ? found.gap[i] : faces.gap[i];
@@ -45,34 +46,34 @@ BIRM3D_LANE_LOOP void take_nearer(const NearestLanes& found, std::size_t k, Node
 }
 
 // The second nearest of several: before the k-th is taken. Of nodes outside without force the gap need not be known.
-BIRM3D_LANE_LOOP void take_second(const NearestLanes& found, const NodeFaces& faces, Lanes& second) {
+BIRM3D_BLOCK_LOOP void take_second(const NearestOfBlock& found, const NodeFaces& faces, BlockColumn& second) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const double farther = found.gap[i] < faces.gap[i] ? faces.gap[i] : found.gap[i];
         second[i] = farther < second[i] ? farther : second[i];
     }
 }
 
 // Does any of the nodes push on what it sees, or is it inside?
-BIRM3D_LANE_LOOP bool any_meets(const Lanes& force, const Lanes& gap) {
-    alignas(64) Lanes meets;
+BIRM3D_BLOCK_LOOP bool any_meets(const BlockColumn& force, const BlockColumn& gap) {
+    alignas(64) BlockColumn meets;
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < block_size; ++i)
         meets[i] = gap[i] < (force[i] > 0.0 ? infinity : 0.0) ? 1.0 : 0.0;
-    return lane_max(meets) > 0.0;
+    return block_max(meets) > 0.0;
 }
 
 // Of nodes that push and see the k-th obstacle: how far was any off the plane that it sees now, an instant before (m)? It
 // was at p + D p + s then, D by columns.
-BIRM3D_LANE_LOOP double furthest_off_plane(const double* D, const double* s, std::size_t k,
-                                           const TrussBlockState& block, const NodeFaces& faces,
-                                           const BlockContact& contact,
-                                           const std::array<std::size_t, lanes>& nearest) {
+BIRM3D_BLOCK_LOOP double furthest_off_plane(const double* D, const double* s, std::size_t k,
+                                            const TrussBlockState& block, const NodeFaces& faces,
+                                            const BlockContact& contact,
+                                            const std::array<std::size_t, block_size>& nearest) {
     const double xx = D[0], yx = D[1], zx = D[2], xy = D[3], yy = D[4], zy = D[5], xz = D[6], yz = D[7],
                  zz = D[8], sx = s[0], sy = s[1], sz = s[2];
-    alignas(64) Lanes off;
+    alignas(64) BlockColumn off;
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const double x = block.x[i], y = block.y[i], z = block.z[i];
         const double before = faces.gap[i] + contact.nx[i] * (xx * x + xy * y + xz * z + sx) +
                               contact.ny[i] * (yx * x + yy * y + yz * z + sy) +
@@ -80,13 +81,13 @@ BIRM3D_LANE_LOOP double furthest_off_plane(const double* D, const double* s, std
         const double way = before > 0.0 ? before : -before;
         off[i] = block.force[i] > 0.0 && nearest[i] == k ? way : 0.0;
     }
-    return lane_max(off);
+    return block_max(off);
 }
 
 // The same of the instant before.
-BIRM3D_LANE_LOOP void take_nearer_before(const NearestLanes& found, Lanes& gap, NodeFaces& faces) {
+BIRM3D_BLOCK_LOOP void take_nearer_before(const NearestOfBlock& found, BlockColumn& gap, NodeFaces& faces) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const bool nearer = found.gap[i] < gap[i];
         gap[i] = nearer ? found.gap[i] : gap[i];
         faces.bx[i] = nearer ? found.nx[i] : faces.bx[i];
@@ -96,27 +97,27 @@ BIRM3D_LANE_LOOP void take_nearer_before(const NearestLanes& found, Lanes& gap, 
 }
 
 // Nodes inside that arrive, or seem to have changed over to another face (1, else 0). Returns how many.
-BIRM3D_LANE_LOOP double find_doubtful(const NodeFaces& faces, const BlockContact& contact, const Lanes& force,
-                                      Lanes& doubtful) {
+BIRM3D_BLOCK_LOOP double find_doubtful(const NodeFaces& faces, const BlockContact& contact,
+                                       const BlockColumn& force, BlockColumn& doubtful) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const double turn =
             contact.nx[i] * faces.bx[i] + contact.ny[i] * faces.by[i] + contact.nz[i] * faces.bz[i];
         const bool same = force[i] > 0.0 && turn > same_face;
         doubtful[i] = faces.gap[i] < 0.0 && !same ? 1.0 : 0.0;
     }
-    alignas(64) Lanes sum = doubtful;
-    return lane_sum(sum);
+    alignas(64) BlockColumn sum = doubtful;
+    return block_sum(sum);
 }
 
 // Normals that nodes of one obstacle had before, by its turn since.
-BIRM3D_LANE_LOOP void turn_back(const double* turn, std::size_t seen,
-                                const std::array<std::size_t, lanes>& nearest, const BlockContact& contact,
-                                NodeFaces& faces) {
+BIRM3D_BLOCK_LOOP void turn_back(const double* turn, std::size_t seen,
+                                 const std::array<std::size_t, block_size>& nearest,
+                                 const BlockContact& contact, NodeFaces& faces) {
     const double xx = turn[0], yx = turn[1], zx = turn[2], xy = turn[3], yy = turn[4], zy = turn[5],
                  xz = turn[6], yz = turn[7], zz = turn[8];
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const double x = contact.nx[i], y = contact.ny[i], z = contact.nz[i];
         const bool of_this = nearest[i] == seen;
         faces.bx[i] = of_this ? xx * x + xy * y + xz * z : faces.bx[i];
@@ -143,7 +144,7 @@ bool stay_on_planes(const ContactPass& pass, const ContactBlock& block) {
 // The nearest of all surfaces now, but those whose indentations the nodes follow.
 void find_surfaces_now(const ContactPass& pass, ContactBlock& block) {
     const TrussBlockState& nodes = *block.start;
-    alignas(64) NearestLanes found;
+    alignas(64) NearestOfBlock found;
     block.second_gap.fill(infinity);
     for (std::size_t k = 0; k < block.seen.size(); ++k) {
         const std::size_t at = block.seen[k];
@@ -159,8 +160,8 @@ void find_surfaces_now(const ContactPass& pass, ContactBlock& block) {
 // The same of the start of the step: segments of a wall take over from each other.
 void find_surfaces_before(const ContactPass& pass, ContactBlock& block) {
     const TrussBlockState& nodes = *block.start;
-    alignas(64) NearestLanes found;
-    alignas(64) Lanes gap_before;
+    alignas(64) NearestOfBlock found;
+    alignas(64) BlockColumn gap_before;
     gap_before.fill(infinity);
     for (const std::size_t at : block.seen) {
         if (only_indented(pass, pass.mesh.panels_of[block.index], at)) continue;
@@ -185,9 +186,9 @@ void turn_flat_faces(const ContactPass& pass, ContactBlock& block) {
 // changed to another face. Returns whether it was wrong to any. Meshes tell by themselves.
 bool find_entered_faces(const ContactPass& pass, ContactBlock& block) {
     bool changed = false;
-    alignas(64) Lanes doubtful;
+    alignas(64) BlockColumn doubtful;
     if (find_doubtful(block.faces, block.contact, block.start->force, doubtful) == 0.0) return false;
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         if (!(doubtful[i] > 0.0)) continue;
         const Shape& shape = pass.shape(block.seen[block.nearest[i]]);
         if (std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<TriangleMesh>(shape)) continue;

@@ -1,10 +1,10 @@
 #include "contact/predicted_motion.hpp"
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/kernels/friction.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/kernels/tires.hpp"
-#include "birm3d/scene/bodies.hpp"
+#include "kernels/friction.hpp"
+#include "kernels/integrate.hpp"
+#include "kernels/tires.hpp"
+#include "scene/bodies.hpp"
 
 namespace birm3d {
 

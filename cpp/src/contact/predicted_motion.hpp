@@ -2,7 +2,7 @@
 // answer it.
 #pragma once
 
-#include "birm3d/contact/trial.hpp"
+#include "contact/trial.hpp"
 
 namespace birm3d {
 

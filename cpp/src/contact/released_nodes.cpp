@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/block_loop.hpp"
 #include "birm3d/base/tolerances.hpp"
 
 namespace birm3d {
@@ -13,12 +14,12 @@ namespace {
 constexpr double least_stride = 2e-3;
 
 // How far the truss of any node that pushed has extended (m).
-BIRM3D_LANE_LOOP double greatest_extension(const TrussBlockState& last, const TrussBlockState& next) {
-    alignas(64) Lanes distance;
+BIRM3D_BLOCK_LOOP double greatest_extension(const TrussBlockState& last, const TrussBlockState& next) {
+    alignas(64) BlockColumn distance;
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < block_size; ++i)
         distance[i] = last.force[i] > 0.0 ? last.deflection[i] - next.deflection[i] : 0.0;
-    return lane_max(distance);
+    return block_max(distance);
 }
 
 double gap_at(const ContactPass& pass, std::size_t k, const Vec3& place) {
@@ -104,8 +105,8 @@ bool leaves_indentation(const ContactPass& pass, const ContactBlock& block, std:
 // Any node of the block?
 bool any_leaves_indentation(const ContactPass& pass, const ContactBlock& block) {
     if ((pass.mesh.panels_of[block.index] & pass.indented_before) == 0) return false;
-    alignas(64) Lanes released = block.released;
-    return (!block.indentations.empty() && lane_max(released) > 0.0) ||
+    alignas(64) BlockColumn released = block.released;
+    return (!block.indentations.empty() && block_max(released) > 0.0) ||
            greatest_extension(*block.start, *block.end) > pass.greatest_following;
 }
 
@@ -149,7 +150,7 @@ void snap_back(const ContactPass& pass, ContactBlock& block) {
     if (!start.slack) return;
     const TrussBlock& truss = pass.mesh.block[block.index];
     bool slack = false;
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         if (!is_slack(start, i)) continue;
         const Vec3 anchor(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
         const Vec3 place = anchor - (truss.length[i] - start.residual[i]) *
@@ -186,7 +187,7 @@ bool find_stopped(const ContactPass& pass, const FlatContact* plane, ContactBloc
                   DistantObstacles& distant) {
     block.stopped.clear();
     const TrussBlockState& next = *block.end;
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         if (pass.indented_before != 0 && leaves_indentation(pass, block, i))
             block.stopped.push_back({i, Vec3(next.x[i], next.y[i], next.z[i]), next.deflection[i],
                                      next.residual[i], next.peak_deflection[i],

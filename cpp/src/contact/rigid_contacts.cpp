@@ -1,4 +1,4 @@
-#include "birm3d/contact/rigid_contacts.hpp"
+#include "contact/rigid_contacts.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/kernels/joints.hpp"
-#include "birm3d/kernels/member_friction.hpp"
-#include "birm3d/kernels/tires.hpp"
-#include "birm3d/scene/bodies.hpp"
-#include "birm3d/scene/obstacles.hpp"
 #include "contact/segment_sliding.hpp"
+#include "kernels/core_friction.hpp"
+#include "kernels/integrate.hpp"
+#include "kernels/joints.hpp"
+#include "kernels/tires.hpp"
+#include "scene/bodies.hpp"
+#include "scene/obstacles.hpp"
 
 namespace birm3d {
 
@@ -31,7 +31,7 @@ void set_motions(const State& state, std::vector<ContactBody>& bodies) {
 bool slides(const ContactKick& kicked) {
     const auto is_there = [](const Wrench& friction) { return !friction.force.isZero(0.0); };
     return std::any_of(kicked.on_ground.begin(), kicked.on_ground.end(), is_there) ||
-           std::any_of(kicked.on_members.begin(), kicked.on_members.end(), is_there);
+           std::any_of(kicked.on_cores.begin(), kicked.on_cores.end(), is_there);
 }
 
 // Have the normal impulses stayed since the last round? Remembers them.
@@ -56,7 +56,7 @@ bool stayed(const std::vector<Wrench>& on_base, std::vector<Wrench>& last) {
         change = std::max(change, (on_base[i].force - last[i].force).norm());
         last[i] = on_base[i];
     }
-    constexpr double settled = 1e-6;  // what holds a corner that is all but at rest hangs on rounding
+    constexpr double settled = 1e-6;  // what holds a corner that is all but at rest follows on rounding
     return change <= settled * sum;
 }
 
@@ -93,7 +93,7 @@ double greatest_give(const std::vector<RigidContact>& contacts, std::size_t unit
                      const std::vector<ContactBody>& bodies) {
     double give = 0.0;
     for (const RigidContact& contact : contacts) {
-        if (contact.source != ContactSource::member || contact.body != unit || contact.other < 0) continue;
+        if (contact.source != ContactSource::core || contact.body != unit || contact.other < 0) continue;
         if (!(contact.impulse > 0.0)) continue;
         const ContactBody& other = bodies[static_cast<std::size_t>(contact.other)];
         give = std::max(give, other.inverse_mass +
@@ -102,13 +102,13 @@ double greatest_give(const std::vector<RigidContact>& contacts, std::size_t unit
     return give;
 }
 
-// Friction of both sides of closed trusses and of tyres, by the present impulses; kicks the units by what has changed.
+// Friction of both sides of bottomed-out trusses and of tyres, by the present impulses; kicks the units by what has changed.
 void rub_units(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
     ContactKick& kicked = memory.kick;
     const std::size_t units = state.units.size();
     const std::vector<Twist>& motion = motions_that_rub(memory);
-    std::vector<Wrench>& on_members = memory.on_members;
-    on_members.assign(memory.bodies.size(), {});
+    std::vector<Wrench>& on_cores = memory.on_cores;
+    on_cores.assign(memory.bodies.size(), {});
     for (std::size_t u = 0; u < units; ++u) {
         const Unit& unit = scene.vehicle->units[u];
         BodyState& body = state.units[u].body;
@@ -116,22 +116,22 @@ void rub_units(const Scene& scene, const KickedBy& by, KickMemory& memory, State
         Wrench on_ground;
         if (!rolls_freely) {
             Wrench all = kicked.on_ground[u];
-            all += kicked.on_members[u];
+            all += kicked.on_cores[u];
             on_ground = without_reversal(
                 tire_friction(unit, scene.settings, body, {motion[u], by.at_end[u]}, memory.tire[u]),
                 memory.bodies[u], motion_without(all, memory.bodies[u]));
         }
-        on_members[u] = member_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u],
-                                        greatest_give(kicked.contacts, u, memory.bodies));
+        on_cores[u] = core_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u],
+                                    greatest_give(kicked.contacts, u, memory.bodies));
         kick(unit.body, difference(on_ground, kicked.on_ground[u]), body);
-        kick(unit.body, difference(on_members[u], kicked.on_members[u]), body);
+        kick(unit.body, difference(on_cores[u], kicked.on_cores[u]), body);
         kicked.on_ground[u] = on_ground;
     }
     for (const RigidContact& contact : kicked.contacts)
-        if (contact.source == ContactSource::member && contact.other >= 0)
-            on_members[static_cast<std::size_t>(contact.other)] +=
+        if (contact.source == ContactSource::core && contact.other >= 0)
+            on_cores[static_cast<std::size_t>(contact.other)] +=
                 {-contact.rubbing, -contact.other_arm.cross(contact.rubbing)};
-    kicked.on_members = on_members;
+    kicked.on_cores = on_cores;
 }
 
 // Motions of the bodies without normal impulses and pins.
@@ -141,7 +141,7 @@ void set_rubbed_motions(const State& state, const ContactKick& kicked, std::vect
     for (std::size_t i = 0; i < kicked.on_base.size(); ++i) {
         ContactBody& body = bodies[units + i];
         Wrench push = kicked.on_base[i];
-        push += kicked.on_members[units + i];
+        push += kicked.on_cores[units + i];
         body.motion.velocity += body.inverse_mass * Vec3(push.force.x(), push.force.y(), 0.0);
         body.motion.angular_velocity.z() += body.inverse_inertia(2, 2) * push.torque.z();
     }
@@ -161,10 +161,10 @@ void settle_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory,
     std::vector<ContactBody>& bodies = memory.bodies;
     const std::size_t units = state.units.size();
     kicked.on_ground.assign(units, {});
-    kicked.on_members.assign(bodies.size(), {});
+    kicked.on_cores.assign(bodies.size(), {});
     list_motions(state, bodies, memory.pushed);
     for (RigidContact& contact : kicked.contacts) {
-        if (contact.source != ContactSource::member || contact.other < 0) continue;
+        if (contact.source != ContactSource::core || contact.other < 0) continue;
         const Twist& other = motions_that_rub(memory)[static_cast<std::size_t>(contact.other)];
         contact.sliding_surface = other.velocity + other.angular_velocity.cross(contact.other_arm);
     }
@@ -288,7 +288,7 @@ void kick_by_contacts(const Scene& scene, const KickedBy& by, KickMemory& memory
     memory.kick.on_pins.clear();
     if (memory.kick.contacts.empty() && by.pressed.empty()) {
         memory.kick.on_ground.clear();
-        memory.kick.on_members.clear();
+        memory.kick.on_cores.clear();
         return;
     }
     memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
@@ -327,10 +327,10 @@ void add_impulses(const Scene& scene, const State& state, const ContactKick& kic
             case ContactSource::tire:
                 sum.tire[contact.index] += contact.impulse;
                 break;
-            case ContactSource::member:
+            case ContactSource::core:
                 add_to_obstacle(scene, state, contact, impulse + contact.rubbing, sum.obstacles);
                 if (contact.obstacle != scene.ground) sum.barrier_normal += contact.impulse;
-                if (contact.impulse > 0.0) ++sum.member_contacts;
+                if (contact.impulse > 0.0) ++sum.core_contacts;
                 break;
             case ContactSource::joint:
                 if (contact.about_axis) {
@@ -364,7 +364,7 @@ void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vec
         state.energies.tire_friction -= power(kicked.on_ground[u], motion(u));
     for (const RigidContact& contact : kicked.contacts) {
         (contact.held ? state.energies.joints : state.energies.impacts) += loss_of(contact, before, after);
-        if (contact.source == ContactSource::member)
+        if (contact.source == ContactSource::core)
             friction_of(scene, contact.obstacle, state.energies) -=
                 power({contact.rubbing, contact.arm.cross(contact.rubbing)},
                       relative_motion(scene, state, contact.body, contact.obstacle, before, after));

@@ -1,11 +1,11 @@
-#include "birm3d/contact/rigid_impact.hpp"
+#include "contact/rigid_impact.hpp"
 
 #include <algorithm>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/contact/rigid_contacts.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/scene/bodies.hpp"
+#include "contact/rigid_contacts.hpp"
+#include "kernels/integrate.hpp"
+#include "scene/bodies.hpp"
 
 namespace birm3d {
 
@@ -145,7 +145,7 @@ class Attempts {
             if (loss_by_tires(u) < least_) return true;
         return std::any_of(
             memory_.kick.contacts.begin(), memory_.kick.contacts.end(), [&](const RigidContact& contact) {
-                return contact.source == ContactSource::member && loss_by_friction(contact) < least_;
+                return contact.source == ContactSource::core && loss_by_friction(contact) < least_;
             });
     }
 
@@ -165,7 +165,7 @@ class Attempts {
         for (std::size_t u = 0; u < memory_.kick.on_ground.size(); ++u)
             if (loss_by_tires(u) < least_) memory_.kick.rolls_freely[u] = 1, any = true;
         for (const RigidContact& contact : memory_.kick.contacts) {
-            if (contact.source != ContactSource::member || !(loss_by_friction(contact) < least_)) continue;
+            if (contact.source != ContactSource::core || !(loss_by_friction(contact) < least_)) continue;
             any = true;
             for (RigidContact& known : contacts_)
                 if (known.source == contact.source && known.body == contact.body &&

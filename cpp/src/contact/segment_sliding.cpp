@@ -2,16 +2,16 @@
 
 #include <algorithm>
 
-#include "birm3d/kernels/ground_slide.hpp"
-#include "birm3d/kernels/joints.hpp"
-#include "birm3d/scene/bodies.hpp"
+#include "kernels/ground_slide.hpp"
+#include "kernels/joints.hpp"
+#include "scene/bodies.hpp"
 
 namespace birm3d {
 
 namespace {
 
 bool pushes_segment(const RigidContact& contact) {
-    return contact.source == ContactSource::member && contact.other >= 0;
+    return contact.source == ContactSource::core && contact.other >= 0;
 }
 
 // Greatest friction impulse of the ground on each segment (N s).
@@ -55,7 +55,7 @@ void list_slabs(const Scene& scene, const KickedBy& by, const State& state, Kick
         for (std::size_t c = 0; c < slab.arm.size(); ++c)
             slab.arm[c] = segment.corner[c].x() * axes.x + segment.corner[c].y() * axes.y;
         slab.motion = level_motion(segment.body, body.velocity, body.angular_momentum.z());
-        const Wrench& push = memory.kick.on_members[units + i];
+        const Wrench& push = memory.kick.on_cores[units + i];
         slab.motion += segment.body.inverse_mass * Vec3(push.force.x(), push.force.y(), 0.0);
         slab.motion.z() += segment.body.inverse_inertia(2, 2) * push.torque.z();
         // What rested and is held still rests, and at rest its friction is easiest to find.

@@ -1,14 +1,15 @@
 // What the ground and the pins do to free-standing segments at one end of the drift, on top of what pushes them.
 #pragma once
 
-#include "birm3d/contact/rigid_contacts.hpp"
+#include "contact/rigid_contacts.hpp"
+#include "state/rigid_contact.hpp"
 
 namespace birm3d {
 
 // Does the rigid body meet a segment?
 bool meets_segments(const std::vector<RigidContact>& contacts);
 
-// Finds frictions and pins with the present impulses of `memory.kick.contacts` and `memory.kick.on_members`, to
+// Finds frictions and pins with the present impulses of `memory.kick.contacts` and `memory.kick.on_cores`, to
 // `memory.kick` and `memory.segment_motions`. `state` has the segments' motions without any of these.
 void rub_on_ground(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory);
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "birm3d/kernels/friction_tread.hpp"
+#include "kernels/friction_tire.hpp"
 
 namespace birm3d {
 
@@ -10,10 +10,11 @@ void note_tire_nodes(const ContactPass& pass, std::size_t k, std::size_t b, cons
                      const BlockContact& contact, ContactSums& sums) {
     if (!(pass.scene.settings.mu_tire_barrier > 0.0)) return;
     const std::size_t first = pass.mesh.first[b] - pass.mesh.shell;
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         if (!(contact.pressure[i] > 0.0)) continue;
-        sums.tire_nodes.push_back(tread_contact(pass.mesh.tread[first + i], k, pass.relative_motion[k],
-                                                places[i], contact.normal(i), contact.pressure[i]));
+        sums.tire_nodes.push_back(tire_node_contact(pass.mesh.tire_nodes[first + i], k,
+                                                    pass.relative_motion[k], places[i], contact.normal(i),
+                                                    contact.pressure[i]));
     }
 }
 
@@ -22,12 +23,13 @@ void add_tire_friction(const ContactPass& pass, ContactSums& sums) {
     const double full_speed = pass.full_friction_speed;
     // The nodes come wheel by wheel, as their blocks do.
     for (auto first = sums.tire_nodes.begin(); first != sums.tire_nodes.end();) {
-        const auto end = std::find_if(first, sums.tire_nodes.end(),
-                                      [&](const TreadContact& node) { return node.wheel != first->wheel; });
+        const auto end = std::find_if(first, sums.tire_nodes.end(), [&](const TireNodeContact& node) {
+            return node.wheel != first->wheel;
+        });
         const double turning =
             pass.scene.settings.braking < 1.0 ? free_turning(full_speed, {first, end}) : 0.0;
         for (; first != end; ++first)
-            add_tread_friction(mu, full_speed, turning, *first, sums.obstacles[first->near].rubbing);
+            add_tire_node_friction(mu, full_speed, turning, *first, sums.obstacles[first->near].rubbing);
     }
 }
 

@@ -1,7 +1,8 @@
-// Friction of tires at the barrier: see kernels/friction_tread.hpp.
+// Friction of tires at the barrier: see kernels/friction_tire.hpp.
 #pragma once
 
 #include "contact/contact_pass.hpp"
+#include "state/block_contact.hpp"
 
 namespace birm3d {
 

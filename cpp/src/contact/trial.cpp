@@ -1,8 +1,8 @@
-#include "birm3d/contact/trial.hpp"
+#include "contact/trial.hpp"
 
 #include <algorithm>
 
-#include "birm3d/scene/bodies.hpp"
+#include "scene/bodies.hpp"
 
 namespace birm3d {
 
@@ -15,7 +15,7 @@ void clear(ContactImpulses& impulses) {
     impulses.tire_friction = Vec3::Zero();
     impulses.obstacles.clear();
     impulses.barrier_normal = 0.0;
-    impulses.member_contacts = 0;
+    impulses.core_contacts = 0;
     impulses.joints = Vec3::Zero();
 }
 
@@ -86,7 +86,7 @@ bool Trial::body_rests() const {
 }
 
 bool Trial::body_held() const {
-    return any_impulses(*this, [](const ContactImpulses& sum) { return sum.member_contacts > 0; });
+    return any_impulses(*this, [](const ContactImpulses& sum) { return sum.core_contacts > 0; });
 }
 
 bool Trial::body_held_by_barrier() const {

@@ -1,12 +1,12 @@
-#include "birm3d/control/end_of_event.hpp"
+#include "control/end_of_event.hpp"
 
 #include <algorithm>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/kernels/tires.hpp"
-#include "birm3d/scene/bodies.hpp"
-#include "birm3d/scene/obstacles.hpp"
+#include "kernels/integrate.hpp"
+#include "kernels/tires.hpp"
+#include "scene/bodies.hpp"
+#include "scene/obstacles.hpp"
 
 namespace birm3d {
 

@@ -1,15 +1,15 @@
-#include "birm3d/control/step_control.hpp"
+#include "control/step_control.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/control/end_of_event.hpp"
-#include "birm3d/control/step_limits.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/scene/bodies.hpp"
-#include "birm3d/scene/obstacles.hpp"
-#include "birm3d/step/structure_load.hpp"
+#include "control/end_of_event.hpp"
+#include "control/step_limits.hpp"
+#include "kernels/integrate.hpp"
+#include "scene/bodies.hpp"
+#include "scene/obstacles.hpp"
+#include "step/structure_load.hpp"
 
 namespace birm3d {
 
@@ -144,7 +144,7 @@ double time_to_stop(const Scene& scene, const State& state) {
 
 // Steps that an estimate asks for are taken from a ladder of sixteen lengths an octave: estimates are made of
 // high differences of the load, and their rounding must not travel from step to step.
-double on_ladder(double dt) {
+double quantize_step(double dt) {
     int octave = 0;
     const double part = std::frexp(dt, &octave);  // 0.5 to 1
     return std::ldexp(std::floor(part * 32.0) / 32.0, octave);
@@ -228,7 +228,7 @@ double shorter_step(const Scene& scene, const State& from, const Trial& tried, S
     if (search.error > allowed && dt > tolerance::jump_resolution)
         wanted = std::min(wanted, std::max(dt * std::max(0.2, 0.9 * std::sqrt(allowed / search.error)),
                                            tolerance::jump_resolution));
-    double shorter = std::min(wanted < dt ? on_ladder(wanted) : infinity,
+    double shorter = std::min(wanted < dt ? quantize_step(wanted) : infinity,
                               located_turn(scene, tried, search.approach, separation));
     const double resolution = release_resolution(scene);
     if (dt > resolution && touches(from) && !touches(tried.state))
@@ -247,7 +247,7 @@ double step_after(const Scene& scene, const Trial& accepted, const StepSearch& s
                               ? std::max(dt * std::min(tolerance::fastest_growth, growth), search.cut)
                               : std::max(dt * growth, tolerance::jump_resolution);
     const double next =
-        std::min(on_ladder(std::min(longer, longest_stable(accepted))), longest_step(scene, accepted));
+        std::min(quantize_step(std::min(longer, longest_stable(accepted))), longest_step(scene, accepted));
     return touches(accepted.state) ? next : std::min(next, search.pressing);
 }
 

@@ -1,4 +1,4 @@
-#include "birm3d/control/step_limits.hpp"
+#include "control/step_limits.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/kernels/detect.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/scene/indentation_gaps.hpp"
-#include "birm3d/scene/obstacles.hpp"
+#include "kernels/detect.hpp"
+#include "kernels/integrate.hpp"
+#include "scene/indentation_gaps.hpp"
+#include "scene/obstacles.hpp"
 
 namespace birm3d {
 
@@ -29,22 +29,22 @@ struct Seen {
 double untouched_step_of(const TrussBlockState& block, const std::vector<Seen>& near, double fastest,
                          double longest) {
     const Box& box = block.box;
-    alignas(64) NearestLanes found, nearest;
-    std::array<std::size_t, lanes> of;  // place in near
+    alignas(64) NearestOfBlock found, nearest;
+    std::array<std::size_t, block_size> of;  // place in near
     nearest.gap.fill(infinity);
     of.fill(0);
     for (std::size_t j = 0; j < near.size(); ++j) {
         const Placement& seen = near[j].placement;
         if (!within_reach(*near[j].shape, seen, box, longest * fastest)) continue;
         nearest_of(*near[j].shape, seen, seen, block.x, block.y, block.z, found);
-        for (std::size_t k = 0; k < lanes; ++k) {
+        for (std::size_t k = 0; k < block_size; ++k) {
             if (!(found.gap[k] < nearest.gap[k])) continue;
             nearest.gap[k] = found.gap[k];
             of[k] = j;
             nearest.nx[k] = found.nx[k], nearest.ny[k] = found.ny[k], nearest.nz[k] = found.nz[k];
         }
     }
-    for (std::size_t k = 0; k < lanes; ++k) {
+    for (std::size_t k = 0; k < block_size; ++k) {
         const double gap = std::max(nearest.gap[k], 0.0);
         if (!(gap < longest * fastest) || is_slack(block, k)) continue;
         const Vec3 node(block.x[k], block.y[k], block.z[k]);
@@ -93,7 +93,7 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
                 for (std::size_t b = g * TrussMesh::group_size; b < mesh.end_of_group(g); ++b)
                     longest = untouched_step_of(unit.trusses.block[b], near, fastest, longest);
         }
-        if (mesh.dent_reach > 0.0) longest = undented_step(scene, unit, mesh, fastest, longest);
+        if (mesh.indentation_length > 0.0) longest = step_to_indentation(scene, unit, mesh, fastest, longest);
     }
     return longest;
 }

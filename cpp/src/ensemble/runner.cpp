@@ -13,15 +13,15 @@ void Runner::set_scene(const Scene& scene) {
     at_start_ = true;
 }
 
-Outcome Runner::run(const Approach& approach, const ExtremeGroups& wanted,
-                    const std::function<void()>& poll) {
+RunSummary Runner::run(const Approach& approach, const ExtremeGroups& wanted,
+                       const std::function<void()>& poll) {
     if (!(at_start_ && approach == simulation_->scene().approach)) simulation_->start(approach);
     at_start_ = false;
 
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     simulation_->run(poll);
-    Outcome outcome;
+    RunSummary outcome;
     outcome.run_time = std::chrono::duration<double>(Clock::now() - start).count();
 
     const State& state = simulation_->state();

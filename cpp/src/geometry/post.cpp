@@ -1,6 +1,7 @@
 #include "birm3d/geometry/post.hpp"
 
 #include "birm3d/base/error.hpp"
+#include "geometry/post_nearest.hpp"
 
 namespace birm3d {
 

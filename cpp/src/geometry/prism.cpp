@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "birm3d/base/error.hpp"
-#include "birm3d/geometry/prism_range.hpp"
+#include "geometry/prism_nearest.hpp"
+#include "geometry/prism_range.hpp"
 
 namespace birm3d {
 
@@ -123,6 +124,20 @@ Box bounds_of(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double y_
 }
 
 }  // namespace
+
+struct Prism::Outline {
+    std::vector<PrismEdge> edges, covered_edges;
+    Eigen::Vector2d low, high;  // corners of the rectangle around it (m); the upper may be infinite
+    double thickness = 0.0;     // m
+};
+
+const std::vector<PrismEdge>& Prism::edges() const {
+    return outline_->edges;
+}
+
+const std::vector<PrismEdge>& Prism::covered_edges() const {
+    return outline_->covered_edges;
+}
 
 std::shared_ptr<const Prism::Outline> Prism::outline_of(const Profile& profile,
                                                         const std::vector<std::size_t>& covered) {

@@ -1,4 +1,4 @@
-#include "birm3d/geometry/solid.hpp"
+#include "geometry/solid.hpp"
 
 namespace birm3d {
 

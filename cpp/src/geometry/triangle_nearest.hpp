@@ -1,11 +1,11 @@
 // The point of a triangle that is nearest to another point, in plain numbers and selections, so that single
-// points and lane loops share it: the foot of the perpendicular if it lies inside, else the nearest point of the
+// points and block loops share it: the foot of the perpendicular if it lies inside, else the nearest point of the
 // three edges.
 #pragma once
 
 #include <cstddef>
 
-#include "birm3d/base/lane_count.hpp"
+#include "base/inline.hpp"
 
 namespace birm3d {
 
@@ -29,8 +29,8 @@ struct OnTriangle {
     double part;     // a TrianglePart; a number like the others, for selections
 };
 
-BIRM3D_IN_LANE_LOOP OnTriangle nearest_on_side(const PlainTriangle::Side& s, double index, double x, double y,
-                                               double z) {
+BIRM3D_INLINE OnTriangle nearest_on_side(const PlainTriangle::Side& s, double index, double x, double y,
+                                         double z) {
     const double dx = x - s.x, dy = y - s.y, dz = z - s.z;
     const double along = (dx * s.ex + dy * s.ey + dz * s.ez) * s.per_square;
     const double not_below = along > 0.0 ? along : 0.0;
@@ -42,7 +42,7 @@ BIRM3D_IN_LANE_LOOP OnTriangle nearest_on_side(const PlainTriangle::Side& s, dou
     return {wx * wx + wy * wy + wz * wz, wx, wy, wz, along <= 0.0 ? corner + index : part};
 }
 
-BIRM3D_IN_LANE_LOOP OnTriangle nearer(const OnTriangle& a, const OnTriangle& b) {
+BIRM3D_INLINE OnTriangle nearer(const OnTriangle& a, const OnTriangle& b) {
     const bool second = b.square < a.square;
     OnTriangle out;
     out.square = second ? b.square : a.square;
@@ -54,16 +54,16 @@ BIRM3D_IN_LANE_LOOP OnTriangle nearer(const OnTriangle& a, const OnTriangle& b) 
 }
 
 // How far the point is outside of one side, along the triangle's plane; only the sign counts.
-BIRM3D_IN_LANE_LOOP double beyond(const PlainTriangle::Side& s, double x, double y, double z) {
+BIRM3D_INLINE double beyond(const PlainTriangle::Side& s, double x, double y, double z) {
     return (x - s.x) * s.mx + (y - s.y) * s.my + (z - s.z) * s.mz;
 }
 
 // Signed distance from the triangle's own plane (m): no point of the triangle is nearer.
-BIRM3D_IN_LANE_LOOP double ahead_of(const PlainTriangle& t, double x, double y, double z) {
+BIRM3D_INLINE double ahead_of(const PlainTriangle& t, double x, double y, double z) {
     return (x - t.side[0].x) * t.nx + (y - t.side[0].y) * t.ny + (z - t.side[0].z) * t.nz;
 }
 
-BIRM3D_IN_LANE_LOOP OnTriangle nearest_on_plain(const PlainTriangle& t, double x, double y, double z) {
+BIRM3D_INLINE OnTriangle nearest_on_plain(const PlainTriangle& t, double x, double y, double z) {
     const OnTriangle edge =
         nearer(nearer(nearest_on_side(t.side[0], 0.0, x, y, z), nearest_on_side(t.side[1], 1.0, x, y, z)),
                nearest_on_side(t.side[2], 2.0, x, y, z));

@@ -1,8 +1,9 @@
-#include "birm3d/kernels/crush.hpp"
+#include "kernels/crush.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/block_loop.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "kernels/crush_dispatch.hpp"
 
@@ -10,18 +11,18 @@ namespace birm3d {
 
 namespace {
 
-BIRM3D_LANE_LOOP double stiffness_of_pushing(const TrussBlock& truss, const Lanes& slope, const Lanes& force,
-                                             double constant, double xx, double yy, double zz, double xy,
-                                             double xz, double yz) {
-    alignas(64) Lanes sum;
+BIRM3D_BLOCK_LOOP double stiffness_of_pushing(const TrussBlock& truss, const BlockColumn& slope,
+                                              const BlockColumn& force, double constant, double xx, double yy,
+                                              double zz, double xy, double xz, double yz) {
+    alignas(64) BlockColumn sum;
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const double x = truss.node_x[i], y = truss.node_y[i], z = truss.node_z[i];
         const double inverse_mass =
             constant + (x * (xx * x + xy * y + xz * z) + y * (yy * y + yz * z) + zz * z * z);
         sum[i] = (force[i] > 0.0 ? slope[i] : 0.0) * inverse_mass;
     }
-    return lane_sum(sum);
+    return block_sum(sum);
 }
 
 // Sum of the slopes of unloading times inverse effective mass over the nodes that push (1/s^2).
@@ -35,19 +36,20 @@ double contact_stiffness(const FlatContact& surface, const TrussMesh& mesh, std:
                                 q(1, 1), q(2, 2), 2.0 * q(0, 1), 2.0 * q(0, 2), 2.0 * q(1, 2));
 }
 
-BIRM3D_LANE_LOOP double greatest_slack(const Lanes& force, const Lanes& deflection, const Lanes& residual) {
-    alignas(64) Lanes slack;
+BIRM3D_BLOCK_LOOP double greatest_slack(const BlockColumn& force, const BlockColumn& deflection,
+                                        const BlockColumn& residual) {
+    alignas(64) BlockColumn slack;
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < block_size; ++i)
         slack[i] = force[i] > 0.0 ? 0.0 : residual[i] - deflection[i];
-    return lane_max(slack);
+    return block_max(slack);
 }
 
 // Returns how many nodes push.
 double finish(double nodes, TrussBlockState& now) {
     const double pushing = std::fmod(nodes, left);
     now.touching = pushing > 0.0;
-    now.slack = pushing < static_cast<double>(lanes) &&
+    now.slack = pushing < static_cast<double>(block_size) &&
                 greatest_slack(now.force, now.deflection, now.residual) > tolerance::touching_gap;
     return pushing;
 }
@@ -82,9 +84,9 @@ FlatContact::FlatContact(const RigidBody& body, const HalfSpace& face_, const Ha
       holding((face.normal + face_before.normal) / (1.0 + face.normal.dot(face_before.normal))),
       inverse_mass(body, face.normal) {}
 
-bool crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const Lanes* factor,
+bool crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const BlockColumn* factor,
            const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums) {
-    alignas(64) Lanes gap;
+    alignas(64) BlockColumn gap;
     const Vec3& n = surface.face.normal;
     const Vec3& h = surface.holding;
     const double nodes = press_rows.flat(columns_of(mesh, b, factor),
@@ -97,10 +99,10 @@ bool crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, con
 }
 
 bool crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh, std::size_t b,
-           const Lanes* factor, const TrussBlockState& before, TrussBlockState& now, BlockContact& contact,
-           CrushSums& sums) {
+           const BlockColumn* factor, const TrussBlockState& before, TrussBlockState& now,
+           BlockContact& contact, CrushSums& sums) {
     const Mat3& q = body.inverse_inertia;
-    alignas(64) Lanes gap;
+    alignas(64) BlockColumn gap;
     const double nodes =
         press_rows.curved(columns_of(mesh, b, factor),
                           {faces.gap.data(),  contact.nx.data(), contact.ny.data(), contact.nz.data(),
@@ -129,7 +131,7 @@ Wrench total_wrench(const CrushSums& sums) {
 
 Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const BlockContact& contact) {
     Wrench sum;
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         if (!(now.force[i] > 0.0)) continue;
         const Vec3 node(now.x[i], now.y[i], now.z[i]);
         const Vec3 b = node - Vec3(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
@@ -141,9 +143,9 @@ Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const 
     return sum;
 }
 
-void set_rate_factor(double rate_sensitivity, const Lanes& force, const Twist& motion, const Places& places,
-                     const BlockContact& contact, Lanes& factor) {
-    for (std::size_t i = 0; i < lanes; ++i) {
+void set_rate_factor(double rate_sensitivity, const BlockColumn& force, const Twist& motion,
+                     const Places& places, const BlockContact& contact, BlockColumn& factor) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         if (!(contact.pressure[i] > 0.0)) {
             factor[i] = 1.0;
             continue;

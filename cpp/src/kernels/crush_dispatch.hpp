@@ -10,7 +10,7 @@
 namespace birm3d {
 
 // The columns of block `b`; `factor` may be null.
-inline PressColumns columns_of(const TrussMesh& mesh, std::size_t b, const Lanes* factor) {
+inline PressColumns columns_of(const TrussMesh& mesh, std::size_t b, const BlockColumn* factor) {
     const TrussBlock& truss = mesh.block[b];
     return {truss.anchor_x.data(),
             truss.anchor_y.data(),

@@ -8,7 +8,7 @@ namespace birm3d::BIRM3D_INSTRUCTION_SET {
 
 namespace {
 
-BIRM3D_IN_LANE_LOOP void add_to(double* sum, const Row& row) {
+BIRM3D_INLINE void add_to(double* sum, const Row& row) {
     (Row::load(sum) + row).store(sum);
 }
 
@@ -16,7 +16,7 @@ struct Vector {
     Row x, y, z;
 };
 
-BIRM3D_IN_LANE_LOOP Row dot(const Vector& a, const Vector& b) {
+BIRM3D_INLINE Row dot(const Vector& a, const Vector& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
@@ -28,29 +28,29 @@ struct Place {
 
 // Both give the places of the eight nodes from i on. A flat surface takes arriving nodes along n.
 struct Flat {
-    BIRM3D_IN_LANE_LOOP explicit Flat(const FlatPress& s)
+    BIRM3D_INLINE explicit Flat(const FlatPress& s)
         : n{s.nx, s.ny, s.nz}, h{s.hx, s.hy, s.hz}, offset(s.offset) {}
-    BIRM3D_IN_LANE_LOOP Row gap(std::size_t, const Vector& node) const { return dot(n, node) - offset; }
-    BIRM3D_IN_LANE_LOOP Place at(std::size_t, const Row& F0) const {
+    BIRM3D_INLINE Row gap(std::size_t, const Vector& node) const { return dot(n, node) - offset; }
+    BIRM3D_INLINE Place at(std::size_t, const Row& F0) const {
         const Row zero = 0.0;
         return {{where_above(F0, zero, h.x, n.x), where_above(F0, zero, h.y, n.y),
                  where_above(F0, zero, h.z, n.z)},
                 n};
     }
-    // Of nodes that a dent draws in, above zero.
-    BIRM3D_IN_LANE_LOOP Row drawn(std::size_t) const { return 0.0; }
+    // Of nodes that an indentation draws in, above zero.
+    BIRM3D_INLINE Row drawn(std::size_t) const { return 0.0; }
     Vector n, h;
     Row offset;
 };
 
 struct Curved {
-    BIRM3D_IN_LANE_LOOP explicit Curved(const CurvedPress& press) : s(press) {}
-    BIRM3D_IN_LANE_LOOP Row gap(std::size_t i, const Vector&) const { return Row::load(s.gap + i); }
-    BIRM3D_IN_LANE_LOOP Vector normal(std::size_t i) const {
+    BIRM3D_INLINE explicit Curved(const CurvedPress& press) : s(press) {}
+    BIRM3D_INLINE Row gap(std::size_t i, const Vector&) const { return Row::load(s.gap + i); }
+    BIRM3D_INLINE Vector normal(std::size_t i) const {
         return {Row::load(s.nx + i), Row::load(s.ny + i), Row::load(s.nz + i)};
     }
     // Where normals part sharply, at an edge, the one before says nothing of the path.
-    BIRM3D_IN_LANE_LOOP Place at(std::size_t i, const Row& F0) const {
+    BIRM3D_INLINE Place at(std::size_t i, const Row& F0) const {
         const Row zero = 0.0, one = 1.0;
         const Vector n = normal(i);
         const Vector b{Row::load(s.bx + i), Row::load(s.by + i), Row::load(s.bz + i)};
@@ -66,9 +66,9 @@ struct Curved {
         return {{way(n.x, b.x), way(n.y, b.y), way(n.z, b.z)},
                 {share(n.x, b.x), share(n.y, b.y), share(n.z, b.z)}};
     }
-    BIRM3D_IN_LANE_LOOP Row drawn(std::size_t i) const { return Row::load(s.per_force + i); }
+    BIRM3D_INLINE Row drawn(std::size_t i) const { return Row::load(s.per_force + i); }
     // Of a unit of normal force; keeps it, and the place, for later.
-    BIRM3D_IN_LANE_LOOP Vector torque(std::size_t i, const Vector& node, const Vector& n) const {
+    BIRM3D_INLINE Vector torque(std::size_t i, const Vector& node, const Vector& n) const {
         const Row of_dent = drawn(i), zero = 0.0;
         const auto keep = [&](double* column, const Row& found) {
             const Row kept = where_above(of_dent, zero, Row::load(column + i), found);
@@ -81,11 +81,11 @@ struct Curved {
         return {keep(s.tx, node.y * n.z - node.z * n.y), keep(s.ty, node.z * n.x - node.x * n.z),
                 keep(s.tz, node.x * n.y - node.y * n.x)};
     }
-    BIRM3D_IN_LANE_LOOP Row inverse_mass(const Vector& t) const {
+    BIRM3D_INLINE Row inverse_mass(const Vector& t) const {
         return s.mass + (t.x * (s.xx * t.x + s.xy * t.y + s.xz * t.z) + t.y * (s.yy * t.y + s.yz * t.z) +
                          s.zz * t.z * t.z);
     }
-    BIRM3D_IN_LANE_LOOP void leave(std::size_t i) const {
+    BIRM3D_INLINE void leave(std::size_t i) const {
         double* const columns[] = {s.px, s.py, s.pz, s.tx, s.ty, s.tz};
         for (double* column : columns)
             Row(0.0).store(column + i);
@@ -94,8 +94,8 @@ struct Curved {
 };
 
 template <bool recovers>
-BIRM3D_IN_LANE_LOOP void copy(const PressState<const double>& before, const PressState<double>& now,
-                              std::size_t i) {
+BIRM3D_INLINE void copy(const PressState<const double>& before, const PressState<double>& now,
+                        std::size_t i) {
     Row::load(before.x + i).store(now.x + i);
     Row::load(before.y + i).store(now.y + i);
     Row::load(before.z + i).store(now.z + i);
@@ -109,15 +109,15 @@ BIRM3D_IN_LANE_LOOP void copy(const PressState<const double>& before, const Pres
 // The slope of unloading of each truss, and where its line meets zero force. A truss that loads sets them anew.
 struct Unloading {
     Row slope, residual;
-    BIRM3D_IN_LANE_LOOP Row line(const Row& d) const {
+    BIRM3D_INLINE Row line(const Row& d) const {
         const Row zero = 0.0;
         return greater(slope * (d - residual), zero);
     }
 };
 
 // Fig. 3: the slope is constant.
-BIRM3D_IN_LANE_LOOP Row load_one_slope(const PressColumns& truss, Unloading& of, const Row& d,
-                                       const Row& line, const Row& envelope, std::size_t i) {
+BIRM3D_INLINE Row load_one_slope(const PressColumns& truss, Unloading& of, const Row& d, const Row& line,
+                                 const Row& envelope, std::size_t i) {
     const Row compliance = Row::load(truss.compliance + i);
     of.residual = where_above(line, envelope, d - envelope * compliance, of.residual);
     return compliance;
@@ -125,8 +125,8 @@ BIRM3D_IN_LANE_LOOP Row load_one_slope(const PressColumns& truss, Unloading& of,
 
 // What is left of the truss gives back a constant share of its length (truss_law.hpp). A truss may load and unload with one
 // slope at first.
-BIRM3D_IN_LANE_LOOP Row load_recovery(const PressColumns& truss, Unloading& of, const Row& d, const Row& line,
-                                      const Row& envelope, std::size_t i) {
+BIRM3D_INLINE Row load_recovery(const PressColumns& truss, Unloading& of, const Row& d, const Row& line,
+                                const Row& envelope, std::size_t i) {
     const Row zero = 0.0, one = 1.0;
     const auto where_loading = [&](const Row& now, const Row& else_) {
         return where_above(envelope, zero, where_above(envelope, line, else_, now), else_);
@@ -142,7 +142,7 @@ BIRM3D_IN_LANE_LOOP Row load_recovery(const PressColumns& truss, Unloading& of, 
 
 // The nodes of the row at i whose truss ceased to push. One that follows a receding surface stops where its truss reaches
 // zero force; one that the truss pushes off the surface springs to that length at once, and what the truss had stored is
-// lost, which a dent keeps at its surface all the same. Returns what the first kind takes from twice the work on the
+// lost, which an indentation keeps at its surface all the same. Returns what the first kind takes from twice the work on the
 // trusses (J).
 template <class Surface>
 Row release(const PressColumns& truss, const Surface& surface, const PressState<const double>& before,
@@ -188,11 +188,11 @@ Row release(const PressColumns& truss, const Surface& surface, const PressState<
 // forces along the normal, which stand in for the normal forces until these are known. Rows of which no node pushes or
 // is inside stay as they are, and are not `pressed`.
 template <bool flat, bool recovers, class Surface>
-BIRM3D_IN_LANE_LOOP void hold(const PressColumns& truss, const Surface& surface,
-                              const PressState<const double>& before, const PressState<double>& now,
-                              double* gaps, double* shares, bool* pressed) {
+BIRM3D_INLINE void hold(const PressColumns& truss, const Surface& surface,
+                        const PressState<const double>& before, const PressState<double>& now, double* gaps,
+                        double* shares, bool* pressed) {
     const Row zero = 0.0, one = 1.0, least = tolerance::truss_length;
-    for (std::size_t i = 0; i < lanes; i += row_length) {
+    for (std::size_t i = 0; i < block_size; i += row_length) {
         const Vector from{Row::load(before.x + i), Row::load(before.y + i), Row::load(before.z + i)};
         const Row F0 = Row::load(before.force + i);
         const Row gap = surface.gap(i, from);
@@ -208,7 +208,7 @@ BIRM3D_IN_LANE_LOOP void hold(const PressColumns& truss, const Surface& surface,
         const Row way = where_above(zero, gap, gap, where_above(F0, zero, gap, zero));
         const Vector node{from.x - way * place.way.x, from.y - way * place.way.y, from.z - way * place.way.z};
 
-        // From the node to its anchor. A closed truss has no direction of its own any more: it presses along n.
+        // From the node to its anchor. A bottomed-out truss has no direction of its own any more: it presses along n.
         const Vector b{Row::load(truss.anchor_x + i) - node.x, Row::load(truss.anchor_y + i) - node.y,
                        Row::load(truss.anchor_z + i) - node.z};
         const Row length = square_root(dot(b, b));
@@ -223,17 +223,17 @@ BIRM3D_IN_LANE_LOOP void hold(const PressColumns& truss, const Surface& surface,
 
 // Two rounds over the rows, so that the square roots and divisions of several are under way at a time.
 template <bool flat, bool recovers, class Surface>
-BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surface,
-                                 const PressState<const double>& before, const PressState<double>& now,
-                                 double* gaps, double* pressures, NodeSums& sums) {
+BIRM3D_INLINE double press(const PressColumns& truss, const Surface& surface,
+                           const PressState<const double>& before, const PressState<double>& now,
+                           double* gaps, double* pressures, NodeSums& sums) {
     const Row zero = 0.0, one = 1.0;
     const Row node_left = left;
     Row force = zero, work = zero, stored = zero, nodes = zero;
     Row stiffness = zero;
     Vector moment{zero, zero, zero}, push{zero, zero, zero};
-    bool pressed[lanes / row_length];
+    bool pressed[block_size / row_length];
     hold<flat, recovers>(truss, surface, before, now, gaps, pressures, pressed);
-    for (std::size_t i = 0; i < lanes; i += row_length) {
+    for (std::size_t i = 0; i < block_size; i += row_length) {
         if (!pressed[i / row_length]) continue;
         const Row F0 = Row::load(before.force + i), gap = Row::load(gaps + i);
         const Row d = Row::load(now.deflection + i), share = Row::load(pressures + i);
@@ -241,8 +241,8 @@ BIRM3D_IN_LANE_LOOP double press(const PressColumns& truss, const Surface& surfa
         // Fig. 3: the loading envelope by the changes of slope at its hinges, and the unloading line below it.
         Row envelope = zero;
         for (std::size_t j = 0; j < truss.hinges; ++j) {
-            const double* hinge = truss.hinge + j * 2 * lanes + i;
-            envelope = envelope + Row::load(hinge + lanes) * greater(d - Row::load(hinge), zero);
+            const double* hinge = truss.hinge + j * 2 * block_size + i;
+            envelope = envelope + Row::load(hinge + block_size) * greater(d - Row::load(hinge), zero);
         }
         if (truss.factor != nullptr) envelope = envelope * Row::load(truss.factor + i);
         const double* const slopes = recovers ? before.unloading : truss.k_unloading;

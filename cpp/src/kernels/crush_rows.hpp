@@ -1,10 +1,10 @@
 // The arithmetic of kernels/crush on one block, compiled once for each instruction set (see base/row.hpp):
-// columns as plain pointers, `lanes` numbers each.
+// columns as plain pointers, `block_size` numbers each.
 #pragma once
 
 #include <cstddef>
 
-#include "birm3d/base/node_sums.hpp"
+#include "base/node_sums.hpp"
 
 namespace birm3d {
 
@@ -13,8 +13,9 @@ struct PressColumns {
     const double *anchor_x, *anchor_y, *anchor_z, *length;  // m
     const double *k_unloading, *compliance;                 // N/m, m/N
     const double*
-        per_recovery;     // 1/m; null where no truss has a recovery: slopes of unloading are constant then
-    const double* hinge;  // (hinges)(2)(lanes) deflection (m) and change of slope (N/m), one after the other
+        per_recovery;  // 1/m; null where no truss has a recovery: slopes of unloading are constant then
+    const double*
+        hinge;  // (hinges)(2)(block_size) deflection (m) and change of slope (N/m), one after the other
     std::size_t hinges;
     const double* factor;  // on the loading envelope; null where there is none
 };
@@ -39,10 +40,10 @@ struct CurvedPress {
     const double* gap;
     const double *nx, *ny, *nz;  // outward normal now, and of the same surface at the instant before
     const double *bx, *by, *bz;
-    // Of nodes that a dent draws in, above zero: b is the way itself, and a truss force along it that much greater as a
+    // Of nodes that an indentation draws in, above zero: b is the way itself, and a truss force along it that much greater as a
     // normal force.
     const double* per_force;
-    // Where friction acts and the torque of a unit of normal force: given for nodes that a dent draws in, else found;
+    // Where friction acts and the torque of a unit of normal force: given for nodes that an indentation draws in, else found;
     // zero in rows of which no node pushes or did.
     double *px, *py, *pz, *tx, *ty, *tz;
     // Inverse effective mass of a node with torque t: mass + t . form t.

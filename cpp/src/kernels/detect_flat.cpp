@@ -2,7 +2,8 @@
 #include <cmath>
 #include <utility>
 
-#include "birm3d/kernels/detect.hpp"
+#include "geometry/prism_nearest.hpp"
+#include "kernels/detect.hpp"
 
 namespace birm3d {
 

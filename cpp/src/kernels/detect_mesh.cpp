@@ -2,8 +2,9 @@
 // Where that would be too many, because the triangles are small against the block, each node walks by itself.
 #include <cmath>
 
+#include "base/block_loop.hpp"
 #include "geometry/triangle_mesh_data.hpp"
-#include "kernels/detect_lanes.hpp"
+#include "kernels/detect_block.hpp"
 
 namespace birm3d {
 
@@ -14,24 +15,24 @@ constexpr std::size_t most_triangles = 32;
 
 // What is known of each node's nearest triangle.
 struct alignas(64) TriangleLanes {
-    Lanes square, x, y, z, part;  // as OnTriangle
-    Lanes index;                  // of the triangle
+    BlockColumn square, x, y, z, part;  // as OnTriangle
+    BlockColumn index;                  // of the triangle
 };
 
-BIRM3D_LANE_LOOP void begin(double square, TriangleLanes& best) {
+BIRM3D_BLOCK_LOOP void begin(double square, TriangleLanes& best) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         best.square[i] = square;
         best.x[i] = best.y[i] = best.z[i] = best.part[i] = best.index[i] = 0.0;
     }
 }
 
 // Returns the largest square of a distance that is left.
-BIRM3D_LANE_LOOP double ask_triangle(const PlainTriangle& triangle, double index, const OwnLanes& own,
-                                     TriangleLanes& best) {
+BIRM3D_BLOCK_LOOP double ask_triangle(const PlainTriangle& triangle, double index, const OwnLanes& own,
+                                      TriangleLanes& best) {
     const PlainTriangle t = triangle;
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const OnTriangle on = nearest_on_plain(t, own.x[i], own.y[i], own.z[i]);
         const bool nearer = on.square < best.square[i];
         best.square[i] = nearer ? on.square : best.square[i];
@@ -41,14 +42,14 @@ BIRM3D_LANE_LOOP double ask_triangle(const PlainTriangle& triangle, double index
         best.part[i] = nearer ? on.part : best.part[i];
         best.index[i] = nearer ? index : best.index[i];
     }
-    alignas(64) Lanes squares = best.square;
-    return lane_max(squares);
+    alignas(64) BlockColumn squares = best.square;
+    return block_max(squares);
 }
 
 }  // namespace
 
-void nearest_of_mesh(const TriangleMesh& mesh, const Placement& now, const Placement& before, const Lanes& x,
-                     const Lanes& y, const Lanes& z, NearestLanes& out) {
+void nearest_of_mesh(const TriangleMesh& mesh, const Placement& now, const Placement& before,
+                     const BlockColumn& x, const BlockColumn& y, const BlockColumn& z, NearestOfBlock& out) {
     const TriangleMeshData& data = mesh.data();
     OwnLanes own;
     const Extent extent = to_own(turn_of(now), x, y, z, own);
@@ -69,7 +70,7 @@ void nearest_of_mesh(const TriangleMesh& mesh, const Placement& now, const Place
     });
     const bool all_asked = asked <= most_triangles;
 
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const Vec3 p(own.x[i], own.y[i], own.z[i]);
         auto triangle = static_cast<std::size_t>(best.index[i]);
         const OnTriangle on{best.square[i], best.x[i], best.y[i], best.z[i], best.part[i]};

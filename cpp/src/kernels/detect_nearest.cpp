@@ -1,13 +1,15 @@
-#include "kernels/detect_lanes.hpp"
+#include "base/block_loop.hpp"
+#include "geometry/post_nearest.hpp"
+#include "kernels/detect_block.hpp"
 
 namespace birm3d {
 
 namespace {
 
-BIRM3D_LANE_LOOP void to_plane(double nx, double ny, double nz, double offset, const Lanes& x, const Lanes& y,
-                               const Lanes& z, NearestLanes& out) {
+BIRM3D_BLOCK_LOOP void to_plane(double nx, double ny, double nz, double offset, const BlockColumn& x,
+                                const BlockColumn& y, const BlockColumn& z, NearestOfBlock& out) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         out.gap[i] = nx * x[i] + ny * y[i] + nz * z[i] - offset;
         out.nx[i] = nx;
         out.ny[i] = ny;
@@ -15,10 +17,10 @@ BIRM3D_LANE_LOOP void to_plane(double nx, double ny, double nz, double offset, c
     }
 }
 
-BIRM3D_LANE_LOOP void to_post(const Turn& t, double radius, double height, const Lanes& x, const Lanes& y,
-                              const Lanes& z, NearestLanes& out) {
+BIRM3D_BLOCK_LOOP void to_post(const Turn& t, double radius, double height, const BlockColumn& x,
+                               const BlockColumn& y, const BlockColumn& z, NearestOfBlock& out) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const double px = t.xx * x[i] + t.xy * y[i] + t.xz * z[i] + t.x;
         const double py = t.yx * x[i] + t.yy * y[i] + t.yz * z[i] + t.y;
         const double pz = t.zx * x[i] + t.zy * y[i] + t.zz * z[i] + t.z;
@@ -33,9 +35,9 @@ BIRM3D_LANE_LOOP void to_post(const Turn& t, double radius, double height, const
 
 struct Block {
     const Placement &now, &before;
-    const Lanes &x, &y, &z;
-    NearestLanes& out;
-    const Lanes* force;
+    const BlockColumn &x, &y, &z;
+    NearestOfBlock& out;
+    const BlockColumn* force;
 
     void operator()(const HalfSpace& shape) const {
         const HalfSpace plane = now.plane_from_own(shape);
@@ -48,8 +50,8 @@ struct Block {
 
 }  // namespace
 
-void nearest_of(const Shape& shape, const Placement& now, const Placement& before, const Lanes& x,
-                const Lanes& y, const Lanes& z, NearestLanes& out, const Lanes* force) {
+void nearest_of(const Shape& shape, const Placement& now, const Placement& before, const BlockColumn& x,
+                const BlockColumn& y, const BlockColumn& z, NearestOfBlock& out, const BlockColumn* force) {
     std::visit(Block{now, before, x, y, z, out, force}, shape);
 }
 

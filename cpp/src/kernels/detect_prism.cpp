@@ -4,9 +4,9 @@
 #include <limits>
 #include <vector>
 
-#include "birm3d/geometry/prism_range.hpp"
+#include "geometry/prism_range.hpp"
+#include "kernels/detect_block.hpp"
 #include "kernels/detect_dispatch.hpp"
-#include "kernels/detect_lanes.hpp"
 
 namespace birm3d {
 
@@ -77,8 +77,8 @@ class EdgesInView {
 
 }  // namespace
 
-void nearest_of_prism(const Prism& prism, const Placement& now, const Lanes& x, const Lanes& y,
-                      const Lanes& z, const Lanes* force, NearestLanes& out) {
+void nearest_of_prism(const Prism& prism, const Placement& now, const BlockColumn& x, const BlockColumn& y,
+                      const BlockColumn& z, const BlockColumn* force, NearestOfBlock& out) {
     const Turn turn = turn_of(now);
     OwnLanes own;
     const auto [low, high] = to_own(turn, x, y, z, own);

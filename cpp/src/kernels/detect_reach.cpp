@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "birm3d/kernels/detect.hpp"
+#include "kernels/detect.hpp"
 
 namespace birm3d {
 

@@ -9,8 +9,8 @@ namespace {
 
 struct Spread {
     Row low = infinitely_far, high = -infinitely_far;
-    BIRM3D_IN_LANE_LOOP void add(const Row& row) { low = lesser(row, low), high = greater(row, high); }
-    BIRM3D_IN_LANE_LOOP void finish(double& least, double& most) const {
+    BIRM3D_INLINE void add(const Row& row) { low = lesser(row, low), high = greater(row, high); }
+    BIRM3D_INLINE void finish(double& least, double& most) const {
         least = least_of(low);
         most = -least_of(-1.0 * high);
     }
@@ -18,21 +18,21 @@ struct Spread {
 
 struct Spreads {
     Spread x, y, z;
-    BIRM3D_IN_LANE_LOOP void finish(Extent& extent) const {
+    BIRM3D_INLINE void finish(Extent& extent) const {
         x.finish(extent.low[0], extent.high[0]);
         y.finish(extent.low[1], extent.high[1]);
         z.finish(extent.low[2], extent.high[2]);
     }
 };
 
-BIRM3D_IN_LANE_LOOP Row cross(const EdgeList& edges, const Row& x, const Row& z, Row side) {
+BIRM3D_INLINE Row cross(const EdgeList& edges, const Row& x, const Row& z, Row side) {
     for (std::size_t e = 0; e < edges.count; ++e)
         side = side_after_edge(edges.edge[e], x, z, side);
     return side;
 }
 
-BIRM3D_IN_LANE_LOOP NearestEdge<Row> nearest_edge(const EdgeList& edges, const Row& x, const Row& z,
-                                                  NearestEdge<Row> best) {
+BIRM3D_INLINE NearestEdge<Row> nearest_edge(const EdgeList& edges, const Row& x, const Row& z,
+                                            NearestEdge<Row> best) {
     for (std::size_t e = 0; e < edges.count; ++e)
         best = nearer_edge(edges.edge[e], x, z, best);
     return best;
@@ -40,12 +40,12 @@ BIRM3D_IN_LANE_LOOP NearestEdge<Row> nearest_edge(const EdgeList& edges, const R
 
 // `count`: of faces, where it is known: then all that is known of them stays in registers.
 template <std::size_t count>
-BIRM3D_IN_LANE_LOOP void ask(const PrismView& prism, const Turn& t, const Points& own, double* gap,
-                             const Columns& normals) {
+BIRM3D_INLINE void ask(const PrismView& prism, const Turn& t, const Points& own, double* gap,
+                       const Columns& normals) {
     EdgeList faces = prism.faces;
     if constexpr (count > 0) faces.count = count;
     const Row zero = 0.0, one = 1.0;
-    for (std::size_t i = 0; i < lanes; i += row_length) {
+    for (std::size_t i = 0; i < block_size; i += row_length) {
         const Row x = Row::load(own.x + i), y = Row::load(own.y + i), z = Row::load(own.z + i);
         const Row side = cross(prism.covered_splitting, x, z, cross(prism.splitting, x, z, prism.side));
         const Row past_end = past_ends(y, prism.y_low, prism.y_high), sign = side_with_ends(side, past_end);
@@ -79,7 +79,7 @@ void ask_prism(const PrismView& prism, const Turn& turn, const Points& own, doub
 
 void place_nodes(const Turn& t, const Points& nodes, const Columns& own, Extent& extent) {
     Spreads spreads;
-    for (std::size_t i = 0; i < lanes; i += row_length) {
+    for (std::size_t i = 0; i < block_size; i += row_length) {
         const Row x = Row::load(nodes.x + i), y = Row::load(nodes.y + i), z = Row::load(nodes.z + i);
         const Row own_x = t.xx * x + t.xy * y + t.xz * z + t.x;
         const Row own_y = t.yx * x + t.yy * y + t.yz * z + t.y;
@@ -96,7 +96,7 @@ void place_nodes(const Turn& t, const Points& nodes, const Columns& own, Extent&
 
 void find_extent(const Points& nodes, Extent& extent) {
     Spreads spreads;
-    for (std::size_t i = 0; i < lanes; i += row_length) {
+    for (std::size_t i = 0; i < block_size; i += row_length) {
         spreads.x.add(Row::load(nodes.x + i));
         spreads.y.add(Row::load(nodes.y + i));
         spreads.z.add(Row::load(nodes.z + i));

@@ -1,10 +1,10 @@
 // The arithmetic of kernels/detect on one block, compiled once for each instruction set (see base/row.hpp): columns as
-// plain pointers, `lanes` numbers each.
+// plain pointers, `block_size` numbers each.
 #pragma once
 
 #include <cstddef>
 
-#include "birm3d/geometry/prism_nearest.hpp"
+#include "geometry/prism_nearest.hpp"
 
 namespace birm3d {
 

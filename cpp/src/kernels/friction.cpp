@@ -1,4 +1,4 @@
-#include "birm3d/kernels/friction.hpp"
+#include "kernels/friction.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -14,7 +14,7 @@ Mat3 crossing(const Vec3& a) {
     return cross;
 }
 
-Mat6 on_surface(const Lanes& slow, const RubbedNodes& nodes) {
+Mat6 on_surface(const BlockColumn& slow, const RubbedNodes& nodes) {
     const ResistanceSums of = friction_rows.find_resistance(slow.data(), nodes);
     Mat6 resistance;
     resistance << of.xx, of.xy, of.xz, of.rxx, of.ryx, of.rzx,  //
@@ -34,7 +34,7 @@ Mat6 on_plane(double q, const Vec3& qr, const Mat3& qrr, const Vec3& normal) {
     return resistance;
 }
 
-Mat6 on_plane(const Lanes& slow, const RubbedNodes& nodes, const Vec3& normal) {
+Mat6 on_plane(const BlockColumn& slow, const RubbedNodes& nodes, const Vec3& normal) {
     const Moments of = friction_rows.find_moments(slow.data(), nodes);
     Mat3 qrr;
     qrr << of.xx, of.xy, of.xz, of.xy, of.yy, of.yz, of.xz, of.yz, of.zz;
@@ -55,7 +55,7 @@ void add_friction(double mu, double full_speed, const Twist& motion, const Place
     const Vec3& w = motion.angular_velocity;
     const RubbedNodes nodes{places.x.data(),   places.y.data(),   places.z.data(),        contact.nx.data(),
                             contact.ny.data(), contact.nz.data(), contact.pressure.data()};
-    alignas(64) Lanes slow;
+    alignas(64) BlockColumn slow;
     const FrictionSums by = friction_rows.find_friction(
         {mu, full_speed, v.x(), v.y(), v.z(), w.x(), w.y(), w.z()}, nodes, slow.data());
     rubbing.friction += {Vec3(by.fx, by.fy, by.fz), Vec3(by.tx, by.ty, by.tz)};

@@ -9,11 +9,11 @@ namespace birm3d::BIRM3D_INSTRUCTION_SET {
 namespace {
 
 // A row of zeros adds nothing to any sum.
-BIRM3D_IN_LANE_LOOP bool is_zero(const Row& of) {
+BIRM3D_INLINE bool is_zero(const Row& of) {
     return !any_above(of, 0.0);
 }
 
-BIRM3D_IN_LANE_LOOP void add(Row& sum, const Row& of) {
+BIRM3D_INLINE void add(Row& sum, const Row& of) {
     sum = sum + of;
 }
 
@@ -26,7 +26,7 @@ Moments find_moments(const double* q, const RubbedNodes& nodes);
 FrictionSums find_friction(const Sliding& s, const RubbedNodes& nodes, double* q) {
     const Row zero = 0.0, full_speed = s.full_speed;
     Row fx = zero, fy = zero, fz = zero, tx = zero, ty = zero, tz = zero, stiffest = zero;
-    for (std::size_t i = 0; i < lanes; i += row_length) {
+    for (std::size_t i = 0; i < block_size; i += row_length) {
         const Row pressure = Row::load(nodes.pressure + i);
         if (is_zero(pressure)) {
             zero.store(q + i);
@@ -59,7 +59,7 @@ ResistanceSums find_resistance(const double* q, const RubbedNodes& nodes) {
     Row rxx = zero, rxy = zero, rxz = zero, ryx = zero, ryy = zero, ryz = zero, rzx = zero, rzy = zero,
         rzz = zero;
     Row rrxx = zero, rrxy = zero, rrxz = zero, rryy = zero, rryz = zero, rrzz = zero;
-    for (std::size_t i = 0; i < lanes; i += row_length) {
+    for (std::size_t i = 0; i < block_size; i += row_length) {
         const Row of = Row::load(q + i);
         if (is_zero(of)) continue;
         const Row x = Row::load(nodes.x + i), y = Row::load(nodes.y + i), z = Row::load(nodes.z + i);
@@ -86,7 +86,7 @@ Moments find_moments(const double* q, const RubbedNodes& nodes) {
     const Row zero = 0.0;
     Row sum = zero, sx = zero, sy = zero, sz = zero, xx = zero, yy = zero, zz = zero, xy = zero, xz = zero,
         yz = zero;
-    for (std::size_t i = 0; i < lanes; i += row_length) {
+    for (std::size_t i = 0; i < block_size; i += row_length) {
         const Row of = Row::load(q + i);
         if (is_zero(of)) continue;
         const Row x = Row::load(nodes.x + i), y = Row::load(nodes.y + i), z = Row::load(nodes.z + i);

@@ -1,5 +1,5 @@
 // The arithmetic of kernels/friction on one block, compiled once for each instruction set (see base/row.hpp): columns as
-// plain pointers, `lanes` numbers each.
+// plain pointers, `block_size` numbers each.
 #pragma once
 
 namespace birm3d {

@@ -1,4 +1,4 @@
-#include "birm3d/kernels/ground_slide.hpp"
+#include "kernels/ground_slide.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "birm3d/kernels/impulse.hpp"
+#include "kernels/impulse.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "birm3d/kernels/integrate.hpp"
+#include "kernels/integrate.hpp"
 
 #include "birm3d/base/rotation.hpp"
 

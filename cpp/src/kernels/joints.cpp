@@ -1,4 +1,4 @@
-#include "birm3d/kernels/joints.hpp"
+#include "kernels/joints.hpp"
 
 #include <algorithm>
 #include <cmath>

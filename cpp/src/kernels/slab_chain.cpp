@@ -1,5 +1,5 @@
 // Which slabs are solved for, and what comes out; Newton's method is in slab_chain_newton.cpp.
-#include "birm3d/kernels/slab_chain.hpp"
+#include "kernels/slab_chain.hpp"
 
 #include <cmath>
 
@@ -17,7 +17,7 @@ void SlabChain::set_up(std::span<const PinnedSlab> slabs, std::span<const SlabPi
     drift_ = drift;
     work_ = 0;
     parts_.resize(slabs.size());
-    blocks_.resize((slabs.size() + lanes - 1) / lanes);
+    blocks_.resize((slabs.size() + block_size - 1) / block_size);
     links_.resize(pins.size());
     motions_.assign(slabs.size(), Vec3::Zero());
     frictions_.assign(slabs.size(), Vec3::Zero());
@@ -26,8 +26,8 @@ void SlabChain::set_up(std::span<const PinnedSlab> slabs, std::span<const SlabPi
         set_up_slab(slabs[s], s);
     for (std::size_t l = 0; l < pins.size(); ++l) {
         const SlabPin& pin = pins[l];
-        set_up_end(block_of(l), block_of(l).high, l % lanes, pin.on_first, -0.5 * pin.gap);
-        set_up_end(block_of(l + 1), block_of(l + 1).low, (l + 1) % lanes, pin.on_next, 0.5 * pin.gap);
+        set_up_end(block_of(l), block_of(l).high, l % block_size, pin.on_first, -0.5 * pin.gap);
+        set_up_end(block_of(l + 1), block_of(l + 1).low, (l + 1) % block_size, pin.on_next, 0.5 * pin.gap);
         links_[l].pull.setZero();
         links_[l].target.setZero();
         if (drift > 0.0 && pin.gap.cwiseAbs().maxCoeff() > closed)
@@ -38,7 +38,7 @@ void SlabChain::set_up(std::span<const PinnedSlab> slabs, std::span<const SlabPi
 
 void SlabChain::set_up_slab(const PinnedSlab& slab, std::size_t s) {
     SlabBlock& b = block_of(s);
-    const std::size_t i = s % lanes;
+    const std::size_t i = s % block_size;
     const double k = std::sqrt(slab.inertia / slab.mass);
     b.mass[i] = slab.mass, b.gyration[i] = k;
     b.reach[i] = slab.limit / slab.mass;
@@ -74,7 +74,7 @@ void SlabChain::find_runs() {
 // Impulse of the pins, in q's units.
 Vec3 SlabChain::pull_on(std::size_t slab) const {
     const SlabBlock& b = block_of(slab);
-    const std::size_t i = slab % lanes;
+    const std::size_t i = slab % block_size;
     Vec3 sum = Vec3::Zero();
     const auto add = [&sum, i](const SlabEnd& end, const Vec2& pull) {
         sum += Vec3(pull.x(), pull.y(), end.arm_x[i] * pull.y() - end.arm_y[i] * pull.x());
@@ -88,7 +88,7 @@ Vec3 SlabChain::pull_on(std::size_t slab) const {
 bool SlabChain::is_held(std::size_t slab) const {
     constexpr double well = 0.9;  // of the limit: |u| is twice e there
     const SlabBlock& b = block_of(slab);
-    const std::size_t i = slab % lanes;
+    const std::size_t i = slab % block_size;
     return b.limit[i] > 0.0 &&
            std::all_of(b.corners.begin(), b.corners.end(), [i](const SlabCorners& corner) {
                return Vec2(corner.law_x[i], corner.law_y[i]).squaredNorm() < well * well;
@@ -130,7 +130,7 @@ void SlabChain::hand_over() {
     for (std::size_t s = 0; s < parts_.size(); ++s) {
         if (!parts_[s].awake) continue;
         const SlabBlock& b = block_of(s);
-        const std::size_t i = s % lanes;
+        const std::size_t i = s % block_size;
         const double k = b.gyration[i];
         const auto to_world = [k](const Vec3& q) { return Vec3(q.x(), q.y(), k * q.z()); };
         const Vec3 pull = pull_on(s);

@@ -1,4 +1,5 @@
 #include "kernels/slab_chain_columns.hpp"
+#include "base/block_loop.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,19 +9,19 @@ namespace birm3d {
 namespace {
 
 // Speed at an arm of the motion (x, y, z).
-BIRM3D_IN_LANE_LOOP double speed_x(double x, double z, double arm_y) {
+BIRM3D_INLINE double speed_x(double x, double z, double arm_y) {
     return x - arm_y * z;
 }
-BIRM3D_IN_LANE_LOOP double speed_y(double y, double z, double arm_x) {
+BIRM3D_INLINE double speed_y(double y, double z, double arm_x) {
     return y + arm_x * z;
 }
 
-BIRM3D_IN_LANE_LOOP double rounded(double x, double y, double soft) {
+BIRM3D_INLINE double rounded(double x, double y, double soft) {
     return std::sqrt(x * x + y * y + soft * soft);
 }
 
-BIRM3D_LANE_LOOP void settle(SlabBlock& b, SlabCorners& c, std::size_t first, std::size_t end, double soft,
-                             Lanes& worst) {
+BIRM3D_BLOCK_LOOP void settle(SlabBlock& b, SlabCorners& c, std::size_t first, std::size_t end, double soft,
+                              BlockColumn& worst) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = first; i < end; ++i) {
         const double x = speed_x(b.q_x[i], b.q_z[i], c.arm_y[i]), y = speed_y(b.q_y[i], b.q_z[i], c.arm_x[i]);
@@ -36,7 +37,7 @@ BIRM3D_LANE_LOOP void settle(SlabBlock& b, SlabCorners& c, std::size_t first, st
 }
 
 // Gradient and curvature without friction.
-BIRM3D_LANE_LOOP void begin_ways(SlabBlock& b, std::size_t first, std::size_t end) {
+BIRM3D_BLOCK_LOOP void begin_ways(SlabBlock& b, std::size_t first, std::size_t end) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = first; i < end; ++i) {
         b.way_x[i] = b.mass[i] * (b.q_x[i] - b.start_x[i]);
@@ -47,8 +48,8 @@ BIRM3D_LANE_LOOP void begin_ways(SlabBlock& b, std::size_t first, std::size_t en
     }
 }
 
-BIRM3D_LANE_LOOP void add_friction(SlabBlock& b, const SlabCorners& corner, std::size_t first,
-                                   std::size_t end) {
+BIRM3D_BLOCK_LOOP void add_friction(SlabBlock& b, const SlabCorners& corner, std::size_t first,
+                                    std::size_t end) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = first; i < end; ++i) {
         const double nx = corner.law_x[i], ny = corner.law_y[i], yx = corner.dual_x[i], yy = corner.dual_y[i];
@@ -64,7 +65,7 @@ BIRM3D_LANE_LOOP void add_friction(SlabBlock& b, const SlabCorners& corner, std:
 }
 
 // The inverse of the curvature through its minors, and the way.
-BIRM3D_LANE_LOOP void end_ways(SlabBlock& s, std::size_t first, std::size_t end) {
+BIRM3D_BLOCK_LOOP void end_ways(SlabBlock& s, std::size_t first, std::size_t end) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = first; i < end; ++i) {
         const double xx = s.xx[i], yy = s.yy[i], zz = s.zz[i], xy = s.xy[i], xz = s.xz[i], yz = s.yz[i];
@@ -83,9 +84,9 @@ BIRM3D_LANE_LOOP void end_ways(SlabBlock& s, std::size_t first, std::size_t end)
 }
 
 // J mobility K^T of two places of each slab.
-BIRM3D_LANE_LOOP void respond(const SlabBlock& s, const Lanes& arm_x, const Lanes& arm_y,
-                              const Lanes& other_x, const Lanes& other_y, std::size_t first, std::size_t end,
-                              SlabResponse& to) {
+BIRM3D_BLOCK_LOOP void respond(const SlabBlock& s, const BlockColumn& arm_x, const BlockColumn& arm_y,
+                               const BlockColumn& other_x, const BlockColumn& other_y, std::size_t first,
+                               std::size_t end, SlabResponse& to) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = first; i < end; ++i) {
         const double tx = -other_y[i], ty = other_x[i];
@@ -96,7 +97,7 @@ BIRM3D_LANE_LOOP void respond(const SlabBlock& s, const Lanes& arm_x, const Lane
     }
 }
 
-BIRM3D_LANE_LOOP void find_speeds(SlabBlock& s, std::size_t first, std::size_t end) {
+BIRM3D_BLOCK_LOOP void find_speeds(SlabBlock& s, std::size_t first, std::size_t end) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = first; i < end; ++i) {
         const double x = s.q_x[i] + s.way_x[i], y = s.q_y[i] + s.way_y[i], z = s.q_z[i] + s.way_z[i];
@@ -106,7 +107,8 @@ BIRM3D_LANE_LOOP void find_speeds(SlabBlock& s, std::size_t first, std::size_t e
     }
 }
 
-BIRM3D_LANE_LOOP void pull(SlabBlock& s, const SlabEnd& at, double sign, std::size_t first, std::size_t end) {
+BIRM3D_BLOCK_LOOP void pull(SlabBlock& s, const SlabEnd& at, double sign, std::size_t first,
+                            std::size_t end) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = first; i < end; ++i) {
         const double x = sign * at.pull_x[i], y = sign * at.pull_y[i], z = at.arm_x[i] * y - at.arm_y[i] * x;
@@ -116,8 +118,8 @@ BIRM3D_LANE_LOOP void pull(SlabBlock& s, const SlabEnd& at, double sign, std::si
     }
 }
 
-BIRM3D_LANE_LOOP void find_values(const SlabBlock& s, const SlabCorners& c, double soft, double share,
-                                  std::size_t first, std::size_t end, Lanes& to) {
+BIRM3D_BLOCK_LOOP void find_values(const SlabBlock& s, const SlabCorners& c, double soft, double share,
+                                   std::size_t first, std::size_t end, BlockColumn& to) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = first; i < end; ++i) {
         const double x = s.q_x[i] + share * s.way_x[i], y = s.q_y[i] + share * s.way_y[i],
@@ -127,8 +129,8 @@ BIRM3D_LANE_LOOP void find_values(const SlabBlock& s, const SlabCorners& c, doub
     }
 }
 
-BIRM3D_LANE_LOOP void find_kinetic(const SlabBlock& s, double share, std::size_t first, std::size_t end,
-                                   Lanes& to) {
+BIRM3D_BLOCK_LOOP void find_kinetic(const SlabBlock& s, double share, std::size_t first, std::size_t end,
+                                    BlockColumn& to) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = first; i < end; ++i) {
         const double x = s.q_x[i] + share * s.way_x[i] - s.start_x[i],
@@ -138,7 +140,7 @@ BIRM3D_LANE_LOOP void find_kinetic(const SlabBlock& s, double share, std::size_t
     }
 }
 
-BIRM3D_LANE_LOOP void move(SlabBlock& s, double share, std::size_t first, std::size_t end) {
+BIRM3D_BLOCK_LOOP void move(SlabBlock& s, double share, std::size_t first, std::size_t end) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = first; i < end; ++i) {
         s.q_x[i] += share * s.way_x[i];
@@ -147,8 +149,8 @@ BIRM3D_LANE_LOOP void move(SlabBlock& s, double share, std::size_t first, std::s
     }
 }
 
-BIRM3D_LANE_LOOP void use_law(const SlabBlock& s, SlabCorners& c, double share, std::size_t first,
-                              std::size_t end) {
+BIRM3D_BLOCK_LOOP void use_law(const SlabBlock& s, SlabCorners& c, double share, std::size_t first,
+                               std::size_t end) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = first; i < end; ++i) {
         const bool rubs = s.limit[i] > 0.0;
@@ -167,8 +169,8 @@ BIRM3D_LANE_LOOP void use_law(const SlabBlock& s, SlabCorners& c, double share, 
 }
 
 // What the turn of a Cayley map adds to a place, as drift() in integrate.cpp turns it, and what the drift does.
-BIRM3D_LANE_LOOP void drift_end(const SlabBlock& s, SlabEnd& at, double drift, std::size_t first,
-                                std::size_t end) {
+BIRM3D_BLOCK_LOOP void drift_end(const SlabBlock& s, SlabEnd& at, double drift, std::size_t first,
+                                 std::size_t end) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = first; i < end; ++i) {
         const double half = 0.5 * drift * (s.q_z[i] / s.gyration[i]),
@@ -183,7 +185,7 @@ BIRM3D_LANE_LOOP void drift_end(const SlabBlock& s, SlabEnd& at, double drift, s
 }  // namespace
 
 double settle_laws(const SlabRange& slabs, double soft) {
-    Lanes worst{};
+    BlockColumn worst{};
     for (SlabCorners& corner : slabs.block.corners)
         settle(slabs.block, corner, slabs.first, slabs.end, soft, worst);
     return *std::max_element(worst.begin(), worst.end());
@@ -221,14 +223,14 @@ void add_pulls(const SlabRange& slabs) {
 // The sum runs slab by slab.
 double add_value(const SlabRange& slabs, double soft, double share, double sum) {
     const SlabBlock& b = slabs.block;
-    Lanes kinetic;
-    std::array<Lanes, 4> rubbed;
+    BlockColumn kinetic;
+    std::array<BlockColumn, 4> rubbed;
     find_kinetic(b, share, slabs.first, slabs.end, kinetic);
     for (std::size_t c = 0; c < rubbed.size(); ++c)
         find_values(b, b.corners[c], soft, share, slabs.first, slabs.end, rubbed[c]);
     for (std::size_t i = slabs.first; i < slabs.end; ++i) {
         sum += kinetic[i];
-        for (const Lanes& corner : rubbed)
+        for (const BlockColumn& corner : rubbed)
             sum += corner[i];
     }
     return sum;

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "birm3d/kernels/slab_chain.hpp"
+#include "kernels/slab_chain.hpp"
 
 namespace birm3d {
 

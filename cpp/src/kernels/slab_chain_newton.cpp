@@ -17,12 +17,12 @@ constexpr double lawful = 1e-9, rounding = 1e-6, near_lawful = 1e-2;
 // Gap of a pin after the drift that is rounding (m).
 constexpr double closed = 1e-12;
 
-Vec2 at(const Lanes& x, const Lanes& y, std::size_t slab) {
-    return {x[slab % lanes], y[slab % lanes]};
+Vec2 at(const BlockColumn& x, const BlockColumn& y, std::size_t slab) {
+    return {x[slab % block_size], y[slab % block_size]};
 }
 
 Mat2 at(const SlabResponse& of, std::size_t slab) {
-    const std::size_t i = slab % lanes;
+    const std::size_t i = slab % block_size;
     Mat2 response;
     response << of.xx[i], of.xy[i], of.yx[i], of.yy[i];
     return response;
@@ -32,9 +32,10 @@ Mat2 at(const SlabResponse& of, std::size_t slab) {
 
 template <class F>
 void SlabChain::for_each_block(const Run& run, F f) {
-    for (std::size_t b = run.begin / lanes; b * lanes < run.end; ++b) {
-        const std::size_t before = b * lanes;
-        f(SlabRange{blocks_[b], std::max(run.begin, before) - before, std::min(run.end - before, lanes)});
+    for (std::size_t b = run.begin / block_size; b * block_size < run.end; ++b) {
+        const std::size_t before = b * block_size;
+        f(SlabRange{blocks_[b], std::max(run.begin, before) - before,
+                    std::min(run.end - before, block_size)});
     }
 }
 
@@ -112,8 +113,8 @@ void SlabChain::find_pulls(const Run& run) {
         if (l + 2 < run.end) lack -= link.beside * links_[l + 1].pull;
         link.pull = link.inverse * lack;
         SlabEnd &high = block_of(l).high, &low = block_of(l + 1).low;
-        high.pull_x[l % lanes] = low.pull_x[(l + 1) % lanes] = link.pull.x();
-        high.pull_y[l % lanes] = low.pull_y[(l + 1) % lanes] = link.pull.y();
+        high.pull_x[l % block_size] = low.pull_x[(l + 1) % block_size] = link.pull.x();
+        high.pull_y[l % block_size] = low.pull_y[(l + 1) % block_size] = link.pull.y();
     }
 }
 

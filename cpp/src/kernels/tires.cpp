@@ -1,4 +1,4 @@
-#include "birm3d/kernels/tires.hpp"
+#include "kernels/tires.hpp"
 
 #include <algorithm>
 #include <cmath>

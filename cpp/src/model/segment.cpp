@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "birm3d/base/error.hpp"
+#include "geometry/prism_nearest.hpp"
 
 namespace birm3d {
 

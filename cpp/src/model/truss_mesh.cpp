@@ -21,7 +21,7 @@ bool is_of_skin(const TrussInput& input, std::size_t i) {
 void require_valid(const TrussInput& input, std::size_t wheels) {
     const std::size_t n = input.node.size();
     require_not_negative("rate_sensitivity", input.rate_sensitivity);
-    require_not_negative("dent_reach", input.dent_reach);
+    require_not_negative("indentation_length", input.indentation_length);
     if (n == 0) refuse("nodes", "at least 1", 0.0);
     const auto same_size = [n](const char* name, std::size_t size) {
         if (size != n)
@@ -97,12 +97,12 @@ std::size_t widest_axis(const std::vector<Site>& site, Places some) {
 
 // Cuts the trusses in two across their widest extent until each part is a block. All blocks are full but the last.
 void cut_into_blocks(const std::vector<Site>& site, Places some) {
-    if (some.size() <= lanes) {
+    if (some.size() <= block_size) {
         std::sort(some.begin(), some.end());
         return;
     }
     const std::size_t axis = widest_axis(site, some);
-    const std::size_t parts = (some.size() + lanes - 1) / lanes, first = parts / 2 * lanes;
+    const std::size_t parts = (some.size() + block_size - 1) / block_size, first = parts / 2 * block_size;
     std::nth_element(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(first), some.end(),
                      [&](std::size_t a, std::size_t b) {
                          return std::tie(site[a][axis], site[a], a) < std::tie(site[b][axis], site[b], b);
@@ -136,8 +136,8 @@ std::size_t panel_of(const Vec3& inward) {
     return 2 * static_cast<std::size_t>(axis) + (inward[axis] < 0.0 ? 1 : 0);
 }
 
-Box box_around(const Lanes& x, const Lanes& y, const Lanes& z) {
-    return Box::around(lanes, [&](std::size_t i) { return Vec3(x[i], y[i], z[i]); });
+Box box_around(const BlockColumn& x, const BlockColumn& y, const BlockColumn& z) {
+    return Box::around(block_size, [&](std::size_t i) { return Vec3(x[i], y[i], z[i]); });
 }
 
 }  // namespace
@@ -145,7 +145,7 @@ Box box_around(const Lanes& x, const Lanes& y, const Lanes& z) {
 TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) {
     require_valid(input, wheels.size());
     rate_sensitivity = input.rate_sensitivity;
-    dent_reach = input.dent_reach;
+    indentation_length = input.indentation_length;
     count = input.node.size();
     for (const TrussCurve& curve : input.curve)
         hinges = std::max(hinges, curve.slope.size()), recovers = recovers || std::isfinite(curve.recovery);
@@ -155,7 +155,7 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
     if (parts[0].empty()) refuse("nodes of the skin", "at least 1", 0.0);
     for (std::size_t p = 0; p < parts.size(); ++p) {
         std::vector<std::size_t>& part = parts[p];
-        for (std::size_t i = 0; i < part.size(); i += lanes)
+        for (std::size_t i = 0; i < part.size(); i += block_size)
             first.fill().push_back(input_index.size() + i);
         cut_into_blocks(site, part);  // neighbours together
         input_index.fill().insert(input_index.end(), part.begin(), part.end());
@@ -179,7 +179,7 @@ void TrussMesh::find_tread(const TrussInput& input, const std::vector<Wheel>& wh
         const std::size_t source = input_index[truss];
         const auto w = static_cast<std::size_t>(input.wheel_of[source]);
         const Vec3 d = input.node[source] - wheels[w].center;
-        tread.fill().push_back({d.z() / wheels[w].radius, -d.x() / wheels[w].radius, w});
+        tire_nodes.fill().push_back({d.z() / wheels[w].radius, -d.x() / wheels[w].radius, w});
     }
 }
 
@@ -187,7 +187,7 @@ void TrussMesh::find_panels(const TrussInput& input) {
     std::array<std::vector<Vec3>, panels> nodes, anchors_of;
     panels_of.fill().assign(blocks, 0);
     for (std::size_t b = 0; b < shell_blocks; ++b) {
-        Lanes& panel_of_node = block.fill()[b].panel;
+        BlockColumn& panel_of_node = block.fill()[b].panel;
         for (std::size_t i = 0; i < nodes_in(b); ++i) {
             const std::size_t source = input_index[first[b] + i];
             const bool second = b >= skin_blocks;
@@ -220,7 +220,7 @@ void TrussMesh::find_panels(const TrussInput& input) {
 // Sums of their own for each entry, which stay in registers.
 StiffnessMoments stiffness_of(const TrussBlock& trusses) {
     double k = 0.0, xx = 0.0, xy = 0.0, xz = 0.0, yx = 0.0, yy = 0.0, yz = 0.0, zx = 0.0, zy = 0.0, zz = 0.0;
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const double x = trusses.node_x[i], y = trusses.node_y[i], z = trusses.node_z[i];
         const double kx = trusses.k_unloading[i] * x, ky = trusses.k_unloading[i] * y,
                      kz = trusses.k_unloading[i] * z;
@@ -239,8 +239,8 @@ void TrussMesh::fill_block(const TrussInput& input, std::size_t b) {
     const std::size_t nodes = nodes_in(b);
     for (std::size_t i = 0; i < nodes; ++i)
         fill_lane(input, input_index[first[b] + i], b, i);
-    if (nodes < lanes) pad(input, b);
-    const Lanes& k = block[b].k_unloading;
+    if (nodes < block_size) pad(input, b);
+    const BlockColumn& k = block[b].k_unloading;
     pushable.fill().push_back(
         static_cast<double>(std::count_if(k.begin(), k.end(), [](double each) { return each > 0.0; })));
     moments.fill().push_back(stiffness_of(block[b]));
@@ -258,7 +258,7 @@ void TrussMesh::pad(const TrussInput& input, std::size_t b) {
     const std::size_t place = *std::min_element(begin, end, by_way);
     constexpr double beside = 1e-3;
     const Vec3& anchor = input.anchor[place];
-    for (std::size_t i = nodes_in(b); i < lanes; ++i)
+    for (std::size_t i = nodes_in(b); i < block_size; ++i)
         place_lane(Vec3(anchor + beside * (input.node[place] - anchor)), anchor, b, i);
 }
 

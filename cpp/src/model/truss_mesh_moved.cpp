@@ -12,28 +12,28 @@ struct Bounds {
     double low, high;
 };
 
-Bounds bounds_of(const Lanes& values) {
+Bounds bounds_of(const BlockColumn& values) {
     Bounds found{values[0], values[0]};
     for (const double value : values)
         found = {std::min(found.low, value), std::max(found.high, value)};
     return found;
 }
 
-Box box_around(const Lanes& x, const Lanes& y, const Lanes& z) {
+Box box_around(const BlockColumn& x, const BlockColumn& y, const BlockColumn& z) {
     const Bounds along_x = bounds_of(x), along_y = bounds_of(y), along_z = bounds_of(z);
     const Vec3 low(along_x.low, along_y.low, along_z.low), high(along_x.high, along_y.high, along_z.high);
     return {0.5 * (low + high), 0.5 * (high - low)};
 }
 
 // Greatest squared distance from the origin (m^2).
-double reach_squared(const Lanes& x, const Lanes& y, const Lanes& z) {
+double reach_squared(const BlockColumn& x, const BlockColumn& y, const BlockColumn& z) {
     double greatest = 0.0;
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < block_size; ++i)
         greatest = std::max(greatest, x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
     return greatest;
 }
 
-void move(Lanes& values, double by) {
+void move(BlockColumn& values, double by) {
     for (double& value : values)
         value -= by;
 }
@@ -42,7 +42,7 @@ TrussBlock moved_block(const TrussBlock& block, const Vec3& origin) {
     TrussBlock to = block;
     move(to.node_x, origin.x()), move(to.node_y, origin.y()), move(to.node_z, origin.z());
     move(to.anchor_x, origin.x()), move(to.anchor_y, origin.y()), move(to.anchor_z, origin.z());
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const double x = to.node_x[i] - to.anchor_x[i], y = to.node_y[i] - to.anchor_y[i],
                      z = to.node_z[i] - to.anchor_z[i];
         to.length[i] = std::sqrt(x * x + y * y + z * z);

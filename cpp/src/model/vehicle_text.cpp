@@ -161,7 +161,7 @@ TrussCurve curve_of(Reader& in) {
 TrussInput trusses_of(Reader& in) {
     TrussInput input;
     input.rate_sensitivity = in.number("rate_sensitivity");
-    input.dent_reach = in.number("indentation_length");
+    input.indentation_length = in.number("indentation_length");
     for (std::size_t left = in.count("curves"); left > 0; --left)
         input.curve.push_back(curve_of(in));
     for (std::size_t left = in.count("trusses"); left > 0; --left) {

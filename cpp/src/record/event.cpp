@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/control/end_of_event.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/scene/obstacles.hpp"
+#include "control/end_of_event.hpp"
+#include "kernels/integrate.hpp"
+#include "scene/obstacles.hpp"
 
 namespace birm3d {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "birm3d/base/channel_filter.hpp"
+#include "base/channel_filter.hpp"
 
 namespace birm3d {
 

@@ -34,8 +34,8 @@ class Anchors {
   private:
     double in_block(std::size_t b, const Vec3& direction) const {
         const TrussBlock& block = mesh_.block[b];
-        Lanes along;
-        for (std::size_t i = 0; i < lanes; ++i)  // padding has an anchor of the skin
+        BlockColumn along;
+        for (std::size_t i = 0; i < block_size; ++i)  // padding has an anchor of the skin
             along[i] = block.anchor_x[i] * direction.x() + block.anchor_y[i] * direction.y() +
                        block.anchor_z[i] * direction.z();
         return *std::max_element(along.begin(), along.end());

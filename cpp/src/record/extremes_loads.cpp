@@ -3,7 +3,7 @@
 #include <cmath>
 #include <variant>
 
-#include "birm3d/base/channel_filter.hpp"
+#include "base/channel_filter.hpp"
 #include "birm3d/record/extremes.hpp"
 #include "record/greatest.hpp"
 

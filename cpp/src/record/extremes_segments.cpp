@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "birm3d/base/channel_filter.hpp"
+#include "base/channel_filter.hpp"
 #include "birm3d/record/extremes.hpp"
 
 namespace birm3d {

@@ -6,7 +6,8 @@
 
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/rotation.hpp"
-#include "birm3d/kernels/integrate.hpp"
+#include "contact/trial.hpp"
+#include "kernels/integrate.hpp"
 #include "record/recorder_rows.hpp"
 
 namespace birm3d {

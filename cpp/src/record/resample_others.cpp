@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "birm3d/base/rotation.hpp"
+#include "kernels/joints.hpp"
 #include "record/resample_rows.hpp"
 
 namespace birm3d {

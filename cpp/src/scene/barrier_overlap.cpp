@@ -1,9 +1,9 @@
-#include "birm3d/scene/barrier_overlap.hpp"
+#include "scene/barrier_overlap.hpp"
 
 #include <algorithm>
 
-#include "birm3d/scene/body_overlap.hpp"
-#include "birm3d/scene/obstacles.hpp"
+#include "scene/body_overlap.hpp"
+#include "scene/obstacles.hpp"
 
 namespace birm3d {
 

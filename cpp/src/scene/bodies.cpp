@@ -1,8 +1,8 @@
-#include "birm3d/scene/bodies.hpp"
+#include "scene/bodies.hpp"
 
 #include <cmath>
 
-#include "birm3d/kernels/integrate.hpp"
+#include "kernels/integrate.hpp"
 
 namespace birm3d {
 

@@ -1,8 +1,8 @@
-#include "birm3d/scene/body_overlap.hpp"
+#include "scene/body_overlap.hpp"
 
 #include <algorithm>
 
-#include "birm3d/kernels/detect.hpp"
+#include "kernels/detect.hpp"
 
 namespace birm3d {
 

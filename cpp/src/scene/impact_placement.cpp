@@ -9,10 +9,10 @@
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/rotation.hpp"
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/kernels/tires.hpp"
-#include "birm3d/scene/indentation_gaps.hpp"
-#include "birm3d/scene/obstacles.hpp"
+#include "kernels/integrate.hpp"
+#include "kernels/tires.hpp"
+#include "scene/indentation_gaps.hpp"
+#include "scene/obstacles.hpp"
 
 namespace birm3d {
 
@@ -67,7 +67,7 @@ void stand_back(const Scene& scene, const Vec3& heading, State& state) {
     constexpr double deepest = 0.3;
     constexpr int most_steps = 50;
     for (int i = 0; i < most_steps; ++i) {
-        const double overlap = overlap_of_dents(scene, state, deepest);
+        const double overlap = overlap_of_indentations(scene, state, deepest);
         if (overlap == 0.0) return;
         move(state, -(overlap + tolerance::touching_gap) * heading);
     }
@@ -86,7 +86,8 @@ Ends ends_along(const Scene& scene, const State& state, const Vec3& direction) {
         const Mat3 R = body.orientation.toRotationMatrix();
         const Vec3 own = R.transpose() * direction;
         const double middle = direction.dot(body.position);
-        const auto look = [&](std::size_t b, const Box& box, const Lanes& x, const Lanes& y, const Lanes& z) {
+        const auto look = [&](std::size_t b, const Box& box, const BlockColumn& x, const BlockColumn& y,
+                              const BlockColumn& z) {
             // A block that can not reach further is left out.
             const double center = middle + own.dot(box.center);
             const double reach = own.cwiseAbs().dot(box.half) + 1e-9 * (1.0 + std::abs(center));

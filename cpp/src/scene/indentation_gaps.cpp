@@ -1,10 +1,10 @@
-#include "birm3d/scene/indentation_gaps.hpp"
+#include "scene/indentation_gaps.hpp"
 
 #include <algorithm>
 #include <limits>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/scene/obstacles.hpp"
+#include "scene/obstacles.hpp"
 
 namespace birm3d {
 
@@ -25,12 +25,12 @@ struct Bound {
 };
 
 // Of those groups that can come within `far`, the nearest first.
-std::vector<Bound> groups_by_gap(const Dent& dent, std::size_t panel, const TrussMesh& mesh,
+std::vector<Bound> groups_by_gap(const Indentation& indentation, std::size_t panel, const TrussMesh& mesh,
                                  const UnitState& unit, double far) {
     std::vector<Bound> bounds;
     for (std::size_t g = 0; g < unit.trusses.groups.size(); ++g) {
         if ((mesh.panels_of_group[g] >> panel & 1U) == 0) continue;
-        const double gap = -most_inside(dent, unit.trusses.groups[g].box);
+        const double gap = -most_inside(indentation, unit.trusses.groups[g].box);
         if (gap <= far) bounds.push_back({gap, g});
     }
     std::sort(bounds.begin(), bounds.end());
@@ -39,23 +39,23 @@ std::vector<Bound> groups_by_gap(const Dent& dent, std::size_t panel, const Trus
 
 }  // namespace
 
-double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, const UnitState& unit,
-                    double far, double enough) {
+double gap_of_panel(const Indentation& indentation, std::size_t panel, const TrussMesh& mesh,
+                    const UnitState& unit, double far, double enough) {
     double least = infinity;
     std::vector<Bound> blocks;
-    for (const Bound& group : groups_by_gap(dent, panel, mesh, unit, far)) {
+    for (const Bound& group : groups_by_gap(indentation, panel, mesh, unit, far)) {
         if (group.gap > least) break;
         blocks.clear();
         for (std::size_t b = group.of * TrussMesh::group_size; b < mesh.end_of_group(group.of); ++b) {
             if ((mesh.panels_of[b] >> panel & 1U) == 0) continue;
-            const double bound = -most_inside(dent, unit.trusses.block[b].box);
+            const double bound = -most_inside(indentation, unit.trusses.block[b].box);
             if (bound <= std::min(far, least)) blocks.push_back({bound, b});
         }
         std::sort(blocks.begin(), blocks.end());
         for (const Bound& block : blocks) {
             if (block.gap > least) break;
-            least = std::min(least,
-                             gap_of(dent, unit.trusses.block[block.of], mesh.block[block.of].panel, panel));
+            least = std::min(
+                least, gap_of(indentation, unit.trusses.block[block.of], mesh.block[block.of].panel, panel));
             if (least <= enough) return least;
         }
     }
@@ -64,11 +64,11 @@ double gap_of_panel(const Dent& dent, std::size_t panel, const TrussMesh& mesh, 
 
 namespace {
 
-// Calls `use` with each dent that a post makes or would make, and the numbers of the post and the panel. `about`: of the obstacles. `way`: by
+// Calls `use` with each indentation that a post makes or would make, and the numbers of the post and the panel. `about`: of the obstacles. `way`: by
 // which posts beside, before or below a panel count too, as if it had no ends (m).
 template <class Use>
-void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& mesh,
-                   const std::vector<std::size_t>& about, double way, const Use& use) {
+void for_each_indentation(const Scene& scene, const UnitState& unit, const TrussMesh& mesh,
+                          const std::vector<std::size_t>& about, double way, const Use& use) {
     for (const std::size_t i : about) {
         const Obstacle& obstacle = scene.obstacles[i];
         const Post* post = std::get_if<Post>(&obstacle.shape);
@@ -78,63 +78,64 @@ void for_each_dent(const Scene& scene, const UnitState& unit, const TrussMesh& m
         for (std::size_t p = 0; p < panels; ++p) {
             const Panel& panel = mesh.panel[p];
             if (!panel.any || !stands_across(seen, panel, false)) continue;
-            Dent dent(*post, seen, panel, mesh.dent_reach);
-            if (!(dent.beside(panel) < way) || dent.is_beyond(panel)) continue;
+            Indentation indentation(*post, seen, panel, mesh.indentation_length);
+            if (!(indentation.beside(panel) < way) || indentation.is_beyond(panel)) continue;
             if (way > 0.0) {
-                dent.low = -infinity;
-                dent.high = infinity;
+                indentation.low = -infinity;
+                indentation.high = infinity;
             }
-            use(dent, i, p);
+            use(indentation, i, p);
         }
     }
 }
 
 }  // namespace
 
-double overlap_of_dents(const Scene& scene, const State& state, double deepest) {
+double overlap_of_indentations(const Scene& scene, const State& state, double deepest) {
     double most = 0.0;
     std::vector<std::size_t> about;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
-        if (mesh.dent_reach == 0.0) continue;
+        if (mesh.indentation_length == 0.0) continue;
         scene.map.find(state.units[u].body.position, state.units[u].trusses.around.radius(), about);
-        for_each_dent(scene, state.units[u], mesh, about, 0.0,
-                      [&](const Dent& dent, std::size_t, std::size_t panel) {
-                          const double gap = gap_of_panel(dent, panel, mesh, state.units[u], 0.0, -infinity);
-                          if (-gap < deepest) most = std::max(most, -gap);
-                      });
+        for_each_indentation(scene, state.units[u], mesh, about, 0.0,
+                             [&](const Indentation& indentation, std::size_t, std::size_t panel) {
+                                 const double gap =
+                                     gap_of_panel(indentation, panel, mesh, state.units[u], 0.0, -infinity);
+                                 if (-gap < deepest) most = std::max(most, -gap);
+                             });
     }
     return most;
 }
 
 namespace {
 
-// Nodes that a dent has just let go lie on it but for rounding: at this gap it has come already (m).
+// Nodes that an indentation has just let go lie on it but for rounding: at this gap it has come already (m).
 constexpr double come = tolerance::touching_gap;
 
-// Does the post dent the panel already? Nodes that it has left behind are off its dent then, however near it stands.
-bool dents_already(const UnitState& unit, std::size_t obstacle, std::size_t panel) {
-    return std::any_of(unit.dented.begin(), unit.dented.end(), [=](const Dented& dented) {
-        return dented.obstacle == obstacle && (dented.panels >> panel & 1U) != 0;
+// Does the post indentation the panel already? Nodes that it has left behind are off its indentation then, however near it stands.
+bool indents_already(const UnitState& unit, std::size_t obstacle, std::size_t panel) {
+    return std::any_of(unit.indented.begin(), unit.indented.end(), [=](const IndentedPanels& indented) {
+        return indented.obstacle == obstacle && (indented.panels >> panel & 1U) != 0;
     });
 }
 
 }  // namespace
 
-double undented_step(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
-                     double longest) {
+double step_to_indentation(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
+                           double longest) {
     std::vector<std::size_t> about;
     const double way = longest * fastest;
     scene.map.find(unit.body.position, unit.trusses.around.radius() + way, about);
-    for_each_dent(scene, unit, mesh, about, way,
-                  [&](const Dent& dent, std::size_t obstacle, std::size_t panel) {
-                      if (dents_already(unit, obstacle, panel)) return;
-                      // A post dents what it comes into.
-                      const double grows = dent.fastest_growth(mesh.panel[panel]);
-                      const double gap = gap_of_panel(dent, panel, mesh, unit, grows * way, come);
-                      if (gap > come)
-                          longest = std::min(longest, (gap + tolerance::untouched_way) / (grows * fastest));
-                  });
+    for_each_indentation(
+        scene, unit, mesh, about, way,
+        [&](const Indentation& indentation, std::size_t obstacle, std::size_t panel) {
+            if (indents_already(unit, obstacle, panel)) return;
+            // A post indents what it comes into.
+            const double grows = indentation.fastest_growth(mesh.panel[panel]);
+            const double gap = gap_of_panel(indentation, panel, mesh, unit, grows * way, come);
+            if (gap > come) longest = std::min(longest, (gap + tolerance::untouched_way) / (grows * fastest));
+        });
     return longest;
 }
 

@@ -1,11 +1,11 @@
-#include "birm3d/scene/obstacles.hpp"
+#include "scene/obstacles.hpp"
 
 #include <algorithm>
 #include <limits>
 
-#include "birm3d/kernels/detect.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/scene/bodies.hpp"
+#include "kernels/detect.hpp"
+#include "kernels/integrate.hpp"
+#include "scene/bodies.hpp"
 
 namespace birm3d {
 
@@ -17,7 +17,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 template <class Blocks>
 double nearest_in_blocks(const Shape& shape, const Placement& seen, std::size_t blocks, const Blocks& block,
                          double least) {
-    alignas(64) NearestLanes found;
+    alignas(64) NearestOfBlock found;
     for (std::size_t b = 0; b < blocks; ++b) {
         const auto [box, x, y, z] = block(b);
         if (!within_reach(shape, seen, box, least)) continue;
@@ -78,12 +78,13 @@ double fastest_segment(const Scene& scene, const State& state) {
 
 namespace {
 
-// Panels of the unit that the obstacle dents, bit by bit. Their nodes go in with it as its dent asks: skin that it has
-// pushed aside stands within its outline (kernels/dent.hpp).
-std::uint8_t panels_dented(const UnitState& unit, std::size_t obstacle) {
-    const auto known = std::find_if(unit.dented.begin(), unit.dented.end(),
-                                    [=](const Dented& dented) { return dented.obstacle == obstacle; });
-    return known != unit.dented.end() ? known->panels : std::uint8_t{0};
+// Panels of the unit that the obstacle indents, bit by bit. Skin that it has pushed aside may be within its outline
+// (kernels/indentation.hpp).
+std::uint8_t indented_panels(const UnitState& unit, std::size_t obstacle) {
+    const auto known =
+        std::find_if(unit.indented.begin(), unit.indented.end(),
+                     [=](const IndentedPanels& indented) { return indented.obstacle == obstacle; });
+    return known != unit.indented.end() ? known->panels : std::uint8_t{0};
 }
 
 // A place where nothing is (m).
@@ -104,17 +105,17 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
             if (!within_reach(shape, seen, all, least)) continue;
             struct Points {
                 Box box;
-                const Lanes *x, *y, *z;
+                const BlockColumn *x, *y, *z;
             };
-            const std::uint8_t dented = panels_dented(unit, i);
-            alignas(64) Lanes none;
+            const std::uint8_t indented = indented_panels(unit, i);
+            alignas(64) BlockColumn none;
             none.fill(nowhere);
             if (what.nodes)
                 least = nearest_in_blocks(
                     shape, seen, i == scene.ground ? mesh.shell_blocks : mesh.blocks,
                     [&](std::size_t b) {
                         const TrussBlockState& block = unit.trusses.block[b];
-                        if ((mesh.panels_of[b] & dented) != 0)
+                        if ((mesh.panels_of[b] & indented) != 0)
                             return Points{{Vec3::Constant(nowhere), Vec3::Zero()}, &none, &none, &none};
                         return Points{block.box, &block.x, &block.y, &block.z};
                     },

@@ -7,6 +7,7 @@
 
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/tolerances.hpp"
+#include "geometry/prism_nearest.hpp"
 
 namespace birm3d {
 
@@ -104,9 +105,9 @@ std::uint64_t Scene::fingerprint() const {
         hash.add(unit.mass_center_height);
         hash.add(unit.offset);
         for (const TrussBlock& b : unit.trusses.block)
-            for (const Lanes* lane :
+            for (const BlockColumn* column :
                  {&b.node_x, &b.node_y, &b.node_z, &b.anchor_x, &b.anchor_y, &b.anchor_z, &b.k_unloading})
-                hash.add(*lane);
+                hash.add(*column);
         if (unit.trusses.recovers)
             for (const TrussBlock& b : unit.trusses.block)
                 hash.add(b.per_recovery);
@@ -115,8 +116,8 @@ std::uint64_t Scene::fingerprint() const {
             hash.add(hinge.slope_change);
         }
         hash.add(unit.trusses.rate_sensitivity);
-        hash.add(unit.trusses.dent_reach);
-        for (const TreadNode& node : unit.trusses.tread) {
+        hash.add(unit.trusses.indentation_length);
+        for (const TireNode& node : unit.trusses.tire_nodes) {
             hash.add(node.turn_r);
             hash.add(node.turn_t);
             hash.add(static_cast<double>(node.wheel));

@@ -8,21 +8,34 @@
 
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/control/end_of_event.hpp"
-#include "birm3d/control/step_control.hpp"
-#include "birm3d/control/step_limits.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/scene/barrier_overlap.hpp"
-#include "birm3d/scene/bodies.hpp"
-#include "birm3d/scene/obstacles.hpp"
-#include "birm3d/step/energy_balance.hpp"
+#include "control/end_of_event.hpp"
+#include "control/step_control.hpp"
+#include "control/step_limits.hpp"
+#include "kernels/integrate.hpp"
+#include "scene/barrier_overlap.hpp"
+#include "scene/bodies.hpp"
+#include "scene/obstacles.hpp"
+#include "step/energy_balance.hpp"
+#include "step/step.hpp"
 
 namespace birm3d {
+
+struct Simulation::Work {
+    explicit Work(const Vehicle& vehicle) : trial(vehicle) {}
+
+    Trial trial;
+    std::vector<std::size_t> about;  // obstacles about a unit
+    std::vector<BodyState> before;   // the bodies at the start of the step
+};
+
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
 
 Simulation::Simulation(Scene scene)
     : scene_(std::move(scene)),
       state_(scene_.initial_state()),
-      trial_(*scene_.vehicle),
+      work_(std::make_unique<Work>(*scene_.vehicle)),
       recorder_(scene_, state_),
       event_(begin_event(scene_, state_)) {}
 
@@ -42,7 +55,7 @@ void Simulation::start(const Approach& approach) {
 
 void Simulation::reset() {
     scene_.start(state_);
-    trial_.restart(*scene_.vehicle, state_);
+    work_->trial.restart(*scene_.vehicle, state_);
     recorder_.restart(scene_, state_);
     event_ = begin_event(scene_, state_);
     failed_ = false;
@@ -72,7 +85,7 @@ void Simulation::restore(const Snapshot& snapshot) {
         refuse("snapshot", "within the duration of " + to_text(*scene_.duration) + " s",
                to_text(snapshot.state.time) + " s");
     state_ = snapshot.state;
-    trial_.restart(*scene_.vehicle, state_);
+    work_->trial.restart(*scene_.vehicle, state_);
     recorder_ = snapshot.recorder;
     event_ = snapshot.event;
     failed_ = false;
@@ -105,9 +118,10 @@ double Simulation::remaining() const {
     return rest > tolerance::shortest_step ? rest : 0.0;  // no step for what rounding leaves over
 }
 
-void Simulation::take(Trial& trial) {
+void Simulation::take() {
+    Trial& trial = work_->trial;
     const bool open = scene_.barrier && !state_.decided;
-    if (open) list_body_states(state_, before_);
+    if (open) list_body_states(state_, work_->before);
     const double released =
         open || event_.touching ? std::min(time_to_release(scene_, state_), trial.dt) : 0.0;
     const double begin = state_.time;
@@ -117,12 +131,12 @@ void Simulation::take(Trial& trial) {
     failed_ = true;  // unless all of what follows is done
     check_balances(scene_, state_, trial, state_.ledger);
     accept(scene_, trial, state_);
-    note_overlap(scene_, about_, state_);
+    note_overlap(scene_, work_->about, state_);
     recorder_.add(scene_, trial);
     follow_event(scene_, state_, {begin, released, trial.body_held_by_barrier()}, event_);
     if (open && is_decided(scene_, state_, event_)) {
         state_.decided = true;
-        state_.decided_at = time_of_decision(scene_, before_, released, trial.dt, trial.state);
+        state_.decided_at = time_of_decision(scene_, work_->before, released, trial.dt, trial.state);
     }
     if (!scene_.duration && end_reason() == EndReason::longest) judge_at_longest(scene_, state_, event_);
     failed_ = false;
@@ -133,19 +147,19 @@ void Simulation::fixed_step() {
     const double dt = std::min(step, remaining());
     const double passing = passing_step(scene_, state_, dt);
     if (passing < dt) refuse_step(dt, passing);
-    try_step(scene_, state_, dt, {}, trial_);
-    double critical = trial_.critical_step;
-    if (trial_.body_held()) {
+    try_step(scene_, state_, dt, {}, work_->trial);
+    double critical = work_->trial.critical_step;
+    if (work_->trial.body_held()) {
         // The rigid body was held: would the trusses have stopped it, had the step been short enough to see
         // them? Look at them on the way there.
         Trial free(*scene_.vehicle);
         for (double part = dt; part > 1e-3 * dt; part *= 0.5) {
-            try_step(scene_, state_, part, {.hold_members = false}, free);
+            try_step(scene_, state_, part, {.hold_core = false}, free);
             critical = std::min(critical, free.critical_step);
         }
     }
     if (dt > critical) refuse_step(dt, critical);
-    take(trial_);
+    take();
 }
 
 void Simulation::refuse_step(double dt, double critical) const {
@@ -166,15 +180,15 @@ void Simulation::adaptive_step() {
         if (dt < tolerance::shortest_step)
             throw UnstableError(dt, tolerance::shortest_step, state_.time,
                                 "the scene is too stiff for any step worth taking");
-        try_step(scene_, state_, dt, {.locate_impacts = true}, trial_);
-        const double shorter = shorter_step(scene_, state_, trial_, search);
+        try_step(scene_, state_, dt, {.locate_impacts = true}, work_->trial);
+        const double shorter = shorter_step(scene_, state_, work_->trial, search);
         if (!(shorter < dt)) break;
         dt = shorter;
         ++state_.statistics.rejected;
-        state_.statistics.node_evaluations = trial_.state.statistics.node_evaluations;
+        state_.statistics.node_evaluations = work_->trial.state.statistics.node_evaluations;
     }
-    const double next = step_after(scene_, trial_, search);
-    take(trial_);
+    const double next = step_after(scene_, work_->trial, search);
+    take();
     state_.next_step = next;
 }
 

@@ -1,10 +1,10 @@
-#include "birm3d/step/energy_balance.hpp"
+#include "step/energy_balance.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/scene/bodies.hpp"
+#include "kernels/integrate.hpp"
+#include "scene/bodies.hpp"
 
 namespace birm3d {
 

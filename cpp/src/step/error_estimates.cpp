@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/scene/bodies.hpp"
+#include "kernels/integrate.hpp"
+#include "scene/bodies.hpp"
 
 namespace birm3d {
 

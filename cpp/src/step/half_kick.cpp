@@ -1,4 +1,4 @@
-#include "birm3d/step/half_kick.hpp"
+#include "step/half_kick.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,16 +6,16 @@
 #include <utility>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/contact/rigid_contacts.hpp"
-#include "birm3d/contact/rigid_impact.hpp"
-#include "birm3d/kernels/detect.hpp"
-#include "birm3d/kernels/detect_members.hpp"
-#include "birm3d/kernels/impulse.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/kernels/joints.hpp"
-#include "birm3d/kernels/tires.hpp"
-#include "birm3d/scene/bodies.hpp"
-#include "birm3d/scene/obstacles.hpp"
+#include "contact/rigid_contacts.hpp"
+#include "contact/rigid_impact.hpp"
+#include "kernels/core_contacts.hpp"
+#include "kernels/detect.hpp"
+#include "kernels/impulse.hpp"
+#include "kernels/integrate.hpp"
+#include "kernels/joints.hpp"
+#include "kernels/tires.hpp"
+#include "scene/bodies.hpp"
+#include "scene/obstacles.hpp"
 
 namespace birm3d {
 
@@ -34,12 +34,12 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
         const Unit& unit = scene.vehicle->units[u];
         const BodyState& body = state.units[u].body;
         if (scene.settings.ground) find_tire_contacts(unit, u, body, contacts);
-        if (scene.obstacles.empty() || !options.hold_members) continue;
+        if (scene.obstacles.empty() || !options.hold_core) continue;
         const Mat3 R = body.orientation.toRotationMatrix();
         const Twist motion{R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
         placed.clear();
         const Box& anchors = unit.trusses.anchors;
-        scene.map.find(body.position, unit.trusses.reach + member_margin(unit.trusses, motion, dt), about);
+        scene.map.find(body.position, unit.trusses.reach + core_margin(unit.trusses, motion, dt), about);
         for (const std::size_t i : about) {
             if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
             const Obstacle& obstacle = scene.obstacles[i];
@@ -47,12 +47,12 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
             const Twist other = obstacle_motion(scene, i, state, body);
             const Twist relative{motion.velocity - other.velocity,
                                  motion.angular_velocity - other.angular_velocity};
-            if (within_reach(obstacle.shape, seen, anchors, member_margin(unit.trusses, relative, dt)))
+            if (within_reach(obstacle.shape, seen, anchors, core_margin(unit.trusses, relative, dt)))
                 placed.push_back({&obstacle.shape, seen, i, obstacle.friction, other});
         }
         if (placed.empty()) continue;
         const std::size_t first = contacts.size();
-        find_closed_members(unit.trusses, u, body, placed, motion, dt, contacts);
+        find_core_contacts(unit.trusses, u, body, placed, motion, dt, contacts);
         for (std::size_t i = first; i < contacts.size(); ++i) {
             RigidContact& contact = contacts[i];
             contact.other = body_of_obstacle(scene, contact.obstacle);
@@ -87,7 +87,7 @@ void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpuls
         // A tyre that carried load before the drift is still in contact after it, though rotation may have opened a gap of
         // rounding size. An approach that only the forces of this step make is no impact.
         if (contact.source == ContactSource::tire && before_drift[contact.body].tire[contact.index] > 0.0)
-            return contact.comes_hard;
+            return contact.is_impact;
         return contact.gap > tolerance::touching_gap || approaches_hard(contact, bodies);
     });
 }
@@ -100,7 +100,7 @@ double time_to_impact(double negligible, std::span<const ContactBody> bodies,
     for (const RigidContact& contact : contacts) {
         if (!(contact.gap > tolerance::touching_gap) || !approaches_hard(contact, bodies)) continue;
         const double time = -contact.gap / separation_velocity(contact, bodies);
-        if (contact.comes_hard || time > negligible) earliest = std::min(earliest, time);
+        if (contact.is_impact || time > negligible) earliest = std::min(earliest, time);
     }
     return earliest;
 }
@@ -154,7 +154,7 @@ void combine(const std::vector<Twist>& a, double factor, const std::vector<Twist
 
 void note_greatest_depth(const std::vector<RigidContact>& contacts, StepStatistics& statistics) {
     for (const RigidContact& contact : contacts)
-        if (contact.source == ContactSource::member)
+        if (contact.source == ContactSource::core)
             statistics.deepest_point = std::max(statistics.deepest_point, -contact.gap);
 }
 
@@ -202,7 +202,7 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     }
 
     for (RigidContact& contact : memory.contacts)
-        contact.comes_hard = approaches_hard(contact, bodies);
+        contact.is_impact = approaches_hard(contact, bodies);
     const Column pressed = kick_by_forces(scene, stage, half, trial);
     list_motions(state, bodies, memory.pushed);
     if (start && options.locate_impacts)

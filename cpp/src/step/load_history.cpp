@@ -5,9 +5,9 @@
 #include <span>
 
 #include "birm3d/base/tolerances.hpp"
-#include "birm3d/scene/obstacles.hpp"
-#include "birm3d/step/structure_load.hpp"
+#include "scene/obstacles.hpp"
 #include "step/error_estimates.hpp"
+#include "step/structure_load.hpp"
 
 namespace birm3d {
 

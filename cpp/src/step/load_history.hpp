@@ -18,7 +18,7 @@
 
 #include <vector>
 
-#include "birm3d/contact/trial.hpp"
+#include "contact/trial.hpp"
 
 namespace birm3d {
 

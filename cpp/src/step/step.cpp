@@ -1,12 +1,12 @@
-#include "birm3d/step/step.hpp"
+#include "step/step.hpp"
 
 #include <algorithm>
 
-#include "birm3d/contact/contact_forces.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/step/energy_balance.hpp"
-#include "birm3d/step/half_kick.hpp"
+#include "contact/contact_forces.hpp"
+#include "kernels/integrate.hpp"
+#include "step/energy_balance.hpp"
 #include "step/error_estimates.hpp"
+#include "step/half_kick.hpp"
 #include "step/load_history.hpp"
 #include "step/step_statistics.hpp"
 

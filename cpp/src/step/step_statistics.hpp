@@ -1,7 +1,7 @@
 // Counts and extremes of accepted steps: state/state.hpp, StepStatistics.
 #pragma once
 
-#include "birm3d/contact/trial.hpp"
+#include "contact/trial.hpp"
 
 namespace birm3d {
 

@@ -85,7 +85,7 @@ def _truss_arguments(vehicle: VehicleFields) -> dict[str, Any]:
         "scale": vehicle.area,
         "wheels": vehicle.wheels,
         "rate_sensitivity": vehicle.rate_sensitivity,
-        "dent_reach": vehicle.dent_reach,
+        "indentation_length": vehicle.dent_reach,
         "wheel_of": vehicle.wheel_of_node,
         "along_of": vehicle.along_of_node,
     }

@@ -56,7 +56,7 @@ def _of_unit(unit: dict[str, Any]) -> Iterator[str]:
     mesh = unit["trusses"]
     yield from _rows("mesh_wheels", mesh["wheels"])
     yield f"rate_sensitivity {_numbers([mesh['rate_sensitivity']])}"
-    yield f"indentation_length {_numbers([mesh['dent_reach']])}"
+    yield f"indentation_length {_numbers([mesh['indentation_length']])}"
     yield f"curves {len(mesh['curves'])}"
     for curve in mesh["curves"]:
         yield f"{len(curve.deflection)} {_numbers((curve.k_unloading, curve.elastic_recovery))}"

@@ -111,7 +111,7 @@ class VehicleShape:
             "scale": self.area,
             "wheels": self.wheels,
             "rate_sensitivity": rate_sensitivity,
-            "dent_reach": dent_reach,
+            "indentation_length": dent_reach,
             "wheel_of": self.wheel_of_node,
             "along_of": self.along_of_node,
         }

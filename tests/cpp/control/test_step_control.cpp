@@ -1,4 +1,4 @@
-#include "birm3d/control/step_control.hpp"
+#include "control/step_control.hpp"
 
 #include "check.hpp"
 #include "laboratory.hpp"

@@ -25,12 +25,12 @@ std::vector<Scene> scenes() {
 
 const auto nothing = [] {};
 
-Outcome run(Runner& runner, const Scene& scene, const ExtremeGroups& wanted = {}) {
+RunSummary run(Runner& runner, const Scene& scene, const ExtremeGroups& wanted = {}) {
     runner.set_scene(scene);
     return runner.run(scene.approach, wanted, nothing);
 }
 
-void check_same(const Outcome& found, const Scene& scene) {
+void check_same(const RunSummary& found, const Scene& scene) {
     Simulation alone(scene);
     laboratory::run(alone);
     CHECK(found.state_hash == alone.state().hash());
@@ -94,8 +94,8 @@ TEST("a run that fails, or that is ended, leaves nothing behind") {
 TEST("groups that are not wanted are absent, the others are the same") {
     const Scene scene = scenes()[1];
     Runner runner;
-    const Outcome whole = run(runner, scene);
-    const Outcome force = run(runner, scene, {.motion = false, .attitude = false, .energy = false});
+    const RunSummary whole = run(runner, scene);
+    const RunSummary force = run(runner, scene, {.motion = false, .attitude = false, .energy = false});
     CHECK(force.extremes.normal_force->peak == whole.extremes.normal_force->peak);
     CHECK(!force.extremes.motion && !force.extremes.attitude && !force.extremes.energy);
     CHECK(whole.extremes.motion && whole.extremes.attitude && whole.extremes.energy);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "birm3d/geometry/placement.hpp"
 #include "birm3d/geometry/shape.hpp"
+#include "geometry/placement.hpp"
 
 namespace laboratory {
 

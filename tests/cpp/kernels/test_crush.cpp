@@ -1,4 +1,4 @@
-#include "birm3d/kernels/crush.hpp"
+#include "kernels/crush.hpp"
 
 #include <cmath>
 #include <vector>
@@ -6,6 +6,7 @@
 #include "birm3d/base/rotation.hpp"
 #include "check.hpp"
 #include "laboratory.hpp"
+#include "state/block_contact.hpp"
 
 using namespace birm3d;
 
@@ -29,7 +30,7 @@ SkinForces press_by_pole(const TrussMesh& mesh, double x, double y, double radiu
                          const TrussBlockState& before, TrussBlockState& now) {
     NodeFaces faces;
     BlockContact contact;
-    for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t i = 0; i < block_size; ++i) {
         const Vec3 radial(before.x[i] - x, before.y[i] - y, 0.0);
         const Vec3 n = radial.normalized();
         faces.gap[i] = radial.norm() - radius;

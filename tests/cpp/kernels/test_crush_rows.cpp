@@ -4,20 +4,23 @@
 #include "check.hpp"
 #include "kernels/crush_dispatch.hpp"
 #include "laboratory.hpp"
+#include "state/block_contact.hpp"
 
 using namespace birm3d;
 
 namespace {
 
-struct Outcome {
+struct RunSummary {
     TrussBlockState now;
     BlockContact contact;
     NodeSums sums;
     double nodes = 0.0;
 };
 
-bool same_bits(const Outcome& a, const Outcome& b) {
-    const auto same = [](const Lanes& x, const Lanes& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
+bool same_bits(const RunSummary& a, const RunSummary& b) {
+    const auto same = [](const BlockColumn& x, const BlockColumn& y) {
+        return std::memcmp(&x, &y, sizeof x) == 0;
+    };
     return same(a.now.x, b.now.x) && same(a.now.y, b.now.y) && same(a.now.z, b.now.z) &&
            same(a.now.deflection, b.now.deflection) && same(a.now.force, b.now.force) &&
            same(a.now.peak_deflection, b.now.peak_deflection) && same(a.now.residual, b.now.residual) &&
@@ -31,7 +34,7 @@ bool same_bits(const Outcome& a, const Outcome& b) {
 TEST("every instruction set gives the same bits") {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    const auto fill = [&](Lanes& lanes_, double middle, double spread) {
+    const auto fill = [&](BlockColumn& lanes_, double middle, double spread) {
         for (double& value : lanes_)
             value = middle + spread * uniform(random);
     };
@@ -43,7 +46,7 @@ TEST("every instruction set gives the same bits") {
         const TrussMesh mesh(laboratory::front_face(recovers ? giving : laboratory::w2_curve(), 8, 8));
         // Nodes all about a slanted surface, some pressed already, on their envelopes or below.
         TrussBlockState before = TrussState(mesh).block[0];
-        alignas(64) Lanes factor, gap, nx, ny, nz, bx, by, bz;
+        alignas(64) BlockColumn factor, gap, nx, ny, nz, bx, by, bz;
         fill(before.x, 2.7, 0.3);
         fill(before.deflection, 0.3, 0.3);
         fill(before.force, 0.0, 1e4);
@@ -65,14 +68,14 @@ TEST("every instruction set gives the same bits") {
         const bool changed = round % 2 == 1;
         const PressColumns columns = columns_of(mesh, 0, changed ? &factor : nullptr);
         const FlatPress flat{-0.96, 0.28, 0.0, -2.6, -0.95, 0.3, 0.01};
-        alignas(64) Lanes drawn, place, torque;  // half of the nodes hang in a dent
+        alignas(64) BlockColumn drawn, place, torque;  // half of the nodes hang in an indentation
         fill(drawn, 0.0, 1.0);
         fill(place, 2.7, 0.3);
         fill(torque, 0.0, 3.0);
-        Outcome first_flat, first_curved;
+        RunSummary first_flat, first_curved;
         for (std::size_t k = 0; k < functions.size(); ++k) {
-            alignas(64) Lanes gaps;
-            Outcome by_flat, by_curved;
+            alignas(64) BlockColumn gaps;
+            RunSummary by_flat, by_curved;
             BlockContact& at = by_curved.contact;
             at.px = at.py = at.pz = place, at.tx = at.ty = at.tz = torque;
             const CurvedPress curved{gap.data(),   nx.data(),    ny.data(),    nz.data(),    bx.data(),

@@ -1,4 +1,4 @@
-#include "birm3d/kernels/detect.hpp"
+#include "kernels/detect.hpp"
 
 #include <random>
 
@@ -9,12 +9,12 @@ using namespace birm3d;
 TEST("the box around a block of nodes holds them all and no more") {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(-3.0, 2.0);
-    Lanes x, y, z;
-    for (Lanes* column : {&x, &y, &z})
+    BlockColumn x, y, z;
+    for (BlockColumn* column : {&x, &y, &z})
         for (double& value : *column)
             value = uniform(random);
     const Box box = box_around(x, y, z);
-    const Box known = Box::around(lanes, [&](std::size_t i) { return Vec3(x[i], y[i], z[i]); });
+    const Box known = Box::around(block_size, [&](std::size_t i) { return Vec3(x[i], y[i], z[i]); });
     CHECK(box.center == known.center);
     CHECK(box.half == known.half);
 }

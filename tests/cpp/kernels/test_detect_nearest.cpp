@@ -1,8 +1,8 @@
 // Blocks of nodes against single points.
-#include "birm3d/kernels/detect.hpp"
 #include "check.hpp"
 #include "geometry/meshes.hpp"
 #include "geometry/random_points.hpp"
+#include "kernels/detect.hpp"
 
 using namespace birm3d;
 
@@ -44,17 +44,17 @@ std::vector<Shape> shapes() {
 struct Block {
     Block(laboratory::Random& random, const Placement& now, double size) {
         const Vec3 middle = random.point(Vec3::Constant(-0.8), Vec3::Constant(1.2));
-        for (std::size_t i = 0; i < lanes; ++i) {
+        for (std::size_t i = 0; i < block_size; ++i) {
             const Vec3 p = now.from_own(middle + random.point(Vec3::Constant(-size), Vec3::Constant(size)));
             x[i] = p.x(), y[i] = p.y(), z[i] = p.z();
         }
     }
     Vec3 node(std::size_t i) const { return {x[i], y[i], z[i]}; }
     Box box() const {
-        return Box::around(lanes, [&](std::size_t i) { return node(i); });
+        return Box::around(block_size, [&](std::size_t i) { return node(i); });
     }
 
-    Lanes x, y, z;
+    BlockColumn x, y, z;
 };
 
 }  // namespace
@@ -65,9 +65,9 @@ TEST("a block of nodes sees what single points see, from anywhere") {
         for (int k = 0; k < 150; ++k) {
             const Placement now = random.placement(3.0);
             const Block block(random, now, random.within(0.01, 0.8));
-            NearestLanes out;
+            NearestOfBlock out;
             nearest_of(shape, now, now, block.x, block.y, block.z, out);
-            for (std::size_t i = 0; i < lanes; ++i) {
+            for (std::size_t i = 0; i < block_size; ++i) {
                 const Nearest exact = nearest(shape, now.to_own(block.node(i)));
                 const Vec3 normal(out.nx[i], out.ny[i], out.nz[i]);
                 CHECK_CLOSE(out.gap[i], exact.gap, 1e-13, "rounding of places some metres away");
@@ -88,12 +88,12 @@ TEST("nodes inside and those with a force are seen as if all were asked for; the
         for (int k = 0; k < 50; ++k) {
             const Placement now = random.placement(3.0);
             const Block block(random, now, random.within(0.05, 0.5));
-            Lanes force{};
+            BlockColumn force{};
             force[static_cast<std::size_t>(k)] = 1e-30;
-            NearestLanes all, some;
+            NearestOfBlock all, some;
             nearest_of(shape, now, now, block.x, block.y, block.z, all);
             nearest_of(shape, now, now, block.x, block.y, block.z, some, &force);
-            for (std::size_t i = 0; i < lanes; ++i) {
+            for (std::size_t i = 0; i < block_size; ++i) {
                 left_out += some.gap[i] == infinity;
                 inside += all.gap[i] < 0.0;
                 if (some.gap[i] == infinity) {
@@ -112,8 +112,8 @@ TEST("the nodes at rest, those that moved: a mesh asks where they came from") {
         laboratory::extruded({{0.0, 0.0}, {0.4, 0.0}, {0.4, 0.8}, {0.0, 0.8}}, {0.2, 0.4}, -1.0, 1.0, 3)
             .mesh();
     const Placement now{Mat3::Identity(), Vec3(0.1, 0.0, 0.77)};  // behind the front, below the top
-    Lanes x{}, y{}, z{};
-    NearestLanes out;
+    BlockColumn x{}, y{}, z{};
+    NearestOfBlock out;
     nearest_of(wall, now, now, x, y, z, out);
     CHECK_CLOSE(out.gap[0], -0.03, 1e-15, "at rest: the top is nearest");
     const Placement before{Mat3::Identity(), Vec3(-0.1, 0.0, 0.77)};
@@ -132,7 +132,7 @@ TEST("what is out of reach is farther than the margin") {
             const double margin = random.within(0.0, 0.3);
             const bool reach = within_reach(shape, now, block.box(), margin);
             double least = infinity;
-            for (std::size_t i = 0; i < lanes; ++i)
+            for (std::size_t i = 0; i < block_size; ++i)
                 least = std::min(least, nearest(shape, now.to_own(block.node(i))).gap);
             if (!reach) CHECK(least >= margin);
             out_of_reach += !reach;
@@ -166,16 +166,16 @@ TEST("a flat part is the nearest surface to the whole box, and is found where it
             if (!flat) continue;
             ++found;
             // Its nodes and its corners.
-            Lanes x = block.x, y = block.y, z = block.z;
+            BlockColumn x = block.x, y = block.y, z = block.z;
             for (std::size_t c = 0; c < 8; ++c) {
                 const auto end = [&](std::size_t bit) { return c & bit ? 1.0 : -1.0; };
                 x[c] = box.center.x() + end(1) * box.half.x();
                 y[c] = box.center.y() + end(2) * box.half.y();
                 z[c] = box.center.z() + end(4) * box.half.z();
             }
-            NearestLanes out;
+            NearestOfBlock out;
             nearest_of(shape, now, now, x, y, z, out);
-            for (std::size_t i = 0; i < lanes; ++i) {
+            for (std::size_t i = 0; i < block_size; ++i) {
                 const Vec3 p(x[i], y[i], z[i]), normal(out.nx[i], out.ny[i], out.nz[i]);
                 worst = std::max(worst, std::abs(flat->gap(p) - out.gap[i]));
                 // A corner of the box may lie on the limit between two faces.
@@ -208,22 +208,22 @@ TEST("a vehicle's front before a wall has a flat part, at its end it has none") 
     CHECK(!flat_part(wall, {Mat3::Identity(), {0.0, 3.0, 0.0}}, front));  // past the middle
 }
 
-TEST("lanes of one block have the same bits in any order") {
+TEST("block_size of one block have the same bits in any order") {
     laboratory::Random random(37);
     for (const Shape& shape : shapes()) {
         if (std::holds_alternative<TriangleMesh>(shape)) continue;  // ties go by the order
         const Placement now = random.placement(2.0);
         const Block block(random, now, 0.4);
-        Lanes x, y, z;
-        for (std::size_t i = 0; i < lanes; ++i) {
-            const std::size_t from = (i * 23 + 5) % lanes;
+        BlockColumn x, y, z;
+        for (std::size_t i = 0; i < block_size; ++i) {
+            const std::size_t from = (i * 23 + 5) % block_size;
             x[i] = block.x[from], y[i] = block.y[from], z[i] = block.z[from];
         }
-        NearestLanes straight, mixed;
+        NearestOfBlock straight, mixed;
         nearest_of(shape, now, now, block.x, block.y, block.z, straight);
         nearest_of(shape, now, now, x, y, z, mixed);
-        for (std::size_t i = 0; i < lanes; ++i) {
-            const std::size_t from = (i * 23 + 5) % lanes;
+        for (std::size_t i = 0; i < block_size; ++i) {
+            const std::size_t from = (i * 23 + 5) % block_size;
             CHECK(mixed.gap[i] == straight.gap[from] && mixed.nx[i] == straight.nx[from] &&
                   mixed.ny[i] == straight.ny[from] && mixed.nz[i] == straight.nz[from]);
         }

@@ -1,7 +1,7 @@
 #include <cstring>
 #include <random>
 
-#include "birm3d/base/lanes.hpp"
+#include "birm3d/base/block.hpp"
 #include "birm3d/geometry/prism.hpp"
 #include "check.hpp"
 #include "kernels/detect_dispatch.hpp"
@@ -10,8 +10,8 @@ using namespace birm3d;
 
 namespace {
 
-struct Outcome {
-    Lanes x, y, z, gap, nx, ny, nz;
+struct RunSummary {
+    BlockColumn x, y, z, gap, nx, ny, nz;
     Extent extent, of_own;
 };
 
@@ -26,8 +26,8 @@ TEST("every instruction set sees the same bits") {
     for (int round = 0; round < 50; ++round) {
         const double angle = uniform(random), c = std::cos(angle), s = std::sin(angle);
         const Turn turn{c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0, uniform(random), uniform(random), 0.4};
-        Lanes x, y, z, force;
-        for (std::size_t i = 0; i < lanes; ++i)
+        BlockColumn x, y, z, force;
+        for (std::size_t i = 0; i < block_size; ++i)
             x[i] = uniform(random), y[i] = uniform(random), z[i] = uniform(random),
             force[i] = std::max(0.0, uniform(random) - 0.8);
         const EdgeList faces{wall.edges().data(), wall.edges().size()};
@@ -35,9 +35,9 @@ TEST("every instruction set sees the same bits") {
         PrismView view{
             faces,        covered,       faces, covered,        1.0,
             wall.y_low(), wall.y_high(), true,  round % 2 == 0, round % 3 == 0 ? nullptr : force.data()};
-        Outcome first;
+        RunSummary first;
         for (std::size_t k = 0; k < functions.size(); ++k) {
-            Outcome by{};
+            RunSummary by{};
             functions[k].find_extent({x.data(), y.data(), z.data()}, by.extent);
             functions[k].place_nodes(turn, {x.data(), y.data(), z.data()},
                                      {by.x.data(), by.y.data(), by.z.data()}, by.of_own);
@@ -51,10 +51,10 @@ TEST("every instruction set sees the same bits") {
             CHECK(std::memcmp(&by, &first, sizeof by) == 0);
         }
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const Lanes& of = axis == 0 ? x : axis == 1 ? y : z;
+            const BlockColumn& of = axis == 0 ? x : axis == 1 ? y : z;
             CHECK(first.extent.low[axis] == *std::min_element(of.begin(), of.end()));
             CHECK(first.extent.high[axis] == *std::max_element(of.begin(), of.end()));
-            const Lanes& own = axis == 0 ? first.x : axis == 1 ? first.y : first.z;
+            const BlockColumn& own = axis == 0 ? first.x : axis == 1 ? first.y : first.z;
             CHECK(first.of_own.low[axis] == *std::min_element(own.begin(), own.end()));
             CHECK(first.of_own.high[axis] == *std::max_element(own.begin(), own.end()));
         }

@@ -1,7 +1,8 @@
-#include "birm3d/kernels/friction.hpp"
+#include "kernels/friction.hpp"
 
 #include "check.hpp"
 #include "laboratory.hpp"
+#include "state/block_contact.hpp"
 
 using namespace birm3d;
 

@@ -4,6 +4,7 @@
 #include "birm3d/state/contacts.hpp"
 #include "check.hpp"
 #include "kernels/friction_dispatch.hpp"
+#include "state/block_contact.hpp"
 
 using namespace birm3d;
 
@@ -14,11 +15,11 @@ bool same_bits(const Sums& a, const Sums& b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-struct Outcome {
+struct RunSummary {
     FrictionSums friction{};
     ResistanceSums resistance{};
     Moments moments{};
-    Lanes q{};
+    BlockColumn q{};
 };
 
 }  // namespace
@@ -26,17 +27,17 @@ struct Outcome {
 TEST("every instruction set finds the same friction, and rows without pressure add nothing") {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    const auto fill = [&](Lanes& to, double middle, double spread) {
+    const auto fill = [&](BlockColumn& to, double middle, double spread) {
         for (double& value : to)
             value = middle + spread * uniform(random);
     };
     const std::vector<FrictionFunctions> functions = friction_functions();
     for (int round = 0; round < 50; ++round) {
-        alignas(64) Lanes x, y, z, pressure;
+        alignas(64) BlockColumn x, y, z, pressure;
         BlockContact contact;
         fill(x, 2.5, 0.5), fill(y, 0.0, 1.0), fill(z, 0.0, 0.7);
         fill(pressure, 0.0, 1e4);
-        for (std::size_t i = 0; i < lanes; ++i) {
+        for (std::size_t i = 0; i < block_size; ++i) {
             pressure[i] = i / 8 % 3 == 0 ? 0.0 : std::max(pressure[i], 0.0);
             const Vec3 n = Vec3(-1.0, 0.4 * uniform(random), 0.4 * uniform(random)).normalized();
             contact.nx[i] = n.x(), contact.ny[i] = n.y(), contact.nz[i] = n.z();
@@ -46,9 +47,9 @@ TEST("every instruction set finds the same friction, and rows without pressure a
         const double mu = 0.3, full_speed = 0.01;
         const RubbedNodes nodes{x.data(),          y.data(),          z.data(),       contact.nx.data(),
                                 contact.ny.data(), contact.nz.data(), pressure.data()};
-        Outcome first;
+        RunSummary first;
         for (std::size_t k = 0; k < functions.size(); ++k) {
-            Outcome found;
+            RunSummary found;
             found.friction = functions[k].find_friction(
                 {mu, full_speed, v.x(), v.y(), v.z(), w.x(), w.y(), w.z()}, nodes, found.q.data());
             found.resistance = functions[k].find_resistance(found.q.data(), nodes);
@@ -65,7 +66,7 @@ TEST("every instruction set finds the same friction, and rows without pressure a
         Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
         double q = 0.0;
         Mat3 sum = Mat3::Zero();
-        for (std::size_t i = 0; i < lanes; ++i) {
+        for (std::size_t i = 0; i < block_size; ++i) {
             const Vec3 r(x[i], y[i], z[i]), n = contact.normal(i), u = v + w.cross(r);
             const Vec3 sliding = u - u.dot(n) * n;
             const double per_speed = mu * pressure[i] / std::max(sliding.norm(), full_speed);

@@ -1,9 +1,10 @@
-#include "birm3d/kernels/impulse.hpp"
+#include "kernels/impulse.hpp"
 
 #include <cmath>
 #include <vector>
 
 #include "check.hpp"
+#include "state/rigid_contact.hpp"
 
 using namespace birm3d;
 

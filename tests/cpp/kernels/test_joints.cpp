@@ -1,8 +1,9 @@
-#include "birm3d/kernels/joints.hpp"
+#include "kernels/joints.hpp"
 
-#include "birm3d/kernels/impulse.hpp"
 #include "check.hpp"
+#include "kernels/impulse.hpp"
 #include "laboratory.hpp"
+#include "state/rigid_contact.hpp"
 
 using namespace birm3d;
 using laboratory::pi;
@@ -23,7 +24,7 @@ BodyState at(const Vec3& position, const Quat& orientation) {
 const Vec3 on_leading(-2.0, 0.2, 0.3), on_trailing(4.0, 0.2, -0.6);
 const Quat attitude = turn(0.3, Vec3(1.0, -2.0, 0.5).normalized());
 
-// A trailing body that hangs on the leading one at these angles.
+// A trailing body that follows on the leading one at these angles.
 std::pair<BodyState, BodyState> hanging(double pitch, double roll, double yaw) {
     const BodyState leading = at({1.0, -2.0, 0.7}, attitude);
     const Quat q =

@@ -1,5 +1,5 @@
 // Pinned slabs against a dense solution, Coulomb's law corner by corner, and the size of the problem.
-#include "birm3d/kernels/slab_chain.hpp"
+#include "kernels/slab_chain.hpp"
 
 #include <Eigen/Cholesky>
 #include <random>

@@ -1,4 +1,4 @@
-#include "birm3d/kernels/tires.hpp"
+#include "kernels/tires.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "birm3d/base/rotation.hpp"
 #include "check.hpp"
 #include "laboratory.hpp"
+#include "state/rigid_contact.hpp"
 
 using namespace birm3d;
 

@@ -23,8 +23,8 @@ TEST("trusses are cut into blocks, the last one padded with members of no stiffn
     CHECK(mesh.hinge.size() == mesh.blocks * mesh.hinges);
     double stiffness = 0.0, first_slope = 0.0;
     for (std::size_t b = 0; b < mesh.blocks; ++b) {
-        for (std::size_t i = 0; i < lanes; ++i) {
-            const bool padding = b * lanes + i >= mesh.count;
+        for (std::size_t i = 0; i < block_size; ++i) {
+            const bool padding = b * block_size + i >= mesh.count;
             CHECK((mesh.block[b].k_unloading[i] == 0.0) == padding);
             CHECK((mesh.block[b].compliance[i] == 0.0) == padding);
             stiffness += mesh.block[b].k_unloading[i];
@@ -52,9 +52,9 @@ TEST("boxes and reach hold every node and anchor") {
     const TrussMesh mesh(input);
     double farthest = 0.0;
     for (std::size_t i = 0; i < mesh.count; ++i) {
-        for (const auto& [point, box] :
-             {std::pair{mesh.node(i), mesh.node_box[i / lanes]},
-              std::pair{mesh.anchor(i), mesh.anchor_box[i / lanes]}, std::pair{mesh.anchor(i), mesh.anchors}})
+        for (const auto& [point, box] : {std::pair{mesh.node(i), mesh.node_box[i / block_size]},
+                                         std::pair{mesh.anchor(i), mesh.anchor_box[i / block_size]},
+                                         std::pair{mesh.anchor(i), mesh.anchors}})
             CHECK(((point - box.center).cwiseAbs() - box.half).maxCoeff() <=
                   1e-15);  // rounding of the middle
         farthest = std::max({farthest, mesh.node(i).norm(), mesh.anchor(i).norm()});
@@ -96,8 +96,9 @@ TEST("treads stand in blocks of their own behind the skin, which stays as it was
     }
     const TrussMesh skin(input), mesh(with, {wheel});
     CHECK(mesh.count == 133 && mesh.skin == 130);
-    CHECK(mesh.skin_blocks == 3 && mesh.blocks == 4 && mesh.tread.size() == 3);
-    CHECK(mesh.nodes_in(0) == lanes && mesh.nodes_in(2) == 130 - 2 * lanes && mesh.nodes_in(3) == 3);
+    CHECK(mesh.skin_blocks == 3 && mesh.blocks == 4 && mesh.tire_nodes.size() == 3);
+    CHECK(mesh.nodes_in(0) == block_size && mesh.nodes_in(2) == 130 - 2 * block_size &&
+          mesh.nodes_in(3) == 3);
     for (std::size_t b = 0; b < 3; ++b) {
         CHECK(mesh.block[b].node_y == skin.block[b].node_y && mesh.block[b].panel == skin.block[b].panel);
         CHECK(mesh.panels_of[b] == skin.panels_of[b]);
@@ -111,12 +112,12 @@ TEST("treads stand in blocks of their own behind the skin, which stays as it was
     }
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec3 d = mesh.node(mesh.skin + i) - wheel.center;
-        CHECK(mesh.tread[i].wheel == 0);
-        CHECK_CLOSE(mesh.tread[i].turn_r, d.z() / 0.4, 1e-15, "rounding");
-        CHECK_CLOSE(mesh.tread[i].turn_t, -d.x() / 0.4, 1e-15, "rounding");
+        CHECK(mesh.tire_nodes[i].wheel == 0);
+        CHECK_CLOSE(mesh.tire_nodes[i].turn_r, d.z() / 0.4, 1e-15, "rounding");
+        CHECK_CLOSE(mesh.tire_nodes[i].turn_t, -d.x() / 0.4, 1e-15, "rounding");
         CHECK(mesh.block[3].k_unloading[i] == 0.5 * 60e6);
     }
-    for (std::size_t i = 3; i < lanes; ++i)
+    for (std::size_t i = 3; i < block_size; ++i)
         CHECK(mesh.block[3].k_unloading[i] == 0.0);
 }
 
@@ -134,18 +135,18 @@ TEST("each wheel's tread has blocks of its own, padded by the skin's anchor next
     }
     const TrussMesh mesh(with, wheels);
     CHECK(mesh.skin_blocks == 1 && mesh.blocks == 4);
-    CHECK(mesh.nodes_in(1) == 5 && mesh.nodes_in(2) == lanes && mesh.nodes_in(3) == 1);
+    CHECK(mesh.nodes_in(1) == 5 && mesh.nodes_in(2) == block_size && mesh.nodes_in(3) == 1);
     for (std::size_t truss = 0; truss < mesh.count; ++truss) {
         const std::size_t source = mesh.input_index[truss];
         CHECK(mesh.node(truss) == with.node[source]);
         if (truss >= mesh.skin)
-            CHECK(static_cast<int>(mesh.tread[truss - mesh.skin].wheel) == with.wheel_of[source]);
+            CHECK(static_cast<int>(mesh.tire_nodes[truss - mesh.skin].wheel) == with.wheel_of[source]);
     }
     for (std::size_t b = 1; b < 4; ++b) {
         double nearest = 1e9;
         for (std::size_t truss = 0; truss < mesh.skin; ++truss)
             nearest = std::min(nearest, (mesh.anchor(truss) - mesh.node(mesh.first[b])).norm());
-        for (std::size_t i = mesh.nodes_in(b); i < lanes; ++i) {
+        for (std::size_t i = mesh.nodes_in(b); i < block_size; ++i) {
             const Vec3 anchor(mesh.block[b].anchor_x[i], mesh.block[b].anchor_y[i],
                               mesh.block[b].anchor_z[i]);
             CHECK((anchor - mesh.node(mesh.first[b])).norm() == nearest);
@@ -180,10 +181,10 @@ TEST("second trusses stand in blocks of their own behind the skin, on the panels
     const TrussMesh mesh(with), bare(input);
     CHECK(mesh.skin == 130 && mesh.shell == 200 && mesh.count == 200);
     CHECK(mesh.skin_blocks == 3 && mesh.shell_blocks == 5 && mesh.blocks == 5);
-    CHECK(mesh.tread.empty());
+    CHECK(mesh.tire_nodes.empty());
     for (std::size_t b = 0; b < mesh.blocks; ++b) {
         CHECK(mesh.panels_of[b] == bare.panels_of[0]);
-        for (std::size_t i = 0; i < lanes; ++i)
+        for (std::size_t i = 0; i < block_size; ++i)
             CHECK(mesh.block[b].panel[i] == bare.block[0].panel[0]);
     }
     CHECK(mesh.anchors.half == bare.anchors.half && mesh.anchors.center == bare.anchors.center);

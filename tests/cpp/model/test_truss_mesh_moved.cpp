@@ -53,9 +53,9 @@ void check_same(const Box& a, const Box& b) {
     CHECK_CLOSE((a.center - b.center).norm() + (a.half - b.half).norm(), 0.0, 1e-14, "rounding");
 }
 
-double apart(const Lanes& a, const Lanes& b) {
+double apart(const BlockColumn& a, const BlockColumn& b) {
     double most = 0.0;
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < block_size; ++i)
         most = std::max(most, std::abs(a[i] - b[i]));
     return most;
 }
@@ -74,7 +74,7 @@ TEST("moved trusses are those that the constructor makes of the moved input") {
     for (std::size_t b = 0; b < anew.blocks; ++b) {
         // Padding too: it must reach nothing.
         const TrussBlock &one = moved.block[b], &other = anew.block[b];
-        for (Lanes TrussBlock::* column :
+        for (BlockColumn TrussBlock::* column :
              {&TrussBlock::node_x, &TrussBlock::node_y, &TrussBlock::node_z, &TrussBlock::anchor_x,
               &TrussBlock::anchor_y, &TrussBlock::anchor_z, &TrussBlock::length})
             CHECK_CLOSE(apart(one.*column, other.*column), 0.0, 1e-14, "rounding");
@@ -110,11 +110,11 @@ TEST("what does not change is shared, and treads turn as they did") {
     const TrussMesh here = mesh_here(), moved = here.moved(origin), anew = made_anew();
     CHECK(&*moved.hinge.begin() == &*here.hinge.begin());
     CHECK(&*moved.input_index.begin() == &*here.input_index.begin());
-    CHECK(moved.tread.size() == 10);
-    for (std::size_t i = 0; i < moved.tread.size(); ++i) {
-        CHECK(moved.tread[i].wheel == anew.tread[i].wheel);
-        CHECK_CLOSE(moved.tread[i].turn_r, anew.tread[i].turn_r, 1e-14, "rounding");
-        CHECK_CLOSE(moved.tread[i].turn_t, anew.tread[i].turn_t, 1e-14, "rounding");
+    CHECK(moved.tire_nodes.size() == 10);
+    for (std::size_t i = 0; i < moved.tire_nodes.size(); ++i) {
+        CHECK(moved.tire_nodes[i].wheel == anew.tire_nodes[i].wheel);
+        CHECK_CLOSE(moved.tire_nodes[i].turn_r, anew.tire_nodes[i].turn_r, 1e-14, "rounding");
+        CHECK_CLOSE(moved.tire_nodes[i].turn_t, anew.tire_nodes[i].turn_t, 1e-14, "rounding");
     }
 }
 

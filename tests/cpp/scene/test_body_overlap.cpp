@@ -1,4 +1,4 @@
-#include "birm3d/scene/body_overlap.hpp"
+#include "scene/body_overlap.hpp"
 
 #include <cmath>
 

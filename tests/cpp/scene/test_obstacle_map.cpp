@@ -2,9 +2,9 @@
 
 #include <random>
 
-#include "birm3d/scene/obstacles.hpp"
 #include "check.hpp"
 #include "laboratory.hpp"
+#include "scene/obstacles.hpp"
 
 using namespace birm3d;
 

@@ -1,4 +1,4 @@
-#include "birm3d/scene/obstacles.hpp"
+#include "scene/obstacles.hpp"
 
 #include "check.hpp"
 #include "laboratory.hpp"
@@ -17,7 +17,7 @@ TEST("the nearest gap is that of the nearest node, crushed or not") {
             const Mat3 R = unit.body.orientation.toRotationMatrix();
             double nearest = laboratory::infinity;
             for (const TrussBlockState& block : unit.trusses.block)
-                for (std::size_t i = 0; i < lanes; ++i) {
+                for (std::size_t i = 0; i < block_size; ++i) {
                     const Vec3 place = unit.body.position + R * Vec3(block.x[i], block.y[i], block.z[i]);
                     nearest = std::min(nearest, laboratory::gap_to_barrier(simulation.scene(), place));
                 }

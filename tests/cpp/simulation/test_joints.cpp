@@ -1,8 +1,8 @@
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/rotation.hpp"
-#include "birm3d/kernels/integrate.hpp"
-#include "birm3d/kernels/joints.hpp"
 #include "check.hpp"
+#include "kernels/integrate.hpp"
+#include "kernels/joints.hpp"
 #include "laboratory.hpp"
 
 using namespace birm3d;

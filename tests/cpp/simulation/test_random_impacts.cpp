@@ -18,8 +18,8 @@ Gaps least_gaps(const Simulation& simulation) {
     const Mat3 R = unit.body.orientation.toRotationMatrix();
     Gaps least;
     for (std::size_t i = 0; i < mesh.count; ++i) {
-        const TrussBlockState& block = unit.trusses.block[i / lanes];
-        const std::size_t k = i % lanes;
+        const TrussBlockState& block = unit.trusses.block[i / block_size];
+        const std::size_t k = i % block_size;
         const Vec3 node(block.x[k], block.y[k], block.z[k]);
         least.nodes = std::min(least.nodes, laboratory::gap_to_barrier(scene, unit.body.position + R * node));
         least.anchors = std::min(least.anchors,
@@ -36,11 +36,11 @@ TEST("random impacts: nothing passes through a wall or a pole, and the ledger cl
         return std::uniform_real_distribution<double>(low, high)(random);
     };
     TrussInput front = laboratory::front_face(laboratory::w2_curve(), 12, 8);
-    front.dent_reach = 0.65;
-    Vehicle dented;
-    dented.units.emplace_back(laboratory::body(), front, std::vector<Wheel>{}, 0.0);
+    front.indentation_length = 0.65;
+    Vehicle indented;
+    indented.units.emplace_back(laboratory::body(), front, std::vector<Wheel>{}, 0.0);
     const std::vector<std::shared_ptr<const Vehicle>> vehicles = {
-        laboratory::block(laboratory::w2_curve(), 12, 8), std::make_shared<const Vehicle>(dented)};
+        laboratory::block(laboratory::w2_curve(), 12, 8), std::make_shared<const Vehicle>(indented)};
     for (int i = 0; i < 600; ++i) {
         const bool pole = i % 2 == 1;
         const auto& vehicle = vehicles[static_cast<std::size_t>(i % 4 / 3)];

@@ -1,4 +1,4 @@
-#include "birm3d/step/step.hpp"
+#include "step/step.hpp"
 
 #include "check.hpp"
 #include "laboratory.hpp"

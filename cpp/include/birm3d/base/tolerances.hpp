@@ -34,7 +34,7 @@ inline constexpr double advised_fraction = 0.25;
 inline constexpr double longest_step = 50e-3;
 inline constexpr double shortest_step = 1e-9;
 
-// Longest step of the usual tolerance where tyres or closed trusses carry the vehicle, or joints and segments are (s).
+// Longest step of the usual tolerance where tyres or bottomed-out trusses carry the vehicle, or joints and segments are (s).
 // Large: what comes down gently lands over a long time.
 inline constexpr double longest_resting_step = 5e-3;
 
@@ -48,7 +48,7 @@ inline constexpr double fastest_growth = 10.0;
 inline constexpr double jump_resolution = 1e-8;
 
 // The instant at which a vehicle leaves a barrier is located within this, see release_resolution() (s): the end of the run,
-// and every value taken there, hangs on it.
+// and every value taken there, follows on it.
 inline constexpr double release_resolution = 1e-4;
 
 // A segment that slides is brought to rest at the end of a step, unless it would rest within this (s): one that pins hold
@@ -90,7 +90,7 @@ inline constexpr double fast_sliding = 10.0;
 inline constexpr double held_by_ground = 1e3;
 
 // Friction and normal impulses of rigid contacts are found in turns until these change by less than this share of their
-// sum. Large: which turn is the last hangs on rounding, and left and right do not mirror each other.
+// sum. Large: which turn is the last follows on rounding, and left and right do not mirror each other.
 inline constexpr double friction_settled = 1e-9;
 
 // Rigid contacts: a point found inside a surface is pushed out within the step, but no faster than this (m/s), or the

@@ -10,7 +10,7 @@
 namespace birm3d {
 
 // What a run came to.
-struct Outcome {
+struct RunSummary {
     EndReason end_reason = EndReason::running;
     std::uint64_t state_hash = 0;
     StepStatistics statistics;
@@ -28,9 +28,9 @@ class Runner {
     // What is run from now on.
     void set_scene(const Scene& scene);
 
-    // From the start of the scene, with an approach of its own, to the end. What comes out hangs on nothing that was
+    // From the start of the scene, with an approach of its own, to the end. What comes out follows on nothing that was
     // run before. Throws what Simulation throws, and what `poll` throws, which is called now and then.
-    Outcome run(const Approach& approach, const ExtremeGroups& wanted, const std::function<void()>& poll);
+    RunSummary run(const Approach& approach, const ExtremeGroups& wanted, const std::function<void()>& poll);
 
   private:
     std::optional<Simulation> simulation_;

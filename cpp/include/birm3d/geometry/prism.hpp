@@ -12,9 +12,10 @@
 
 #include "birm3d/geometry/box.hpp"
 #include "birm3d/geometry/nearest.hpp"
-#include "birm3d/geometry/prism_nearest.hpp"
 
 namespace birm3d {
+
+struct PrismEdge;
 
 class Prism {
   public:
@@ -51,19 +52,15 @@ class Prism {
     const Box& bounds() const { return bounds_; }  // as of a Shape
     double thickness() const;                      // as of a Shape
 
-    const std::vector<PrismEdge>& edges() const { return outline_->edges; }  // not covered
-    const std::vector<PrismEdge>& covered_edges() const { return outline_->covered_edges; }
+    const std::vector<PrismEdge>& edges() const;  // not covered
+    const std::vector<PrismEdge>& covered_edges() const;
     double y_low() const { return y_low_; }
     double y_high() const { return y_high_; }
     bool low_end_is_surface() const { return low_end_; }
     bool high_end_is_surface() const { return high_end_; }
 
   private:
-    struct Outline {
-        std::vector<PrismEdge> edges, covered_edges;
-        Eigen::Vector2d low, high;  // corners of the rectangle around it (m); the upper may be infinite
-        double thickness = 0.0;     // m
-    };
+    struct Outline;
 
     Prism(std::shared_ptr<const Outline> outline, double y_low, double y_high, bool cover_low,
           bool cover_high);

@@ -26,4 +26,11 @@ struct Joint {
     double roll_limit = 0.0;                // rad; of a fifth wheel
 };
 
+// Of the trailing body relative to the leading one (rad).
+struct JointAngles {
+    double roll = 0.0;
+    double pitch = 0.0;
+    double yaw = 0.0;
+};
+
 }  // namespace birm3d

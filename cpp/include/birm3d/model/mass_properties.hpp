@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "birm3d/geometry/solid.hpp"
+#include "geometry/solid.hpp"
 
 namespace birm3d {
 

@@ -1,17 +1,17 @@
 // The crushable skin of one rigid unit: massless shell nodes, each tied by one truss to an anchor on the
 // rigid body (paper 4.1). Constant, in the order the kernels walk it.
 //
-// Trusses are cut into blocks of `lanes` neighbours, so that nodes that touch a barrier together stand together, a block
+// Trusses are cut into blocks of `block_size` neighbours, so that nodes that touch a barrier together stand together, a block
 // that can not touch anything is left out by one test, and kernels run over whole blocks without gathers. Blocks are left
 // out by the group too. The last block is padded with trusses of no stiffness.
 //
 // A panel may resist in its own plane as well: a node has a second truss then, along the vehicle, which is a node of its own
-// at the same place. It moves as the first one does, meets what that meets and is dented with its panel; its anchor is no
+// at the same place. It moves as the first one does, meets what that meets and is indented with its panel; its anchor is no
 // part of the rigid body. Their blocks follow those of the skin.
 //
 // Tyres that meet a barrier are nodes too, on the tread's outer edge, each wheel's in blocks of its own after
 // these, padded too. They are no part of the rigid body: their anchors meet nothing. The ground is met by the wheels
-// themselves (kernels/tires.hpp), not by these nodes, and posts do not dent them.
+// themselves (kernels/tires.hpp), not by these nodes, and posts do not indentation them.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 #include <span>
 #include <vector>
 
-#include "birm3d/base/lanes.hpp"
+#include "birm3d/base/block.hpp"
 #include "birm3d/base/types.hpp"
 #include "birm3d/geometry/box.hpp"
 #include "birm3d/model/truss_law.hpp"
@@ -56,8 +56,8 @@ struct TrussInput {
     // What is crushed has inertia and rate strength, which the law of Fig. 3 leaves out: the loading envelope
     // is multiplied by 1 + (this times the rate of deflection)^2; in s/m.
     double rate_sensitivity = 0.0;
-    // How far the dent that a post makes reaches beyond it (kernels/dent.hpp); zero: nodes know nothing of each other (m).
-    double dent_reach = 0.0;
+    // How far the indentation that a post makes reaches beyond it (kernels/indentation.hpp); zero: nodes know nothing of each other (m).
+    double indentation_length = 0.0;
     // (n) Number of the wheel whose tread the node is on, -1 for the skin; empty: all skin.
     std::vector<int> wheel_of = {};
     // (n) Number of the node of the skin whose second truss this is, -1 for others; empty: no second ones.
@@ -80,13 +80,13 @@ struct Panel {
 inline constexpr std::size_t panels = 6;
 
 struct alignas(64) TrussBlock {
-    Lanes node_x, node_y, node_z;        // uncrushed, body axes (m)
-    Lanes anchor_x, anchor_y, anchor_z;  // (m)
-    Lanes length;                        // uncrushed (m)
-    Lanes k_unloading;                   // N/m
-    Lanes compliance;                    // 1/k_unloading, or 0 for a member without stiffness (m/N)
-    Lanes per_recovery;                  // 1/recovery of its curve (1/m)
-    Lanes panel;                         // number of its panel
+    BlockColumn node_x, node_y, node_z;        // uncrushed, body axes (m)
+    BlockColumn anchor_x, anchor_y, anchor_z;  // (m)
+    BlockColumn length;                        // uncrushed (m)
+    BlockColumn k_unloading;                   // N/m
+    BlockColumn compliance;                    // 1/k_unloading, or 0 for a member without stiffness (m/N)
+    BlockColumn per_recovery;                  // 1/recovery of its curve (1/m)
+    BlockColumn panel;                         // number of its panel
 };
 
 // Of the trusses of a block.
@@ -94,13 +94,13 @@ StiffnessMoments stiffness_of(const TrussBlock& trusses);
 
 // One slope change of each truss's envelope.
 struct alignas(64) Hinge {
-    Lanes deflection;    // m
-    Lanes slope_change;  // N/m
+    BlockColumn deflection;    // m
+    BlockColumn slope_change;  // N/m
 };
 
 // What a node on a tread has in addition. The tread of a wheel that turns as if it rolled with the speed v moves, seen
 // from the body, with v (s x d)/R at d from the axle.
-struct TreadNode {
+struct TireNode {
     double turn_r = 0.0, turn_t = 0.0;  // (s x d)/R
     std::size_t wheel = 0;              // of the unit
 };
@@ -116,7 +116,7 @@ struct TrussMesh {
     std::size_t count = 0;        // trusses
     std::size_t skin = 0;         // those that tie the skin to the rigid body
     std::size_t shell = 0;        // and second ones, before those of tyres
-    std::size_t blocks = 0;       // blocks of `lanes`
+    std::size_t blocks = 0;       // blocks of `block_size`
     std::size_t skin_blocks = 0;  // the first of them
     std::size_t shell_blocks = 0;
     std::size_t hinges = 0;  // slope changes of the longest envelope
@@ -134,7 +134,7 @@ struct TrussMesh {
     SharedColumn<StiffnessMoments> moments;  // (blocks) of all of them
     SharedColumn<Box> node_box;              // (blocks) around the uncrushed nodes
     SharedColumn<Box> anchor_box;            // (blocks)
-    SharedColumn<TreadNode> tread;           // (count - shell)
+    SharedColumn<TireNode> tire_nodes;       // (count - shell)
     Box anchors;                             // around those of the skin
     std::array<Panel, panels> panel;
     // (blocks) bit by bit: which panels have nodes there? The bit after them: treads.
@@ -146,23 +146,23 @@ struct TrussMesh {
     std::size_t slot(std::size_t truss) const {
         const auto after = std::upper_bound(first.begin(), first.end(), truss);
         const auto b = static_cast<std::size_t>(after - first.begin()) - 1;
-        return b * lanes + (truss - first[b]);
+        return b * block_size + (truss - first[b]);
     }
     // Nodes in a block, without its padding.
     std::size_t nodes_in(std::size_t b) const { return first[b + 1] - first[b]; }
     Vec3 node(std::size_t truss) const {
-        const TrussBlock& b = block[slot(truss) / lanes];
-        const std::size_t i = slot(truss) % lanes;
+        const TrussBlock& b = block[slot(truss) / block_size];
+        const std::size_t i = slot(truss) % block_size;
         return {b.node_x[i], b.node_y[i], b.node_z[i]};
     }
     Vec3 anchor(std::size_t truss) const {
-        const TrussBlock& b = block[slot(truss) / lanes];
-        const std::size_t i = slot(truss) % lanes;
+        const TrussBlock& b = block[slot(truss) / block_size];
+        const std::size_t i = slot(truss) % block_size;
         return {b.anchor_x[i], b.anchor_y[i], b.anchor_z[i]};
     }
 
-    double rate_sensitivity = 0.0;  // see TrussInput (s/m)
-    double dent_reach = 0.0;        // see TrussInput
+    double rate_sensitivity = 0.0;    // see TrussInput (s/m)
+    double indentation_length = 0.0;  // see TrussInput
 
     double reach = 0.0;  // greatest distance of a node, or an anchor of the skin, from the mass centre (m)
 

@@ -10,11 +10,12 @@
 #include <array>
 #include <vector>
 
-#include "birm3d/kernels/joints.hpp"
 #include "birm3d/scene/scene.hpp"
-#include "birm3d/step/step.hpp"
 
 namespace birm3d {
+
+struct ContactImpulses;
+struct Trial;
 
 // Columns at the output instants 0, interval, 2 interval, ...; n rows.
 struct UnitHistory {

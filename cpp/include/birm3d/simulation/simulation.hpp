@@ -2,13 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "birm3d/record/event.hpp"
 #include "birm3d/record/recorder.hpp"
 #include "birm3d/scene/scene.hpp"
-#include "birm3d/step/step.hpp"
 
 namespace birm3d {
 
@@ -25,6 +25,9 @@ enum class EndReason {
 class Simulation {
   public:
     explicit Simulation(Scene scene);
+    Simulation(Simulation&&) noexcept;
+    Simulation& operator=(Simulation&&) noexcept;
+    ~Simulation();
 
     // One accepted step; false when the run is over and nothing was done. Throws UnstableError where a fixed
     // step is beyond the critical one; the state then stands as it was before the step.
@@ -75,16 +78,15 @@ class Simulation {
   private:
     bool finished() const { return end_reason() != EndReason::running; }
     double remaining() const;  // s
-    void take(Trial& trial);
+    void take();
     void adaptive_step();
     void fixed_step();
     [[noreturn]] void refuse_step(double dt, double critical) const;
 
     Scene scene_;
     State state_;
-    Trial trial_;
-    std::vector<std::size_t> about_;  // obstacles about a unit; only memory
-    std::vector<BodyState> before_;   // the step at hand; only memory
+    struct Work;  // memory of the step that is tried: no value in it outlives the step
+    std::unique_ptr<Work> work_;
     Recorder recorder_;
     Event event_;
     bool failed_ = false;

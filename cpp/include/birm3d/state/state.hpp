@@ -19,7 +19,7 @@ struct UnitMotion {
     BodyState body;
     SkinForces skin;                         // at this instant
     std::vector<ContactLoad> contact_loads;  // in the order of the obstacles
-    std::vector<Dented> dented;              // the same
+    std::vector<IndentedPanels> indented;    // the same
 };
 
 struct UnitState : UnitMotion {
@@ -30,7 +30,7 @@ struct UnitState : UnitMotion {
         body = {};
         skin = {};
         contact_loads.clear();
-        dented.clear();
+        indented.clear();
         trusses.reset(unit.trusses);
     }
 
@@ -67,7 +67,8 @@ struct StepStatistics {
         std::numeric_limits<double>::infinity();  // s, sqrt(3)/omega of the trusses in contact
     double deepest_point =
         0.0;  // greatest depth of a truss's anchor inside a barrier at the end of a step (m)
-    double greatest_overlap = 0.0;  // of the rigid body's boxes with an element; see sim/body_overlap.hpp (m)
+    double greatest_overlap =
+        0.0;  // of the rigid body's boxes with an element; see src/scene/body_overlap.hpp (m)
     double greatest_overlap_time = 0.0;        // when (s)
     std::size_t greatest_overlap_element = 0;  // with which
 
@@ -75,7 +76,7 @@ struct StepStatistics {
     // by the rigid body.
     std::uint64_t skin_nodes =
         0;  // nodes of the skin in blocks that anything has come into, each counted once
-    std::uint64_t tread_nodes = 0;    // the same of tyres
+    std::uint64_t tire_nodes = 0;     // the same of tyres
     std::uint64_t near_elements = 0;  // of the barrier, that were near in any step
     std::uint64_t free_steps = 0;     // steps in which no node was near anything
     double free_time = 0.0;           // their sum (s)
@@ -127,8 +128,8 @@ struct State : Progress {
         for (const UnitState& unit : units) {
             add_body(unit.body);
             unit.trusses.add_to(hash);
-            for (const Dented& dented : unit.dented)
-                hash.add(Vec3(static_cast<double>(dented.obstacle), dented.panels, dented.passed));
+            for (const IndentedPanels& indented : unit.indented)
+                hash.add(Vec3(static_cast<double>(indented.obstacle), indented.panels, indented.passed));
         }
         for (const BodyState& segment : segments)
             add_body(segment);

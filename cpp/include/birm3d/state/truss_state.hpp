@@ -13,12 +13,12 @@
 namespace birm3d {
 
 struct alignas(64) TrussBlockState {
-    Lanes x, y, z;                    // shell nodes in body axes (m)
-    Lanes deflection, force;          // of the truss, now (m, N)
-    Lanes peak_deflection, residual;  // greatest so far; where the unloading line meets zero force (m)
-    Lanes unloading;                  // slope of that line (N/m)
-    Box box;                          // around the nodes, body axes
-    bool touching;                    // does any node push on an obstacle?
+    BlockColumn x, y, z;                    // shell nodes in body axes (m)
+    BlockColumn deflection, force;          // of the truss, now (m, N)
+    BlockColumn peak_deflection, residual;  // greatest so far; where the unloading line meets zero force (m)
+    BlockColumn unloading;                  // slope of that line (N/m)
+    Box box;                                // around the nodes, body axes
+    bool touching;                          // does any node push on an obstacle?
     bool slack;  // has an obstacle drawn any node out beyond the free length of its truss?
     bool met;    // has anything come into it, in any step?
 };
@@ -90,15 +90,15 @@ struct TrussState {
     // Eight hashes in turn: each number waits for the one before it in its own hash only.
     void add_to(Hash& hash) const {
         constexpr std::size_t turns = 8;
-        static_assert(lanes % turns == 0);
+        static_assert(block_size % turns == 0);
         std::array<Hash, turns> parts;
-        const auto add_column = [&parts](const Lanes& column) {
-            for (std::size_t i = 0; i < lanes; i += turns)
+        const auto add_column = [&parts](const BlockColumn& column) {
+            for (std::size_t i = 0; i < block_size; i += turns)
                 for (std::size_t turn = 0; turn < turns; ++turn)
                     parts[turn].add(column[i + turn]);
         };
         for (const TrussBlockState& b : block) {
-            for (const Lanes* column :
+            for (const BlockColumn* column :
                  {&b.x, &b.y, &b.z, &b.deflection, &b.force, &b.peak_deflection, &b.residual})
                 add_column(*column);
             if (recovers_) add_column(b.unloading);

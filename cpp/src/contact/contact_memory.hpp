@@ -1,0 +1,74 @@
+// Memory of find_contact_forces(). It outlives the step so that a step allocates nothing; no value in it does.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "kernels/crush.hpp"
+#include "kernels/friction.hpp"
+#include "kernels/friction_tire.hpp"
+#include "kernels/indentation.hpp"
+#include "scene/obstacles.hpp"
+#include "state/block_contact.hpp"
+
+namespace birm3d {
+
+// Sums over blocks that met one plane only. `near`: place of its obstacle in ContactMemory::near.
+struct PlaneSums {
+    std::size_t near;
+    FlatContact surface;
+    CrushSums sums;
+};
+
+// Sums over the other blocks, for one obstacle.
+struct ObstacleSums {
+    CrushSums sums;     // of blocks that met no other obstacle
+    Wrench by_trusses;  // of the paper's rule, in place of the projected force
+    Wrench contact;     // of blocks that met several obstacles
+    double normal_force = 0.0;
+    Rubbing rubbing;
+    bool seen = false;  // by any block
+};
+
+// What the blocks of a unit add up to.
+struct ContactSums {
+    std::vector<ObstacleSums> obstacles;  // parallel to ContactMemory::near
+    std::vector<PlaneSums> planes;
+    std::vector<TireNodeContact> tire_nodes;  // that push on the barrier
+    CrushSums several;                        // of blocks that met several obstacles
+
+    void clear(std::size_t near) {
+        obstacles.assign(near, {});
+        planes.clear();
+        tire_nodes.clear();
+        several = {};
+    }
+};
+
+// A post and a panel that it indents.
+struct IndentedPanel {
+    std::size_t near;
+    std::size_t panel;
+    Indentation indentation, before;  // at the end and at the start of the step
+    double growth;                    // how far it can have come in within the step, and nodes off it (m)
+};
+
+// An indentation that the block at hand may reach. None of its nodes is nearer to it than `gap` (m).
+struct BlockIndentation {
+    std::size_t indentation;
+    double gap;
+};
+
+struct ContactMemory {
+    std::vector<std::size_t> about;      // obstacles that may be near
+    std::vector<NearObstacle> near;      // in the order of the obstacles
+    std::vector<Twist> relative_motion;  // parallel to near: the unit's, seen from the obstacle, body axes
+    std::vector<IndentedPanel> indentations;
+    ContactSums sums;
+    // Places in `near` and `indentations` that the group at hand may reach, then the block at hand.
+    std::vector<std::size_t> group_near, group_indentations, block_near;
+    std::vector<BlockIndentation> block_indentations;  // the nearest first
+    std::vector<ContactLoad> contact_loads;
+};
+
+}  // namespace birm3d

@@ -1,0 +1,28 @@
+// Rigid impacts, Eq. 1 for all contacts that take part, at an instant of their own.
+//
+// Newton's restitution of several contacts at once, with friction, can make energy: a contact that the others stop from
+// separating, or friction whose point the blow turns round, does work on the bodies. What an impact takes, by friction at
+// each point and by all normal impulses together, is not below zero here:
+//   - where friction against the motion before the impact would drive a point, it acts against the mean of the motions
+//     before and after; if it drives one all the same, it is left out there;
+//   - then the restitution is the greatest, up to the one asked for, at which the normal impulses take no less than
+//     nothing. At none, and without friction, they never do: their targets are zero, j . (v + A j) = 0, so that they
+//     take j . A j / 2.
+#pragma once
+
+#include <span>
+
+#include "contact/trial.hpp"
+#include "state/rigid_contact.hpp"
+
+namespace birm3d {
+
+// Does the contact approach so fast that it makes an impact?
+bool approaches_hard(const RigidContact& contact, std::span<const ContactBody> bodies);
+
+// The impact of the contacts in trial.memory that arrive within `reach` (s), if there is one. It stands apart from the
+// forces of the step, in the ledger and in the record. `before`: the motions at hand; `after`: those that it leaves.
+void impact_at_once(const Scene& scene, Stage stage, double reach, const std::vector<Twist>& before,
+                    std::vector<Twist>& after, Trial& trial);
+
+}  // namespace birm3d

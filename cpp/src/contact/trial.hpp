@@ -1,0 +1,151 @@
+// The step that is being tried: what half_kick, barrier_forces and try_step hand to each other.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "birm3d/base/tolerances.hpp"
+#include "birm3d/state/state.hpp"
+#include "contact/contact_memory.hpp"
+#include "kernels/core_contacts.hpp"
+#include "kernels/impulse.hpp"
+#include "kernels/slab_chain.hpp"
+#include "scene/obstacles.hpp"
+#include "state/rigid_contact.hpp"
+
+namespace birm3d {
+
+// What the rigid body of one unit did to one obstacle, world axes.
+struct ObstacleImpulse {
+    std::size_t obstacle = 0;
+    Vec3 impulse = Vec3::Zero();  // on the unit (N s)
+    Vec3 torque = Vec3::Zero();   // on the obstacle, about its own point (N m s)
+};
+
+// What rigid contacts did to one unit.
+struct ContactImpulses {
+    explicit ContactImpulses(std::size_t wheels) : tire(wheels, 0.0) {}
+
+    Column tire;                             // (wheels) normal impulse (N s)
+    Vec3 tire_friction = Vec3::Zero();       // of all wheels, world axes (N s)
+    std::vector<ObstacleImpulse> obstacles;  // of bottomed-out trusses
+    double barrier_normal = 0.0;             // their part along the normals, of the barrier's (N s)
+    std::size_t core_contacts = 0;           // bottomed-out trusses that carried load
+    Vec3 joints = Vec3::Zero();              // of all its joints, world axes (N s)
+};
+
+// A rigid impact at one end of a step: an instant of its own, not spread over the step.
+struct Impact {
+    bool happened = false;
+    std::vector<BodyState> bodies;          // (units) after an impact at the start, before one at the end
+    std::vector<BodyState> segments;        // the same of free-standing segments
+    Energies energies;                      // the same
+    std::vector<ContactImpulses> impulses;  // (units)
+    std::vector<Wrench> joint_impulses;     // (joints) on the leading unit, about the joint (N s, N m s)
+};
+
+// What rigid contacts and joints do at one end of the drift.
+struct ContactKick {
+    std::vector<RigidContact> contacts;
+    std::vector<Wrench> on_ground;   // (units) friction impulses of tyres
+    std::vector<Wrench> on_cores;    // (bodies) of bottomed-out trusses
+    std::vector<Wrench> on_base;     // (segments) of the ground
+    std::vector<Wrench> on_pins;     // (segments) of the pins to their neighbours
+    std::vector<char> rolls_freely;  // (units) is the friction of its tyres left out? May be empty: of none
+};
+
+// Memory of half kicks, which find it and leave it with nothing of meaning: so that a step allocates nothing.
+struct KickMemory {
+    std::vector<RigidContact> contacts;
+    std::vector<PlacedShape> placed;
+    std::vector<std::size_t> about;
+    std::vector<ContactBody> bodies;
+    std::vector<Twist> before, pushed, rolling, after;  // motions of the bodies
+    std::vector<Twist>
+        sliding;  // motions that the friction of an impact acts against; empty: those before it
+    ContactKick kick;
+    // Of the search for its impulses.
+    ImpulseSolver solver;
+    std::vector<Column> tire;
+    Column last;
+    std::vector<Wrench> on_cores, on_base;
+    // Of free-standing segments.
+    std::vector<PinnedSlab> slabs;
+    std::vector<SlabPin> pins;
+    SlabChain chain;
+    Column limits;                      // of friction on the ground (N s)
+    std::vector<Vec3> segment_motions;  // along the ground and about the vertical
+};
+
+// Some of the blocks of a mesh.
+class BlockSet {
+  public:
+    explicit BlockSet(std::size_t blocks) : has_(blocks, char{0}) {}
+
+    bool contains(std::size_t block) const { return has_[block] != 0; }
+    void add(std::size_t block) {
+        if (contains(block)) return;
+        has_[block] = 1;
+        blocks_.push_back(block);
+    }
+    void clear() {
+        for (const std::size_t block : blocks_)
+            has_[block] = 0;
+        blocks_.clear();
+    }
+    const std::vector<std::size_t>& blocks() const { return blocks_; }
+
+  private:
+    std::vector<std::size_t> blocks_;
+    std::vector<char> has_;
+};
+
+// The step that was tried, beside the state it started from.
+struct Trial {
+    explicit Trial(const Vehicle& vehicle);
+
+    // Prepares the trial for steps from another state of the same vehicle, in the same memory.
+    void restart(const Vehicle& vehicle, const State& state);
+
+    // Prepares a step of `step` seconds from `from`: copies all but the trusses, clears all sums.
+    void begin(const State& from, double step);
+
+    // Gives unit u's blocks of trusses of this step to `with` and takes those of the step before in return.
+    void exchange_trusses(std::size_t u, TrussState& with);
+
+    double dt = 0.0;
+    State state;                            // at t + dt; trusses only where active
+    std::vector<BlockSet> active;           // (units) blocks near the barrier
+    std::vector<BlockSet> stale;            // (units) blocks that may differ from the state's
+    std::vector<ContactImpulses> impulses;  // (units) of lasting contacts, even over the step
+    std::vector<Wrench> joint_impulses;     // (joints) the same, on the leading unit, about the joint
+    std::vector<Twist> by_contacts;         // (bodies) by how much these changed motions before the drift
+    Column drift_velocity_z;                // (units) vertical velocity in the drift (m/s)
+    Impact at_start, at_end;
+    std::vector<std::size_t> seen;  // obstacles that blocks of nodes had in reach, once for each unit
+    ContactMemory skin;
+    std::vector<LoadHistory>
+        histories;  // working memory of correct_loads(), so that a step allocates nothing
+    std::vector<Load> loads;
+    KickMemory memory;
+    double error = 0.0;    // estimated velocity error of this step (m/s)
+    double critical_step;  // sqrt(3)/omega of the trusses in contact (s)
+    double impact_after;   // a rigid impact begins this long after t (s)
+
+    // Does it begin within the step? Then the step went no further than to see this.
+    bool impact_within() const { return impact_after < dt && dt > 2.0 * tolerance::shortest_step; }
+
+    bool body_rests() const;  // on tyres or bottomed-out trusses
+    bool body_held() const;   // did the rigid body meet the barrier or the ground?
+    bool body_held_by_barrier() const;
+};
+
+// Which half of a step's kick: the drift of the bodies lies between them.
+enum class Stage { before_drift, after_drift };
+
+struct StepOptions {
+    bool locate_impacts = false;  // report a rigid impact within the step instead of letting it happen early
+    bool hold_core = true;        // hold the rigid body where a truss is closed
+};
+
+}  // namespace birm3d

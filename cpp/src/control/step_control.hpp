@@ -1,0 +1,33 @@
+// How long adaptive steps are: what the step at hand, once tried, says of itself and of the next.
+#pragma once
+
+#include <limits>
+
+#include "birm3d/scene/scene.hpp"
+#include "contact/trial.hpp"
+
+namespace birm3d {
+
+// The search for one step.
+struct StepSearch {
+    double first = 0.0;     // the first to be tried (s)
+    double approach = 0.0;  // separation speed of the nodes that push at the start (m/s)
+    double error = 0.0;     // estimate of the step tried last, turns of single nodes included (m/s)
+    bool lands = false;     // is the landing on the barrier known?
+    double pressing = std::numeric_limits<double>::infinity();  // a step that can begin there (s)
+    double cut = 0.0;  // what an impact has cut short: the next step is no shorter for it (s)
+};
+
+// For a step of at most `longest` (s).
+StepSearch begin_search(const Scene& scene, const State& state, double longest);
+
+// Length of a shorter step to try in place of one whose error is too large; infinite where that one is accepted (s).
+double shorter_step(const Scene& scene, const State& from, const Trial& tried, StepSearch& search);
+
+// The one after a step that is accepted (s).
+double step_after(const Scene& scene, const Trial& accepted, const StepSearch& search);
+
+// When the last load is gone, by its course so far (s); infinite where that does not tell.
+double time_to_release(const Scene& scene, const State& state);
+
+}  // namespace birm3d

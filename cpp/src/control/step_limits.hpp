@@ -1,0 +1,17 @@
+// How long a step may be, as to what is around.
+#pragma once
+
+#include "birm3d/scene/scene.hpp"
+#include "scene/indentation_gaps.hpp"
+
+namespace birm3d {
+
+// A step of at most `longest` in which no node reaches an element of the barrier: straight on towards the surface that is
+// nearest to it now, and no further than another surface may lie.
+double untouched_step(const Scene& scene, const State& state, double longest);
+
+// A step of at most `longest` in which no point of a unit goes further than a quarter through the thinnest obstacle in its reach (s): in a
+// longer one it could come out on the other side.
+double passing_step(const Scene& scene, const State& state, double longest);
+
+}  // namespace birm3d

@@ -1,0 +1,22 @@
+// An indentation (kernels/indentation.hpp) in plain numbers, for files that are compiled for several instruction sets.
+#pragma once
+
+namespace birm3d {
+
+// A post seen from a panel of the skin. Places from the foot of its axis: across it (w), along it (l) and into the panel
+// (e); body axes, m.
+struct IndentationNumbers {
+    double ex, ey, ez, wx, wy, wz, lx, ly, lz;  // unit, square to each other
+    double ox, oy, oz;                          // the foot
+    double low, high;                           // of the panel, across from the axis
+    double top;                                 // along, of the highest place of the rim
+    double top_rate;                            // of that for each unit of change of the axis's part along e
+    double tilt;                                // e of the axis for each unit of l
+    double radius, stretch;  // the post's, and that of its section with a plane of e and w over it
+    double surface;          // into, of the outermost node of the panel
+    double per_reach, per_stretch;
+    double grip;  // share of the post's way that the skin takes at the deepest place of the post in the panel
+    double steep_arc, rise_there;  // across and deep, of the place from where the flank is steepest
+};
+
+}  // namespace birm3d

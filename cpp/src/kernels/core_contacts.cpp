@@ -1,0 +1,83 @@
+#include "kernels/core_contacts.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "birm3d/base/tolerances.hpp"
+#include "kernels/detect.hpp"
+
+namespace birm3d {
+
+namespace {
+
+// How far a point that comes with `approach` can get within the step: a turn adds its centripetal part. However short the
+// step, points that would share an impact are found.
+double way(const TrussMesh& mesh, const Twist& motion, double approach, double dt) {
+    const double bend = 0.5 * motion.angular_velocity.squaredNorm() * mesh.reach * dt * dt;
+    return std::max(tolerance::joint_impact_gap, tolerance::touching_gap + bend + dt * approach);
+}
+
+}  // namespace
+
+double core_margin(const TrussMesh& mesh, const Twist& motion, double dt) {
+    return way(mesh, motion, motion.velocity.norm() + motion.angular_velocity.norm() * mesh.reach, dt);
+}
+
+void find_core_contacts(const TrussMesh& mesh, std::size_t body, const BodyState& state,
+                        std::span<const PlacedShape> shapes, const Twist& motion, double dt,
+                        std::vector<RigidContact>& contacts) {
+    const auto relative = [&motion](const PlacedShape& shape) {
+        return Twist{motion.velocity - shape.motion.velocity,
+                     motion.angular_velocity - shape.motion.angular_velocity};
+    };
+    double margin = 0.0;
+    for (const PlacedShape& shape : shapes)
+        margin = std::max(margin, core_margin(mesh, relative(shape), dt));
+    std::vector<const PlacedShape*> near;
+    alignas(64) NearestOfBlock nearest, found;
+    std::array<const PlacedShape*, block_size> at;
+    for (std::size_t b = 0; b < mesh.skin_blocks; ++b) {
+        near.clear();
+        for (const PlacedShape& shape : shapes)
+            if (within_reach(*shape.shape, shape.placement, mesh.anchor_box[b], margin))
+                near.push_back(&shape);
+        if (near.empty()) continue;
+        // Of the nearest surface only: behind a neighbour's face its edges are no obstacle.
+        const TrussBlock& block = mesh.block[b];
+        nearest.gap.fill(margin);
+        at.fill(nullptr);
+        for (const PlacedShape* shape : near) {
+            nearest_of(*shape->shape, shape->placement, shape->placement, block.anchor_x, block.anchor_y,
+                       block.anchor_z, found);
+            for (std::size_t i = 0; i < block_size; ++i) {
+                if (!(found.gap[i] < nearest.gap[i])) continue;
+                at[i] = shape;
+                nearest.gap[i] = found.gap[i];
+                nearest.nx[i] = found.nx[i], nearest.ny[i] = found.ny[i], nearest.nz[i] = found.nz[i];
+            }
+        }
+        for (std::size_t i = 0; i < mesh.nodes_in(b); ++i) {
+            if (at[i] == nullptr) continue;
+            const std::size_t truss = mesh.first[b] + i;
+            const Vec3 anchor(block.anchor_x[i], block.anchor_y[i], block.anchor_z[i]),
+                normal(nearest.nx[i], nearest.ny[i], nearest.nz[i]);
+            const double gap = nearest.gap[i];
+            const Twist there = relative(*at[i]);
+            const double approach = -normal.dot(there.velocity + there.angular_velocity.cross(anchor));
+            if (gap >= way(mesh, there, std::max(0.0, approach), dt)) continue;
+            RigidContact contact;
+            contact.source = ContactSource::core;
+            contact.index = truss;
+            contact.obstacle = at[i]->obstacle;
+            contact.body = body;
+            contact.arm = state.orientation * anchor;
+            contact.normal = state.orientation * normal;
+            contact.gap = gap;
+            contact.compliance = tolerance::body_compliance;
+            contact.friction = at[i]->friction;
+            contacts.push_back(contact);
+        }
+    }
+}
+
+}  // namespace birm3d

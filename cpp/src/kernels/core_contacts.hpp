@@ -1,0 +1,34 @@
+// Bottomed-out trusses: anchors at an obstacle, where the rigid body itself must be held.
+#pragma once
+
+#include <span>
+
+#include "birm3d/geometry/shape.hpp"
+#include "birm3d/model/truss_mesh.hpp"
+#include "birm3d/model/vehicle.hpp"
+#include "birm3d/state/body_state.hpp"
+#include "birm3d/state/contacts.hpp"
+#include "geometry/placement.hpp"
+#include "state/rigid_contact.hpp"
+
+namespace birm3d {
+
+// An obstacle seen from a body.
+struct PlacedShape {
+    const Shape* shape = nullptr;
+    Placement placement;
+    std::size_t obstacle = 0;
+    double friction = 0.0;
+    Twist motion = {};  // its own, seen as if it were part of the body: about the body's origin, body axes
+};
+
+// How near an anchor must be to be at a surface within dt, whichever way it goes (m); `motion` in body axes.
+double core_margin(const TrussMesh& mesh, const Twist& motion, double dt);
+
+// Adds a contact for each anchor that is at the nearest of the surfaces or, as it now moves, will be within dt;
+// `motion` in body axes, contacts in world axes. Of obstacles that move too the relative motion counts.
+void find_core_contacts(const TrussMesh& mesh, std::size_t body, const BodyState& state,
+                        std::span<const PlacedShape> shapes, const Twist& motion, double dt,
+                        std::vector<RigidContact>& contacts);
+
+}  // namespace birm3d

@@ -1,0 +1,31 @@
+#include "kernels/core_friction.hpp"
+
+#include <algorithm>
+
+namespace birm3d {
+
+Wrench core_friction(std::span<RigidContact> contacts, std::size_t body, const RigidBody& model,
+                     double full_speed, const Twist& motion, double give) {
+    const auto slides = [body](const RigidContact& contact) {
+        return contact.source == ContactSource::core && contact.body == body && contact.impulse > 0.0;
+    };
+    double total = 0.0;
+    for (const RigidContact& contact : contacts)
+        if (slides(contact)) total += contact.friction * contact.impulse;
+    // Twice the speed that full friction would take from the mass centre, as the body also turns.
+    const double slowest = std::max(full_speed, 2.0 * total * (model.inverse_mass + give));
+    Wrench sum;
+    for (RigidContact& contact : contacts) {
+        if (contact.body != body || contact.source != ContactSource::core) continue;
+        contact.rubbing = Vec3::Zero();
+        if (!slides(contact)) continue;
+        const Vec3 velocity =
+            motion.velocity + motion.angular_velocity.cross(contact.arm) - contact.sliding_surface;
+        const Vec3 sliding = velocity - velocity.dot(contact.normal) * contact.normal;
+        contact.rubbing = -contact.friction * contact.impulse / std::max(sliding.norm(), slowest) * sliding;
+        sum += {contact.rubbing, contact.arm.cross(contact.rubbing)};
+    }
+    return sum;
+}
+
+}  // namespace birm3d

@@ -1,0 +1,89 @@
+// Crushing and separation of one block of shell nodes (paper 5.3.1, 5.3.2) and the forces of their trusses.
+//
+// A node at a surface is held on it: pushed back along the normal when the surface has moved in
+// (U1 = U + n * penetration), brought along when the surface moves out while the truss still presses.
+// The displacement follows the mean of the normal's old and new direction in body axes, so that a path is
+// followed to second order while the body turns. From B = node - anchor:
+//   deflection d = B_0 - |B|,  truss force F(d) by the law of Fig. 3,  b = B/|B|
+//   force on the vehicle:  projected   F * (-b . n) * n      (default)
+//                          along_truss F * (-b)              (the paper's rule)
+// A truss that has turned so far that it would push its node off the surface (b . n > 0) does not push: the node
+// springs to its residual length.
+//
+// Both are cases of one rule: with h the way of the node, h . n = 1, the force is F * (-b . h) * n. Nodes that an indentation
+// draws in have their own h and n (indentation.hpp).
+//
+// Deviations from the paper: its Eq. 14 (left side P2) as printed moves away from the plane; the push-back
+// is p - gap*n. The force is projected on the normal, because the node is free to slide: along the truss it
+// would do work on the vehicle that the truss never received. The 5-mm window epsilon is not needed: a node
+// is released at the instant at which its truss reaches zero force.
+#pragma once
+
+#include "base/node_sums.hpp"
+#include "birm3d/geometry/half_space.hpp"
+#include "birm3d/model/truss_mesh.hpp"
+#include "birm3d/model/vehicle.hpp"
+#include "birm3d/state/contacts.hpp"
+#include "birm3d/state/truss_state.hpp"
+#include "state/block_contact.hpp"
+
+namespace birm3d {
+
+// The inverse effective mass of a node along n (the denominator of Eq. 1), 1/m + (r x n) . I^-1 (r x n), as a
+// quadratic form in its place r, body axes. A node slides along n, which leaves r x n alone: uncrushed places
+// will do.
+struct InverseMass {
+    InverseMass(const RigidBody& body, const Vec3& normal);
+
+    double constant;  // 1/kg
+    Mat3 form;        // 1/(kg m^2)
+};
+
+// A surface that presses a unit, now and at the instant before (body axes).
+struct FlatContact {
+    FlatContact(const RigidBody& body, const HalfSpace& face_, const HalfSpace& face_before);
+
+    HalfSpace face;
+    // Held nodes move along it for each unit of gap: along n + m, m the normal of the instant before, so that a path is
+    // followed to second order while the body turns.
+    Vec3 holding;
+    InverseMass inverse_mass;
+};
+
+// What the blocks of a unit add up to.
+struct CrushSums {
+    NodeSums nodes;
+    double released_work = 0.0;   // work on trusses whose nodes were let go on the way, in addition (J)
+    double flat_stiffness = 0.0;  // of flat surfaces, see SkinForces (1/s^2)
+
+    double work() const { return 0.5 * row_sum(nodes.twice_work) + released_work; }  // on trusses (J)
+    double stored() const { return 0.5 * row_sum(nodes.twice_stored); }              // J
+    double stiffness() const { return flat_stiffness + row_sum(nodes.stiffness); }   // 1/s^2
+    double normal_force() const { return row_sum(nodes.force); }                     // N
+
+    // Takes a block's part out again.
+    CrushSums& operator-=(const CrushSums& part);
+};
+
+// Takes block `b` from `before` to `now`, fills in the pressures of `contact` and adds to the sums; the normals of
+// `contact` are the caller's to set. `factor`: on the loading envelopes, may be null. Did any node cease to push?
+bool crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const BlockColumn* factor,
+           const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums);
+bool crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh, std::size_t b,
+           const BlockColumn* factor, const TrussBlockState& before, TrussBlockState& now,
+           BlockContact& contact, CrushSums& sums);
+
+// Force and torque of the blocks that saw one plane, and of those that saw surfaces of any shape; projected, body
+// axes.
+Wrench total_wrench(const FlatContact& surface, const CrushSums& sums);
+Wrench total_wrench(const CrushSums& sums);
+
+// The force of a block by the paper's rule: each truss pushes along itself (body axes).
+Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const BlockContact& contact);
+
+// The factor on the loading envelopes of a block by its rate of deflection (TrussInput), from the motion of the body
+// against the surface at that instant (body axes) and the block as it is without that factor.
+void set_rate_factor(double rate_sensitivity, const BlockColumn& force, const Twist& motion,
+                     const Places& places, const BlockContact& contact, BlockColumn& factor);
+
+}  // namespace birm3d

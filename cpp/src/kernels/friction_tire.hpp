@@ -1,0 +1,46 @@
+// Coulomb friction between a wheel's tread and a barrier.
+//
+// The tread slides with the motion of the body, u = v + w x r, and with that of the wheel about its axle: together
+// u_i + q t_i at node i, t_i = (s x d_i)/R, where q is the speed with which the wheel would roll as fast as it turns.
+// A wheel on the road has q = v_r. Pressed on a barrier it does not keep that: the angular momentum of a car's wheel,
+// some 100 N m s at 30 m/s, is gone after 10 ms under 30 kN of friction. A wheel that is free to turn is taken to have
+// the q at which friction has no torque about its axle,
+//     sum_i F_i . t_i = 0,   F_i = -mu N_i (u_i + q t_i)/|u_i + q t_i|,
+// as nodes are taken to have no mass: what is left of the sliding is along the spokes, so that a tread that a barrier
+// meets below and ahead of the axle is pushed up and back. The wheel then gives and takes no energy; the power of
+// friction on the body is what friction turns into heat, and never positive. Left out: the wheel's inertia, the
+// torque of the ground and of the engine. A locked wheel has q = 0.
+//
+// Below `full_speed` the force falls as that on the skin does (kernels/friction.hpp).
+#pragma once
+
+#include <span>
+
+#include "birm3d/model/truss_mesh.hpp"
+#include "kernels/friction.hpp"
+
+namespace birm3d {
+
+// A node of a tread that pushes on a barrier, body axes.
+struct TireNodeContact {
+    std::size_t wheel = 0;
+    std::size_t near = 0;         // the caller's number of what it pushes on
+    Vec3 arm = Vec3::Zero();      // place about the mass centre (m)
+    Vec3 sliding = Vec3::Zero();  // of the body there, along the surface (m/s)
+    Vec3 turning = Vec3::Zero();  // t_i, along the surface
+    Vec3 normal = Vec3::UnitZ();  // of the barrier
+    double pressure = 0.0;        // normal force (N)
+};
+
+// `motion`: of the vehicle, seen from the barrier, body axes.
+TireNodeContact tire_node_contact(const TireNode& node, std::size_t near, const Twist& motion,
+                                  const Vec3& arm, const Vec3& normal, double pressure);
+
+// q of a wheel that is free to turn (m/s), from all its nodes that push; 0 where no node pushes.
+double free_turning(double full_speed, std::span<const TireNodeContact> wheel);
+
+// Adds a node's friction to `rubbing` (body axes); `turning`: q.
+void add_tire_node_friction(double mu, double full_speed, double turning, const TireNodeContact& node,
+                            Rubbing& rubbing);
+
+}  // namespace birm3d

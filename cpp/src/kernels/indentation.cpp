@@ -1,0 +1,159 @@
+#include "kernels/indentation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/block_loop.hpp"
+#include "kernels/indentation_dispatch.hpp"
+
+namespace birm3d {
+
+namespace {
+
+// A rim's highest place, sine * radius above the middle of the top, is rounded off below this sine: at a corner there the
+// torque would jump.
+constexpr double rounded = 0.05;
+
+// Sine of the angle between a post's axis and a panel beyond which it does not begin to indent it, or ceases to.
+constexpr double most_tilted = 0.5, overturned = 0.95;
+
+BIRM3D_BLOCK_LOOP double furthest(const BlockColumn& panel_of, double panel, const BlockColumn& force,
+                                  const BlockColumn& gap) {
+    alignas(64) BlockColumn most;
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < block_size; ++i)
+        most[i] = panel_of[i] == panel && force[i] > 0.0 && gap[i] > 0.0 ? gap[i] : 0.0;
+    return block_max(most);
+}
+
+}  // namespace
+
+Indentation::Indentation(const Post& post, const Placement& stands, const Panel& panel, double length_)
+    : length(length_) {
+    const Vec3 &e = panel.inward, o = stands.from_own(Vec3::Zero());
+    const Vec3 axis_up = stands.direction_from_own(Vec3::UnitZ());
+    const double leaning = axis_up.dot(e), upright = axis_up.cross(e).norm();
+    stretch = 1.0 / upright;
+    const Vec3 w = stretch * axis_up.cross(e), l = stretch * (axis_up - leaning * e);
+    ex = e.x(), ey = e.y(), ez = e.z();
+    wx = w.x(), wy = w.y(), wz = w.z();
+    lx = l.x(), ly = l.y(), lz = l.z();
+    ox = o.x(), oy = o.y(), oz = o.z();
+    // The middles of the edges at either side. Corners of the box would change places with every sway of the post.
+    Eigen::Index side = 0;
+    w.cwiseAbs().maxCoeff(&side);
+    const Vec3 edge = std::copysign(panel.box.half[side], w[side]) * Vec3::Unit(side);
+    const Vec3 middle = panel.box.center - o, least = middle - edge, most = middle + edge;
+    low = least.dot(w);
+    high = most.dot(w);
+    const double off = std::min(1.0, std::max({low, -high, 0.0}) / post.radius);
+    grip = 1.0 - off * off;
+    surface = middle.dot(e) - panel.box.half.dot(e.cwiseAbs());
+    tilt = stretch * leaning;
+    radius = post.radius;
+    const double rim = std::sqrt(leaning * leaning + rounded * rounded);
+    top = post.height * upright + radius * rim;
+    top_rate = radius * leaning / rim - post.height * tilt;
+    per_reach = 1.0 / length;
+    per_stretch = upright;
+    const double share = steepest * upright, cosine = 1.0 / std::sqrt(1.0 + share * share);
+    steep_arc = share * cosine * radius;
+    rise_there = stretch * radius * cosine;
+}
+
+double Indentation::beside(const Panel& panel) const {
+    const double bottom = (panel.box.center - foot()).dot(along()) - panel.box.half.dot(along().cwiseAbs());
+    return std::max({low - radius, -radius - high, bottom - top});
+}
+
+bool Indentation::is_beyond(const Panel& panel) const {
+    const Box& box = panel.anchors;
+    const Vec3 middle = box.center - foot();
+    const double at = middle.dot(along()), half = box.half.dot(along().cwiseAbs());
+    const double nearest = std::min(tilt * std::min(at - half, top), tilt * std::min(at + half, top));
+    return middle.dot(into()) + box.half.dot(into().cwiseAbs()) < nearest - stretch * radius;
+}
+
+// By the post's own way, across its flanks, and by the growth of the slope.
+double Indentation::fastest_growth(const Panel& panel) const {
+    const Vec3 middle = panel.box.center - foot();
+    const double at = middle.dot(along()), half = panel.box.half.dot(along().cwiseAbs());
+    const double deepest =
+        stretch * radius + std::max(tilt * std::min(at - half, top), tilt * std::min(at + half, top));
+    return 2.0 + slope_at<double>(deepest - surface, per_reach).slope;
+}
+
+bool stands_across(const Placement& post, const Panel& panel, bool indents) {
+    const double sine = std::abs(post.direction_from_own(Vec3::UnitZ()).dot(panel.inward));
+    return sine < (indents ? overturned : most_tilted);
+}
+
+namespace {
+
+// Of a skin `beside` a post that is at most this deep: greatest of p - slope(p) beside over depths p. Within reach the
+// deepest post draws it in most; beyond, one of some depth, or one so deep that the slope grows no more.
+double most_drawn_in(double deepest, double beside, double reach) {
+    const double by_deepest = deepest - slope_at<double>(deepest, 1.0 / reach).slope * beside;
+    if (beside <= reach) return by_deepest;
+    const double further = std::sqrt(beside * beside - reach * reach);
+    return deepest * further < reach * reach * least_slope ? by_deepest
+                                                           : std::max(by_deepest, -least_slope * further);
+}
+
+struct BoxInDent {
+    double outermost, depth, drawn_in;
+};
+
+BoxInDent box_in_dent(const Indentation& d, const Box& box) {
+    const auto range = [&](const Vec3& way) {
+        const double middle = (box.center - d.foot()).dot(way), half = box.half.dot(way.cwiseAbs());
+        return std::pair(middle - half, middle + half);
+    };
+    const double outermost = range(d.into()).first;
+    const auto [w0, w1] = range(d.across());
+    const auto [l0, l1] = range(d.along());
+    const double deepest =
+        d.stretch * d.radius + std::max(d.tilt * std::min(l0, d.top), d.tilt * std::min(l1, d.top));
+    const double beside = std::max({w0 - d.radius, -d.radius - w1, 0.0}) + std::max(l0 - d.top, 0.0);
+    const double depth = deepest - d.surface;
+    return {outermost, depth, most_drawn_in(depth, beside, d.length)};
+}
+
+}  // namespace
+
+double most_inside(const Indentation& d, const Box& box) {
+    const BoxInDent in = box_in_dent(d, box);
+    return d.surface + in.drawn_in - in.outermost;
+}
+
+bool spans(const Indentation& d, const Box& box) {
+    return box_in_dent(d, box).drawn_in > 0.0;
+}
+
+double gap_of(const Indentation& indentation, const TrussBlockState& nodes, const BlockColumn& panel_of,
+              std::size_t panel) {
+    return indentation_rows.find_indentation_gap(
+        indentation, {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), panel_of.data(),
+                      static_cast<double>(panel)});
+}
+
+void follow_indentation(const Indentation& indentation, const Indentation& then, const TrussBlockState& nodes,
+                        const BlockColumn& panel_of, std::size_t panel, NodeFaces& faces,
+                        BlockContact& contact, BlockColumn& rank, BlockColumn& follows) {
+    indentation_rows.find_indentation(
+        indentation, then,
+        {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), panel_of.data(),
+         static_cast<double>(panel)},
+        {faces.gap.data(), faces.per_force.data(), faces.bx.data(), faces.by.data(), faces.bz.data(),
+         contact.nx.data(), contact.ny.data(), contact.nz.data(), contact.px.data(), contact.py.data(),
+         contact.pz.data(), contact.tx.data(), contact.ty.data(), contact.tz.data(), rank.data(),
+         follows.data()});
+}
+
+double furthest_off(const TrussBlockState& nodes, const BlockColumn& panel_of, std::size_t panel,
+                    const BlockColumn& gap) {
+    return furthest(panel_of, static_cast<double>(panel), nodes.force, gap);
+}
+
+}  // namespace birm3d

@@ -1,0 +1,89 @@
+// A post indents a panel and drags the skin beside it along: the skin is drawn in with a slope s beside the post.
+//
+// The panel's direction e points into the vehicle. Seen along e, the post reaches to a depth f over the panel. The skin
+// beside a post that goes straight in comes to
+//   D(w, l) = max over places (w*, l*) of the post in front of the panel of  f(w*, l*) - s |w - w*| - s (l - l*)+
+// with w across the post's axis and l along it, upwards. The slope grows with the depth d of the post,
+// s = sqrt(s0^2 + (d / length)^2): beams and panels carry a deep indentation about as far to either side as a shallow one.
+//
+// The sheet beside a post is held by tension and shear. It goes in with the post, straight along e. It is not carried along
+// the panel, so that an indentation stays where it was made. It leans on the post's flank with a fraction k only. Once D has
+// reached a node, the node's depth u follows the velocity v of the post:
+//   du = g (1 - ds/dd |w - w*|) dv_e + g k sin(flank) dv_w
+// v_e is that of the post's deepest place at the node's height; v_w is across the post, away from the node. A post whose
+// axis is `off` beyond the panel's edge touches that edge with its flank. What it pushes there goes in by the square of the
+// flank's cosine, g = 1 - (off / radius)^2. So a load ends where the whole post is beside the panel.
+//
+// The force on the vehicle follows by virtual work. A truss force F with direction b, from the node to its anchor, gives
+// F (b . e) times the derivative of u by the post's place, and the torque by its rotation. Both ends of a step share the
+// post's displacement, as the trapezoid rule shares the work on trusses. Skin that a post has pushed aside lags behind its
+// flank; its places across the panel are not followed.
+//
+// A node follows the indentation while its truss pushes, also behind a post that has moved on along the panel. Beyond the
+// indentation's extent it is released, and what its truss stores is lost. Of several indentations the deepest one holds a
+// node. Skin slides on a post only along the panel: friction acts across e.
+//
+// A post as wide as the panel acts as a wall does. The round post is cut off slightly above the highest place of its rim.
+// Where f falls more steeply than `steepest`, it falls with that slope.
+//
+// This is an addition to the paper, whose trusses are independent of each other. Without it a narrow post passes between
+// nodes, or free nodes slip round it to either side.
+#pragma once
+
+#include "birm3d/geometry/post.hpp"
+#include "birm3d/model/truss_mesh.hpp"
+#include "birm3d/state/contacts.hpp"
+#include "birm3d/state/truss_state.hpp"
+#include "geometry/indentation_numbers.hpp"
+#include "geometry/placement.hpp"
+#include "state/block_contact.hpp"
+
+namespace birm3d {
+
+struct Indentation : IndentationNumbers {
+    Indentation(const Post& post, const Placement& stands, const Panel& panel, double length_);
+
+    double length;  // see with_dent_reach in Python (m)
+
+    Vec3 into() const { return {ex, ey, ez}; }
+    Vec3 across() const { return {wx, wy, wz}; }
+    Vec3 along() const { return {lx, ly, lz}; }
+    Vec3 foot() const { return {ox, oy, oz}; }
+
+    // How far the post is beside the panel, or ends below it (m). Negative where some of it is before, in or behind it.
+    double beside(const Panel& panel) const;
+
+    // Does the post stand wholly behind the panel, however crushed that is?
+    bool is_beyond(const Panel& panel) const;
+
+    // How fast it can deepen at any node while the post approaches with 1 m/s.
+    double fastest_growth(const Panel& panel) const;
+};
+
+// Is the post upright enough before the panel to indent it? `indents`: does it do so already?
+bool stands_across(const Placement& post, const Panel& panel, bool indents);
+
+// No node of the box (body axes) is further inside than this (m). Negative where none is reached.
+double most_inside(const Indentation& indentation, const Box& box);
+
+// Can nodes above or before the box, or in it, follow the indentation?
+bool spans(const Indentation& indentation, const Box& box);
+
+// Least gap of those nodes of a block that are of the panel (m); infinite if there are none.
+double gap_of(const Indentation& indentation, const TrussBlockState& nodes, const BlockColumn& panel_of,
+              std::size_t panel);
+
+// Finds the nodes of the panel that follow the indentation or that it releases, and says in `faces` and `contact` how. It
+// takes no node that it would draw into another surface: a post that came past the panel's edge is behind such nodes.
+// `then`: the indentation at the start of the step. `follows`: 1 for nodes that follow, 2 for released ones, else 0.
+// `rank`: of the indentations that have the nodes so far, at first infinite. Nodes that are outside and without force may
+// be left as they were.
+void follow_indentation(const Indentation& indentation, const Indentation& then, const TrussBlockState& nodes,
+                        const BlockColumn& panel_of, std::size_t panel, NodeFaces& faces,
+                        BlockContact& contact, BlockColumn& rank, BlockColumn& follows);
+
+// No indentation that is further from all nodes than this holds any of them (m). `gap`: to what is nearest so far.
+double furthest_off(const TrussBlockState& nodes, const BlockColumn& panel_of, std::size_t panel,
+                    const BlockColumn& gap);
+
+}  // namespace birm3d

@@ -1,0 +1,150 @@
+// Coulomb friction of slabs that pins hold together end to end: one minimum for all of them.
+//
+// The convex function is that of ground_slide.hpp, summed over the slabs, with what the pins hold as conditions: where a
+// chain is held, and how far it is dragged along, depends on all of it. |u| is rounded off to eta = sqrt(|u|^2 + e^2), e a
+// millionth of the speed that friction can take.
+//
+// Newton's method for the motions and the frictions y_i together, each a share of the corner's limit c (Chan, Golub and
+// Mulet, SIAM J. Sci. Comput. 20, 1999, p. 1964):
+//   M (v - v0) + sum of c J_i^T y_i = impulses of the pins,   eta_i y_i = u_i.
+// A step is a system in the impulses of the pins alone. It is block-tridiagonal, with 2 x 2 blocks, and is eliminated from
+// one end to the other: the cost grows with the number of slabs.
+//
+// What rests behind a slab that is held has nothing to hold and stays out of the system. Slabs are taken in from those
+// that move or are pushed until the outermost are held, which leaves the minimum as it is.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "birm3d/base/block.hpp"
+#include "birm3d/base/types.hpp"
+
+namespace birm3d {
+
+using Vec2 = Eigen::Vector2d;
+using Mat2 = Eigen::Matrix2d;
+
+// Along the ground and about the vertical, world axes: x, y, turn.
+struct PinnedSlab {
+    double mass;                 // kg
+    double inertia;              // about the vertical (kg m^2)
+    std::array<Vec2, 4> arm;     // from the mass centre to the corners of the base, symmetric about it (m)
+    double limit;                // friction coefficient times normal impulse of all corners (N s)
+    Vec3 motion = Vec3::Zero();  // without friction and pins (m/s, m/s, rad/s)
+    Vec3 guess = Vec3::Zero();   // of the motion with both; zero where it is thought to rest
+};
+
+// Between a slab and the next one.
+struct SlabPin {
+    Vec2 on_first, on_next;   // from the mass centres to the place of the pin on either slab (m)
+    Vec2 gap = Vec2::Zero();  // from the place on the next slab to that on the first one (m)
+};
+
+// A corner of the bases of some slabs, a slab a lane: friction by the law at the motion at hand, y, and what the last step
+// took for both.
+struct SlabCorners {
+    BlockColumn arm_x, arm_y;  // in units of k
+    BlockColumn law_x, law_y, dual_x, dual_y, used_x, used_y;
+    BlockColumn eta;  // |u| rounded off (m/s)
+};
+
+// An end of some slabs, with the pin there.
+struct SlabEnd {
+    BlockColumn place_x, place_y;  // of the pin, from the mass centre (m)
+    BlockColumn arm_x, arm_y;      // of the middle of its two places, in units of k
+    BlockColumn pull_x, pull_y;    // (N s)
+    BlockColumn speed_x, speed_y;  // (m/s)
+    BlockColumn drift_x, drift_y;  // (m)
+};
+
+// J mobility K^T of two ends (1/kg).
+struct SlabResponse {
+    BlockColumn xx, xy, yx, yy;
+};
+
+// Some slabs in q = (v_x, v_y, k w), k their radius of gyration. What Newton's steps do slab by slab is done column by
+// column.
+struct alignas(64) SlabBlock {
+    BlockColumn mass, gyration, limit, reach;  // of one corner (N s); what friction can take (m/s)
+    BlockColumn start_x, start_y, start_z, q_x, q_y, q_z, way_x, way_y, way_z;
+    BlockColumn xx, xy, xz, yy, yz, zz;  // mobility, the inverse of the curvature
+    std::array<SlabCorners, 4> corners;
+    SlabEnd low, high;  // towards the slab before, and the next one
+    SlabResponse at_low, at_high, across;
+
+    Vec3 start(std::size_t i) const { return {start_x[i], start_y[i], start_z[i]}; }
+    Vec3 q(std::size_t i) const { return {q_x[i], q_y[i], q_z[i]}; }
+};
+
+class SlabChain {
+  public:
+    // One pin between each two slabs. With a `drift` (s) the pins are closed after a drift of that length. Without, the
+    // places that they join move alike. A pin pushes half way between its places, so that it keeps the angular momentum.
+    void solve(std::span<const PinnedSlab> slabs, std::span<const SlabPin> pins, double drift);
+
+    std::span<const Vec3> motions() const { return motions_; }      // (slabs) with friction and pins
+    std::span<const Vec3> frictions() const { return frictions_; }  // (slabs) N s, N s, N m s
+    // (slabs) impulses of the pins on each of them (N s, N s, N m s).
+    std::span<const Vec3> pulls() const { return pulls_; }
+
+    // Was the slab solved for? Others rest.
+    bool is_awake(std::size_t slab) const { return slab < parts_.size() && parts_[slab].awake; }
+
+    // What the last solution cost: slabs in Newton's steps, each step counted.
+    std::size_t work() const { return work_; }
+
+  private:
+    struct Part {
+        bool awake, fresh;
+    };
+    struct Link {
+        Vec2 target, lack, pull;
+        Mat2 inverse, beside;  // of the eliminated block; the block beside it
+    };
+    // Slabs that are solved for together; those before and behind rest, and their pins pull at nothing.
+    struct Run {
+        std::size_t begin, end;
+    };
+
+    void set_up(std::span<const PinnedSlab> slabs, std::span<const SlabPin> pins, double drift);
+    void set_up_slab(const PinnedSlab& slab, std::size_t s);
+    static void set_up_end(const SlabBlock& b, SlabEnd& end, std::size_t i, const Vec2& place,
+                           const Vec2& to_middle);
+    void find_runs();
+    bool wake_around(const Run& run);
+    void wake(const Run& run, std::size_t end, int direction);
+    bool is_held(std::size_t slab) const;
+    void take_in_neighbours();
+    Vec3 pull_on(std::size_t slab) const;
+    void hand_over();
+
+    void solve_run(const Run& run);
+    void start_from_pins(const Run& run);
+    bool newton(const Run& run, double soft, int most_steps, bool finish);
+    void find_way(const Run& run, bool rubs);
+    void find_pulls(const Run& run);
+    double search(const Run& run, double soft);
+    double value(const Run& run, double soft, double share);
+    double settle_laws(const Run& run, double soft);
+    double retarget(const Run& run);
+    // Calls f with the slabs of a run that are in each block.
+    template <class F>
+    void for_each_block(const Run& run, F f);
+
+    SlabBlock& block_of(std::size_t slab) { return blocks_[slab / block_size]; }
+    const SlabBlock& block_of(std::size_t slab) const { return blocks_[slab / block_size]; }
+
+    std::span<const SlabPin> pins_;
+    double drift_ = 0.0;
+    std::vector<Part> parts_;
+    std::vector<SlabBlock> blocks_;
+    std::vector<Link> links_;
+    std::vector<Run> runs_;
+    std::vector<Vec3> motions_, frictions_, pulls_;
+    std::size_t work_ = 0;
+};
+
+}  // namespace birm3d

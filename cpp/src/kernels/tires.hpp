@@ -1,0 +1,41 @@
+// Round tyres on the ground z = 0 (paper 5.2): where they touch it, and the friction they feel.
+//
+// A wheel is a disc about the body's s axis; the point that meets the ground is its lowest one, which moves
+// with pitch and roll. Friction is against the ground in two rules:
+//   slip (default)  across the wheel's plane only, continuous in the slip angle: the brush model
+//                   F = mu N (1 - (1 - s)^3) for s = C tan(alpha) / (3 mu) < 1, mu N beyond,
+//                   with C the cornering stiffness per normal load (Fiala 1954; Pacejka, Tire and Vehicle
+//                   Dynamics, ch. 3). A rolling wheel resists nothing along its plane. Of the friction mu N a share b
+//                   may brake, against the velocity of the point of contact; sqrt(1 - b^2) of it steers (friction
+//                   circle), and at b = 1 the locked wheel slides.
+//   skid            the paper's: nothing while the mass centre moves exactly along r, else mu N against its
+//                   velocity.
+// Both fall in proportion to the speed where they would otherwise reverse it.
+#pragma once
+
+#include <span>
+
+#include "birm3d/model/settings.hpp"
+#include "birm3d/model/vehicle.hpp"
+#include "birm3d/state/body_state.hpp"
+#include "birm3d/state/contacts.hpp"
+#include "state/rigid_contact.hpp"
+
+namespace birm3d {
+
+// One contact for each wheel, whether it touches or not (normal +z, gap signed).
+void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& state,
+                        std::vector<RigidContact>& contacts);
+
+// The vehicle's motion at hand, and at the end of the step that the half kick stands for: with this, friction follows the
+// trapezoid rule. Where a wheel all but sticks, that would shake it, and the motion at hand counts.
+struct TireMotion {
+    Twist now, at_end;
+};
+
+// Friction that goes with the normal impulses of the wheels (N s): linear and angular impulse about the mass
+// centre, world axes. An impact's friction is as sudden as the impact.
+Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState& state,
+                     const TireMotion& motion, std::span<const double> normal_impulses);
+
+}  // namespace birm3d

@@ -1,0 +1,17 @@
+// Energy and momentum of each step, and how far their balances are from closing. The check costs a few sums a step.
+#pragma once
+
+#include "contact/trial.hpp"
+
+namespace birm3d {
+
+// Energies of the trusses of all units: what they store, and what crush has dissipated.
+void sum_truss_energies(State& now);
+
+// Kinetic energy of all units and free-standing segments.
+void sum_kinetic_energy(const Scene& scene, State& now);
+
+// Enters the greatest departures from both balances into `ledger`. `state`: before the trial is accepted.
+void check_balances(const Scene& scene, const State& state, const Trial& trial, Ledger& ledger);
+
+}  // namespace birm3d

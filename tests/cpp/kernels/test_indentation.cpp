@@ -1,0 +1,191 @@
+#include "kernels/indentation.hpp"
+
+#include <algorithm>
+#include <random>
+
+#include "check.hpp"
+#include "laboratory.hpp"
+#include "state/block_contact.hpp"
+
+using namespace birm3d;
+
+namespace {
+
+// 8 by 8 nodes at x = 3 m, 2.4 m by 1.6 m, trusses straight back.
+const TrussMesh mesh(laboratory::front_face(laboratory::w2_curve(), 8, 8));
+const TrussState uncrushed(mesh);
+const Panel& front = mesh.panel[1];
+
+// Axis through `foot`, leaning by `lean` towards the vehicle and by `sway` to its side (rad).
+Placement standing(const Vec3& foot, double lean = 0.0, double sway = 0.0) {
+    const Quat turn = Eigen::AngleAxisd(sway, Vec3::UnitX()) * Eigen::AngleAxisd(lean, Vec3::UnitY());
+    const Mat3 to_own = turn.toRotationMatrix().transpose();
+    return {to_own, -(to_own * foot)};
+}
+
+// How nodes hang on an indentation.
+struct Hung : NodeFaces, BlockContact {
+    BlockColumn follows;
+};
+
+// Of nodes that push with `force`; `last`: how the post stood an instant before.
+Hung dent_by(const Post& post, const Placement& stands, const Placement& last, double reach, double force) {
+    TrussBlockState nodes = uncrushed.block[0];
+    nodes.force.fill(force);
+    Hung found;
+    found.gap.fill(std::numeric_limits<double>::infinity());  // nothing seen so far
+    found.per_force.fill(0.0);
+    found.set_normal(Vec3::UnitX());
+    BlockColumn rank;
+    rank.fill(std::numeric_limits<double>::infinity());
+    follow_indentation(Indentation(post, stands, front, reach), Indentation(post, last, front, reach), nodes,
+                       mesh.block[0].panel, 1, found, found, rank, found.follows);
+    return found;
+}
+
+// Of nodes without force that the post has just come to, from far in front.
+Hung dent_by(const Post& post, const Placement& stands, double reach) {
+    const Placement far{stands.rotation, stands.position - stands.rotation * (100.0 * Vec3::UnitX())};
+    return dent_by(post, stands, far, reach, 0.0);
+}
+
+// Of a post that stands upright, its surface at x.
+double slope_by(double x, double reach) {
+    return std::hypot(0.25, (3.0 - x) / reach);
+}
+
+Vec3 node(std::size_t i) {
+    return {uncrushed.block[0].x[i], uncrushed.block[0].y[i], uncrushed.block[0].z[i]};
+}
+
+}  // namespace
+
+TEST("trusses that point back belong to the front") {
+    CHECK(front.any);
+    CHECK_CLOSE(laboratory::distance(front.inward, -Vec3::UnitX()), 0.0, 0.0, "an axis");
+    CHECK_CLOSE(laboratory::distance(front.box.half, {0.0, 1.2, 0.8}), 0.0, 1e-15, "rounding");
+    for (std::size_t p = 0; p < panels; ++p)
+        CHECK(mesh.panel[p].any == (p == 1));
+}
+
+TEST("beside an upright post the skin is drawn in with the slope") {
+    const double radius = 0.2, axis = 2.7;
+    int hanging = 0;
+    for (const double reach : {0.25, 0.5, 1.0}) {
+        const double slope = slope_by(axis - radius, reach);
+        const Hung found = dent_by(Post(radius), standing({axis, 0.1, 0.0}), reach);
+        const double arc = radius * slope / std::sqrt(1.0 + slope * slope);
+        for (std::size_t i = 0; i < block_size; ++i) {
+            if (!(found.follows[i] > 0.0)) continue;  // out of reach
+            ++hanging;
+            const double w = std::abs(node(i).y() - 0.1), on = std::min(w, arc);
+            const double surface = axis - std::sqrt(radius * radius - on * on) + slope * (w - on);
+            CHECK_CLOSE(found.gap[i], surface - node(i).x(), 1e-14, "rounding of lengths near 3 m");
+        }
+    }
+    CHECK(hanging > 48);
+}
+
+TEST("above a post the skin is drawn in with the slope, too") {
+    const double radius = 0.2, height = 0.3, reach = 0.8, slope = slope_by(2.5, reach);
+    const Hung low = dent_by(Post(radius, height), standing({2.7, 0.0, 0.0}), reach);
+    const Hung tall = dent_by(Post(radius), standing({2.7, 0.0, 0.0}), reach);
+    for (std::size_t i = 0; i < block_size; ++i) {
+        if (!(low.follows[i] > 0.0 && tall.follows[i] > 0.0)) continue;
+        const double above = std::max(0.0, node(i).z() - height);
+        const double hair = above > 0.0 ? slope * 0.05 * radius : 0.0;
+        CHECK_CLOSE(low.gap[i], tall.gap[i] + slope * above - hair, 1e-14,
+                    "the hair by which the rim is rounded");
+    }
+}
+
+TEST("of a post that stands beside the panel only what reaches over its edge presses") {
+    // The axis 0.15 m beyond the edge at y = 1.2 m.
+    const double radius = 0.2;
+    const double reach = 0.5, slope = slope_by(2.7, reach);
+    const Hung found = dent_by(Post(radius), standing({2.9, 1.35, 0.0}), reach);
+    const double at_edge = 2.9 - std::sqrt(radius * radius - 0.15 * 0.15);
+    for (std::size_t i = 0; i < block_size; ++i)
+        if (found.follows[i] > 0.0)
+            CHECK_CLOSE(found.gap[i], at_edge + slope * (1.2 - node(i).y()) - node(i).x(), 1e-14, "rounding");
+}
+
+TEST("nodes that push go as the post does, wherever they stand, and let it go on along the panel") {
+    const Post post(0.2);
+    const double way = 1e-3;
+    const Placement last = standing({2.8, 0.1, 0.0});
+    const Hung in = dent_by(post, standing({2.8 - way, 0.1, 0.0}), last, 1.0, 1.0);
+    const Hung along = dent_by(post, standing({2.8, 0.1 + way, 0.0}), last, 1.0, 1.0);
+    double left = 0.0, right = 0.0;
+    for (std::size_t i = 0; i < block_size; ++i) {
+        if (in.follows[i] != 1.0 || along.follows[i] != 1.0) continue;
+        // Those before the post go with it, those beside it less: its slope grows.
+        CHECK(in.gap[i] < -0.1 * way && in.gap[i] > -1.000001 * way);
+        CHECK_CLOSE(in.gap[i], -way * -in.per_force[i] * in.nx[i], 1e-3 * way, "of second order");
+        // Sideways the node gives a share of the sine of the flank's slope, not all of it.
+        CHECK(std::abs(along.gap[i]) < 0.2 * way);
+        (node(i).y() < 0.1 ? left : right) = along.gap[i];
+    }
+    CHECK(left * right < 0.0);
+}
+
+TEST("force and torque are what the ways of the nodes ask for by virtual work") {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> share(-1.0, 1.0);
+    const double h = 1e-6;
+    int above = 0, beside = 0, held = 0;
+    for (int round = 0; round < 200; ++round) {
+        const Post post(0.2 + 0.1 * share(random), 1.5 + 0.9 * share(random));
+        const Vec3 foot(2.5 + 0.2 * share(random), 1.3 * share(random), -1.0);
+        const double lean = 0.3 * share(random), sway = 0.3 * share(random);
+        const Placement stands = standing(foot, lean, sway);
+        // As far as an indentation of 2 m goes: to all nodes.
+        const Hung here = dent_by(post, stands, stands, 2.0, 1.0);
+        // Along and about each axis.
+        for (int axis = 0; axis < 3; ++axis) {
+            const Vec3 way = Vec3::Unit(axis);
+            const Placement moved{stands.rotation, stands.position - stands.rotation * (h * way)};
+            const Mat3 turn = Eigen::AngleAxisd(h, way).toRotationMatrix();
+            const Placement turned{stands.rotation * turn.transpose(), stands.position};
+            const Hung forth = dent_by(post, moved, stands, 2.0, 1.0);
+            const Hung right = dent_by(post, turned, stands, 2.0, 1.0);
+            for (std::size_t i = 0; i < block_size; ++i) {
+                if (here.follows[i] != 1.0 || forth.follows[i] != 1.0 || right.follows[i] != 1.0) continue;
+                ++held;
+                const double force = here.per_force[i] * Vec3(here.nx[i], here.ny[i], here.nz[i])[axis];
+                const double torque = here.per_force[i] * Vec3(here.tx[i], here.ty[i], here.tz[i])[axis];
+                CHECK_CLOSE(force, -forth.gap[i] / h, 1e-4, "the difference's error");
+                CHECK_CLOSE(torque, -right.gap[i] / h, 1e-4, "the same");
+            }
+        }
+        const Indentation indentation(post, stands, front, 2.0);
+        for (std::size_t i = 0; i < block_size; ++i) {
+            above += (node(i) - foot).dot(indentation.along()) > indentation.top ? 1 : 0;
+            beside += std::abs((node(i) - foot).dot(indentation.across())) > indentation.radius ? 1 : 0;
+        }
+    }
+    CHECK(above > 1000);
+    CHECK(beside > 1000);
+    CHECK(held > 10000);
+}
+
+TEST("no node is further inside than what the box says, however deep the post") {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> share(-1.0, 1.0);
+    int reached = 0;
+    for (int round = 0; round < 400; ++round) {
+        const Post post(0.2 + 0.1 * share(random), 1.5 + 0.9 * share(random));
+        const double deepest = round % 2 == 0 ? 1.0 : 4.0, reach = 0.6 + 0.3 * share(random);
+        const Placement stands = standing({2.8 + deepest * share(random), 2.0 * share(random), -1.0},
+                                          0.4 * share(random), 0.4 * share(random));
+        const Indentation indentation(post, stands, front, reach);
+        const Hung found = dent_by(post, stands, reach);
+        const double least = *std::min_element(found.gap.begin(), found.gap.end());
+        CHECK(-least <= most_inside(indentation, front.box) + 1e-12);
+        for (std::size_t i = 0; i < block_size; ++i) {
+            CHECK(-found.gap[i] <= most_inside(indentation, {node(i), Vec3::Zero()}) + 1e-12);
+            reached += found.gap[i] < 0.0 ? 1 : 0;
+        }
+    }
+    CHECK(reached > 4000);
+}
