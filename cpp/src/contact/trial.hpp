@@ -7,7 +7,7 @@
 #include "birm3d/base/tolerances.hpp"
 #include "birm3d/state/state.hpp"
 #include "contact/contact_memory.hpp"
-#include "kernels/core_contacts.hpp"
+#include "kernels/detect_core.hpp"
 #include "kernels/impulse.hpp"
 #include "kernels/slab_chain.hpp"
 #include "scene/obstacles.hpp"

@@ -1,4 +1,4 @@
-#include "geometry/solid.hpp"
+#include "birm3d/geometry/solid.hpp"
 
 namespace birm3d {
 

@@ -25,7 +25,7 @@ struct RigidContact {
     double target = 0.0;            // least separation velocity wanted; where held, the one wanted (m/s)
     double impulse = 0.0;           // result (N s), >= 0 unless held
     bool held = false;              // acts both ways
-    bool is_impact = false;        // did it approach hard before the forces of the half step?
+    bool is_impact = false;         // did it approach hard before the forces of the half step?
     bool about_axis = false;        // turns the bodies about `normal` instead of pushing along it
     double friction = 0.0;          // Coulomb coefficient of a member
     Vec3 sliding_surface = Vec3::Zero();  // velocity of the obstacle's surface there (m/s)

@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "geometry/solid.hpp"
+#include "birm3d/geometry/solid.hpp"
 
 namespace birm3d {
 

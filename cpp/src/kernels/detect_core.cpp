@@ -1,4 +1,4 @@
-#include "kernels/core_contacts.hpp"
+#include "kernels/detect_core.hpp"
 
 #include <algorithm>
 #include <array>

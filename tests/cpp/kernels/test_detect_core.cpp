@@ -1,4 +1,4 @@
-#include "kernels/core_contacts.hpp"
+#include "kernels/detect_core.hpp"
 
 #include "birm3d/base/rotation.hpp"
 #include "check.hpp"
