@@ -7,12 +7,11 @@ writes tests/validation/ratings.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import birm3d
 from birm3d import Barrier, Rating, Simulation, Vehicle, units
+from birm3d.reporting.given_tests import GivenTest, given_tests
 
 PAGE = Path(__file__).with_name("ratings.md")
 
@@ -25,139 +24,8 @@ says so.
 """
 
 
-@dataclass(frozen=True)
-class Case:
-    """A published test and what became of it; sizes that were not published are named in the note."""
-
-    name: str
-    source: str
-    make: Callable[[], Simulation]
-    standard: str
-    vehicle_class: str | None
-    published: str
-    contained: bool
-    note: str = ""
-
-
-def _truck(mass: float) -> Vehicle:
-    return Vehicle.preset("cargo_truck", gvw=mass)
-
-
-def _posts(mass: float, speed: float, **sizes: float) -> Callable[[], Simulation]:
-    return lambda: Simulation(_truck(mass), Barrier.bollards(**sizes), units.km_h(speed))
-
-
-def _semi(mass: float, speed: float, angle: float, barrier: Barrier) -> Callable[[], Simulation]:
-    return lambda: Simulation(Vehicle.preset("semi_truck", gvw=mass), barrier, units.km_h(speed), angle)
-
-
-def _similar(
-    preset: str, mass: float, speed: float, angle: float, barrier: Barrier
-) -> Callable[[], Simulation]:
-    vehicle = Vehicle.preset
-    return lambda: Simulation(vehicle(preset).scaled_to(mass), barrier, units.km_h(speed), angle)
-
-
-CASES = (
-    Case(
-        "DSC720-1M, fixed bollard",
-        "Delta Scientific, 2021-07-06; diameter from its procurement specification",
-        _posts(6804.0, 80.5, count=1, diameter=0.324, height=1.0),
-        "ASTM F2656",
-        "M",
-        "M50-P1, 0.5 m or less",
-        True,
-    ),
-    Case(
-        "DSC635, one shallow bollard",
-        "Delta Scientific test summary, hstoday.us",
-        _posts(6804.0, 80.5, count=1, diameter=0.4, height=1.118),
-        "ASTM F2656",
-        "M",
-        "M50; dynamic 1.87 m, static below 0.6 m",
-        True,
-        "bollard and foundation moved in the test",
-    ),
-    Case(
-        "RSA surface-mount bollards",
-        "Landscape Architect, March 2012",
-        _posts(6804.0, 80.5, count=12, diameter=0.254, height=1.016, spacing=1.49),
-        "SD-STD-02.01",
-        "15,000-lb truck",
-        "K12",
-        True,
-        "ballasted boxes, here fixed",
-    ),
-    Case(
-        "8-in posts with a rail, 47 mph",
-        "MIL-HDBK-1013/14",
-        _posts(6818.0, 76.0, count=11, diameter=0.203, height=0.9, spacing=1.2),
-        "ASTM F2656",
-        "M",
-        "no penetration",
-        True,
-        "height and spacing not published: 0.9 m, 1.2 m",
-    ),
-    Case(
-        "8-in posts with a rail, 43.5 mph",
-        "MIL-HDBK-1013/14",
-        _posts(6818.0, 70.0, count=11, diameter=0.203, height=0.9, spacing=1.2),
-        "ASTM F2656",
-        "M",
-        "penetrated by 6.0 m",
-        False,
-        "the same posts, slower: they gave way in this test, which a rigid post can not",
-    ),
-    Case(
-        "MASH 4-11, 32-in New Jersey",
-        "NCHRP Web-Only Document 157; contained upright: from memory",
-        _similar("pickup", 2290.0, 100.7, 25.2, Barrier.jersey(height=units.inch(32.0))),
-        "MASH TL-4",
-        None,
-        "contained, upright",
-        True,
-    ),
-    Case(
-        "MASH 4-12, 32-in New Jersey",
-        "NCHRP Web-Only Document 157: the truck rolled by 101 deg and went over the barrier's end",
-        lambda: birm3d.test_matrix("MASH 4-12", barrier=Barrier.jersey(height=units.inch(32.0)))[0],
-        "MASH TL-4",
-        None,
-        "not contained, rolled over",
-        False,
-        "nominal speed, angle and ballast; without springs the computed truck rolls too little",
-    ),
-    Case(
-        "TL5CMB-2, 42-in median barrier",
-        "ORNL/NTRCI tractor-semitrailer site; contained: from memory",
-        _semi(36_153.0, 84.9, 15.4, Barrier.jersey(height=1.07)),
-        "MASH TL-5",
-        None,
-        "contained",
-        True,
-        "a shade faster than MASH allows: no rating; containment is compared",
-    ),
-    Case(
-        "TTI 7069-13, 42-in vertical parapet",
-        "ORNL/NTRCI tractor-semitrailer site; contained: from memory",
-        _semi(22_723.0, 82.7, 16.2, Barrier.rigid_wall(height=1.07)),
-        "MASH TL-5",
-        "36000V",
-        "contained",
-        True,
-        "22.7 t are no 36000V: no rating; containment is compared",
-    ),
-    Case(
-        "TB11, slipform STEP barrier",
-        "SWOV R-95-66",
-        _similar("passenger_car", 900.0, 100.0, 20.0, Barrier.jersey(height=0.9)),
-        "EN 1317 TB11",
-        None,
-        "contained; ASI barely class B, exit 7 deg, no roll",
-        True,
-        "profile not published there: a New Jersey of 0.9 m; the car is a sedan's shape at 900 kg",
-    ),
-)
+CASES = tuple(test for test in given_tests() if test.quantity == "containment")
+"""Published tests that come with the package, data/published_tests.csv."""
 
 
 def _risk_rows() -> list[list[str]]:
@@ -185,14 +53,14 @@ def _risk_rows() -> list[list[str]]:
     ]
 
 
-def rated(case: Case) -> Rating:
+def rated(case: GivenTest) -> Rating:
     """Return the rating of a case."""
-    return birm3d.rate(case.make().run(), case.standard, vehicle_class=case.vehicle_class)
+    return birm3d.rate(case.simulation().run(), case.standard, vehicle_class=case.vehicle_class or None)
 
 
-def _row(case: Case) -> list[str]:
+def _row(case: GivenTest) -> list[str]:
     rating = rated(case)
-    right = "right" if rating.contained == case.contained else "**wrong**"
+    right = "right" if rating.contained == case.measured else "**wrong**"
     row = {one.name: one for one in rating.criteria}
     own = rating.designation
     own += "".join(f"; {name} {row[name].shown}" for name in ("ASI", "greatest roll") if name in row)

@@ -41,8 +41,15 @@ _GROUPS = (
 _SPEED, _ANGLE = 0.1, 5.0  # within which a speed (relative) or an angle [deg] is called the same
 # What a difference weighs: of speed and mass the logarithm of their ratio over the first, of angle [deg].
 _SPEED_SCALE, _ANGLE_SCALE, _MASS_SCALE = 0.4, 30.0, 0.8
-_OTHER_KIND, _OTHER_GROUP, _OTHER_FAMILY = 0.3, 1.0, 1.0
+_OTHER_KIND, _OTHER_GROUP, _OTHER_FAMILY, _OTHER_SIDE = 0.3, 1.0, 1.0, 1.0
 _LEAST_SPEED = 0.1  # m/s
+_NOTHING_MORE = ("",) * 6  # of a recipe whose vehicle says all
+_FAMILIES: dict[str, Family] = {
+    "bollards": "posts",
+    "pole": "posts",
+    "jersey": "concrete",
+    "rigid_wall": "wall",
+}
 
 
 @dataclass(frozen=True)
@@ -63,7 +70,7 @@ class GivenTest:
     note, standard, vehicle_class, published : str
         Of tests of barriers: what was not published, and what the test was rated as.
     recipe : tuple of str
-        Vehicle, mass rule, mass [kg], barrier, sizes, speed [km/h], angle [deg].
+        Vehicle, mass rule, mass [kg], barrier, sizes, speed [km/h], angle [deg], yaw of the nose [deg].
     """
 
     name: str
@@ -129,7 +136,7 @@ def given_tests() -> tuple[GivenTest, ...]:
 
 @cache
 def _simulation(recipe: tuple[str, ...]) -> Simulation:
-    vehicle, rule, mass, barrier, sizes, speed, angle = recipe
+    vehicle, rule, mass, barrier, sizes, speed, angle, yaw = recipe
     if rule == "nhtsa":
         return presets.nhtsa_frontal(vehicle)
     if rule == "scene":
@@ -143,12 +150,12 @@ def _simulation(recipe: tuple[str, ...]) -> Simulation:
         return test_matrix(vehicle, barrier=stands)[0]
     preset = Vehicle.preset(vehicle)
     loaded = preset.with_gvw(float(mass)) if rule == "gvw" else preset.scaled_to(float(mass))
-    return Simulation(loaded, stands, units.km_h(float(speed)), float(angle))
+    return Simulation(loaded, stands, units.km_h(float(speed)), float(angle), impact_yaw=float(yaw))
 
 
 def _sedan() -> list[GivenTest]:
     """Return what was measured in the one wall test with load cells; the sedan's front is fitted to it."""
-    recipe = ("nhtsa_10146", "scene", "", "", "", "", "")
+    recipe = ("nhtsa_10146", "scene", *_NOTHING_MORE)
     source = "NHTSA vehicle crash test database, test 10146, 176 load cells"
     values = (
         ("peak_normal_force_cfc60", 678e3, "N"),
@@ -170,7 +177,7 @@ def _frontal() -> list[GivenTest]:
             measured=test.dynamic_displacement,
             unit="m",
             fitted=test.split == "CALIBRATE",
-            recipe=(test.test, "nhtsa", "", "", "", "", ""),
+            recipe=(test.test, "nhtsa", *_NOTHING_MORE),
         )
         for test in nhtsa_tests().values()
         if test.kind == "frontal"
@@ -183,7 +190,7 @@ def _frontal() -> list[GivenTest]:
 def _published() -> list[GivenTest]:
     text = (resources.files("birm3d") / "data" / "published_tests.csv").read_text(encoding="utf-8")
     lines = (line for line in io.StringIO(text) if not line.startswith("#"))
-    recipe = ("vehicle", "mass_rule", "mass_kg", "barrier", "sizes", "speed_km_h", "angle_deg")
+    recipe = ("vehicle", "mass_rule", "mass_kg", "barrier", "sizes", "speed_km_h", "angle_deg", "yaw_deg")
     return [
         GivenTest(
             name=row["name"],
@@ -210,13 +217,25 @@ class Facts(NamedTuple):
     mass: float
     speed: float
     angle: float
+    side: int = 0  # that goes ahead: 0 front, 1 right, 2 rear, 3 left
 
     @classmethod
     def of(cls, scene: Scene) -> Facts:
         """Return the facts of a scene; an angle and its supplement are the same."""
         vehicle = scene.vehicle
         acute = min(scene.impact_angle, 180.0 - scene.impact_angle)
-        return cls(vehicle.kind or "", family(scene.barrier), vehicle.mass, scene.impact_speed, acute)
+        return cls(
+            vehicle.kind or "",
+            family(scene.barrier),
+            vehicle.mass,
+            scene.impact_speed,
+            acute,
+            _side(scene.impact_yaw),
+        )
+
+
+def _side(yaw: float) -> int:
+    return round(yaw / 90.0) % 4
 
 
 def family(barrier: Barrier | None) -> Family:
@@ -233,14 +252,13 @@ def family(barrier: Barrier | None) -> Family:
 @cache
 def _facts(recipe: tuple[str, ...]) -> Facts:
     """Return the facts of a test; no vehicle is meshed where its test says all of them."""
-    vehicle, rule, mass, barrier, _, speed, angle = recipe
+    vehicle, rule, mass, barrier, _, speed, angle, yaw = recipe
     if rule == "nhtsa":
         test = nhtsa_tests()[vehicle]
         return Facts(_kind_of(presets.preset_for(test)), "wall", test.mass, test.speed, 90.0)
     if rule in ("gvw", "similar"):
-        families: dict[str, Family] = {"bollards": "posts", "jersey": "concrete", "rigid_wall": "wall"}
-        kind = _kind_of(vehicle)
-        return Facts(kind, families[barrier], float(mass), units.km_h(float(speed)), float(angle))
+        speed_si, side = units.km_h(float(speed)), _side(float(yaw))
+        return Facts(_kind_of(vehicle), _FAMILIES[barrier], float(mass), speed_si, float(angle), side)
     return Facts.of(_simulation(recipe).scene)
 
 
@@ -254,12 +272,15 @@ def _group(kind: str) -> tuple[str, ...]:
 
 
 def likeness(one: Facts, other: Facts) -> tuple[str, ...]:
-    """Return in what two scenes are alike: vehicle kind, barrier, speed (10 %), angle (5 degrees)."""
+    """Return in what two scenes are alike: vehicle kind, barrier, speed (10 %), angle (5 degrees).
+
+    Angles are alike only where the same side of the vehicle goes ahead.
+    """
     same = {
         "vehicle": one.kind == other.kind,
         "barrier": one.family == other.family,
         "speed": abs(other.speed - one.speed) <= _SPEED * one.speed,
-        "angle": abs(other.angle - one.angle) <= _ANGLE,
+        "angle": one.side == other.side and abs(other.angle - one.angle) <= _ANGLE,
     }
     return tuple(name for name, alike in same.items() if alike)
 
@@ -271,15 +292,16 @@ def _distance(one: Facts, other: Facts) -> float:
     families = 0.0 if one.family == other.family else _OTHER_FAMILY
     speed = abs(math.log(max(other.speed, _LEAST_SPEED) / max(one.speed, _LEAST_SPEED))) / _SPEED_SCALE
     mass = abs(math.log(other.mass / one.mass)) / _MASS_SCALE
-    return kinds + families + speed + mass + abs(other.angle - one.angle) / _ANGLE_SCALE
+    sides = 0.0 if one.side == other.side else _OTHER_SIDE
+    return kinds + families + sides + speed + mass + abs(other.angle - one.angle) / _ANGLE_SCALE
 
 
 def nearest(scene: Scene, count: int = 10) -> list[Compared]:
     """Return the given tests nearest to a scene, computed anew, the nearest first.
 
     Distance: 1 for another kind of barrier (wall, posts, concrete profile), 1 for another group of vehicles
-    (0.3 within a group), logarithm of the ratio of speeds over 0.4 and of masses over 0.8, angle over 30
-    degrees. Values of one test count as one.
+    (0.3 within a group), 1 for another side of the vehicle ahead, logarithm of the ratio of speeds over 0.4
+    and of masses over 0.8, angle over 30 degrees. Values of one test count as one.
 
     Parameters
     ----------
