@@ -48,6 +48,7 @@ from .study.fragility import fragility
 from .study.impact_point import critical_impact_point
 from .study.limit_search import Limit, NotInRangeError
 from .study.monte_carlo import monte_carlo
+from .study.predict import Prediction, predict
 from .study.runner import StudyInterrupted, StudyStoppedError
 from .study.sobol import sobol
 from .study.sweep import sweep
@@ -73,6 +74,7 @@ __all__ = [
     "NotInRangeError",
     "OccupantRisk",
     "OverlapWarning",
+    "Prediction",
     "Rating",
     "RatingStudy",
     "Rerun",
@@ -107,6 +109,7 @@ __all__ = [
     "metrics",
     "monte_carlo",
     "occupant_risk",
+    "predict",
     "rate",
     "read_csv_channels",
     "read_iso_mme",

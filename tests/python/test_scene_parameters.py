@@ -53,6 +53,8 @@ def test_every_parameter_can_be_set_and_read(simulation: birm3d.Simulation) -> N
             zone = name.split(".")[1]
             law = changed.scene.vehicle.zones[zone]
             assert law["k_unloading"] == value * simulation.scene.vehicle.zones[zone]["k_unloading"]
+        elif name.startswith("scatter."):
+            assert after == 1.0  # relative to the present curves
         elif isinstance(value, float):
             assert after == pytest.approx(value, rel=1e-12)
         else:

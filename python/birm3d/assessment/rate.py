@@ -8,6 +8,7 @@ from typing import overload
 from ..base.arguments import checked
 from ..result import Result
 from ..study import Study
+from ..study.predict import Prediction
 from ..units import Quantity
 from .probability import RatingStudy, rate_study
 from .rating import Rating
@@ -35,7 +36,7 @@ def rate(
 
 @overload
 def rate(
-    result: Study,
+    result: Study | Prediction,
     standard: str,
     *,
     vehicle_class: str | None = None,
@@ -46,7 +47,7 @@ def rate(
 
 @checked
 def rate(
-    result: Result | Sequence[Result] | Study,
+    result: Result | Sequence[Result] | Study | Prediction,
     standard: str,
     *,
     vehicle_class: str | None = None,
@@ -58,8 +59,8 @@ def rate(
     Parameters
     ----------
     result
-        A run until its outcome is decided. Several: one for each test of a level. A study: every run of it is
-        rated, and each class has its share of the runs as a probability.
+        A run until its outcome is decided. Several: one for each test of a level. A study or a prediction:
+        every run of it is rated, and each class has its share of the runs as a probability.
     standard
         ``"ASTM F2656"``, ``"ASTM F2656-07"``, ``"SD-STD-02.01"``, ``"IWA 14-1"``, ``"ISO 22343-1"``,
         ``"PAS 68"``, ``"MASH"`` or ``"EN 1317"``. The last two may name a level or test, as
@@ -77,6 +78,8 @@ def rate(
         goes along it, or is not over.
     """
     name, rest = split_standard(standard)
+    if isinstance(result, Prediction):
+        result = result.study
     if isinstance(result, Study):
         return rate_study(result, lambda run: _of_run(run, name, rest, vehicle_class, reference_point, part))
     if isinstance(result, Result):

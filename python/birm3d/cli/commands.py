@@ -17,6 +17,7 @@ from ..result.summary import ELEMENT_COLUMNS, element_rows, elements_in_si, outc
 from .calibrate import calibrate_file
 from .files import CAPSULE, HTML, MOVIE, PICTURE, RESULT, TABLE
 from .loads import loads
+from .predict import predict
 from .rate import STANDARD_HELP, assessed, assessments_as_json, print_assessments, rate
 from .report import report
 from .rerun import rerun
@@ -39,6 +40,7 @@ def _cli() -> None:
 
 _cli.add_command(calibrate_file)
 _cli.add_command(loads)
+_cli.add_command(predict)
 _cli.add_command(rate)
 _cli.add_command(report)
 _cli.add_command(rerun)

@@ -19,6 +19,8 @@ name                           value
 ``zone.<zone>.stress[i]``      stress of point i of the zone's envelope [N per m^2]
 ``zone.<zone>.deflection[i]``  its deflection [m]
 ``zone.<zone>.scale``          factor on all stresses and slopes of the zone (now 1)
+``scatter.<quantity>``         factor on all stresses and slopes of the zones that ``[[scatter]]`` in the
+                               vehicle's file names: ``front``, ``side``, ``corner`` or ``tires`` (now 1)
 ``truss.<number>``             the same five numbers of a vehicle made from arrays: sums over all trusses
                                [N/m, N], shared as they are now
 =============================  ========================================================================
@@ -39,6 +41,7 @@ from ..base.arguments import checked
 from ..scene.scene import APPROACH, Scene
 from ..scene.settings import Settings
 from ..units import quantity_in, si
+from ..vehicle.class_scatter import joined
 from ..vehicle.vehicle import TRUSS_LAW, Vehicle, Zone
 from ..vehicle.zone import positive
 from .simulation import Simulation
@@ -157,7 +160,17 @@ def _names(scene: Scene) -> tuple[str, ...]:
         names += [f"truss.{name}" for name in TRUSS_LAW]
     for zone in vehicle.zones_met:
         names += [f"zone.{zone}.{number}" for number in _zone_numbers(vehicle.zones[zone])]
+    names += [f"scatter.{name}" for name in _scattered(vehicle)]
     return tuple(names)
+
+
+def _scattered(vehicle: Vehicle) -> dict[str, tuple[str, ...]]:
+    """Zones of each quantity of the class that is a factor on forces."""
+    return {
+        name: one.zones
+        for name, one in joined([unit.scatter for unit in vehicle.units], vehicle.zones_met).items()
+        if one.zones
+    }
 
 
 @checked
@@ -181,6 +194,8 @@ def value_of(simulation: Simulation, name: str) -> Any:
         return getattr(scene.settings, rest)
     if group == "truss":
         return scene.vehicle.truss_law[rest]
+    if group == "scatter":
+        return 1.0
     if group == "vehicle":
         return scene.vehicle.mass if rest == "gvw" else getattr(scene.vehicle, rest)
     zone, number = rest.rsplit(".", 1)
@@ -256,7 +271,7 @@ _preset = lru_cache(maxsize=16)(Vehicle.preset)
 
 
 def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -> Vehicle:
-    if groups.keys().isdisjoint(("zone", "truss", "vehicle")):
+    if groups.keys().isdisjoint(("zone", "scatter", "truss", "vehicle")):
         return vehicle
     numbers = groups.get("vehicle", {})
     recipe = vehicle._description
@@ -264,8 +279,12 @@ def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -
     for rest, value in groups.get("zone", {}).items():
         zone, number = rest.rsplit(".", 1)
         zones.setdefault(zone, {})[number] = value
-    if zones:
-        recipe = recipe.with_zones({name: _zone(vehicle.zones[name], new) for name, new in zones.items()})
+    changed = {name: _zone(vehicle.zones[name], new) for name, new in zones.items()}
+    for name, factor in groups.get("scatter", {}).items():
+        for zone in _scattered(vehicle)[name]:
+            changed[zone] = changed.get(zone, vehicle.zones[zone]).scaled(factor)
+    if changed:
+        recipe = recipe.with_zones(changed)
     if "truss" in groups:
         recipe = recipe.with_truss_law(**groups["truss"])
     if "mesh_density" in numbers:

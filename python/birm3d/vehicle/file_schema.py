@@ -13,6 +13,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import AfterValidator, Field, model_validator
 
 from ..io.toml import Strict, reject
+from .class_scatter import STIFFNESSES
 from .scaling import SIZES, Extent, Factors, PlaceMap, Scaling, factors_of, scaling_between
 from .zone_law import NonNegative, Positive, ZoneLaw
 
@@ -32,6 +33,7 @@ __all__ = [
     "Positive",
     "Range",
     "Scaled",
+    "Scatter",
     "Solid",
     "Source",
     "Target",
@@ -329,6 +331,27 @@ class Exterior(Block):
             limit = f"for at most {_MOST_ELEMENTS:,} elements"
             box = f"{length:g} m by {width:g} m by {height:g} m"
             reject("element_size_m", f"must be {limit}, got {self.element_size_m} on a box of {box}")
+
+
+class Scatter(Block):
+    """How vehicles of the class differ from this one, see :class:`birm3d.vehicle.class_scatter.ClassScatter`.
+
+    Of forces (front, side, corner, tires) the zones say which ones; of the other quantities there are none.
+    """
+
+    name: Literal[
+        "front", "side", "corner", "tires", "mass_center_height", "barrier_friction", "tire_friction"
+    ]
+    zones: tuple[Name, ...] = ()
+    median: Positive = 1.0
+    log_sd: Annotated[float, Field(gt=0.0, le=2.0)]
+
+    @model_validator(mode="after")
+    def _check(self) -> Scatter:
+        if bool(self.zones) is not (self.name in STIFFNESSES):
+            must = "must name zones" if self.name in STIFFNESSES else "must not be given"
+            reject("zones", f"{must} for {self.name}, got {', '.join(self.zones) or 'none'}")
+        return self
 
 
 class Scaled(Block):

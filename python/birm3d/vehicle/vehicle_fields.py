@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.frozen_mapping import FrozenMapping
+from .class_scatter import ClassScatter
 from .recipe import sums_of
 from .zone import Zone
 
@@ -94,6 +95,12 @@ class VehicleFields:
         x, y, z = self.center_of_mass.tolist()
         named = () if self._file is None else self._file.points
         return FrozenMapping({"mass_center": (x, y, z), **{point.name: point.at_m for point in named}})
+
+    @property
+    def scatter(self) -> Mapping[str, ClassScatter]:
+        """How vehicles of its class differ from it, by the quantity; empty where its file does not say."""
+        rows = () if self._file is None else self._file.scatter
+        return FrozenMapping({row.name: ClassScatter(row.median, row.log_sd, row.zones) for row in rows})
 
     @property
     def is_skin(self) -> npt.NDArray[np.bool_]:

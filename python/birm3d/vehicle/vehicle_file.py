@@ -33,6 +33,7 @@ from .file_schema import (
     Panel,
     Positive,
     Scaled,
+    Scatter,
     Solid,
     Source,
     Target,
@@ -105,9 +106,10 @@ class VehicleFile(Strict):
     dents: Dents | None = None
     core: Annotated[tuple[CoreBox, ...], Field(min_length=1)]
     zones: Annotated[tuple[Zone, ...], Field(alias="zone", min_length=1)]
+    scatter: tuple[Scatter, ...] = ()
     changes: Changes | None = None
 
-    @field_validator("core", "solids", "wheels", "points", "sources")
+    @field_validator("core", "solids", "wheels", "points", "scatter", "sources")
     @classmethod
     def _names_differ(cls, items: tuple[Any, ...]) -> tuple[Any, ...]:
         names = [item.id if isinstance(item, Source) else item.name for item in items]
@@ -124,6 +126,8 @@ class VehicleFile(Strict):
         for zone in self.zones:
             check_known(f"zone.{zone.name}.blocks", zone.blocks, blocks)
             check_known(f"zone.{zone.name}.core", zone.core, boxes)
+        for i, one in enumerate(self.scatter):
+            check_known(f"scatter.{i}.zones", one.zones, set(self.zone_names))
         self._check_cores()
         for name in () if self.changes is None else self.changes.zone:
             check_known(f"changes.zone.{name}", (name,), set(self.laws))
@@ -156,6 +160,7 @@ class VehicleFile(Strict):
             "wheel": self.wheels,
             "point": self.points,
             "core": self.core,
+            "scatter": self.scatter,
         }
         for key, items in groups.items():
             for i, item in enumerate(items):

@@ -1,0 +1,196 @@
+"""Bands of what a scene does, from how the vehicles of a class differ."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..base.arguments import checked
+from ..base.checks import shown
+from ..base.frozen_mapping import FrozenMapping
+from ..result.metrics import METRIC_UNITS
+from ..simulation.parameters import parameter_names, value_of
+from ..simulation.simulation import Simulation
+from ..vehicle.class_scatter import QUANTITIES, joined
+from .runner import run_study
+from .table import Study
+
+__all__ = ["Prediction", "predict"]
+
+Floats = npt.NDArray[np.float64]
+
+_MOST = 10
+"""Power of two of the greatest number of draws."""
+
+# What a quantity of the class is called among the scene's parameters; a factor on it, where it is no law's.
+_PARAMETERS = {
+    "mass_center_height": "vehicle.mass_center_height",
+    "barrier_friction": "barrier.friction",
+    "tire_friction": "settings.mu_tire",
+}
+
+
+class Prediction:
+    """Metrics with bands; made by :func:`predict`.
+
+    Attributes
+    ----------
+    median, low, high : mapping of str to float
+        Each metric that at least half of the draws have, SI and degrees. Between low and high are `share` of
+        the draws, as many below as above.
+    share : float
+    drawn : tuple of str
+        Parameters of the scene that were drawn, see :mod:`birm3d.scene_parameters`.
+    study : Study
+        The runs. :func:`birm3d.rate` takes the prediction and gives each class a probability.
+    """
+
+    def __init__(self, study: Study, share: float) -> None:
+        self.study = study
+        self.share = share
+        self.drawn = tuple(study.parameters)
+        bands = {}
+        for name, values in study.metrics.items():
+            known = values[np.isfinite(values)]
+            if 2 * len(known) >= len(values):
+                bands[name] = quantiles(known, share)
+        self.low, self.median, self.high = (
+            FrozenMapping({name: band[i] for name, band in bands.items()}) for i in range(3)
+        )
+
+    @property
+    def outcomes(self) -> Mapping[str, float]:
+        """Share of the draws that ended in each outcome, the greatest first."""
+        counts = Counter(outcome for outcome in self.study.outcome if outcome)
+        return FrozenMapping({name: n / len(self.study) for name, n in counts.most_common()})
+
+    def summary(self) -> str:
+        """Return all bands as text."""
+        rows = [f"{self.study.vehicle}: {self.share:.0%} bands of {len(self.study)} vehicles of the class"]
+        rows += [f"  {share:4.0%} {outcome}" for outcome, share in self.outcomes.items()]
+        rows.append(f"  {'metric':<28}{'low':>13}{'median':>13}{'high':>13}")
+        for name in self.median:
+            numbers = "".join(f"{band[name]:>13.5g}" for band in (self.low, self.median, self.high))
+            rows.append(f"  {name:<28}{numbers} {METRIC_UNITS.get(name, '')}".rstrip())
+        rows.append(f"  drawn: {', '.join(self.drawn)}; mass, speed and barrier as given")
+        return "\n".join(rows)
+
+    __str__ = summary
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all of it as plain values, SI."""
+        bands = {
+            name: {"low": self.low[name], "median": self.median[name], "high": self.high[name]}
+            for name in self.median
+        }
+        outcomes = dict(self.outcomes)
+        return {"share": self.share, "outcomes": outcomes, "metrics": bands, "drawn": list(self.drawn)}
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{name}</td>"
+            + "".join(f"<td>{band[name]:.5g}</td>" for band in (self.low, self.median, self.high))
+            + f"<td>{METRIC_UNITS.get(name, '')}</td></tr>"
+            for name in self.median
+        )
+        head = "<tr><th>metric</th><th>low</th><th>median</th><th>high</th><th>unit</th></tr>"
+        return f"<table>{head}{rows}</table>"
+
+    def __repr__(self) -> str:
+        return f"Prediction({len(self.study)} runs, {self.share:.0%} bands, {dict(self.outcomes)})"
+
+
+@checked
+def predict(
+    simulation: Simulation,
+    n: int = 32,
+    *,
+    share: float = 0.8,
+    metrics: Sequence[str] | None = None,
+    executor: Any = None,
+    progress: bool | None = None,
+) -> Prediction:
+    """Run a scene with what is not known of a vehicle drawn as its class scatters.
+
+    Drawn are forces of front, side and corner, height of the mass centre, friction and tyres, each lognormal
+    as the blocks ``[[scatter]]`` of the vehicle's file say (:attr:`birm3d.Vehicle.scatter`). A median there
+    may differ from 1, where the class differs from the vehicle that a preset was fitted to: the median here
+    is then not what the scene gives by itself. Mass, speed, angle and barrier are those of the scene.
+
+    The draws are the first n points of Sobol's sequence, one dimension for each quantity, whatever the scene:
+    two predictions differ by their scenes and not by chance (common random numbers).
+
+    Parameters
+    ----------
+    simulation
+        The scene.
+    n
+        Number of draws, a power of 2 from 8 to 1,024.
+    share
+        Of the draws within the band, 0 < share < 1.
+    metrics, executor, progress
+        See :func:`birm3d.study.runner.run_study`.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or the file of the vehicle says nothing of its class.
+    """
+    power = int(n).bit_length() - 1
+    if isinstance(n, bool) or n != 2**power or not 3 <= power <= _MOST:
+        raise ValueError(f"n must be a power of 2 from 8 to {2**_MOST}, got {shown(n)}")
+    if not 0.0 < share < 1.0:
+        raise ValueError(f"share must be > 0 and < 1, got {share}")
+    columns = _columns(simulation, power)
+    study = run_study(
+        simulation,
+        tuple(columns),
+        np.column_stack(list(columns.values())),
+        metrics=metrics,
+        executor=executor,
+        progress=progress,
+        title="prediction",
+    )
+    return Prediction(study, share)
+
+
+def quantiles(values: Floats, share: float) -> tuple[float, float, float]:
+    """Return low end, median and high end of a band with a share of values that stand for equal parts."""
+    ends = np.quantile(values, [0.5 - 0.5 * share, 0.5, 0.5 + 0.5 * share], method="hazen")
+    return (float(ends[0]), float(ends[1]), float(ends[2]))
+
+
+def draws(power: int) -> Mapping[str, Floats]:
+    """Return 2**power standard normal numbers of each quantity of :data:`QUANTITIES`, always the same."""
+    from scipy.special import ndtri
+    from scipy.stats.qmc import Sobol
+
+    # Not scrambled, so that they are the same everywhere; in the middles of their cells, never 0 or 1.
+    points = Sobol(len(QUANTITIES), scramble=False).random_base2(power) + 0.5 ** (power + 1)
+    return dict(zip(QUANTITIES, ndtri(points).T, strict=True))
+
+
+def _columns(simulation: Simulation, power: int) -> dict[str, Floats]:
+    """Return the values of each parameter that is drawn."""
+    vehicle = simulation.scene.vehicle
+    scatter = joined([unit.scatter for unit in vehicle.units], vehicle.zones_met)
+    if not scatter:
+        raise ValueError(
+            "simulation must have a vehicle whose file says how its class scatters ([[scatter]]), "
+            f"got {vehicle.name!r}"
+        )
+    normal, known = draws(power), parameter_names(simulation)
+    columns = {}
+    for name, one in scatter.items():
+        parameter = _PARAMETERS.get(name, f"scatter.{name}")
+        if parameter not in known:
+            continue  # no barrier, or no trusses of such a zone
+        present = value_of(simulation, parameter)
+        if present > 0.0:
+            factor = one.median * np.exp(one.log_sd * normal[name])
+            columns[parameter] = present * factor
+    return columns

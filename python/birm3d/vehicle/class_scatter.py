@@ -1,0 +1,40 @@
+"""How vehicles of one class differ from the vehicle of a file."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from typing import NamedTuple
+
+__all__ = ["QUANTITIES", "STIFFNESSES", "ClassScatter", "joined"]
+
+STIFFNESSES = ("front", "side", "corner", "tires")
+"""Quantities that are forces of zones."""
+QUANTITIES = (*STIFFNESSES, "mass_center_height", "barrier_friction", "tire_friction")
+"""What may differ, in the order in which it is drawn."""
+
+
+class ClassScatter(NamedTuple):
+    """Of one quantity: a factor on that of the file's vehicle, lognormal over the vehicles of its class.
+
+    median: of the factor. log_sd: standard deviation of its logarithm. zones: whose forces it is a factor on.
+    """
+
+    median: float
+    log_sd: float
+    zones: tuple[str, ...] = ()
+
+
+def joined(units: Iterable[Mapping[str, ClassScatter]], zones: Collection[str]) -> dict[str, ClassScatter]:
+    """Return the scatter of a vehicle by that of its units, in the order of :data:`QUANTITIES`.
+
+    What both units say is one quantity: of the first, for the zones of both. Only those of `zones` count.
+    """
+    found: dict[str, ClassScatter] = {}
+    for unit in units:
+        for name, one in unit.items():
+            own = tuple(zone for zone in one.zones if zone in zones)
+            if name in found:
+                found[name] = found[name]._replace(zones=(*found[name].zones, *own))
+            else:
+                found[name] = one._replace(zones=own)
+    return {name: found[name] for name in QUANTITIES if name in found}
