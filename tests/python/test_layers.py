@@ -37,7 +37,7 @@ WAY_UP = "pictures"
 """Every layer may import it; inside its functions, and for types, it imports any layer."""
 MAKERS = {
     "barrier.base": ("barrier.kinds", "barrier.free_standing"),
-    "vehicle.vehicle": ("vehicle.articulated", "vehicle.builder"),
+    "vehicle.vehicle": ("vehicle.articulated", "vehicle.builder", "vehicle.from_facts"),
     "vehicle.variants": ("vehicle.builder",),
 }
 """A class whose methods return classes derived from it, or built of its parts by another module.

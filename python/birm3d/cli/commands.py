@@ -16,6 +16,7 @@ from ..io.atomic_write import whole_file
 from ..result.summary import ELEMENT_COLUMNS, element_rows, elements_in_si, outcome_rows
 from .calibrate import calibrate_file
 from .files import CAPSULE, HTML, MOVIE, PICTURE, RESULT, TABLE
+from .from_facts import from_facts
 from .loads import loads
 from .predict import predict
 from .rate import STANDARD_HELP, assessed, assessments_as_json, print_assessments, rate
@@ -39,6 +40,7 @@ def _cli() -> None:
 
 
 _cli.add_command(calibrate_file)
+_cli.add_command(from_facts)
 _cli.add_command(loads)
 _cli.add_command(predict)
 _cli.add_command(rate)

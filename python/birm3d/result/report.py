@@ -34,6 +34,7 @@ def report(result: RunAnalysis) -> str:
     lines = [
         f"{result.outcome}: {result.outcome_detail}",
         f"{vehicle.name}, {vehicle.mass:.1f} kg, {vehicle.n_nodes} shell nodes, {len(vehicle.wheels)} wheels",
+        *(f"  assumed: {one.text}" for unit in vehicle.units for one in unit.assumptions),
         f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph) "
         f"at {scene.impact_angle:g} deg{overlap_text(scene)} "
         + (_barrier(scene.barrier) if scene.barrier else "without a barrier"),

@@ -19,6 +19,7 @@ from .zone_law import NonNegative, Positive, ZoneLaw
 
 __all__ = [
     "AlongLaw",
+    "Assumption",
     "Block",
     "CoreBox",
     "Dents",
@@ -352,6 +353,23 @@ class Scatter(Block):
             must = "must name zones" if self.name in STIFFNESSES else "must not be given"
             reject("zones", f"{must} for {self.name}, got {', '.join(self.zones) or 'none'}")
         return self
+
+
+class Assumption(Strict):
+    """What was assumed of a vehicle of which some facts are known, see :meth:`birm3d.Vehicle.from_facts`.
+
+    low, high: band of 80 %; without a value the assumption is the text alone.
+    """
+
+    quantity: Annotated[str, Field(min_length=1)]
+    text: Text
+    value: float | None = None
+    low: float | None = None
+    high: float | None = None
+    unit: str = ""
+
+    def __str__(self) -> str:
+        return self.text
 
 
 class Scaled(Block):

@@ -126,6 +126,49 @@ class Vehicle(VehicleVariants):
                 read(path, None, 1.0)
             raise
 
+    @staticmethod
+    def from_facts(
+        kind: str,
+        *,
+        mass: Quantity,
+        length: Quantity | None = None,
+        width: Quantity | None = None,
+        height: Quantity | None = None,
+        wheelbase: Quantity | None = None,
+        mass_center_height: Quantity | None = None,
+        mesh_density: float = 1.0,
+    ) -> Vehicle:
+        """Make a vehicle of which few facts are known: a preset of its class, scaled to them.
+
+        Taken is the preset of the kind whose mass is nearest (:meth:`scaled_to` says what goes with what).
+        What is not known is assumed, with a band: dimensions go with the mass as those of NHTSA's test
+        vehicles; those of trucks and buses stay, as their mass is the load's. :attr:`assumptions` says so in
+        words and numbers, and so do the report of a run and the vehicle's file. :attr:`scatter` has the bands
+        that :func:`birm3d.predict` draws from.
+
+        Parameters
+        ----------
+        kind
+            ``"car"``, ``"minivan"``, ``"pickup"``, ``"van"``, ``"truck"``, ``"cab_over_truck"``, ``"bus"``.
+        mass
+            As it crashes, load included [kg].
+        length, width, height, wheelbase
+            [m]; ``None``: not known.
+        mass_center_height
+            Above the ground [m]; ``None``: not known.
+        mesh_density
+            As :meth:`preset` has it.
+
+        Raises
+        ------
+        ValueError
+            If the kind is not known, or a fact is out of range for it.
+        """
+        from .from_facts import vehicle_of_facts
+
+        sizes = {"length": length, "width": width, "height": height, "wheelbase": wheelbase}
+        return vehicle_of_facts(kind, mass, sizes, mass_center_height, mesh_density)
+
     def save(self, path: str | Path) -> None:
         """Write the vehicle to a file (TOML) that :meth:`from_file` reads back as the same vehicle.
 

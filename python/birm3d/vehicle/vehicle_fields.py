@@ -16,6 +16,7 @@ from .recipe import sums_of
 from .zone import Zone
 
 if TYPE_CHECKING:
+    from .file_schema import Assumption
     from .joint import Joint
     from .vehicle_file import VehicleFile
     from .vehicle_shape import VehicleShape
@@ -101,6 +102,11 @@ class VehicleFields:
         """How vehicles of its class differ from it, by the quantity; empty where its file does not say."""
         rows = () if self._file is None else self._file.scatter
         return FrozenMapping({row.name: ClassScatter(row.median, row.log_sd, row.zones) for row in rows})
+
+    @property
+    def assumptions(self) -> tuple[Assumption, ...]:
+        """What was assumed of a vehicle made :meth:`from known facts <birm3d.Vehicle.from_facts>`."""
+        return () if self._file is None else self._file.assumptions
 
     @property
     def is_skin(self) -> npt.NDArray[np.bool_]:

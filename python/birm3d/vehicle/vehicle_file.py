@@ -21,6 +21,7 @@ from pydantic import Field, field_validator, model_validator
 from ..io.file_format import reading
 from ..io.toml import Document, DocumentError, KeyPath, Strict, frozen, plain, received, reject
 from .file_schema import (
+    Assumption,
     Block,
     CoreBox,
     Dents,
@@ -107,6 +108,7 @@ class VehicleFile(Strict):
     core: Annotated[tuple[CoreBox, ...], Field(min_length=1)]
     zones: Annotated[tuple[Zone, ...], Field(alias="zone", min_length=1)]
     scatter: tuple[Scatter, ...] = ()
+    assumptions: Annotated[tuple[Assumption, ...], Field(alias="assumption")] = ()
     changes: Changes | None = None
 
     @field_validator("core", "solids", "wheels", "points", "scatter", "sources")
