@@ -148,8 +148,9 @@ def _cameras(result: Result, skins: list[tuple[Skin, ...]], world: Floats) -> di
     low, high = world.min(axis=0), world.max(axis=0)
     radius = 0.5 * float(np.linalg.norm(high - low))
     oblique = not 45.0 <= result.scene.impact_angle <= 135.0
-    if oblique:
-        first = 0.9 * out + 0.45 * along
+    if oblique:  # from where it goes: the struck corner shows
+        ahead = math.copysign(1.0, float(result.velocity[0] @ along))
+        first = 0.55 * out + 0.9 * ahead * along
     else:  # posts can be looked past: what they do to the front shows
         first = along + (-0.45 if isinstance(barrier, (Bollards, Pole)) else 0.45) * out
     far = _MARGIN * radius / math.tan(_HALF_ANGLE)
@@ -158,7 +159,7 @@ def _cameras(result: Result, skins: list[tuple[Skin, ...]], world: Floats) -> di
     towards = along if oblique else out
     return {
         "target": [*(0.5 * (low + high))[:2].tolist(), float(0.35 * (low[2] + high[2]))],
-        "camera": {"around": around, "up": 0.42, "far": 0.7 * far},
+        "camera": {"around": around, "up": 0.42, "far": (0.5 if oblique else 0.7) * far},
         "views": {
             "three quarters": {},
             "side": {"around": math.atan2(beside[1], beside[0]), "up": 0.05},
