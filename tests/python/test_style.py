@@ -192,3 +192,44 @@ def test_layering_check_itself(tmp_path: Path, file: str, line: str, finding: st
     else:
         assert len(errors) == 1
         assert finding in errors[0]
+
+
+def length_errors(root: Path) -> list[str]:
+    """C++ files above 300 and functions above 60 lines without a comment "Over ... lines: " that says why."""
+    errors = []
+    for path in sorted(p for p in (root / "cpp").rglob("*") if p.suffix in {".cpp", ".hpp"}):
+        lines = path.read_text(encoding="utf-8").splitlines()
+        where = path.relative_to(root).as_posix()
+        if len(lines) > 300 and not any(line.startswith("// Over 300 lines: ") for line in lines[:5]):
+            errors.append(f"{where}: {len(lines)} lines")
+        start, last = 0, -1
+        for number, line in enumerate(lines):
+            if line == "}" and last >= 0:
+                excused = any(
+                    text.startswith("// Over 60 lines: ") for text in lines[max(0, start - 3) : last]
+                )
+                if number - last > 60 and not excused:
+                    errors.append(f"{where}:{start + 1}: a function of {number - last} lines")
+                last = -1
+            elif re.match(r"[A-Za-z].*[(<]", line) and not line.startswith(("namespace", "using")):
+                start = number
+            if line.endswith("{") and not line.startswith((" ", "namespace", "struct", "class", "enum")):
+                last = number
+    return errors
+
+
+def test_no_function_above_60_and_no_file_above_300_lines() -> None:
+    assert length_errors(ROOT) == []
+
+
+def test_length_check_itself(tmp_path: Path) -> None:
+    folder = tmp_path / "cpp/src"
+    folder.mkdir(parents=True)
+    body = "    step();\n"
+    (folder / "long_function.cpp").write_text("void a() {\n" + 61 * body + "}\n")
+    (folder / "excused.cpp").write_text("// Over 60 lines: a table.\nvoid a() {\n" + 61 * body + "}\n")
+    (folder / "long_file.cpp").write_text(101 * "void a() {\n    step();\n}\n")
+    assert length_errors(tmp_path) == [
+        "cpp/src/long_file.cpp: 303 lines",
+        "cpp/src/long_function.cpp:1: a function of 61 lines",
+    ]

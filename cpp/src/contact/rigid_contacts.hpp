@@ -19,28 +19,15 @@ Twist mean(const Twist& a, const Twist& b);
 
 // Units and segments as the solver sees them.
 void list_bodies(const Scene& scene, const State& state, std::vector<ContactBody>& bodies);
+// Brings the motions of the listed bodies up to date.
+void set_motions(const State& state, std::vector<ContactBody>& bodies);
+
 // Their motions, which are brought up to date.
 void list_motions(const State& state, std::vector<ContactBody>& bodies, std::vector<Twist>& motions);
 
 // Of a unit from an obstacle, about the unit's mass centre, world axes: mean of the bodies' motions before and after.
 Twist relative_motion(const Scene& scene, const State& state, std::size_t unit, std::size_t obstacle,
                       std::span<const Twist> before, std::span<const Twist> after);
-
-// What contacts act on, beside the bodies' motions.
-struct KickedBy {
-    const Column& pressed;          // (segments) with what else they press on the ground (N s)
-    std::span<const Twist> at_end;  // (bodies) their motions at that end of the step (see TireMotion)
-    std::span<const Twist> from;    // (bodies) before anything acted
-    double drift = 0.0;             // that follows, after which joints are closed (s)
-    bool is_impact = false;
-};
-
-// Solves for the impulses of `memory.kick.contacts` and their friction on top of the bodies' motions, and kicks the bodies.
-void kick_by_contacts(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state);
-
-// The same before the drift, so that joints are closed after it (Ryckaert, Ciccotti and Berendsen, J. Comput.
-// Phys. 23, 1977, p. 327; with velocities that agree after it: Andersen, J. Comput. Phys. 52, 1983, p. 24).
-void kick_towards_closed_joints(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state);
 
 void add_impulses(const Scene& scene, const State& state, const ContactKick& kicked,
                   std::vector<ContactImpulses>& sums, std::vector<Wrench>& joints);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "birm3d/base/tolerances.hpp"
+#include "contact/impulse_iteration.hpp"
 #include "contact/rigid_contacts.hpp"
 #include "kernels/integrate.hpp"
 #include "scene/bodies.hpp"

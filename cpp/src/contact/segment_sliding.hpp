@@ -1,6 +1,7 @@
 // What the ground and the pins do to free-standing segments at one end of the drift, on top of what pushes them.
 #pragma once
 
+#include "contact/impulse_iteration.hpp"
 #include "contact/rigid_contacts.hpp"
 #include "state/rigid_contact.hpp"
 

@@ -45,13 +45,10 @@ BIRM3D_BLOCK_LOOP double greatest_slack(const BlockColumn& force, const BlockCol
     return block_max(slack);
 }
 
-// Returns how many nodes push.
-double finish(double nodes, TrussBlockState& now) {
-    const double pushing = std::fmod(nodes, left);
-    now.touching = pushing > 0.0;
-    now.slack = pushing < static_cast<double>(block_size) &&
+void set_flags(const PressedNodes& nodes, TrussBlockState& now) {
+    now.touching = nodes.pushing > 0.0;
+    now.slack = nodes.pushing < static_cast<double>(block_size) &&
                 greatest_slack(now.force, now.deflection, now.residual) > tolerance::touching_gap;
-    return pushing;
 }
 
 }  // namespace
@@ -89,13 +86,13 @@ bool crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, con
     alignas(64) BlockColumn gap;
     const Vec3& n = surface.face.normal;
     const Vec3& h = surface.holding;
-    const double nodes = press_rows.flat(columns_of(mesh, b, factor),
-                                         {n.x(), n.y(), n.z(), surface.face.offset, h.x(), h.y(), h.z()},
-                                         columns_of<const double>(before), columns_of<double>(now),
-                                         gap.data(), contact.pressure.data(), sums.nodes);
-    const double pushing = finish(nodes, now);
-    if (now.touching) sums.flat_stiffness += contact_stiffness(surface, mesh, b, now, pushing);
-    return nodes >= left;
+    const PressedNodes nodes = press_rows.flat(
+        columns_of(mesh, b, factor), {n.x(), n.y(), n.z(), surface.face.offset, h.x(), h.y(), h.z()},
+        columns_of<const double>(before), columns_of<double>(now), gap.data(), contact.pressure.data(),
+        sums.nodes);
+    set_flags(nodes, now);
+    if (now.touching) sums.flat_stiffness += contact_stiffness(surface, mesh, b, now, nodes.pushing);
+    return nodes.ceased;
 }
 
 bool crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh, std::size_t b,
@@ -103,7 +100,7 @@ bool crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh,
            BlockContact& contact, CrushSums& sums) {
     const Mat3& q = body.inverse_inertia;
     alignas(64) BlockColumn gap;
-    const double nodes =
+    const PressedNodes nodes =
         press_rows.curved(columns_of(mesh, b, factor),
                           {faces.gap.data(),  contact.nx.data(), contact.ny.data(), contact.nz.data(),
                            faces.bx.data(),   faces.by.data(),   faces.bz.data(),   faces.per_force.data(),
@@ -113,8 +110,8 @@ bool crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh,
                            2.0 * q(1, 2)},
                           columns_of<const double>(before), columns_of<double>(now), gap.data(),
                           contact.pressure.data(), sums.nodes);
-    finish(nodes, now);
-    return nodes >= left;
+    set_flags(nodes, now);
+    return nodes.ceased;
 }
 
 Wrench total_wrench(const FlatContact& surface, const CrushSums& sums) {

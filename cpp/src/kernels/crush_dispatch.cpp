@@ -5,12 +5,12 @@
 namespace birm3d {
 
 // The functions of crush_rows.cpp, for each instruction set that it is compiled for.
-#define BIRM3D_DECLARE(set, runs)                                                                 \
-    namespace set {                                                                               \
-    double press_flat(const PressColumns&, const FlatPress&, const PressState<const double>&,     \
-                      const PressState<double>&, double*, double*, NodeSums&);                    \
-    double press_curved(const PressColumns&, const CurvedPress&, const PressState<const double>&, \
-                        const PressState<double>&, double*, double*, NodeSums&);                  \
+#define BIRM3D_DECLARE(set, runs)                                                                       \
+    namespace set {                                                                                     \
+    PressedNodes press_flat(const PressColumns&, const FlatPress&, const PressState<const double>&,     \
+                            const PressState<double>&, double*, double*, NodeSums&);                    \
+    PressedNodes press_curved(const PressColumns&, const CurvedPress&, const PressState<const double>&, \
+                              const PressState<double>&, double*, double*, NodeSums&);                  \
     }
 BIRM3D_INSTRUCTION_SETS(BIRM3D_DECLARE)
 

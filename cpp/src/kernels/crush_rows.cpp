@@ -1,4 +1,5 @@
 // Compiled once for each instruction set; see base/row.hpp for what that forbids.
+// Over 300 lines: the loop over a block and all that it inlines must be compiled together.
 #include "kernels/crush_rows.hpp"
 
 #include "base/row.hpp"
@@ -223,12 +224,12 @@ BIRM3D_INLINE void hold(const PressColumns& truss, const Surface& surface,
 
 // Two rounds over the rows, so that the square roots and divisions of several are under way at a time.
 template <bool flat, bool recovers, class Surface>
-BIRM3D_INLINE double press(const PressColumns& truss, const Surface& surface,
-                           const PressState<const double>& before, const PressState<double>& now,
-                           double* gaps, double* pressures, NodeSums& sums) {
+BIRM3D_INLINE PressedNodes press(const PressColumns& truss, const Surface& surface,
+                                 const PressState<const double>& before, const PressState<double>& now,
+                                 double* gaps, double* pressures, NodeSums& sums) {
     const Row zero = 0.0, one = 1.0;
-    const Row node_left = left;
-    Row force = zero, work = zero, stored = zero, nodes = zero;
+    Row force = zero, work = zero, stored = zero, pushing = zero;
+    bool ceased = false;
     Row stiffness = zero;
     Vector moment{zero, zero, zero}, push{zero, zero, zero};
     bool pressed[block_size / row_length];
@@ -277,9 +278,11 @@ BIRM3D_INLINE double press(const PressColumns& truss, const Surface& surface,
         }
         work = work + (F0 + F) * (d - Row::load(before.deflection + i));
         stored = stored + F * F * compliance;
-        nodes = nodes + where_above(F, zero, one, where_above(F0, zero, node_left, zero));
-        if (any_above(where_above(F, zero, zero, F0), zero))
+        pushing = pushing + where_above(F, zero, one, zero);
+        if (any_above(where_above(F, zero, zero, F0), zero)) {
+            ceased = true;
             work = work + release(truss, surface, before, now, i, gap);
+        }
     }
     add_to(sums.force, force);
     add_to(sums.moment_x, moment.x);
@@ -293,27 +296,29 @@ BIRM3D_INLINE double press(const PressColumns& truss, const Surface& surface,
     }
     add_to(sums.twice_work, work);
     add_to(sums.twice_stored, stored);
-    return sum_of(nodes);
+    return {sum_of(pushing), ceased};
 }
 
 }  // namespace
 
-double press_flat(const PressColumns& truss, const FlatPress& surface, const PressState<const double>& before,
-                  const PressState<double>& now, double* gaps, double* pressures, NodeSums& sums);
-double press_curved(const PressColumns& truss, const CurvedPress& surface,
-                    const PressState<const double>& before, const PressState<double>& now, double* gaps,
-                    double* pressures, NodeSums& sums);
+PressedNodes press_flat(const PressColumns& truss, const FlatPress& surface,
+                        const PressState<const double>& before, const PressState<double>& now, double* gaps,
+                        double* pressures, NodeSums& sums);
+PressedNodes press_curved(const PressColumns& truss, const CurvedPress& surface,
+                          const PressState<const double>& before, const PressState<double>& now, double* gaps,
+                          double* pressures, NodeSums& sums);
 
-double press_flat(const PressColumns& truss, const FlatPress& surface, const PressState<const double>& before,
-                  const PressState<double>& now, double* gaps, double* pressures, NodeSums& sums) {
+PressedNodes press_flat(const PressColumns& truss, const FlatPress& surface,
+                        const PressState<const double>& before, const PressState<double>& now, double* gaps,
+                        double* pressures, NodeSums& sums) {
     if (truss.per_recovery != nullptr)
         return press<true, true>(truss, Flat(surface), before, now, gaps, pressures, sums);
     return press<true, false>(truss, Flat(surface), before, now, gaps, pressures, sums);
 }
 
-double press_curved(const PressColumns& truss, const CurvedPress& surface,
-                    const PressState<const double>& before, const PressState<double>& now, double* gaps,
-                    double* pressures, NodeSums& sums) {
+PressedNodes press_curved(const PressColumns& truss, const CurvedPress& surface,
+                          const PressState<const double>& before, const PressState<double>& now, double* gaps,
+                          double* pressures, NodeSums& sums) {
     if (truss.per_recovery != nullptr)
         return press<false, true>(truss, Curved(surface), before, now, gaps, pressures, sums);
     return press<false, false>(truss, Curved(surface), before, now, gaps, pressures, sums);

@@ -50,14 +50,15 @@ struct CurvedPress {
     double mass, xx, yy, zz, xy, xz, yz;
 };
 
-// What a node whose truss ceased to push counts in the result of Press; one that pushes counts 1.
-inline constexpr double left = 1024.0;
+struct PressedNodes {
+    double pushing = 0.0;  // how many nodes push
+    bool ceased = false;   // has any node ceased to push?
+};
 
-// Moves the nodes of a block that are at the surface onto it, finds the forces of their trusses and adds to
-// the sums; also each node's gap before it was moved (m) and its normal force (N). Returns the count of nodes
-// that push, and of those that ceased to.
+// Moves the nodes of a block that are at the surface onto it, finds the forces of their trusses and adds to the sums.
+// Stores each node's gap before it was moved (m) and its normal force (N).
 template <class Surface>
-using Press = double (*)(const PressColumns&, const Surface&, const PressState<const double>& before,
-                         const PressState<double>& now, double* gap, double* pressure, NodeSums& sums);
+using Press = PressedNodes (*)(const PressColumns&, const Surface&, const PressState<const double>& before,
+                               const PressState<double>& now, double* gap, double* pressure, NodeSums& sums);
 
 }  // namespace birm3d

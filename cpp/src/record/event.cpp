@@ -295,19 +295,4 @@ void judge_at_longest(const Scene& scene, const State& state, Event& event) {
         event.verdict = Verdict::redirected, event.manner = Manner::slides_on;
 }
 
-Deflections greatest_deflections(const Vehicle& vehicle, const State& state) {
-    Deflections found{-infinity, -infinity};
-    for (std::size_t u = 0; u < state.units.size(); ++u) {
-        const TrussMesh& mesh = vehicle.units[u].trusses;
-        for (std::size_t b = 0; b < mesh.blocks; ++b) {
-            const TrussBlockState& block = state.units[u].trusses.block[b];
-            for (std::size_t i = 0; i < mesh.nodes_in(b); ++i) {
-                found.now = std::max(found.now, block.deflection[i]);
-                found.peak = std::max(found.peak, block.peak_deflection[i]);
-            }
-        }
-    }
-    return found;
-}
-
 }  // namespace birm3d

@@ -96,6 +96,7 @@ Recorder::ObstacleRow& Recorder::obstacle_row(std::size_t row, std::size_t obsta
     return obstacles_.back();
 }
 
+// Over 60 lines: the numbers of a row are written one after the other, in their order.
 void Recorder::add_row(const Scene& scene, double time, const Energies& e, const Loads& loads) {
     const std::size_t index = rows();
     const std::size_t begin = values_.size();

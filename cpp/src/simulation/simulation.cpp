@@ -28,6 +28,15 @@ struct Simulation::Work {
     std::vector<BodyState> before;   // the bodies at the start of the step
 };
 
+Simulation::Simulation(const Simulation& other)
+    : scene_(other.scene_),
+      state_(other.state_),
+      work_(std::make_unique<Work>(*other.work_)),
+      recorder_(other.recorder_),
+      event_(other.event_),
+      failed_(other.failed_),
+      replays_(other.replays_) {}
+
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;

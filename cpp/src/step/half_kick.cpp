@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "birm3d/base/tolerances.hpp"
+#include "contact/impulse_iteration.hpp"
 #include "contact/rigid_contacts.hpp"
 #include "contact/rigid_impact.hpp"
 #include "kernels/detect.hpp"

@@ -25,6 +25,7 @@ enum class EndReason {
 class Simulation {
   public:
     explicit Simulation(Scene scene);
+    Simulation(const Simulation& other);
     Simulation(Simulation&&) noexcept;
     Simulation& operator=(Simulation&&) noexcept;
     ~Simulation();

@@ -1,0 +1,24 @@
+// Solves for the impulses of rigid contacts and joints with their friction, and kicks the bodies by them.
+#pragma once
+
+#include "contact/rigid_contacts.hpp"
+
+namespace birm3d {
+
+// What contacts act on, beside the bodies' motions.
+struct KickedBy {
+    const Column& pressed;          // (segments) with what else they press on the ground (N s)
+    std::span<const Twist> at_end;  // (bodies) their motions at that end of the step (see TireMotion)
+    std::span<const Twist> from;    // (bodies) before anything acted
+    double drift = 0.0;             // that follows, after which joints are closed (s)
+    bool is_impact = false;
+};
+
+// Solves for the impulses of `memory.kick.contacts` and their friction on top of the bodies' motions, and kicks the bodies.
+void kick_by_contacts(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state);
+
+// The same before the drift, so that joints are closed after it (Ryckaert, Ciccotti and Berendsen, J. Comput.
+// Phys. 23, 1977, p. 327; with velocities that agree after it: Andersen, J. Comput. Phys. 52, 1983, p. 24).
+void kick_towards_closed_joints(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state);
+
+}  // namespace birm3d

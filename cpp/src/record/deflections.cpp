@@ -1,0 +1,23 @@
+#include <algorithm>
+#include <limits>
+
+#include "birm3d/record/event.hpp"
+
+namespace birm3d {
+
+Deflections greatest_deflections(const Vehicle& vehicle, const State& state) {
+    Deflections found{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const TrussMesh& mesh = vehicle.units[u].trusses;
+        for (std::size_t b = 0; b < mesh.blocks; ++b) {
+            const TrussBlockState& block = state.units[u].trusses.block[b];
+            for (std::size_t i = 0; i < mesh.nodes_in(b); ++i) {
+                found.now = std::max(found.now, block.deflection[i]);
+                found.peak = std::max(found.peak, block.peak_deflection[i]);
+            }
+        }
+    }
+    return found;
+}
+
+}  // namespace birm3d
