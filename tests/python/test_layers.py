@@ -36,7 +36,7 @@ LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 WAY_UP = "pictures"
 """Every layer may import it; inside its functions, and for types, it imports any layer."""
 MAKERS = {
-    "barrier.base": ("barrier.kinds", "barrier.free_standing"),
+    "barrier.makers": ("barrier.kinds", "barrier.free_standing"),
     "vehicle.vehicle": ("vehicle.articulated", "vehicle.builder", "vehicle.from_facts"),
     "vehicle.variants": ("vehicle.builder",),
 }

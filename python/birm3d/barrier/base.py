@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -14,24 +14,23 @@ import numpy.typing as npt
 from .. import _core
 from ..base.arguments import check_fields, checked
 from ..base.checks import MOST_ELEMENTS, whole_number
-from ..unit_check import USUAL, given, warn_if_mesh_unusual
+from ..unit_check import USUAL, given
 from ..units import Quantity, si
 from .description import SeenPart, Size
+from .makers import BarrierMakers, Point, point_of
 
 if TYPE_CHECKING:
-    from .free_standing import FreeStanding
-    from .kinds import Bollards, Jersey, MeshBarrier, Planter, Pole, RigidWall
+    pass
 
 __all__ = ["Barrier", "Surface"]
 
-Point = tuple[float, float, float]
 Surface: TypeAlias = "tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]"
 """Vertices (n, 3), world axes [m], and triangles (m, 3), counter-clockwise seen from outside."""
 
 
 @checked
 @dataclass(frozen=True)
-class Barrier:
+class Barrier(BarrierMakers):
     """A barrier that stands on the ground; immutable. Make one with :meth:`rigid_wall`, :meth:`bollards`, ...
 
     Its line runs along +y at heading 0 and its traffic face looks to -x; the vehicle comes from there. It has
@@ -69,7 +68,7 @@ class Barrier:
     why_no_dents: ClassVar[str] = "the barrier has no posts"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "origin", _point(self.origin))
+        object.__setattr__(self, "origin", point_of(self.origin))
         for name, value in vars(self).items():  # a changed copy is given text too
             if isinstance(value, str) and name in USUAL:
                 object.__setattr__(self, name, given(name, value))
@@ -82,289 +81,6 @@ class Barrier:
         _ = self.core
 
     # ---- making barriers ----------------------------------------------------------------------------------
-
-    @staticmethod
-    def rigid_wall(
-        *,
-        width: Quantity | None = None,
-        height: Quantity | None = None,
-        thickness: Quantity = 0.5,
-        segments: int = 1,
-        edge_radius: Quantity = 0.0,
-        friction: float = 0.2,
-        origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
-        heading: Quantity = 0.0,
-    ) -> RigidWall:
-        """Return a flat, rigid, vertical wall; see :class:`birm3d.barrier.kinds.RigidWall`.
-
-        Parameters
-        ----------
-        width, height
-            Of the wall, its middle at the origin [m]; ``None``: without end, but a wall with rounded edges is
-            then 4 m wide.
-        thickness
-            Of a wall that has an end or a top [m].
-        segments
-            Elements of equal width that a wall of finite width is made of.
-        edge_radius
-            Of the upright edges [m], at most half of thickness and width; 0: sharp. The width is counted from
-            the outermost place of one arc to that of the other.
-        friction, origin, heading
-            See :class:`Barrier`.
-
-        Raises
-        ------
-        ValueError
-            If a number is out of range; the message names argument, limit and value.
-        """
-        from .kinds import RigidWall
-
-        radius = given("edge_radius", edge_radius)
-        rounded = radius > 0.0
-        return RigidWall(
-            float(friction),
-            _point(origin),
-            given("heading", heading),
-            width=(4.0 if rounded else math.inf) if width is None else given("width", width),
-            height=math.inf if height is None else given("height", height),
-            thickness=given("thickness", thickness),
-            segments=segments,
-            edge_radius=radius,
-        )
-
-    @staticmethod
-    def pole(
-        *,
-        diameter: Quantity = 0.3,
-        friction: float = 0.2,
-        origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
-        heading: Quantity = 0.0,
-    ) -> Pole:
-        """Return one rigid, upright cylinder, taller than any vehicle.
-
-        Parameters
-        ----------
-        diameter
-            [m], > 0.
-        friction, origin, heading
-            See :class:`Barrier`.
-
-        Raises
-        ------
-        ValueError
-            If a number is out of range; the message names argument, limit and value.
-        """
-        from .kinds import Pole
-
-        return Pole(
-            float(friction),
-            _point(origin),
-            given("heading", heading),
-            diameter=given("diameter", diameter),
-        )
-
-    @staticmethod
-    def bollards(
-        *,
-        count: int = 5,
-        diameter: Quantity = 0.32,
-        height: Quantity = 1.0,
-        spacing: Quantity = 1.2,
-        rows: int = 1,
-        row_spacing: Quantity = 1.2,
-        row_offset: Quantity = 0.0,
-        friction: float = 0.2,
-        origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
-        heading: Quantity = 0.0,
-    ) -> Bollards:
-        """Return rigid bollards in one or more rows along the barrier's line.
-
-        Parameters
-        ----------
-        count
-            In each row; the row's middle is at the origin.
-        diameter, height
-            [m], > 0.
-        spacing
-            Of neighbours in a row, centre to centre [m]; more than the diameter.
-        rows, row_spacing
-            Further rows stand behind the first, this far from axis to axis [m]; more than the diameter.
-        row_offset
-            By which each row is shifted along the line from the one before it [m].
-        friction, origin, heading
-            See :class:`Barrier`.
-
-        Raises
-        ------
-        ValueError
-            If a number is out of range; the message names argument, limit and value.
-        """
-        from .kinds import Bollards
-
-        return Bollards(
-            float(friction),
-            _point(origin),
-            given("heading", heading),
-            count=count,
-            diameter=given("diameter", diameter),
-            height=given("height", height),
-            spacing=given("spacing", spacing),
-            rows=rows,
-            row_spacing=given("row_spacing", row_spacing),
-            row_offset=given("row_offset", row_offset),
-        )
-
-    @staticmethod
-    def jersey(
-        *,
-        profile: str | Sequence[Sequence[float]] = "new_jersey",
-        height: Quantity | None = None,
-        length: Quantity | None = None,
-        segments: int = 1,
-        free_standing: bool | FreeStanding = False,
-        density: Quantity | None = None,
-        friction: float = 0.2,
-        origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
-        heading: Quantity = 0.0,
-    ) -> Jersey:
-        """Return a concrete barrier with sloped faces; see :class:`birm3d.barrier.kinds.Jersey`.
-
-        Parameters
-        ----------
-        profile
-            ``"new_jersey"``, ``"f_shape"``, ``"single_slope"``, or points (half width, height) [m] from the
-            foot to the top, shape (n, 2).
-        height
-            The named profiles' upper face is cut or drawn out to it [m]; ``None``: 0.81 m (32 in), of the
-            single slope 1.07 m (42 in).
-        length
-            Along the line, its middle at the origin [m]; ``None``: without end.
-        segments
-            Elements of equal length that a barrier of finite length is made of.
-        free_standing
-            Whether the segments only stand on the ground, pinned end to end, and slide when they are hit; a
-            :class:`birm3d.FreeStanding` says more. Fixed barriers do not move.
-        density
-            Of a free-standing barrier [kg/m^3]; ``None``: concrete, 2400. A fixed one has no use for it.
-        friction, origin, heading
-            See :class:`Barrier`.
-
-        Raises
-        ------
-        ValueError
-            If a number is out of range; the message names argument, limit and value.
-        """
-        from .free_standing import FreeStanding
-        from .kinds import Jersey
-
-        if isinstance(free_standing, FreeStanding):
-            if density is not None:
-                raise ValueError(
-                    f"density must be given in free_standing where that says more, got {density}"
-                )
-            free: FreeStanding | None = free_standing
-        else:
-            if density is not None:
-                density = given("density", density)
-            stands = FreeStanding(density=density)  # refuses a density that is none
-            free = stands if free_standing else None
-
-        points: Any = profile
-        if not isinstance(profile, str):
-            if np.ndim(profile) != 2 or np.shape(profile)[1] != 2:
-                raise ValueError(f"profile must have shape (n, 2), got {np.shape(profile)}")
-            points = tuple((float(x), float(z)) for x, z in profile)
-        return Jersey(
-            float(friction),
-            _point(origin),
-            given("heading", heading),
-            profile=points,
-            height=None if height is None else given("height", height),
-            length=math.inf if length is None else given("length", length),
-            segments=segments,
-            free_standing=free,
-        )
-
-    @staticmethod
-    def planter(
-        *,
-        length: Quantity = 2.0,
-        width: Quantity = 1.0,
-        height: Quantity = 1.0,
-        friction: float = 0.2,
-        origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
-        heading: Quantity = 0.0,
-    ) -> Planter:
-        """Return a planter: a rigid, fixed, solid block; its middle along the line is at the origin.
-
-        Parameters
-        ----------
-        length
-            Along the line [m], > 0.
-        width
-            Square to the line, away from the traffic [m], > 0.
-        height
-            [m], > 0.
-        friction, origin, heading
-            See :class:`Barrier`.
-
-        Raises
-        ------
-        ValueError
-            If a number is out of range; the message names argument, limit and value.
-        """
-        from .kinds import Planter
-
-        return Planter(
-            float(friction),
-            _point(origin),
-            given("heading", heading),
-            length=given("length", length),
-            width=given("width", width),
-            height=given("height", height),
-        )
-
-    @staticmethod
-    def from_mesh(
-        vertices: npt.ArrayLike,
-        faces: npt.ArrayLike,
-        *,
-        friction: float = 0.2,
-        origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
-        heading: Quantity = 0.0,
-    ) -> MeshBarrier:
-        """Return a barrier of triangles, met by the paper's vertex-to-face algorithm (Eq. 8-15).
-
-        Parameters
-        ----------
-        vertices
-            Shape (n, 3), in axes that stand at ``origin``, turned by ``heading``, z up [m].
-        faces
-            Shape (m, 3), indices into the vertices, counter-clockwise seen from outside. They close a solid,
-            or one that is open only where it stands on the ground: a hole has no inside.
-        friction, origin, heading
-            See :class:`Barrier`.
-
-        Raises
-        ------
-        ValueError
-            If shapes or indices are wrong, the triangles have a hole, or the solid is inside out;
-            the message names the culprit.
-        """
-        from .kinds import MeshBarrier
-
-        points = np.array(vertices, float)
-        if points.ndim == 2 and points.shape[0] > 0 and points.shape[1] == 3:
-            warn_if_mesh_unusual(float(np.ptp(points[:, 2])))
-        return MeshBarrier(
-            float(friction),
-            _point(origin),
-            given("heading", heading),
-            vertices=points,
-            faces=np.array(faces),
-        )
-
-    # ---- for the core -------------------------------------------------------------------------------------
 
     def elements(self) -> list[_core.Element]:
         """Return the elements for the core; a kind of barrier says which."""
@@ -462,10 +178,3 @@ class Barrier:
 
     def __getstate__(self) -> dict[str, object]:
         return {field.name: getattr(self, field.name) for field in fields(self)}
-
-
-def _point(origin: Sequence[Quantity]) -> Point:
-    if np.shape(origin) != (3,):
-        raise ValueError(f"origin must have shape (3,), got {np.shape(origin)}")
-    x, y, z = (si("origin", value, "length") for value in origin)
-    return x, y, z

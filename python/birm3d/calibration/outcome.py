@@ -13,7 +13,7 @@ from .evaluator import Evaluator
 from .fit import Search
 from .fitted import FittedParameter, FittedTarget
 from .identifiability import Analysis, correlation, describe
-from .parameters import Parameter
+from .parameters import Parameter, ParameterSet
 from .profile import Profile
 from .quantities import QUANTITIES
 from .result import CalibrationResult
@@ -37,33 +37,7 @@ def outcome(
     parameters = problem.parameters
     values = parameters.from_unit(found.best.end)
     slopes = np.array([p.slope(v) for p, v in zip(parameters.parameters, values.tolist(), strict=True)])
-    fitted = []
-    for k, (parameter, value) in enumerate(zip(parameters.parameters, values.tolist(), strict=True)):
-        error = interval = None
-        if k not in analysis.reasons:
-            share_error = math.sqrt(analysis.covariance[k, k])
-            error = share_error * float(slopes[k])
-            interval = _interval(parameter, float(found.best.end[k]), analysis.spread.quantile * share_error)
-            if parameter.label in profiles:
-                own = profiles[parameter.label]
-                assert own.lower is not None  # else there would be a reason
-                assert own.upper is not None
-                interval = (own.lower, own.upper)
-        fitted.append(
-            FittedParameter(
-                parameter.label,
-                tuple(parameter.names),
-                parameter.factor,
-                parameter.log,
-                parameter.lower,
-                parameter.upper,
-                float(parameters.start[k]),
-                value,
-                error,
-                interval,
-                analysis.reasons.get(k),
-            )
-        )
+    fitted = _fitted(found, analysis, profiles, parameters, values.tolist(), slopes.tolist())
     doubts = (*analysis.doubts, *_ends_at_bounds(fitted))
     told = [k for k in range(len(parameters)) if k not in analysis.reasons]
     covariance = (analysis.covariance * np.outer(slopes, slopes))[np.ix_(told, told)]
@@ -85,6 +59,44 @@ def outcome(
         _problem=problem,
         _noise=found.noise,
     )
+
+
+def _fitted(
+    found: Search,
+    analysis: Analysis,
+    profiles: dict[str, Profile],
+    parameters: ParameterSet,
+    values: list[float],
+    slopes: list[float],
+) -> list[FittedParameter]:
+    fitted = []
+    for k, (parameter, value) in enumerate(zip(parameters.parameters, values, strict=True)):
+        error = interval = None
+        if k not in analysis.reasons:
+            share_error = math.sqrt(analysis.covariance[k, k])
+            error = share_error * slopes[k]
+            interval = _interval(parameter, float(found.best.end[k]), analysis.spread.quantile * share_error)
+            if parameter.label in profiles:
+                own = profiles[parameter.label]
+                assert own.lower is not None  # else there would be a reason
+                assert own.upper is not None
+                interval = (own.lower, own.upper)
+        fitted.append(
+            FittedParameter(
+                parameter.label,
+                tuple(parameter.names),
+                parameter.factor,
+                parameter.log,
+                parameter.lower,
+                parameter.upper,
+                float(parameters.start[k]),
+                value,
+                error,
+                interval,
+                analysis.reasons.get(k),
+            )
+        )
+    return fitted
 
 
 def _interval(parameter: Parameter, share: float, half: float) -> tuple[float, float]:

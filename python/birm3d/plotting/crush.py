@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..result.crush_profile import Side, crush_map, crush_profile
+from ..result.crush_profile import CrushProfile, Side, crush_map, crush_profile
 from .figure import new_figure
 from .style import BLUE, prepare, title
 
@@ -93,6 +94,18 @@ def plot_crush(
     if lines is not None:
         bar.add_lines(lines)
 
+    _draw_profile(below, profile)
+    limits = (low - margin, high + margin)
+    for axes in (above, below):
+        axes.set_xlim(limits if side == "right" else limits[::-1])
+    heights = field.height[nodes]
+    above.set_ylim(float(heights.min()) - margin, float(heights.max()) + margin)
+    figure.suptitle(title(result))
+    return figure
+
+
+def _draw_profile(below: Axes, profile: CrushProfile) -> None:
+    """Draw the crush along the side, and C1 to C6."""
     below.plot(profile.lateral, profile.crush, color="0.35", ls="-", lw=1.2)
     below.fill_between(profile.lateral, profile.crush, color="0.35", alpha=0.15, lw=0.0)
     below.plot(profile.stations, profile.points, "o", color=BLUE, mec="w", ms=7.0, zorder=3.0)
@@ -109,19 +122,12 @@ def plot_crush(
         )
     below.set_ylim(0.0, 1.45 * max(_LEAST_SCALE, float(profile.crush.max())))
     below.set_ylabel("residual crush [m]")
-    below.set_xlabel(_LATERAL[side])
+    below.set_xlabel(_LATERAL[profile.side])
     below.set_title(
         f"Crush profile {profile.height:.2f} m above the ground, width {profile.width:.2f} m, "
         f"mean of C1 to C6 {profile.mean:.3f} m",
         fontsize="medium",
     )
-    limits = (low - margin, high + margin)
-    for axes in (above, below):
-        axes.set_xlim(limits if side == "right" else limits[::-1])
-    heights = field.height[nodes]
-    above.set_ylim(float(heights.min()) - margin, float(heights.max()) + margin)
-    figure.suptitle(title(result))
-    return figure
 
 
 def _round_step(step: float) -> float:

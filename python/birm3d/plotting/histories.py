@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import units
@@ -67,18 +68,7 @@ def plot_histories(result: Result) -> Figure:
     acceleration.set_ylabel("acceleration [g]")
     legend([acceleration])
 
-    ahead = _heading(result)
-    left = np.array([-ahead[1], ahead[0], 0.0])
-    for name, direction in (
-        ("along the path", ahead),
-        ("to its left", left),
-        ("up", np.array([0.0, 0.0, 1.0])),
-    ):
-        velocity.plot(ms, result.velocity @ direction, label=name)
-    velocity.set_title("Velocity of the mass centre from the initial path")
-    velocity.set_ylabel("velocity [m/s]")
-    legend([velocity])
-
+    _draw_velocity(velocity, result)
     for i, (name, (_, color)) in enumerate(zip(("roll", "pitch", "yaw"), _AXES, strict=True)):
         channel = result.angular_velocity[:, i]
         plot_filtered(rates, result, channel, _INTEGRATED, f"{name} rate", color, i)
@@ -91,15 +81,7 @@ def plot_histories(result: Result) -> Figure:
     angles.set_ylabel("angle [deg]")
     legend([angles])
 
-    if result.tire_reaction.shape[1]:
-        total = result.tire_reaction.sum(axis=1) / 1e3
-        plot_filtered(tires, result, total, _STRUCTURE, "all wheels", BLUE)
-        weight = result.scene.vehicle.mass * result.scene.settings.gravity / 1e3
-        tires.axhline(weight, color="0.4", ls=DOTTED, lw=1.4, label="weight")
-    tires.set_title("Tyre reaction")
-    tires.set_ylabel("force [kN]")
-    legend([tires])
-
+    _draw_tires(tires, result)
     for axes in (force, acceleration, rates, tires):
         fit(axes)
     at_least(rates, LEAST_RATE)
@@ -110,6 +92,31 @@ def plot_histories(result: Result) -> Figure:
         axes.set_xlim(0.0, float(ms[-1]))
     figure.suptitle(title(result))
     return figure
+
+
+def _draw_velocity(velocity: Axes, result: Result) -> None:
+    ahead = _heading(result)
+    left = np.array([-ahead[1], ahead[0], 0.0])
+    for name, direction in (
+        ("along the path", ahead),
+        ("to its left", left),
+        ("up", np.array([0.0, 0.0, 1.0])),
+    ):
+        velocity.plot(result.time * 1e3, result.velocity @ direction, label=name)
+    velocity.set_title("Velocity of the mass centre from the initial path")
+    velocity.set_ylabel("velocity [m/s]")
+    legend([velocity])
+
+
+def _draw_tires(tires: Axes, result: Result) -> None:
+    if result.tire_reaction.shape[1]:
+        total = result.tire_reaction.sum(axis=1) / 1e3
+        plot_filtered(tires, result, total, _STRUCTURE, "all wheels", BLUE)
+        weight = result.scene.vehicle.mass * result.scene.settings.gravity / 1e3
+        tires.axhline(weight, color="0.4", ls=DOTTED, lw=1.4, label="weight")
+    tires.set_title("Tyre reaction")
+    tires.set_ylabel("force [kN]")
+    legend([tires])
 
 
 def _heading(result: Result) -> npt.NDArray[np.float64]:

@@ -199,6 +199,26 @@ def compare_curves(
             f"cfc must be given where the classes differ, got {_class(m)} of measured {m.name!r} and "
             f"{_class(c)} of computed {c.name!r}"
         )
+    start, end = _span(m, c, start, end)
+    step = min(float(np.diff(y.time).min()) for y in (m, c)) if interval is None else interval
+    if not (math.isfinite(step) and 0.0 < step <= (end - start) / (_FEWEST_ROWS - 1)):
+        raise ValueError(
+            f"interval must be > 0 and leave {_FEWEST_ROWS} rows between {start:g} and {end:g} s, "
+            f"got {step:g} s"
+        )
+    instants = np.linspace(start, end, round((end - start) / step) + 1)
+    for role, curve in (("measured", m), ("computed", c)):
+        if len(curve) != len(instants) or np.abs(curve.time - instants).max() > _ROUNDING:
+            notes.append(f"{role}: interpolated, from {np.median(np.diff(curve.time)):g} s apart")
+    m, c = m.resampled(instants), c.resampled(instants)
+    for role, curve in (("measured", m), ("computed", c)):
+        if not np.abs(curve.values).max() > 0.0:
+            raise ValueError(f"{role} must not be zero throughout, got 0 from {start:g} to {end:g} s")
+    return CurveComparison(m, c, tuple(notes))
+
+
+def _span(m: Channel, c: Channel, start: float | None, end: float | None) -> tuple[float, float]:
+    """Return the span to compare [s], within both records."""
     first, last = max(m.time[0], c.time[0]), min(m.time[-1], c.time[-1])
     if not first < last:
         raise ValueError(
@@ -215,21 +235,7 @@ def compare_curves(
         raise ValueError(
             f"start and end must lie in both records, {first:g} to {last:g} s, got {start:g} to {end:g} s"
         )
-    step = min(float(np.diff(y.time).min()) for y in (m, c)) if interval is None else interval
-    if not (math.isfinite(step) and 0.0 < step <= (end - start) / (_FEWEST_ROWS - 1)):
-        raise ValueError(
-            f"interval must be > 0 and leave {_FEWEST_ROWS} rows between {start:g} and {end:g} s, "
-            f"got {step:g} s"
-        )
-    instants = np.linspace(start, end, round((end - start) / step) + 1)
-    for role, curve in (("measured", m), ("computed", c)):
-        if len(curve) != len(instants) or np.abs(curve.time - instants).max() > _ROUNDING:
-            notes.append(f"{role}: interpolated, from {np.median(np.diff(curve.time)):g} s apart")
-    m, c = m.resampled(instants), c.resampled(instants)
-    for role, curve in (("measured", m), ("computed", c)):
-        if not np.abs(curve.values).max() > 0.0:
-            raise ValueError(f"{role} must not be zero throughout, got 0 from {start:g} to {end:g} s")
-    return CurveComparison(m, c, tuple(notes))
+    return start, end
 
 
 def _class(channel: Channel) -> str:

@@ -30,7 +30,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import re
 from collections.abc import Mapping
 from difflib import get_close_matches
 from functools import lru_cache
@@ -42,9 +41,10 @@ from ..scene.scene import APPROACH, Scene
 from ..scene.settings import Settings
 from ..units import quantity_in, si
 from ..vehicle.class_scatter import joined
-from ..vehicle.vehicle import TRUSS_LAW, Vehicle, Zone
+from ..vehicle.vehicle import TRUSS_LAW, Vehicle
 from ..vehicle.zone import positive
 from .simulation import Simulation
+from .zone_numbers import PER_AREA, ZONE_UNITS, changed_zone, zone_numbers, zone_value
 
 __all__ = [
     "in_si",
@@ -83,21 +83,6 @@ _UNITS: dict[str, str] = {
     "vehicle.rate_sensitivity": "s/m",
     "vehicle.dent_reach": "m",
 }
-_ZONE_UNITS = {
-    "k_initial": "N/m",
-    "knee": "m",
-    "k_hardening": "N/m",
-    "f_max": "N",
-    "k_unloading": "N/m",
-    "elastic_recovery": "m",
-    "tail_depth": "m",
-    "tail_slope": "N/m",
-    "stress": "N",
-    "deflection": "m",
-}
-# Per area of the skin.
-_PER_AREA = {"N/m per m^2": "pressure per length", "N per m^2": "pressure"}
-_POINT = re.compile(r"(stress|deflection)\[(\d+)\]")
 
 
 @checked
@@ -112,7 +97,7 @@ def unit_of(name: str) -> str:
     if name.startswith("zone.") or name.startswith("truss."):
         per_area = " per m^2" if name.startswith("zone.") else ""
         number = name.rsplit(".", 1)[1].split("[")[0]
-        unit = _ZONE_UNITS.get(number, "")
+        unit = ZONE_UNITS.get(number, "")
         return unit if unit in ("m", "") else unit + per_area
     return _UNITS.get(name, "")
 
@@ -137,7 +122,7 @@ def in_si(name: str, value: Any) -> Any:
 def quantity_of(name: str) -> str | None:
     """Return the quantity of a parameter, as "speed"; ``None`` for a pure number."""
     unit = unit_of(name)
-    return _PER_AREA.get(unit) or quantity_in(unit)
+    return PER_AREA.get(unit) or quantity_in(unit)
 
 
 def _names(scene: Scene) -> tuple[str, ...]:
@@ -159,7 +144,7 @@ def _names(scene: Scene) -> tuple[str, ...]:
     if not vehicle.zones and vehicle.joint is None:
         names += [f"truss.{name}" for name in TRUSS_LAW]
     for zone in vehicle.zones_met:
-        names += [f"zone.{zone}.{number}" for number in _zone_numbers(vehicle.zones[zone])]
+        names += [f"zone.{zone}.{number}" for number in zone_numbers(vehicle.zones[zone])]
     names += [f"scatter.{name}" for name in _scattered(vehicle)]
     return tuple(names)
 
@@ -199,7 +184,7 @@ def value_of(simulation: Simulation, name: str) -> Any:
     if group == "vehicle":
         return scene.vehicle.mass if rest == "gvw" else getattr(scene.vehicle, rest)
     zone, number = rest.rsplit(".", 1)
-    return _zone_value(scene.vehicle.zones[zone], number)
+    return zone_value(scene.vehicle.zones[zone], number)
 
 
 @checked
@@ -279,7 +264,7 @@ def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -
     for rest, value in groups.get("zone", {}).items():
         zone, number = rest.rsplit(".", 1)
         zones.setdefault(zone, {})[number] = value
-    changed = {name: _zone(vehicle.zones[name], new) for name, new in zones.items()}
+    changed = {name: changed_zone(vehicle.zones[name], new) for name, new in zones.items()}
     for name, factor in groups.get("scatter", {}).items():
         for zone in _scattered(vehicle)[name]:
             changed[zone] = changed.get(zone, vehicle.zones[zone]).scaled(factor)
@@ -303,41 +288,6 @@ def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -
             None if height is None else si("mass_center_height", height, "length")
         )
     return vehicle._changed(recipe)
-
-
-def _zone_numbers(zone: Zone) -> tuple[str, ...]:
-    if zone.envelope is None:
-        return (*zone, "scale")
-    points = range(1, len(zone.envelope))
-    return (
-        *(f"{axis}[{i}]" for i in points for axis in ("deflection", "stress")),
-        *(name for name in zone if name != "envelope"),
-        "scale",
-    )
-
-
-def _zone_value(zone: Zone, number: str) -> float:
-    if number == "scale":
-        return 1.0
-    point = _POINT.fullmatch(number)
-    if point is None:
-        return float(zone[number])
-    assert zone.envelope is not None  # else the name would be unknown
-    return zone.envelope[int(point[2])][0 if point[1] == "deflection" else 1]
-
-
-def _zone(zone: Zone, numbers: Mapping[str, float]) -> Zone:
-    """Return the zone with other numbers; a scale comes last."""
-    changes: dict[str, Any] = {}
-    points = [list(point) for point in zone.envelope or ()]
-    for number, value in numbers.items():
-        point = _POINT.fullmatch(number)
-        if point is not None:
-            points[int(point[2])][0 if point[1] == "deflection" else 1] = float(value)
-            changes["envelope"] = tuple((d, s) for d, s in points)
-        elif number != "scale":
-            changes[number] = float(value)
-    return dataclasses.replace(zone, **changes).scaled(numbers.get("scale", 1.0))
 
 
 def _unknown(scene: Scene, name: str) -> ValueError:

@@ -135,22 +135,25 @@ def run_all(
                 pending.discard(future)
     except BaseException as error:
         stop.set()
-        # dask logs an error for each future that is cancelled while it runs; its few chunks run out instead.
-        # A pool that died marks its futures itself, in a thread of its own that must not find them cancelled.
-        died = isinstance(error, ExecutorError)
-        if isinstance(pool, ThreadPoolExecutor) or (isinstance(pool, ProcessPoolExecutor) and not died):
-            for future in pending:
-                future.cancel()
-        if isinstance(pool, ThreadPoolExecutor):
-            wait(pending)  # each thread ends with its present run
-        for future in pending:
-            if future.done() and not future.cancelled() and future.exception() is None:
-                take(future.result())
+        for future in _ended(pool, pending, isinstance(error, ExecutorError)):
+            take(future.result())
         raise
     finally:
         files.close()
         if own is not None:
             own.shutdown()
+
+
+def _ended(pool: Any, pending: set[Future[Done]], died: bool) -> list[Future[Done]]:
+    """Stop what still runs in a pool, and return what had ended well."""
+    # dask logs an error for each future that is cancelled while it runs; its few chunks run out instead.
+    # A pool that died marks its futures itself, in a thread of its own that must not find them cancelled.
+    if isinstance(pool, ThreadPoolExecutor) or (isinstance(pool, ProcessPoolExecutor) and not died):
+        for future in pending:
+            future.cancel()
+    if isinstance(pool, ThreadPoolExecutor):
+        wait(pending)  # each thread ends with its present run
+    return [one for one in pending if one.done() and not one.cancelled() and one.exception() is None]
 
 
 def _at_start(thing: Any) -> Any:

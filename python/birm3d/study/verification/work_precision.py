@@ -13,9 +13,11 @@ from ...base.progress import progress_bar
 from ...scene.settings import Settings
 from ...simulation.parameters import varied
 from ...simulation.simulation import Simulation
+from .convergence import Limit
 from .errors import least_scales
 from .precision_result import AS_GIVEN, WorkPrecision
 from .precision_runs import PrecisionRun, limits_of, row_of, run_at
+from .precision_table import PrecisionRow
 from .triangulated import triangulated
 
 __all__ = ["work_precision"]
@@ -127,17 +129,7 @@ def work_precision(
     runs += [run_at(simulation, AS_GIVEN, "time_step", value) for value in steps]
     wanted = _wanted(first.values, metrics)
 
-    bases: dict[str, tuple[Simulation, Collection[str]]] = {AS_GIVEN: (simulation, ())}
-    other = "along_truss" if own.contact_model == "projected" else "projected"
-    if contact_models and simulation.scene.barrier is not None:
-        bases[f"contact model {other}"] = varied(simulation, {"settings.contact_model": other}), ()
-    copy = triangulated(simulation.scene.barrier) if representations else None
-    if copy is not None and simulation.scene.barrier is not None:
-        whole = len(simulation.scene.barrier.element_names) == 1
-        bases["triangulated barrier"] = (
-            varied(simulation, {"barrier": copy}),
-            () if whole else _OF_ELEMENTS,
-        )
+    bases = _bases(simulation, contact_models, representations)
     for variant, (base, without) in list(bases.items())[1:]:
         runs += [run_at(base, variant, "tolerance", value, without) for value in loose]
     sharp = [
@@ -162,15 +154,7 @@ def work_precision(
             run.once()
             bar(1)
 
-    of_variant, rows = {}, []
-    for variant in bases:
-        mine = [run for run in runs if run.variant == variant]
-        finest = [run for run in mine if run.kind == "tolerance"][-1:]
-        limits = limits_of(finest + [run for run in sharp if run.variant == variant], wanted, least)
-        if limits:
-            of_variant[variant] = limits
-        mine += [replace(run, kind="reference") for run in sharp if run.variant == variant]
-        rows += [row_of(run, limits, least) for run in mine]
+    of_variant, rows = _judged(bases, runs, sharp, wanted, least)
     if AS_GIVEN not in of_variant:
         raise ValueError(f"references must be tolerances that the scene runs at; {_first_refusal(sharp)}")
     if meshed:
@@ -189,6 +173,44 @@ def work_precision(
         scales={n: max(abs(limit.value), least[n]) for n, limit in of_variant[AS_GIVEN].items()},
         default=next(row for row in rows if (row.variant, row.kind, row.value) == is_default),
     )
+
+
+def _bases(
+    simulation: Simulation, contact_models: bool, representations: bool
+) -> dict[str, tuple[Simulation, Collection[str]]]:
+    """Return the scene and its other models by variant, each with the metrics that it does not have."""
+    bases: dict[str, tuple[Simulation, Collection[str]]] = {AS_GIVEN: (simulation, ())}
+    other = "along_truss" if simulation.scene.settings.contact_model == "projected" else "projected"
+    if contact_models and simulation.scene.barrier is not None:
+        bases[f"contact model {other}"] = varied(simulation, {"settings.contact_model": other}), ()
+    copy = triangulated(simulation.scene.barrier) if representations else None
+    if copy is not None and simulation.scene.barrier is not None:
+        whole = len(simulation.scene.barrier.element_names) == 1
+        bases["triangulated barrier"] = (
+            varied(simulation, {"barrier": copy}),
+            () if whole else _OF_ELEMENTS,
+        )
+    return bases
+
+
+def _judged(
+    bases: Collection[str],
+    runs: Sequence[PrecisionRun],
+    sharp: Sequence[PrecisionRun],
+    wanted: Collection[str],
+    least: Mapping[str, float],
+) -> tuple[dict[str, Mapping[str, Limit]], list[PrecisionRow]]:
+    """Return the converged values of each variant, and a row for each run with its errors."""
+    of_variant, rows = {}, []
+    for variant in bases:
+        mine = [run for run in runs if run.variant == variant]
+        finest = [run for run in mine if run.kind == "tolerance"][-1:]
+        limits = limits_of(finest + [run for run in sharp if run.variant == variant], wanted, least)
+        if limits:
+            of_variant[variant] = limits
+        mine += [replace(run, kind="reference") for run in sharp if run.variant == variant]
+        rows += [row_of(run, limits, least) for run in mine]
+    return of_variant, rows
 
 
 def _falling(name: str, values: Collection[float]) -> list[float]:
