@@ -136,22 +136,8 @@ def critical_impact_point(
         tolerance = simulation.scene.settings.tolerance
     if not 0.0 < tolerance < 1.0:
         raise ValueError(f"tolerance must be between 0 and 1, got {tolerance}")
-    axes = [np.linspace(a, b, points).tolist() for a, b in zip(low, high, strict=True)]
-    grid = run_study(
-        simulation,
-        names,
-        list(itertools.product(*axes)),
-        metrics=[metric],
-        executor=executor,
-        store=store,
-        progress=progress,
-        grid=dict(zip(names, axes, strict=True)),
-        title="grid of impact points",
-    )
+    grid = _grid(simulation, metric, names, low, high, points, executor, store, progress)
     values = grid[metric]
-    if np.isnan(values).all():
-        reason = next(iter(grid.failed.values()), "no run has it")
-        raise ValueError(f"metric must be one that the scene has, got {metric!r}: {reason}")
     sign = 1.0 if minimize else -1.0
     effect = _effects(names, values.reshape((points,) * len(names)))
     free = [i for i, name in enumerate(names) if effect[name] >= tolerance]
@@ -184,6 +170,36 @@ def critical_impact_point(
         grid,
         refinement,
     )
+
+
+def _grid(
+    simulation: Simulation,
+    metric: str,
+    names: tuple[str, ...],
+    low: Floats,
+    high: Floats,
+    points: int,
+    executor: Any,
+    store: str | Path | None,
+    progress: bool | None,
+) -> Study:
+    """Return the runs of the grid, at least one of which has the metric."""
+    axes = [np.linspace(a, b, points).tolist() for a, b in zip(low, high, strict=True)]
+    grid = run_study(
+        simulation,
+        names,
+        list(itertools.product(*axes)),
+        metrics=[metric],
+        executor=executor,
+        store=store,
+        progress=progress,
+        grid=dict(zip(names, axes, strict=True)),
+        title="grid of impact points",
+    )
+    if np.isnan(grid[metric]).all():
+        reason = next(iter(grid.failed.values()), "no run has it")
+        raise ValueError(f"metric must be one that the scene has, got {metric!r}: {reason}")
+    return grid
 
 
 def _bounds(simulation: Simulation, ranges: Mapping[str, tuple[Quantity, Quantity]]) -> tuple[Floats, Floats]:

@@ -127,6 +127,7 @@ def run_study(
         As warnings, each once for all runs that were run now: how many and which rows are not to be
         believed, and what is wrong with the worst.
     """
+    # Longer than 60 lines: whichever way a study stops, what is finished is handed out, and said.
     # What only a study needs, such as sqlite3 and multiprocessing, is loaded by the first one.
     from ..base.fingerprint import fingerprint
     from .executors import ExecutorError, run_all

@@ -197,9 +197,9 @@ def _judged(
     bases: Collection[str],
     runs: Sequence[PrecisionRun],
     sharp: Sequence[PrecisionRun],
-    wanted: Collection[str],
+    wanted: Sequence[str],
     least: Mapping[str, float],
-) -> tuple[dict[str, Mapping[str, Limit]], list[PrecisionRow]]:
+) -> tuple[dict[str, dict[str, Limit]], list[PrecisionRow]]:
     """Return the converged values of each variant, and a row for each run with its errors."""
     of_variant, rows = {}, []
     for variant in bases:
