@@ -1,5 +1,6 @@
 """Formatting, linting, types, layering, and the generated stub: rules that a machine can hold."""
 
+import ast
 import os
 import re
 import shutil
@@ -52,6 +53,45 @@ def test_stub_is_what_the_module_says(tmp_path: Path) -> None:
     generated = (tmp_path / "birm3d/_core.pyi").read_text(encoding="utf-8")
     committed = (ROOT / "python/birm3d/_core.pyi").read_text(encoding="utf-8")
     assert committed == generated, "regenerate: python -m pybind11_stubgen birm3d._core -o python"
+
+
+MOST_LINES, MOST_LINES_OF_FUNCTION = 300, 60
+
+
+def too_long(name: str, text: str) -> list[str]:
+    """Files and functions (without their docstrings) that are long and do not say why."""
+    found = []
+    lines = text.splitlines()
+    if len(lines) > MOST_LINES and f"# Longer than {MOST_LINES} lines: " not in text:
+        found.append(f"{name} has {len(lines)} lines")
+    for node in ast.walk(ast.parse(text)):
+        if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) or node.end_lineno is None:
+            continue
+        own = lines[node.lineno - 1 : node.end_lineno]
+        docstring = ast.get_docstring(node, clean=False)
+        length = len(own) - (0 if docstring is None else docstring.count("\n") + 1)
+        reason = f"# Longer than {MOST_LINES_OF_FUNCTION} lines: "
+        if length > MOST_LINES_OF_FUNCTION and not any(reason in line for line in own):
+            found.append(f"{node.name}() in {name} has {length} lines")
+    return found
+
+
+def test_files_and_functions_are_short_or_say_why() -> None:
+    """What is longer gets a comment: "# Longer than 300 lines: " or "# Longer than 60 lines: ", and why."""
+    package = ROOT / "python/birm3d"
+    found = []
+    for path in sorted(package.rglob("*.py")):
+        found += too_long(str(path.relative_to(package)), path.read_text(encoding="utf-8"))
+    assert not found, "split it, or say why in a comment '# Longer than ... lines: ...': " + "; ".join(found)
+
+
+def test_a_long_file_and_a_long_function_are_found() -> None:
+    function = 'def f() -> None:\n    """Do."""\n' + "    pass\n" * 60
+    assert too_long("a.py", function) == ["f() in a.py has 61 lines"]
+    assert too_long("a.py", function.replace("pass", "# Longer than 60 lines: a list.\n    pass", 1)) == []
+    assert too_long("a.py", "x = 1\n" * 301) == ["a.py has 301 lines"]
+    assert too_long("a.py", "# Longer than 300 lines: a table.\n" + "x = 1\n" * 301) == []
+    assert too_long("a.py", "x = 1\n" * 300 + "") == []
 
 
 # Layers of the C++ code, lowest first. A file may include its own layer and those before it.

@@ -121,6 +121,7 @@ def design_load(
     >>> loads = birm3d.design_load(sim, natural_period=0.05, ductility=3, offsets=[0.0, 0.3, 0.6])
     >>> print(loads.to_markdown())
     """
+    # Longer than 60 lines: an envelope over what is finished is kept whichever way the runs stop.
     # What only studies need, such as multiprocessing, is loaded by the first one.
     from ..study.executors import ExecutorError
     from ..study.whole_runs import look_at_runs

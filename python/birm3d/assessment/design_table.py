@@ -1,5 +1,6 @@
 """The design loads of a barrier: a table, its files, and what is to be said of it."""
 
+# Longer than 300 lines: one class, of which each method writes the same table in another form.
 from __future__ import annotations
 
 import csv

@@ -1,5 +1,6 @@
 """How far fitted values can be trusted, and which of them the data can not tell."""
 
+# Longer than 300 lines: one analysis, whose parts share its matrices.
 from __future__ import annotations
 
 from dataclasses import dataclass, field

@@ -4,6 +4,7 @@ Measured values come with the package: wall tests of NHTSA and published tests o
 is computed when it is asked for, with the presets of the version that is asked.
 """
 
+# Longer than 300 lines: one page, with a function for each of its parts.
 from __future__ import annotations
 
 import csv

@@ -1,5 +1,6 @@
 """What a run recorded: histories, the end of the run, and how it came about."""
 
+# Longer than 300 lines: one class: all that a run recorded.
 from __future__ import annotations
 
 from collections.abc import Mapping

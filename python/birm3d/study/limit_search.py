@@ -4,6 +4,7 @@ A coarse scan of the whole range comes first, then bisection of the change that 
 be monotonic, so the answer counts from the safe end of the range: up to it all values hold that were tried.
 """
 
+# Longer than 300 lines: one search with its answer, its table and its text.
 from __future__ import annotations
 
 import math

@@ -3,6 +3,7 @@
 SI, file axes: x forward, y left, z up, origin on the ground below the middle of the front axle.
 """
 
+# Longer than 300 lines: the blocks of one file format, which refer to each other.
 from __future__ import annotations
 
 from collections.abc import Sequence

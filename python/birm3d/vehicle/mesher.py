@@ -8,6 +8,7 @@ Every element belongs to one zone. A node on the border of two zones is repeated
 of that zone's elements: a truss has one law, and the stiffness of a zone does not depend on the mesh.
 """
 
+# Longer than 300 lines: one mesher, from sections to elements.
 from __future__ import annotations
 
 import math

@@ -124,6 +124,7 @@ def thin_posts(name: str, vehicle: Vehicle, base: Simulation) -> list[Case]:
 
 def laboratory_cases() -> list[Case]:
     """Return extremes that need vehicles of their own: one node, 100,000 nodes, ten turns."""
+    # Longer than 60 lines: a list of cases.
     wall, weightless = Barrier.rigid_wall(), Settings(gravity=0.0, ground=False)
     law = {"k_initial": 3e6, "knee": 0.4, "k_hardening": 6e6, "k_unloading": 60e6}
 

@@ -101,6 +101,7 @@ def work_precision(
     >>> print(found.recommend(0.01))  # doctest: +SKIP
     >>> found.plot().savefig("precision.png")  # doctest: +SKIP
     """
+    # Longer than 60 lines: one plan of runs, carried out in turn, and judged together.
     least = least_scales(simulation.scene, scales)
     own = simulation.scene.settings
     loose = _falling("tolerances", {*tolerances, own.tolerance} if own.time_step is None else tolerances)
