@@ -49,7 +49,7 @@ turned = true
 
 [[simulation.scalar]]
 metric = "max_displacement"
-value = 0.716 # of the run that makes the curve
+value = 0.716 # in place of it that of the run that makes the curve
 sigma = 0.01
 
 [[parameter]]
@@ -81,7 +81,7 @@ def folder(tmp_path: Path, crash: Result) -> Path:
     rows = np.column_stack([0.1 * (np.arange(len(force)) + 0.5), force])
     np.savetxt(tmp_path / "force.csv", rows, "%.6f", ",", header="time [ms],force [kN]", comments="")
     (tmp_path / "scene.toml").write_text(SCENE)
-    (tmp_path / "fit.toml").write_text(FIT)
+    (tmp_path / "fit.toml").write_text(FIT.replace("0.716", f"{crash.metrics['max_displacement']:.4f}"))
     return tmp_path
 
 
