@@ -1,5 +1,6 @@
 """Vehicles: a rigid body, its crushable skin and its wheels."""
 
+# Longer than 300 lines: what users read of a vehicle, its fields and how one is made.
 from __future__ import annotations
 
 import math
