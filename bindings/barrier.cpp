@@ -34,6 +34,7 @@ Prism::Profile profile_points(const InputArray& array) {
 
 void register_barrier(py::module_& m) {
     py::class_<Element>(m, "Element", "A piece of a barrier: own axes at position, turned by heading (rad).")
+        .def_readonly("continues", &Element::continues, "part of the element before it")
         .def_static(
             "plane",
             [](const InputArray& position, double heading) {
@@ -43,11 +44,16 @@ void register_barrier(py::module_& m) {
             "A flat face without end; at heading 0 it looks to -x.")
         .def_static(
             "post",
-            [](double radius, double height, const InputArray& position, double heading) {
-                return element(Post(radius, height), position, heading);
+            [](double radius, double height, const InputArray& position, double heading, bool continues) {
+                Element post = element(Post(radius, height), position, heading);
+                post.continues = continues;
+                return post;
             },
             py::kw_only(), py::arg("radius"), py::arg("height"), py::arg("position"), py::arg("heading"),
-            "Upright and round, foot of the axis at position; m.")
+            py::arg("continues") = false,
+            "Upright and round, foot of the axis at position; m. continues: part of the element before it, "
+            "which its "
+            "loads are told of.")
         .def_static(
             "prism",
             [](const InputArray& profile, double y_low, double y_high, bool covered_low_end,

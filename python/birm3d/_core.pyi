@@ -104,14 +104,19 @@ class Element:
         A flat face without end; at heading 0 it looks to -x.
         """
     @staticmethod
-    def post(*, radius: typing.SupportsFloat | typing.SupportsIndex, height: typing.SupportsFloat | typing.SupportsIndex, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
+    def post(*, radius: typing.SupportsFloat | typing.SupportsIndex, height: typing.SupportsFloat | typing.SupportsIndex, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, continues: bool = False) -> Element:
         """
-        Upright and round, foot of the axis at position; m.
+        Upright and round, foot of the axis at position; m. continues: part of the element before it, which its loads are told of.
         """
     @staticmethod
     def prism(*, profile: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], y_low: typing.SupportsFloat | typing.SupportsIndex, y_high: typing.SupportsFloat | typing.SupportsIndex, covered_low_end: bool, covered_high_end: bool, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
         """
         profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered ends are no surface.
+        """
+    @property
+    def continues(self) -> bool:
+        """
+        part of the element before it
         """
 class EndReason:
     """

@@ -62,13 +62,12 @@ def test_small_overlap_keeps_its_momentum_change_and_meets_no_core(name: str) ->
         assert np.interp(time, result.time[1:], along) == pytest.approx(median, rel=0.2), time
 
 
-def test_edges_have_their_share_of_the_load(car: Vehicle) -> None:
-    """The load on the wall and its edges is the vehicle's; the edge away from the car feels none."""
+def test_load_of_the_wall_has_that_of_its_edges(car: Vehicle) -> None:
     result = crash(car, Barrier.rigid_wall(edge_radius=0.15))
-    wall, right, left = (load.force[1:].sum(0) for load in result.element_loads)
-    assert wall + right + left == pytest.approx(-result.barrier_force[1:].sum(0), rel=1e-9)
-    assert right[0] > 0.3 * wall[0] > 0.0
-    assert not left.any()
+    (wall,) = result.element_loads
+    assert wall.name == "wall"
+    assert wall.force[1:] == pytest.approx(-result.barrier_force[1:], rel=1e-9, abs=1e-3)
+    assert result.metrics["peak_element_force"] == pytest.approx(np.linalg.norm(wall.force, axis=1).max())
 
 
 def test_energy_and_momentum_close(car: Vehicle) -> None:

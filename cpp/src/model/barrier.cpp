@@ -56,6 +56,7 @@ Barrier::Barrier(std::vector<Element> elements_, double friction_, const Vec3& o
         if (!elements[i].position.allFinite())
             refuse(name + "position", "finite", "a coordinate that is not");
         require_finite((name + "heading").c_str(), elements[i].heading);
+        if (i == 0 && elements[i].continues) refuse(name + "continues", "false: none is before it", "true");
     }
     if (free_standing) segments = segments_of(elements, *free_standing);
 }

@@ -133,7 +133,7 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e, const
             add_to(row + (ground ? at_ground_bend : at_barrier_bend), bend.wrench.force);
             if (ground) continue;
             row[at_normal_bend] += bend.normal_force;
-            double* on = obstacle_row(index, touch.obstacle).values.data();
+            double* on = obstacle_row(index, scene.obstacles[touch.obstacle].element).values.data();
             add_to(on + at_load, -now.wrench.force);
             add_to(on + at_load + 3, now.reaction_torque);
             add_to(on + at_load_bend, -bend.wrench.force);
@@ -143,7 +143,7 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e, const
             const bool ground = of.obstacle == scene.ground;
             add_to(row + (ground ? at_ground_impulse : at_barrier_impulse), of.impulse);
             if (ground) continue;
-            double* on = obstacle_row(index, of.obstacle).values.data();
+            double* on = obstacle_row(index, scene.obstacles[of.obstacle].element).values.data();
             add_to(on + at_load_impulse, -of.impulse);
             add_to(on + at_load_impulse + 3, of.torque);
         }

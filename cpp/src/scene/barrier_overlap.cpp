@@ -26,7 +26,7 @@ void note_overlap(const Scene& scene, std::vector<std::size_t>& about, State& st
                 if (!(overlap > statistics.greatest_overlap)) continue;
                 statistics.greatest_overlap = overlap;
                 statistics.greatest_overlap_time = state.time;
-                statistics.greatest_overlap_element = i;
+                statistics.greatest_overlap_element = scene.obstacles[i].element;
             }
         }
     }

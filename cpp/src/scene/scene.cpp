@@ -59,14 +59,17 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
     if (!duration && !barrier) refuse("duration", "given (s) where there is no barrier", "none");
     if (barrier)
         for (const Element& element : barrier->elements)
-            obstacles.push_back(
-                {element.shape, Eigen::AngleAxisd(element.heading, Vec3::UnitZ()).toRotationMatrix(),
-                 element.position + barrier->origin.z() * Vec3::UnitZ(), barrier->friction, 0});
+            obstacles.push_back({element.shape,
+                                 Eigen::AngleAxisd(element.heading, Vec3::UnitZ()).toRotationMatrix(),
+                                 element.position + barrier->origin.z() * Vec3::UnitZ(), barrier->friction});
     if (free_segments() > 0 && !settings.ground)
         refuse("ground", "True where the barrier is free-standing", "False");
-    for (std::size_t i = 0; i < obstacles.size(); ++i)
-        obstacles[i].structure =
-            i > 0 && free_segments() == 0 && continues(obstacles[i].shape) ? obstacles[i - 1].structure : i;
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
+        const bool part = barrier->elements[i].continues;
+        const bool joined = part || (i > 0 && free_segments() == 0 && continues(obstacles[i].shape));
+        obstacles[i].structure = joined ? obstacles[i - 1].structure : i;
+        obstacles[i].element = part ? obstacles[i - 1].element : i;
+    }
     joints = vehicle->joints;
     if (free_segments() > 0 && barrier->free_standing->joint == SegmentJoint::pinned)
         for (std::size_t i = 1; i < free_segments(); ++i) {
@@ -144,6 +147,7 @@ std::uint64_t Scene::fingerprint() const {
             std::visit([&](const auto& shape) { add_to(hash, shape); }, element.shape);
             hash.add(element.position);
             hash.add(element.heading);
+            if (element.continues) hash.add(1.0);
         }
         if (barrier->free_standing) {
             hash.add(barrier->free_standing->density);

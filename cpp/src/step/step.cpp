@@ -84,7 +84,7 @@ void accept(const Scene& scene, Trial& trial, State& state) {
     }
     static_cast<Progress&>(state) = trial.state;
     state.segments = trial.state.segments;
-    count_step(trial, state);
+    count_step(scene, trial, state);
 }
 
 }  // namespace birm3d

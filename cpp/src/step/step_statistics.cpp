@@ -8,15 +8,17 @@ namespace birm3d {
 namespace {
 
 // Counts an element of the barrier the first time that it is near.
-void count_near(std::size_t obstacle, State& state) {
-    if (obstacle >= state.was_near.size() || state.was_near[obstacle] != 0) return;
-    state.was_near[obstacle] = 1;
+void count_near(const Scene& scene, std::size_t obstacle, State& state) {
+    if (obstacle == scene.ground) return;
+    const std::size_t element = scene.obstacles[obstacle].element;
+    if (state.was_near[element] != 0) return;
+    state.was_near[element] = 1;
     ++state.statistics.near_elements;
 }
 
 }  // namespace
 
-void count_step(const Trial& accepted, State& state) {
+void count_step(const Scene& scene, const Trial& accepted, State& state) {
     StepStatistics& statistics = state.statistics;
     statistics.steps += 1;
     statistics.shortest_step = std::min(statistics.shortest_step, accepted.dt);
@@ -28,13 +30,13 @@ void count_step(const Trial& accepted, State& state) {
         statistics.free_time += accepted.dt;
     }
     for (const std::size_t obstacle : accepted.seen)
-        count_near(obstacle, state);
+        count_near(scene, obstacle, state);
     for (std::size_t u = 0; u < accepted.impulses.size(); ++u) {
         const ContactImpulses* const sums[] = {&accepted.impulses[u], &accepted.at_start.impulses[u],
                                                &accepted.at_end.impulses[u]};
         for (const ContactImpulses* sum : sums)
             for (const ObstacleImpulse& on : sum->obstacles)
-                if (on.impulse != Vec3::Zero()) count_near(on.obstacle, state);
+                if (on.impulse != Vec3::Zero()) count_near(scene, on.obstacle, state);
         for (std::size_t w = 0; w < accepted.impulses[u].tire.size(); ++w)
             statistics.wheels_on_ground += std::any_of(std::begin(sums), std::end(sums),
                                                        [w](const auto* sum) { return sum->tire[w] > 0.0; });

@@ -10,13 +10,26 @@ import numpy.typing as npt
 from .. import _core
 from .base import Barrier
 from .description import SeenPart
+from .surfaces import drawn_up
 
-__all__ = ["FOOT", "along_line", "numbered", "positive", "positive_and_finite", "seen_block"]
+__all__ = [
+    "FOOT",
+    "along_line",
+    "numbered",
+    "positive",
+    "positive_and_finite",
+    "rounded_block",
+    "rounded_outline",
+    "seen_block",
+]
 
 Floats = npt.NDArray[np.float64]
 
 FOOT = 1.0
 """Solids that stand on the ground go on below it, so that nothing is pushed out downwards [m]."""
+
+# Of the polygon that an arc of 90 degrees is made of.
+_SIDES_OF_QUARTER = 15
 
 
 def positive(name: str, value: float) -> None:
@@ -52,6 +65,54 @@ def along_line(
             )
         )
     return elements
+
+
+def rounded_outline(depth: float, length: float, radius: float) -> Floats:
+    """Return the plan of a block with rounded upright edges: its corners, across and along, (n, 2) [m].
+
+    The arcs are polygons of 6 degrees a side with their corners on the arc. At the radius r they lie within
+    0.0014 r of it.
+    """
+    quarter = np.linspace(0.0, 0.5 * np.pi, _SIDES_OF_QUARTER + 1)
+    arc = radius * np.stack([np.cos(quarter), np.sin(quarter)], axis=1)
+    middle = np.array([0.5 * depth, 0.0])
+    corner = np.array([middle[0], 0.5 * length]) - radius
+    parts = []
+    for c, s, sides in ((1, 0, (1, 1)), (0, 1, (-1, 1)), (-1, 0, (-1, -1)), (0, -1, (1, -1))):
+        parts.append(middle + corner * sides + arc @ np.array([[c, s], [-s, c]]))
+    ring = np.vstack(parts)
+    # Where the radius is half of the block, arcs end where the next ones begin.
+    apart = np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1) > 1e-9
+    return np.asarray(ring[apart])
+
+
+def rounded_block(
+    barrier: Barrier, depth: float, length: float, top: float, radius: float
+) -> list[_core.Element]:
+    """Return a block along the line with rounded upright edges: one element in three parts.
+
+    The edges on the traffic's side are posts, which draw in the skin beside them. Between them is a mesh
+    with chords in place of the arcs that the posts fill.
+    """
+    heading = math.radians(barrier.heading)
+    ring = rounded_outline(depth, length, radius)
+    beside = 0.5 * length - radius
+    filled = (ring[:, 0] > 1e-9) & (ring[:, 0] < radius - 1e-9) & (np.abs(ring[:, 1]) > beside + 1e-9)
+    vertices, faces = drawn_up(ring[~filled], -FOOT, top)
+    between = _core.Element.mesh(
+        vertices=vertices, faces=faces.tolist(), position=barrier.from_origin(0.0, 0.0), heading=heading
+    )
+    edges = [
+        _core.Element.post(
+            radius=radius,
+            height=top,
+            position=barrier.from_origin(radius, along),
+            heading=heading,
+            continues=True,
+        )
+        for along in (-beside, beside)
+    ]
+    return [between, *edges]
 
 
 def numbered(whole: str, part: str, count: int) -> tuple[str, ...]:

@@ -12,9 +12,18 @@ import numpy.typing as npt
 
 from .. import _core
 from .base import Barrier, Surface
-from .blocks import FOOT, along_line, numbered, positive, positive_and_finite, seen_block
+from .blocks import (
+    FOOT,
+    along_line,
+    numbered,
+    positive,
+    positive_and_finite,
+    rounded_block,
+    rounded_outline,
+    seen_block,
+)
 from .description import SeenPart, Size, height_text, length_text, segments_text
-from .surfaces import cylinder, drawn_up, ends, extruded, placed
+from .surfaces import drawn_up, ends, extruded, placed
 
 __all__ = ["RigidWall"]
 
@@ -22,8 +31,6 @@ Floats = npt.NDArray[np.float64]
 
 # A wall of finite width without a top has it here, above anything that could come [m].
 _HIGH = 100.0
-# Of the polygon that an arc of 90 degrees is made of.
-_SIDES_OF_QUARTER = 15
 # A wall without end, which is a half-space, is drawn so deep [m].
 _DRAWN_DEPTH = 0.4
 
@@ -35,7 +42,7 @@ class RigidWall(Barrier):
     Without end in width and height it is a half-space. Else it has a ``thickness``, with ends, a top and a
     back that can be met like the face. Its upright edges are sharp, or rounded by ``edge_radius``, see
     :meth:`outline`. A sharp edge cuts the skin. Rounded edges on the traffic's side are posts: like bollards
-    they draw in the skin beside them, and each has its own load.
+    they draw in the skin beside them. The wall's load has theirs.
     """
 
     width: float = math.inf
@@ -64,14 +71,7 @@ class RigidWall(Barrier):
         heading = math.radians(self.heading)
         top = self.height if math.isfinite(self.height) else _HIGH
         if self.edge_radius > 0.0:
-            vertices, faces = drawn_up(self._between_edges(), -FOOT, top)
-            wall = _core.Element.mesh(
-                vertices=vertices,
-                faces=faces.tolist(),
-                position=self.from_origin(0.0, 0.0),
-                heading=heading,
-            )
-            return [wall, *self._edges(heading)]
+            return rounded_block(self, self.thickness, self.width, top, self.edge_radius)
         if math.isinf(self.width) and self.segments > 1:
             raise ValueError(f"segments must be 1 for a wall of infinite width, got {self.segments}")
         if math.isinf(self.width) and math.isinf(self.height):
@@ -79,46 +79,9 @@ class RigidWall(Barrier):
         corners = [(0.0, -FOOT), (self.thickness, -FOOT), (self.thickness, top), (0.0, top)]
         return along_line(self, np.array(corners), 0.0, self.width, self.segments)
 
-    def _edges(self, heading: float) -> list[_core.Element]:
-        return [
-            _core.Element.post(
-                radius=self.edge_radius,
-                height=self.height,
-                position=axis,
-                heading=heading,
-            )
-            for axis in self._edge_axes()
-        ]
-
-    def _edge_axes(self) -> list[Floats]:
-        """Axes of the rounded edges on the traffic's side, from low y to high y; from the origin [m]."""
-        beside = 0.5 * self.width - self.edge_radius
-        return [self.from_origin(self.edge_radius, along) for along in (-beside, beside)]
-
     def outline(self) -> Floats:
-        """Return the plan of a wall with rounded edges: across and along of its corners, shape (n, 2) [m].
-
-        The arcs are polygons of 6 degrees a side with their corners on the arc. At the radius r they lie
-        within 0.0014 r of it.
-        """
-        quarter = np.linspace(0.0, 0.5 * np.pi, _SIDES_OF_QUARTER + 1)
-        arc = self.edge_radius * np.stack([np.cos(quarter), np.sin(quarter)], axis=1)
-        middle = np.array([0.5 * self.thickness, 0.0])
-        corner = np.array([middle[0], 0.5 * self.width]) - self.edge_radius
-        parts = []
-        for c, s, sides in ((1, 0, (1, 1)), (0, 1, (-1, 1)), (-1, 0, (-1, -1)), (0, -1, (1, -1))):
-            parts.append(middle + corner * sides + arc @ np.array([[c, s], [-s, c]]))
-        ring = np.vstack(parts)
-        # Where the radius is half of the wall, arcs end where the next ones begin.
-        apart = np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1) > 1e-9
-        return np.asarray(ring[apart])
-
-    def _between_edges(self) -> Floats:
-        """Plan with chords for the arcs that the posts at its edges fill; see :meth:`outline`."""
-        ring = self.outline()
-        beside = np.abs(ring[:, 1]) - (0.5 * self.width - self.edge_radius)
-        arc = (ring[:, 0] > 1e-9) & (ring[:, 0] < self.edge_radius - 1e-9) & (beside > 1e-9)
-        return np.asarray(ring[~arc])
+        """Return the plan of a wall with rounded edges: across and along of its corners, shape (n, 2) [m]."""
+        return rounded_outline(self.thickness, self.width, self.edge_radius)
 
     def _check_edges(self) -> None:
         radius = self.edge_radius
@@ -135,9 +98,7 @@ class RigidWall(Barrier):
 
     @property
     def element_names(self) -> tuple[str, ...]:
-        """``wall``, or its segments from low y to high y; rounded edges as the traffic sees them."""
-        if self.edge_radius > 0.0:
-            return ("wall", "right edge", "left edge")
+        """``wall``, or its segments from low y to high y."""
         return numbered("wall", "segment", self.segments)
 
     @property
@@ -164,9 +125,7 @@ class RigidWall(Barrier):
         height = min(self.height, top)
         if self.edge_radius > 0.0:
             vertices, faces = drawn_up(self.outline(), 0.0, height)
-            origin = np.asarray(self.origin)
-            edges = [cylinder(origin + axis, self.edge_radius, height) for axis in self._edge_axes()]
-            return [(placed(self, vertices), faces), *edges]
+            return [(placed(self, vertices), faces)]
         depth = _DRAWN_DEPTH if self.is_endless else self.thickness
         sides = (np.zeros(2), np.full(2, depth), np.array([0.0, height]))
         return extruded(self, *sides, ends(self.width, self.segments, seen))

@@ -15,8 +15,9 @@ namespace birm3d {
 struct Element {
     Shape shape;  // own axes, z up
     Vec3 position =
-        Vec3::Zero();      // of the own axes' origin, the element's foot: from the barrier's origin (m)
-    double heading = 0.0;  // turn of the own axes about z (rad)
+        Vec3::Zero();        // of the own axes' origin, the element's foot: from the barrier's origin (m)
+    double heading = 0.0;    // turn of the own axes about z (rad)
+    bool continues = false;  // part of the element before it, as a wall's rounded edge: loads are that one's
 };
 
 struct Barrier {

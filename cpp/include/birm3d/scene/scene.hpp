@@ -34,8 +34,9 @@ struct Obstacle {
     Mat3 rotation = Mat3::Identity();  // own axes to those of the run, at the start
     Vec3 position = Vec3::Zero();      // of the own axes' origin, the same (m)
     double friction = 0.0;
-    std::size_t structure =
-        0;  // place of the first obstacle that this one is joined to, itself where it stands alone
+    // Places of the first obstacle that this one is joined to, and of the element that its loads are told of; itself
+    // where it stands alone.
+    std::size_t structure = 0, element = 0;
 };
 
 struct Scene {
