@@ -87,6 +87,11 @@ class Barrier(BarrierMakers):
         raise TypeError("a Barrier is made with rigid_wall, pole, bollards, jersey, planter or from_mesh")
 
     @property
+    def draws_in_skin(self) -> bool:
+        """Whether the skin beside it is drawn in, as beside a post."""
+        return self.has_posts
+
+    @property
     def element_names(self) -> tuple[str, ...]:
         """What the elements are called in tables and plots, in their order."""
         return tuple(f"element {i + 1}" for i in range(len(self.elements())))

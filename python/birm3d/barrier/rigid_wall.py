@@ -97,6 +97,11 @@ class RigidWall(Barrier):
             raise ValueError(f"edge_radius must be 0 m for a wall of several segments, got {radius}")
 
     @property
+    def draws_in_skin(self) -> bool:
+        """Whether its edges are rounded."""
+        return self.edge_radius > 0.0
+
+    @property
     def element_names(self) -> tuple[str, ...]:
         """``wall``, or its segments from low y to high y."""
         return numbered("wall", "segment", self.segments)

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 from .. import units
 from ..assessment import rate, test_matrix
 from ..barrier import Barrier
-from ..barrier.kinds import Bollards, Jersey, Planter, Pole, RigidWall
+from ..barrier.kinds import Jersey, MeshBarrier
 from ..signals.reference import nhtsa_tests
 from ..simulation import Simulation, presets
 from ..vehicle import Vehicle
@@ -243,11 +243,11 @@ def family(barrier: Barrier | None) -> Family:
     """Return what kind of surface a vehicle meets."""
     if barrier is None:
         return "none"
-    if isinstance(barrier, (Bollards, Pole)):
+    if barrier.has_posts:
         return "posts"
     if isinstance(barrier, Jersey):
         return "concrete"
-    return "wall" if isinstance(barrier, (RigidWall, Planter)) else "other"
+    return "other" if isinstance(barrier, MeshBarrier) else "wall"
 
 
 @cache

@@ -126,7 +126,7 @@ def _skin(result: RunAnalysis) -> Iterator[str]:
 
 
 def _dents(barrier: Barrier, reaches: list[float]) -> Iterator[str]:
-    if not barrier.has_posts:
+    if not barrier.draws_in_skin:
         yield f"dents beside posts ({barrier.why_no_dents})"
     elif 0.0 in reaches:
         units = "" if not any(reaches) else f" of {_of(reaches.count(0.0), len(reaches))} units"
