@@ -131,7 +131,7 @@ def least_height(
     Parameters
     ----------
     simulation
-        A scene with a barrier that has a height: bollards, a rigid wall, a Jersey barrier, any kind with a height.
+        A scene with a barrier that has a height, as bollards and Jersey barriers have.
     heights
         (least, greatest) [m], within what the barrier can have; ``None``: 0.15 to 1.3 m, of a Jersey barrier
         from just above the break of its face.
