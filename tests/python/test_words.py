@@ -154,7 +154,7 @@ def test_site_builds_without_warnings(tmp_path: Path) -> None:
     reference = (tmp_path / "reference/python.html").read_text(encoding="utf-8")
     assert 'id="birm3d.Vehicle.preset"' in reference
     assert "energy_residual" in (tmp_path / "reference/metrics.html").read_text(encoding="utf-8")
-    assert "ImpulseSolver" in (tmp_path / "reference/cpp.html").read_text(encoding="utf-8")
+    assert "TrussMesh" in (tmp_path / "reference/cpp.html").read_text(encoding="utf-8")
     text = "".join(p.read_text(encoding="utf-8") for p in tmp_path.glob("*.html"))
     assert "<!-- build:" not in text
     assert not re.search(r'<(?:script|img|link)[^>]*(?:src|href)="https?://', text), (
