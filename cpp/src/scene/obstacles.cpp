@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "kernels/detect.hpp"
 #include "kernels/integrate.hpp"
@@ -90,6 +91,37 @@ std::uint8_t indented_panels(const UnitState& unit, std::size_t obstacle) {
 // A place where nothing is (m).
 constexpr double nowhere = 1e9;
 
+struct Points {
+    Box box;
+    const BlockColumn *x, *y, *z;
+};
+
+// Nodes of second trusses that do not push are no part of the skin: its place is that of the first trusses' nodes.
+class PushingNodes {
+  public:
+    explicit PushingNodes(const TrussBlockState& block)
+        : box_(block.box), x_(block.x), y_(block.y), z_(block.z) {
+        const auto first =
+            std::find_if(block.force.begin(), block.force.end(), [](double f) { return f > 0.0; });
+        if (first == block.force.end()) {
+            box_ = {Vec3::Constant(nowhere), Vec3::Zero()};
+            return;
+        }
+        const auto known = static_cast<std::size_t>(first - block.force.begin());
+        for (std::size_t n = 0; n < block_size; ++n) {
+            if (block.force[n] > 0.0) continue;
+            x_[n] = block.x[known];
+            y_[n] = block.y[known];
+            z_[n] = block.z[known];
+        }
+    }
+    Points points() const { return {box_, &x_, &y_, &z_}; }
+
+  private:
+    Box box_;
+    alignas(64) BlockColumn x_, y_, z_;
+};
+
 }  // namespace
 
 double nearest_gap(const Scene& scene, const State& state, const Nearness& what) {
@@ -103,13 +135,10 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
             const Shape& shape = scene.obstacles[i].shape;
             const Placement seen = placement(pose_of(scene, i, state), unit.body);
             if (!within_reach(shape, seen, all, least)) continue;
-            struct Points {
-                Box box;
-                const BlockColumn *x, *y, *z;
-            };
             const std::uint8_t indented = indented_panels(unit, i);
             alignas(64) BlockColumn none;
             none.fill(nowhere);
+            std::optional<PushingNodes> pushing;
             if (what.nodes)
                 least = nearest_in_blocks(
                     shape, seen, i == scene.ground ? mesh.shell_blocks : mesh.blocks,
@@ -117,7 +146,9 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
                         const TrussBlockState& block = unit.trusses.block[b];
                         if ((mesh.panels_of[b] & indented) != 0)
                             return Points{{Vec3::Constant(nowhere), Vec3::Zero()}, &none, &none, &none};
-                        return Points{block.box, &block.x, &block.y, &block.z};
+                        if (b < mesh.skin_blocks || b >= mesh.shell_blocks)
+                            return Points{block.box, &block.x, &block.y, &block.z};
+                        return pushing.emplace(block).points();
                     },
                     least);
             if (!what.anchors) continue;
