@@ -46,14 +46,13 @@ def test_impulse_does_not_hang_on_a_small_radius(car: Vehicle) -> None:
     assert np.linalg.norm(small - thin) < 1.0
 
 
-@pytest.mark.parametrize("name", ["passenger_car", "minivan", "pickup"])
-def test_small_overlap_keeps_its_momentum_change_and_meets_no_core(name: str) -> None:
+def test_small_overlap_keeps_its_momentum_change_and_meets_no_core() -> None:
     """150 tests of IIHS, 64 km/h: the median change of velocity along at 60 to 120 ms, within 20 %.
 
     The quartiles are 8 to 14 % from it; masses are not recorded.
     """
     wall = Barrier.rigid_wall(edge_radius=0.15, height=1.524)
-    vehicle = Vehicle.preset(name, mesh_density=0.5)
+    vehicle = Vehicle.preset("passenger_car", mesh_density=0.5)
     result = Simulation(vehicle, wall, SPEED, overlap=0.25, duration=0.15).run()
     assert result.statistics.body_steps == 0
     along = np.cumsum(result.acceleration[1:, 0]) * result.scene.settings.output_interval
