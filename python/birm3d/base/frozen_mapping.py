@@ -1,4 +1,4 @@
-"""Mappings that can not be changed, and that pickle and copy."""
+"""Mappings that can not be changed, and that pickle, copy and, as their values do, hash."""
 
 from __future__ import annotations
 
@@ -27,6 +27,9 @@ class FrozenMapping(Mapping[Key, Value]):
 
     def __len__(self) -> int:
         return len(self._content)
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self._content.items()))
 
     def __contains__(self, key: object) -> bool:
         return key in self._content

@@ -6,10 +6,12 @@ A saved file has all blocks of the file that the vehicle comes from, with their 
 
 from __future__ import annotations
 
-from typing import Annotated, TypeAlias
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, TypeAlias
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import AfterValidator, ConfigDict, Field, WrapSerializer, model_validator
 
+from ..base.frozen_mapping import FrozenMapping
 from ..io.toml import Strict
 from .file_schema import Positive
 from .zone_law import ZoneLaw
@@ -31,6 +33,16 @@ class ChangedLaw(ZoneLaw):
         return self
 
 
+def _as_dict(laws: Mapping[str, ChangedLaw], write: Callable[[dict[str, ChangedLaw]], Any]) -> Any:
+    return write(dict(laws))
+
+
+# A table of the file, kept so that the vehicle is a value: it does not change, and it hashes.
+LawsByName: TypeAlias = Annotated[
+    Mapping[LawName, ChangedLaw], AfterValidator(FrozenMapping), WrapSerializer(_as_dict)
+]
+
+
 class Changes(Strict):
     """How a vehicle differs from the one that the other blocks of its file describe.
 
@@ -48,4 +60,4 @@ class Changes(Strict):
     rate_sensitivity_s_per_m: Annotated[float, Field(ge=0.0)] = 0.0
     dent_reach_m: Annotated[float, Field(ge=0.0)] | None = None
     tire_contact: bool = True
-    zone: dict[LawName, ChangedLaw] = Field(default_factory=dict)
+    zone: LawsByName = FrozenMapping({})
