@@ -45,10 +45,28 @@ def scaled_masses(vehicle: VehicleFile, gvw: float) -> np.ndarray:
     return mass * gvw / mass.sum()
 
 
+def heights_of_goods(vehicle: VehicleFile, mass: np.ndarray) -> dict[int, float]:
+    """Tops of the boxes of goods of given masses, by their place among the solids.
+
+    They are as dense as the file says, and no higher than their space.
+    """
+    tops = {}
+    for i, solid in enumerate(vehicle.solids):
+        if solid.fills_to_m is None:
+            continue
+        (x0, x1), (y0, y1), (floor, _) = solid.box_m
+        stated = vehicle.changes and vehicle.changes.load_density_kg_per_m3
+        height = mass[i] / ((x1 - x0) * (y1 - y0) * (stated or solid.density))
+        tops[i] = min(floor + height, solid.fills_to_m)
+    return tops
+
+
 def box_mass_properties(vehicle: VehicleFile, gvw: float) -> dict[str, float]:
     """Mass properties of a vehicle made of boxes, from the formula of a box and the parallel-axis theorem."""
     mass = scaled_masses(vehicle, gvw)
     corners = np.array([solid.corners for solid in vehicle.solids])
+    for i, top in heights_of_goods(vehicle, mass).items():
+        corners[i, 4:, 2] = top
     middle = corners.mean(axis=1)
     size2 = np.ptp(corners, axis=1) ** 2
     center = mass @ middle / mass.sum()
@@ -66,33 +84,69 @@ def box_mass_properties(vehicle: VehicleFile, gvw: float) -> dict[str, float]:
 
 
 def test_presets_are_there_by_weight():
-    weights = {
-        "passenger_car": 4000,
-        "minivan": 5000,
-        "pickup": 7500,
-        "cargo_truck": 15000,
-        "semi_truck": 72000,
+    paper = {
+        "passenger_car": units.lb(4000),
+        "minivan": units.lb(5000),
+        "pickup": units.lb(7500),
+        "cargo_truck": units.lb(15000),
+        "semi_truck": units.lb(72000),
     }
-    assert preset_names() == (*weights, "paper_pickup")
-    for name, pounds in weights.items():
-        combination = read_combination(preset_path(name))
-        file = read_vehicle_file(preset_path(name)) if combination is None else combination.file
-        assert file.name == name
-        assert file.gvw_kg == pytest.approx(units.lb(pounds), abs=0.05)
+    standards = {
+        "small_car": 900.0,
+        "mash_1100c": 1100.0,
+        "sedan_1500": 1500.0,
+        "mash_2270p": 2270.0,
+        "pickup_4x4_2500": 2500.0,
+        "heavy_pickup": 2910.0,
+        "van_3500": 3500.0,
+        "cabover_7200": 7200.0,
+        "cabover_7500": 7500.0,
+        "mash_10000s": 10000.0,
+        "bus_13t": 13000.0,
+        "heavy_truck_29500": 29500.0,
+        "mash_36000v": 36000.0,
+    }
+    assert preset_names() == (*paper, "paper_pickup", *standards)
+    for weights in (paper, standards):
+        assert list(weights.values()) == sorted(weights.values())
+        for name, weight in weights.items():
+            file_name, gvw = weighed(name)
+            assert file_name == name
+            assert gvw == pytest.approx(weight, abs=0.05)
+
+
+def weighed(preset: str) -> tuple[str, float]:
+    """Name in the file of a preset, and the weight that it has [kg]: as loaded, where the file loads it."""
+    combination = read_combination(preset_path(preset))
+    if combination is not None:
+        return combination.file.name, combination.file.gvw_kg
+    file = read_vehicle_file(preset_path(preset))
+    loaded = file.changes and file.changes.gvw_kg
+    return file.name, loaded or file.gvw_kg
+
+
+# Scaled trucks of which no mass centre or inertia was found, in a standard or measured: what MASH asks of
+# ballast is no property of the whole. The vehicles that they are scaled from meet their own targets.
+NO_TARGETS = {"cabover_7200", "mash_10000s", "mash_36000v_tractor", "mash_36000v_trailer"}
 
 
 def test_mass_properties_meet_the_targets(vehicle):
-    assert vehicle.targets
+    assert bool(vehicle.targets) is (vehicle.name not in NO_TARGETS)
     for target in vehicle.targets:
         value = box_mass_properties(vehicle, target.at_gvw_kg)[target.quantity]
         assert value == pytest.approx(target.value, abs=target.tolerance), target.quantity
 
 
 def test_payload_carries_the_usual_range_of_weights(vehicle):
-    if vehicle.name == "semi_tractor":
-        return  # its payload is the trailer's
     payload = sum(solid.mass for solid in vehicle.solids if solid.payload)
-    most = 0.85 if any(solid.fills_to_m for solid in vehicle.solids) else 0.2
+    if vehicle.kind == "tractor":
+        assert payload == 0.0  # it is the trailer's
+        return
+    most = 0.2  # people and luggage
+    if any(solid.fills_to_m for solid in vehicle.solids):
+        most = 0.85
+    elif vehicle.kind == "bus":
+        most = 0.3  # its passengers: 3 t of 13 t
     assert 0.05 * vehicle.gvw_kg < payload < most * vehicle.gvw_kg
 
 
@@ -112,7 +166,9 @@ def test_inertia_is_that_of_a_possible_body(vehicle):
 def test_wheels_stand_under_the_vehicle(vehicle):
     x = sorted({wheel.center_m[0] for wheel in vehicle.wheels})
     assert len(vehicle.wheels) >= 4
-    if vehicle.name != "semi_trailer":  # its origin is the kingpin
+    if vehicle.kind == "semi_trailer":
+        assert x[-1] < 0.0  # the origin is the kingpin
+    else:
         assert x[-1] == 0.0  # the origin is the front axle
     assert -x[0] == pytest.approx(vehicle.dimensions.wheelbase_m, abs=1e-9)
     outer = max(abs(wheel.center_m[1]) + wheel.width_m / 2 for wheel in vehicle.wheels)
@@ -120,7 +176,7 @@ def test_wheels_stand_under_the_vehicle(vehicle):
 
 
 def test_the_law_of_a_zone_is_an_envelope(vehicle):
-    assert "bumper" in vehicle.zone_names or vehicle.name == "semi_trailer"
+    assert ("bumper" in vehicle.zone_names) is (vehicle.kind != "semi_trailer")
     for zone in vehicle.zones:
         points = np.array(zone.envelope)
         assert (points[0] == 0).all()
@@ -154,6 +210,22 @@ def test_files_are_readable_and_hold_no_paths(vehicle):
     text = unit_paths()[vehicle.name].read_text(encoding="utf-8")
     assert not re.search(r"(^|\W)/\w+/|\\", text)
     assert max(map(len, text.splitlines())) <= 110
+
+
+def test_a_vehicle_with_changed_laws_is_a_value(tmp_path):
+    path = tmp_path / "changed.toml"
+    law = "k_initial_Pa_per_m = 1e6\nknee_m = 0.1\nk_hardening_Pa_per_m = 0.0\nf_max_Pa = 1e5\n"
+    rest = f"{law}k_unloading_Pa_per_m = 1e7\n"
+    path.write_text(f'extends = "passenger_car"\n[changes.zone.bumper]\n{rest}')
+    file, again = read_vehicle_file(path), read_vehicle_file(path)
+    assert list(file.changes.zone) == ["bumper"]
+    assert again == file
+    assert hash(again) == hash(file)
+    assert pickle.loads(pickle.dumps(file)) == file
+    with pytest.raises(TypeError, match="item assignment"):
+        file.changes.zone["bumper"] = None
+    path.write_text(path.read_text().replace("1e5", "2e5"))
+    assert read_vehicle_file(path) != file
 
 
 # ---- solids ----------------------------------------------------------------------------------------------
