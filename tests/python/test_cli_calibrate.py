@@ -184,7 +184,8 @@ def test_curve_against_displacement(monkeypatch, capsys, folder, crash):
     rows = np.column_stack([0.1 * np.arange(len(middle)), 1e3 * middle, force / 1e3])[10::10]
     head = "time [ms],way [mm],force [kN]"
     np.savetxt(folder / "force.csv", rows, "%.6f", ",", header=head, comments="")
-    text = FIT.replace('column = "force"', 'column = "force"\nagainst_column = "way"')
+    text = (folder / "fit.toml").read_text()
+    text = text.replace('column = "force"', 'column = "force"\nagainst_column = "way"')
     for line in ("cfc = 60\n", "time_zero_s = 0.01\n", "turned = true\n"):
         text = text.replace(line, "")
     (folder / "fit.toml").write_text(text)
@@ -199,7 +200,6 @@ def test_the_example_is_read_and_is_the_measured_curve() -> None:
         "rails [Pa]",
         "engine [Pa]",
         "behind [Pa]",
-        "unloading [Pa/m]",
     ]
     curve, *scalars = fit.targets[0]
     assert len(scalars) == 3
@@ -217,22 +217,21 @@ class TestNhtsa10146:
         fit.options["starts"] = 1
         return fit
 
-    def test_four_numbers(self, fit: Fit) -> None:
+    def test_three_numbers(self, fit: Fit) -> None:
         result = calibrate(fit.simulations, fit.targets, fit.parameters, **fit.options)
         metrics = result.simulation.run().metrics
         assert metrics["peak_normal_force_cfc60"] == pytest.approx(678e3, rel=0.10)
         assert metrics["max_displacement"] == pytest.approx(0.677, rel=0.05)
         assert metrics["time_of_zero_velocity"] == pytest.approx(0.073, rel=0.05)
         assert metrics["restitution"] == pytest.approx(0.20, abs=0.05)
-        # One test does not bound the unloading slope from below, and the verdict says so.
-        assert len(result.identified) == 4
-        assert result.doubts == (
-            "the interval of unloading [Pa/m] ends at its lower bound 5e+06, not by the data",
-        )
-        assert result.doubts[0] in result.verdict
+        # One test does not tell what the rails carry, and the verdict says so.
+        assert result.identified == ("engine [Pa]", "behind [Pa]")
+        assert result["rails [Pa]"].reason.startswith("not identified")
+        assert result["rails [Pa]"].reason in result.verdict
         comparison = result.comparisons()["wall force"]
         assert comparison.passed
-        assert abs(comparison.sprague_geers.magnitude) < 0.02
+        # The depths stay where they are: with two of them fitted, too, it is 1.0 % (fit_sedan_front.py).
+        assert abs(comparison.sprague_geers.magnitude) < 0.03
         assert comparison.sprague_geers.phase < 0.08
         # 131 points; a CFC 60 record of that length holds 27, and what the model can not follow is slower.
         assert 5.0 < result.targets[0].independent_points < 27.3

@@ -58,7 +58,7 @@ def test_limits_that_nothing_meets_find_faults_everywhere() -> None:
     found = stability(scenes.w2(24), axes=["speed"], limits=Limits(energy=1e-15))
     assert {(row.verdict, row.reason) for row in found.rows} == {(FAULT, "energy")}
     assert len(found.faults) == len(found.rows)
-    deep = stability(car(Barrier.bollards()), axes=["stiffness"], limits=Limits(node_depth=0.0))
+    deep = stability(car(Barrier.jersey()), axes=["stiffness"], limits=Limits(node_depth=0.0))
     assert any("node inside" in row.reason for row in deep.faults)
 
 
