@@ -1,4 +1,4 @@
-// Memory of find_contact_forces(). It outlives the step so that a step allocates nothing; no value in it does.
+// Work buffers of find_contact_forces(). They are kept to avoid allocation; their values hold within one step only.
 #pragma once
 
 #include <cstddef>

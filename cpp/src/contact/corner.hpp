@@ -3,7 +3,7 @@
 //   place   u = sum of a_j h_j,             q_k . u = -g_k          for each face k
 //   force   F sum of lambda_k p_k n_k,      sum of lambda_k q_k . h_j = b . h_j  for each face j that the truss pushes on
 // with b the unit vector from the node to its anchor, g the gaps, q their gradients by the node's place, -p n those by
-// the obstacle's place and h the ways of the node (q = p n = h = n at a face; at an indentation, which widens as the post goes
+// the obstacle's place and h the directions in which the node is displaced (q = p n = h = n at a face; at an indentation, which widens as the post goes
 // deeper, they differ, see kernels/indentation.hpp). For any motion of the faces
 //   F sum of lambda_k (-dg_k) = F b . du.
 // A truss pulls on no face: lambda >= 0. Where a face drives the node and the truss does not push on it, the node moves
@@ -18,11 +18,11 @@
 namespace birm3d {
 
 struct CornerFace {
-    std::size_t seen = 0;           // place in Skin::seen_ of the obstacle
+    std::size_t seen = 0;           // place of the obstacle in ContactBlock::seen
     double gap = 0.0;               // of the node where it was (m)
     Vec3 normal = Vec3::UnitX();    // of the surface there
     Vec3 gradient = Vec3::UnitX();  // q: of the gap, by the node's place
-    double per_force = 1.0;         // of the gap, by the obstacle's place along the normal: its size
+    double per_force = 1.0;         // p: size of the gap's gradient by the obstacle's place
     Vec3 way = Vec3::UnitX();       // h
     Vec3 place = Vec3::Zero();      // where the force acts (m), and the torque of a unit of normal force (m)
     Vec3 torque = Vec3::Zero();

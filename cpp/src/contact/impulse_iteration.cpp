@@ -50,7 +50,8 @@ bool stayed(const std::vector<Wrench>& on_base, std::vector<Wrench>& last) {
         change = std::max(change, (on_base[i].force - last[i].force).norm());
         last[i] = on_base[i];
     }
-    constexpr double settled = 1e-6;  // what holds a corner that is all but at rest follows on rounding
+    // Friction at a base corner nearly at rest is decided by rounding: smaller changes count as converged.
+    constexpr double settled = 1e-6;
     return change <= settled * sum;
 }
 

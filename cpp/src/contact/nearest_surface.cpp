@@ -63,8 +63,8 @@ BIRM3D_BLOCK_LOOP bool any_meets(const BlockColumn& force, const BlockColumn& ga
     return block_max(meets) > 0.0;
 }
 
-// Of nodes that push and see the k-th obstacle: how far was any off the plane that it sees now, an instant before (m)? It
-// was at p + D p + s then, D by columns.
+// Greatest distance (m), at the start of the step, of any loaded node of the k-th obstacle from its present contact plane.
+// It stood at p + D p + s then, D by columns.
 BIRM3D_BLOCK_LOOP double furthest_off_plane(const double* D, const double* s, std::size_t k,
                                             const TrussBlockState& block, const NodeFaces& faces,
                                             const BlockContact& contact,

@@ -18,8 +18,8 @@ Mat6 inertia_of(const RigidBody& body, const Mat3& R) {
     return inertia;
 }
 
-// Of the wheels on the ground that would go into it but for its push in the second half, which `motion` takes to be that of
-// the first: see settled().
+// Inertia matrix of the ground under wheels that would sink into it without the impulse of the second half of the step.
+// `motion` assumes that this impulse is that of the first half: see settled().
 Mat6 hold_of_ground(const Unit& unit, const BodyState& body, const Mat6& inertia, const Twist& motion,
                     const std::vector<double>& tire_impulses, std::vector<RigidContact>& memory) {
     memory.clear();

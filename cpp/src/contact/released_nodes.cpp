@@ -91,8 +91,8 @@ std::optional<Vec3> first_stop(const ContactPass& pass, const DistantObstacles& 
     return path.at(outside);
 }
 
-// Has an indentation released the node, or gone from under it at once, as where its post comes to lie across the panel?
-// No motion of the step takes a node as far outwards as such a one stands now.
+// Has an indentation released the node, or vanished within this step, as where its post comes to lie across the panel?
+// A vanished one shows as a displacement outwards that is larger than any motion of the step allows.
 bool leaves_indentation(const ContactPass& pass, const ContactBlock& block, std::size_t i) {
     if (!block.indentations.empty() && block.released[i] > 0.0) return true;
     const TrussBlockState &last = *block.start, &next = *block.end;

@@ -32,11 +32,11 @@ Twist relative_motion(const Scene& scene, const State& state, std::size_t unit, 
 void add_impulses(const Scene& scene, const State& state, const ContactKick& kicked,
                   std::vector<ContactImpulses>& sums, std::vector<Wrench>& joints);
 
-// What the normal impulse of a contact takes from the bodies, or what holds it (J).
+// Energy that the normal impulse of a contact takes from the bodies (J).
 double loss_of(const RigidContact& contact, std::span<const Twist> before, std::span<const Twist> after);
 
-// With the mean of the motions before and after, which makes the change of kinetic energy exact. What is held
-// takes no energy but by the error of the steps, and has a term of its own in which that shows.
+// Adds the contacts' work to the energy balance, by the mean of the velocities before and after: so the change of kinetic
+// energy is exact. Contacts that last have a term of their own, which is the error of the steps alone.
 void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vector<Twist>& before,
                    const std::vector<Twist>& after, State& state);
 

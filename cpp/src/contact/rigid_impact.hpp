@@ -1,8 +1,7 @@
 // Rigid impacts, Eq. 1 for all contacts that take part, at an instant of their own.
 //
-// Newton's restitution of several contacts at once, with friction, can make energy: a contact that the others stop from
-// separating, or friction whose point the blow turns round, does work on the bodies. What an impact takes, by friction at
-// each point and by all normal impulses together, is not below zero here:
+// Newton's restitution of several contacts at once, with friction, can increase the kinetic energy. Here neither friction
+// at a point nor all normal impulses together add any:
 //   - where friction against the motion before the impact would drive a point, it acts against the mean of the motions
 //     before and after; if it drives one all the same, it is left out there;
 //   - then the restitution is the greatest, up to the one asked for, at which the normal impulses take no less than

@@ -1,4 +1,4 @@
-// The step that is being tried: what half_kick, barrier_forces and try_step hand to each other.
+// The step that is being tried: what half_kick, find_contact_forces and try_step hand to each other.
 #pragma once
 
 #include <limits>

@@ -25,9 +25,9 @@ void add_friction(double mu, double full_speed, const Twist& motion, const Place
 // Of a node at r from the mass centre with a force of -q times its sliding velocity.
 Mat6 resistance(double q, const Vec3& r, const Vec3& normal);
 
-// The twist to which half a step of friction brings a body that would come to `motion` if friction stayed as it was at
-// the twist `before`, and if nothing held it: M (u - motion) = -dt/2 resistance (u - before) - held u. World axes, inertia
-// too; `held`: so hard is it held at rest (kg, kg m, kg m^2).
+// Twist u after half a step with implicit friction: M (u - motion) = -dt/2 resistance (u - before) - held u. `motion` is the
+// twist with friction frozen at the twist `before` and without constraints. `held` is the inertia matrix of what holds
+// the body at rest (kg, kg m, kg m^2). World axes, inertia too.
 Twist settled(const Twist& motion, const Twist& before, const Mat6& resistance, double dt,
               const Mat6& inertia, const Mat6& held);
 

@@ -127,8 +127,8 @@ BIRM3D_INLINE Row held_by_other(const IndentationNumbers& d, const SeenColumns& 
     return where_above(Row::load(seen.per_force + i), zero, far, held);
 }
 
-// What the indentation asks of each node. Those that push go with it while it reaches over them, and are let go then; others go
-// with it once it has come to them.
+// Required gap of each node. A loaded node follows the indentation while that extends over it, and is released afterwards.
+// An unloaded one follows once the indentation has reached it.
 struct Asked {
     Row gap, lets_go, rank;
 };
@@ -146,8 +146,8 @@ BIRM3D_INLINE Asked ask(const IndentationNumbers& d, const PanelNodes& nodes, co
     return {gap, off, where_above(off, zero, away, where_above(far, gap, h.gap, far))};
 }
 
-// Which nodes are the indentation's? One for those that follow it, two for those that it releases, else zero. Of several the
-// one that is deepest there holds a node: by their ways it would change hands with every step.
+// Nodes of this indentation: one for those that follow it, two for those that it releases, else zero. Of several the deepest
+// one at the node governs. By their displacements the choice would alternate from step to step.
 BIRM3D_INLINE Row find_own(const IndentationNumbers& d, const PanelNodes& nodes, const SeenColumns& seen,
                            const Asked& asked, std::size_t i) {
     const Row zero = 0.0, one = 1.0, so_far = Row::load(seen.gap + i), gap = asked.gap;

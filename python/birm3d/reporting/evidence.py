@@ -1,4 +1,4 @@
-"""Given tests nearby, balances, verification and what the model has of the phenomena."""
+"""Given tests nearby, balances, verification and which phenomena the model includes."""
 
 from __future__ import annotations
 

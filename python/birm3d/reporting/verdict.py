@@ -21,7 +21,7 @@ _NO_BARRIER = "There is no barrier in this scene: nothing is rated."
 
 
 def verdict_section(case: Case) -> Section:
-    """Return what a reader wants to know first."""
+    """Return the summary section: outcome, rating, greatest loads."""
     result = case.result
     blocks: list[Block] = [
         Table("At a glance", ("question", "answer"), list(_glance(case))),
