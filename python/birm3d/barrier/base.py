@@ -133,7 +133,7 @@ class Barrier(BarrierMakers):
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return the closed surfaces that pictures show, one for each element.
 
-        Endlessly high ones are drawn up to ``top``, endlessly long ones between the places ``seen`` of the line [m].
+        Endlessly high ones are drawn up to ``top``, endlessly long ones between the places ``seen`` [m].
         """
         raise TypeError(f"no surface of a {type(self).__name__}")
 
