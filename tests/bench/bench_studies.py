@@ -57,7 +57,7 @@ class Row:
     executor: str
     runs: int
     rate: float  # runs a second
-    cpu: float  # of all cores and processes, for a run [s]
+    time_ms: float  # of all cores and processes, for a run
     error: float
     mark: float  # runs a second on two cores
     load: float  # of the machine by all that runs on it
@@ -65,7 +65,7 @@ class Row:
     @property
     def rate_by_cpu(self) -> float:
         """Runs a second of two cores that have nothing else to do."""
-        return 2.0 / self.cpu
+        return 2e3 / self.time_ms
 
 
 def pickup(barrier: Barrier, quick: bool) -> Simulation:
@@ -151,7 +151,7 @@ def measured(case: Case, executor: str, runs: int, repeats: int) -> Row:
         # Processes tell theirs when they end: with it what it took to start them.
         if "thread" not in executor:
             used = cpu_time() - used
-        cpu.append(used / (runs + max(2, runs // 20)))
+        cpu.append(1e3 * used / (runs + max(2, runs // 20)))
     load = os.getloadavg()[0]
     error = greatest_error(case, study)
     return Row(
@@ -199,7 +199,7 @@ def main() -> int:
     runs, repeats, most = (20, 1, 400) if options.quick else (options.runs, options.repeats, options.memory)
     print(f"{cpu_model()}, {os.cpu_count()} cores")
     print(
-        f"{'case':23s} {'executor':25s} {'runs':>6s} {'runs/s':>8s} {'CPU [us]':>9s} {'by CPU':>8s}   error"
+        f"{'case':23s} {'executor':25s} {'runs':>6s} {'runs/s':>8s} {'CPU [ms]':>9s} {'by CPU':>8s}   error"
     )
     rows = []
     for case in cases(options.quick):
@@ -209,7 +209,7 @@ def main() -> int:
             row = measured(case, executor, runs * case.times, repeats)
             rows.append(row)
             print(
-                f"{row.case:23s} {row.executor:25s} {row.runs:6d} {row.rate:8,.0f} {row.cpu * 1e6:9.0f} "
+                f"{row.case:23s} {row.executor:25s} {row.runs:6d} {row.rate:8,.0f} {row.time_ms:9.3f} "
                 f"{row.rate_by_cpu:8,.0f} {row.error:7.0e}"
             )
     for case in cases(options.quick):
