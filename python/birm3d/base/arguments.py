@@ -52,9 +52,9 @@ def checked(public: Checked) -> Checked:
         if name.startswith("_") and name != "__init__":
             continue
         if isinstance(member, (staticmethod, classmethod)):
-            setattr(public, name, type(member)(_checked_function(member.__func__)))
+            setattr(public, name, type(member)(_checked_function(member.__func__, public)))
         elif inspect.isfunction(member):
-            setattr(public, name, _checked_function(member))
+            setattr(public, name, _checked_function(member, public))
     return public
 
 
@@ -67,7 +67,7 @@ def caller_level() -> int:
     return level
 
 
-def _checked_function(function: Callable[..., Any]) -> Callable[..., Any]:
+def _checked_function(function: Callable[..., Any], owner: type | None = None) -> Callable[..., Any]:
     parameters = inspect.signature(function).parameters
     if not parameters.keys() - {"self", "cls"}:
         return function
@@ -79,7 +79,7 @@ def _checked_function(function: Callable[..., Any]) -> Callable[..., Any]:
     def call(*args: Any, **kwargs: Any) -> Any:
         nonlocal kinds, by_place
         if kinds is None:
-            found = _kinds_of(function)  # not before: annotations may name what is imported later
+            found = _kinds_of(function, owner)  # not before: annotations may name what is imported later
             by_place = [found.get(name) for name in places]
             kinds = found  # last: another thread may look
         for place, (kind, value) in enumerate(zip(by_place, args, strict=False)):
@@ -102,7 +102,8 @@ def check_fields(instance: Any, texts: Container[str] = ()) -> None:
 
     ``texts`` names the fields that may be text now, or a list of it.
     """
-    for name, kind in _field_kinds(type(instance).__init__):
+    owner: type = type(instance)
+    for name, kind in _field_kinds(type(instance).__init__, owner):
         value = getattr(instance, name)
         if not kind.holds(value) and not (name in texts and (isinstance(value, str) or _is_list(value))):
             _refuse(name, kind, value)
@@ -119,29 +120,37 @@ def _refuse(name: str, kind: Kind, value: Any) -> NoReturn:
 
 
 @functools.cache
-def _field_kinds(constructor: Callable[..., Any]) -> tuple[tuple[str, Kind], ...]:
-    kinds = _kinds_of(constructor).items()
+def _field_kinds(constructor: Callable[..., Any], owner: type) -> tuple[tuple[str, Kind], ...]:
+    kinds = _kinds_of(constructor, owner).items()
     return tuple((name, kind) for name, kind in kinds if name != "self" and kind is not None)
 
 
 @functools.cache
-def _kinds_of(function: Callable[..., Any]) -> dict[str, Kind | None]:
+def _kinds_of(function: Callable[..., Any], owner: type | None) -> dict[str, Kind | None]:
     """Return the kind of each argument; that of all others that a function takes is called "**"."""
     found: dict[str, Kind | None] = {}
+    names = _names_for(function, owner)
     for name, parameter in inspect.signature(function).parameters.items():
         label = "**" if parameter.kind is parameter.VAR_KEYWORD else name
         if parameter.kind is not parameter.VAR_POSITIONAL:
-            found[label] = None if name.startswith("_") else _kind(_resolved(parameter.annotation, function))
+            found[label] = None if name.startswith("_") else _kind(_resolved(parameter.annotation, names))
     return found
 
 
-def _resolved(annotation: Any, function: Callable[..., Any]) -> Any:
+def _names_for(function: Callable[..., Any], owner: type | None) -> dict[str, Any]:
+    """Return what annotations can name: a dataclass has fields whose types only the base's module knows."""
+    found = dict(vars(sys.modules[__name__.partition(".")[0]]))
+    for base in reversed(owner.__mro__ if owner else ()):
+        found.update(getattr(sys.modules.get(base.__module__), "__dict__", {}))
+    return {**found, **inspect.unwrap(function).__globals__}
+
+
+def _resolved(annotation: Any, names: dict[str, Any]) -> Any:
     """Return an annotation as an object; ``Any`` where it names what is only there for the type checker."""
     if not isinstance(annotation, str):
         return annotation
-    package = sys.modules[__name__.partition(".")[0]]
     try:
-        return eval(annotation, {**vars(package), **inspect.unwrap(function).__globals__})
+        return eval(annotation, names)
     except (NameError, AttributeError):
         return Any
 

@@ -37,6 +37,7 @@ from functools import lru_cache
 from typing import Any
 
 from ..barrier.kinds import KINDS
+from ..base import checks
 from ..base.arguments import checked
 from ..scene.scene import APPROACH, Scene
 from ..scene.settings import Settings
@@ -274,7 +275,7 @@ def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -
     if "truss" in groups:
         recipe = recipe.with_truss_law(**groups["truss"])
     if "mesh_density" in numbers:
-        recipe = recipe.with_mesh_density(numbers["mesh_density"])
+        recipe = recipe.with_mesh_density(checks.number("mesh_density", numbers["mesh_density"]))
     if "rate_sensitivity" in numbers:
         recipe = recipe.each(
             rate_sensitivity=si("rate_sensitivity", numbers["rate_sensitivity"], "time per length")
