@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import pictures, units
-from ..base.checks import array
+from ..base.arguments import WrongTypeError, checked
+from ..base.checks import array, is_whole, shown
 from ..base.frozen_mapping import FrozenMapping
 from ..io.atomic_write import whole_file
 from ..scene.scene import Scene
@@ -124,7 +125,14 @@ class DesignLoad:
 
     def __getitem__(self, element: int | str) -> ElementDesign:
         if not isinstance(element, str):
-            return self.rows[element]
+            if not is_whole(element):
+                raise WrongTypeError(f"element must be a whole number or text, got {shown(element)}")
+            if not -len(self.rows) <= element < len(self.rows):
+                raise ValueError(
+                    f"element must be >= {-len(self.rows)} and < {len(self.rows)}, the number of elements, "
+                    f"got {shown(element)}"
+                )
+            return self.rows[int(element)]
         for row in self.rows:
             if row.name == element:
                 return row
@@ -243,6 +251,7 @@ class DesignLoad:
         lines = [f"({number}) {self.scenes[number]}" for number in named]
         return lines + [f"({number}) failed: {reason}" for number, reason in self.failed.items()]
 
+    @checked
     def spectrum(
         self, periods: npt.ArrayLike, element: int | str | None = None, ductility: float | None = None
     ) -> Floats:

@@ -154,6 +154,7 @@ class OccupantRisk:
         needs = {"asi": "z", "thiv": "yaw_rate", "phd": "yaw_rate"}
         return tuple(f"{value} needs {channel}" for value, channel in needs.items() if not self._has(channel))
 
+    @checked
     def passed(self, standard: str) -> bool:
         """Return whether all limits of one standard are met: ``"MASH"``, ``"NCHRP 350"`` or ``"EN 1317"``.
 

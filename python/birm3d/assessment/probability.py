@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ..base.arguments import checked
 from ..base.frozen_mapping import FrozenMapping
 from .criteria import Criterion, criteria_html, criteria_text
 from .rating import Rating
@@ -59,8 +60,17 @@ class RatingStudy:
         """Share of the runs in which the vehicle was contained."""
         return sum(rating.contained for rating in self.ratings) / len(self.ratings)
 
+    @checked
     def interval(self, share: float) -> tuple[float, float]:
-        """Return the 95 % interval of a probability by its share of these runs (Wilson)."""
+        """Return the 95 % interval of a probability by its share of these runs (Wilson).
+
+        Raises
+        ------
+        ValueError
+            If the share is not from 0 to 1.
+        """
+        if not 0.0 <= share <= 1.0:
+            raise ValueError(f"share must be >= 0 and <= 1, got {share}")
         n = len(self.ratings)
         middle = (share + _Z**2 / (2 * n)) / (1 + _Z**2 / n)
         half = _Z / (1 + _Z**2 / n) * math.sqrt(share * (1 - share) / n + _Z**2 / (4 * n**2))

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Any
 
 from .. import _core
+from ..base.arguments import checked
 from ..scene.scene import Scene
 from .record import RunRecord
 from .stored import Stored
@@ -106,6 +107,7 @@ def energy_residual(scene: Scene, energy: _core.ExtremeEnergy) -> float:
     return relative_to_start(scene, energy.residual, energy.start)
 
 
+@checked
 def relative_to_start(scene: Scene, energy: float, start: float) -> float:
     """Return an energy relative to that at the start, which counts as no less than that of a standstill."""
     return energy / max(start, 0.5 * scene.vehicle.mass * _STANDSTILL**2)
