@@ -14,15 +14,22 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// The least of `least` and the gaps of some points, of which a box can be left out that is further away.
+// Points of a block and a box around them.
+struct Points {
+    Box box;
+    const BlockColumn *x, *y, *z;
+};
+
+// The least of `least` and the gaps of some points, of which a box can be left out that is further away. `block`: the points
+// of a block, or none.
 template <class Blocks>
 double nearest_in_blocks(const Shape& shape, const Placement& seen, std::size_t blocks, const Blocks& block,
                          double least) {
     alignas(64) NearestOfBlock found;
     for (std::size_t b = 0; b < blocks; ++b) {
-        const auto [box, x, y, z] = block(b);
-        if (!within_reach(shape, seen, box, least)) continue;
-        nearest_of(shape, seen, seen, *x, *y, *z, found);
+        const std::optional<Points> points = block(b);
+        if (!points || !within_reach(shape, seen, points->box, least)) continue;
+        nearest_of(shape, seen, seen, *points->x, *points->y, *points->z, found);
         least = std::min(least, *std::min_element(found.gap.begin(), found.gap.end()));
     }
     return least;
@@ -88,36 +95,29 @@ std::uint8_t indented_panels(const UnitState& unit, std::size_t obstacle) {
     return known != unit.indented.end() ? known->panels : std::uint8_t{0};
 }
 
-// A place where nothing is (m).
-constexpr double nowhere = 1e9;
-
-struct Points {
-    Box box;
-    const BlockColumn *x, *y, *z;
-};
-
-// Nodes of second trusses that do not push are no part of the skin: its place is that of the first trusses' nodes.
+// Nodes of second trusses that push: the others are no part of the skin, whose place is that of the first trusses' nodes.
 class PushingNodes {
   public:
     explicit PushingNodes(const TrussBlockState& block)
         : box_(block.box), x_(block.x), y_(block.y), z_(block.z) {
-        const auto first =
-            std::find_if(block.force.begin(), block.force.end(), [](double f) { return f > 0.0; });
-        if (first == block.force.end()) {
-            box_ = {Vec3::Constant(nowhere), Vec3::Zero()};
-            return;
-        }
+        const auto pushes = [](double force) { return force > 0.0; };
+        const auto first = std::find_if(block.force.begin(), block.force.end(), pushes);
+        any_ = first != block.force.end();
+        if (!any_) return;
         const auto known = static_cast<std::size_t>(first - block.force.begin());
         for (std::size_t n = 0; n < block_size; ++n) {
-            if (block.force[n] > 0.0) continue;
+            if (pushes(block.force[n])) continue;
             x_[n] = block.x[known];
             y_[n] = block.y[known];
             z_[n] = block.z[known];
         }
     }
-    Points points() const { return {box_, &x_, &y_, &z_}; }
+    std::optional<Points> points() const {
+        return any_ ? std::optional(Points{box_, &x_, &y_, &z_}) : std::nullopt;
+    }
 
   private:
+    bool any_ = false;
     Box box_;
     alignas(64) BlockColumn x_, y_, z_;
 };
@@ -136,16 +136,13 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
             const Placement seen = placement(pose_of(scene, i, state), unit.body);
             if (!within_reach(shape, seen, all, least)) continue;
             const std::uint8_t indented = indented_panels(unit, i);
-            alignas(64) BlockColumn none;
-            none.fill(nowhere);
             std::optional<PushingNodes> pushing;
             if (what.nodes)
                 least = nearest_in_blocks(
                     shape, seen, i == scene.ground ? mesh.shell_blocks : mesh.blocks,
-                    [&](std::size_t b) {
+                    [&](std::size_t b) -> std::optional<Points> {
                         const TrussBlockState& block = unit.trusses.block[b];
-                        if ((mesh.panels_of[b] & indented) != 0)
-                            return Points{{Vec3::Constant(nowhere), Vec3::Zero()}, &none, &none, &none};
+                        if ((mesh.panels_of[b] & indented) != 0) return std::nullopt;
                         if (b < mesh.skin_blocks || b >= mesh.shell_blocks)
                             return Points{block.box, &block.x, &block.y, &block.z};
                         return pushing.emplace(block).points();
