@@ -23,10 +23,12 @@ from .assessment import (
 from .barrier import Barrier, FreeStanding, lateral_load
 from .calibration import calibrate
 from .io.file_format import FileFormatError
+from .pictures import plot_runs
 from .reporting import dossier
 from .result import Result, metrics
 from .result.element_loads import ElementLoad
 from .result.energy_balance import LedgerWarning
+from .result.load_map import LoadMap
 from .result.overlap import OverlapWarning
 from .result.result import load, write_capsule
 from .scene.mesh_check import CoarseSkinWarning
@@ -45,6 +47,7 @@ from .study import Study
 from .study.design_limits import greatest_gap, least_height, least_segment_mass
 from .study.ensemble import ensemble
 from .study.fragility import fragility
+from .study.history_bands import HistoryBands, history_bands
 from .study.impact_point import critical_impact_point
 from .study.limit_search import Limit, NotInRangeError
 from .study.monte_carlo import monte_carlo
@@ -68,9 +71,11 @@ __all__ = [
     "ElementLoad",
     "FileFormatError",
     "FreeStanding",
+    "HistoryBands",
     "Joint",
     "LedgerWarning",
     "Limit",
+    "LoadMap",
     "NotInRangeError",
     "OccupantRisk",
     "OverlapWarning",
@@ -102,6 +107,7 @@ __all__ = [
     "filters",
     "fragility",
     "greatest_gap",
+    "history_bands",
     "lateral_load",
     "least_height",
     "least_segment_mass",
@@ -109,6 +115,7 @@ __all__ = [
     "metrics",
     "monte_carlo",
     "occupant_risk",
+    "plot_runs",
     "predict",
     "rate",
     "read_csv_channels",

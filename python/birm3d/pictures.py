@@ -19,9 +19,11 @@ if TYPE_CHECKING:
 
     from .assessment.design_table import DesignLoad
     from .calibration.result import CalibrationResult
+    from .result.load_map import LoadMap
     from .result.result import Result
     from .signals.compare import CurveComparison
     from .study.fragility import Fragility
+    from .study.history_bands import HistoryBands
     from .study.impact_point import CriticalImpactPoint
     from .study.limit_search import Limit
     from .study.sobol import SobolIndices
@@ -44,11 +46,14 @@ __all__ = [
     "plot_fit",
     "plot_fragility",
     "plot_histories",
+    "plot_history_bands",
     "plot_limit",
+    "plot_load_map",
     "plot_plan",
     "plot_profiles",
     "plot_requested_vs_achieved",
     "plot_residuals",
+    "plot_runs",
     "plot_sobol",
     "plot_stability",
     "plot_study",
@@ -210,6 +215,50 @@ def plot_design_load(loads: DesignLoad) -> Figure:
     from .plotting.design_loads import plot_design_load
 
     return plot_design_load(loads)
+
+
+def plot_load_map(map_: LoadMap, time: float | None) -> Figure:
+    """Return a picture of the load on a wall by cell."""
+    from .plotting.load_maps import plot_load_map
+
+    return plot_load_map(map_, time)
+
+
+def plot_history_bands(bands: HistoryBands) -> Figure:
+    """Return a figure of medians and bands over time."""
+    from .plotting.runs import plot_history_bands
+
+    return plot_history_bands(bands)
+
+
+@checked
+def plot_runs(
+    results: Sequence[Result],
+    channels: Sequence[str] = ("barrier_force", "deceleration", "velocity", "travel"),
+    labels: Sequence[str] | None = None,
+) -> Figure:
+    """Return histories of several runs, laid over each other, a panel for each channel.
+
+    The title says what the scenes have in common, the legend in what they differ.
+
+    Parameters
+    ----------
+    results
+        1 to 8 of them.
+    channels
+        Names of :data:`birm3d.result.history_channels.HISTORY_CHANNELS`: ``"deceleration"``,
+        ``"barrier_force"``, ``"velocity"``, ``"travel"``, ``"roll"``, ``"pitch"``, ``"yaw"``.
+    labels
+        One for each run in place of that in which the scenes differ.
+
+    Raises
+    ------
+    ValueError
+        If there are no or too many results, a channel is unknown, or the labels are not as many as the runs.
+    """
+    from .plotting.runs import plot_runs
+
+    return plot_runs(results, channels, labels)
 
 
 def plot_limit(limit: Limit) -> Figure:

@@ -15,9 +15,10 @@ from .. import units
 from ..io.atomic_write import whole_file
 from ..result.summary import ELEMENT_COLUMNS, element_rows, elements_in_si, outcome_rows
 from .calibrate import calibrate_file
-from .files import CAPSULE, HTML, MOVIE, PICTURE, RESULT, TABLE
+from .files import CAPSULE, HTML, LOAD_MAP, MOVIE, PICTURE, RESULT, TABLE
 from .from_facts import from_facts
 from .loads import loads
+from .overlay import overlay
 from .predict import predict
 from .rate import STANDARD_HELP, assessed, assessments_as_json, print_assessments, rate
 from .report import report
@@ -42,6 +43,7 @@ def _cli() -> None:
 _cli.add_command(calibrate_file)
 _cli.add_command(from_facts)
 _cli.add_command(loads)
+_cli.add_command(overlay)
 _cli.add_command(predict)
 _cli.add_command(rate)
 _cli.add_command(report)
@@ -55,6 +57,7 @@ _cli.add_command(rerun)
 @click.option("--rate", "standards", multiple=True, help=f"Also the rating by a standard. {STANDARD_HELP}")
 @click.option("--occupant-risk", "with_risk", is_flag=True, help="Also OIV, ridedown, ASI, THIV, PHD, OLC.")
 @click.option("--plot", type=PICTURE, help="Write figures to this file (.png, .pdf, .svg).")
+@click.option("--load-map", type=LOAD_MAP, help="Write the load on a wall by cell (.csv, .png, .pdf, .svg).")
 @click.option("--csv", "csv_path", type=TABLE, help="Write histories to this file (.csv).")
 @click.option("--save", type=RESULT, help="Write the result to this file (.npz); birm3d.load() reads it.")
 @click.option("--capsule", type=CAPSULE, help="Write a capsule (.birm3d) that `birm3d rerun` runs again.")
@@ -67,6 +70,7 @@ def run(
     standards: tuple[str, ...],
     with_risk: bool,
     plot: Path | None,
+    load_map: Path | None,
     csv_path: Path | None,
     save: Path | None,
     capsule: Path | None,
@@ -94,6 +98,8 @@ def run(
         with whole_file(plot) as part:
             result.plot().savefig(part, dpi=150)
         click.echo(f"figures: {plot}", err=True)
+    if load_map is not None:
+        _write_load_map(result, load_map)
     if save is not None:
         result.save(save)
         click.echo(f"result: {save}", err=True)
@@ -106,6 +112,16 @@ def run(
     if movie is not None:
         result.animate(movie)
         click.echo(f"movie: {movie}", err=True)
+
+
+def _write_load_map(result: Result, path: Path) -> None:
+    cells = result.load_map()
+    if path.suffix.lower() == ".csv":
+        cells.to_csv(path)
+    else:
+        with whole_file(path) as part:
+            cells.plot().savefig(part, dpi=150)
+    click.echo(f"load map: {path}", err=True)
 
 
 @_cli.command()

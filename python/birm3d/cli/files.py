@@ -14,6 +14,7 @@ __all__ = [
     "CSV",
     "HTML",
     "JSON",
+    "LOAD_MAP",
     "MOVIE",
     "PICTURE",
     "RESULT",
@@ -85,6 +86,7 @@ def _listed(endings: tuple[str, ...]) -> str:
 
 # What Matplotlib writes without further programs.
 PICTURE = OutputFile(".png", ".pdf", ".svg", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".eps", ".ps")
+LOAD_MAP = OutputFile(".csv", ".png", ".pdf", ".svg")
 TABLE = OutputFile(".csv", ".csv.gz", ".csv.xz", ".csv.zip", ".txt", pandas="table")
 CSV = OutputFile(".csv", ".txt")
 RESULT = OutputFile(".npz")

@@ -10,9 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .. import units
+from ..barrier.rigid_wall import RigidWall
 from ..barrier.text import barrier_text
 from ..io.atomic_write import whole_file
 from ..result.crush_profile import Side, crushed_sides
+from ..result.element_loads import touched_elements
 from ..result.event import DECIDED
 from ..result.metrics import METRIC_UNITS
 from ..result.report import END_REASONS
@@ -67,6 +69,7 @@ def write_html(result: Result, path: str | Path, *, frames: int = 61) -> None:
         "OUTCOME": _table(("outcome", "value", "unit"), outcome_rows(result)),
         "CHECKS": _table(("check", "", "limit", "value"), _check_rows(result)),
         "ELEMENTS": _element_table(result),
+        "LOADMAP": _load_map(result),
         "METRICS": _table(("metric", "value", "unit"), _metric_rows(result)),
         "CRUSH": _crush_pictures(result) or "<p>None.</p>",
         "REPORT": escape(result.report()),
@@ -104,6 +107,14 @@ def _element_table(result: Result) -> str:
     if not rows:
         return "<p>None was touched.</p>"
     return f'<div class="wide">{_table(ELEMENT_COLUMNS, rows)}</div>'
+
+
+def _load_map(result: Result) -> str:
+    """Return the picture of the load on a rigid wall, of other barriers nothing."""
+    if not isinstance(result.scene.barrier, RigidWall) or not touched_elements(result.element_loads):
+        return ""
+    picture = figure_html(result.load_map().plot(), "load on the wall by cell", dpi=90.0)
+    return f"<h2>Load on the wall by cell</h2>{picture}"
 
 
 def _scene_rows(result: Result) -> list[tuple[str, ...]]:

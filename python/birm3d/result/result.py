@@ -9,6 +9,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy.typing as npt
+
 from .. import _core, pictures
 from .._version import __version__
 from ..base.arguments import checked
@@ -20,6 +22,7 @@ from . import result_file
 from . import table as result_table
 from .analysis import RunAnalysis
 from .capture import capture
+from .load_map import LoadMap, load_map
 from .report import report
 from .sensor import Sensor, place_sensor
 from .unit_result import UnitResult
@@ -121,6 +124,29 @@ class Result(RunAnalysis):
             If there is no such point or part; the message names those that there are.
         """
         return place_sensor(self, point, part)
+
+    def load_map(
+        self,
+        cell: Quantity | None = None,
+        *,
+        lateral: npt.ArrayLike | None = None,
+        height: npt.ArrayLike | None = None,
+    ) -> LoadMap:
+        """Return the force on the cells of a grid over a rigid wall; see :func:`birm3d.result.load_map`.
+
+        Parameters
+        ----------
+        cell
+            Side of the square cells [m]; ``None``: 0.25 m, more in long runs.
+        lateral, height
+            Edges of the cells in place of those, along the wall's line and above its foot [m].
+
+        Raises
+        ------
+        ValueError
+            If the barrier is no rigid wall, or the cells are too small or do not increase.
+        """
+        return load_map(self, cell, lateral=lateral, height=height)
 
     def with_frames(self, frames: int | Sequence[float] = 61) -> Result:
         """Return the same result with places of the shell nodes over time, for pictures.

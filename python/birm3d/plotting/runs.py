@@ -1,0 +1,144 @@
+"""Several runs in one figure, and bands of many."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .. import units
+from ..barrier.text import barrier_text
+from ..result.history_channels import HISTORY_CHANNELS, checked_channels
+from ..scene.scene import Scene
+from ..scene.text import overlap_text
+from .figure import new_figure
+from .style import BLUE, CYCLE, LEAST_ANGLE, SOLID, at_least, legend, prepare
+
+if TYPE_CHECKING:
+    from ..result.result import Result
+    from ..study.history_bands import HistoryBands
+
+__all__ = ["plot_history_bands", "plot_runs"]
+
+_MOST_RUNS = 8  # as many as there are colours
+_THIN = 40  # runs drawn as thin lines behind a band, at the most
+
+# What a scene is told by, in the order of titles.
+_PARTS: Mapping[str, Callable[[Scene], str]] = {
+    "vehicle": lambda scene: f"{scene.vehicle.name}, {scene.vehicle.mass:,.0f} kg",
+    "speed": lambda scene: f"{scene.impact_speed:.2f} m/s ({scene.impact_speed / units.mph:.1f} mph)",
+    "angle": lambda scene: f"{scene.impact_angle:g}°{overlap_text(scene)}",
+    "offset": lambda scene: f"offset {scene.impact_offset:g} m" if scene.impact_offset else "no offset",
+    "barrier": lambda scene: "no barrier" if scene.barrier is None else barrier_text(scene.barrier),
+    "friction": lambda scene: "" if scene.barrier is None else f"friction {scene.barrier.friction:g}",
+}
+_ALWAYS = ("vehicle", "speed", "angle", "barrier")
+
+
+def plot_runs(
+    results: Sequence[Result],
+    channels: Sequence[str] = ("barrier_force", "deceleration", "velocity", "travel"),
+    labels: Sequence[str] | None = None,
+) -> Figure:
+    """Return histories of several runs, laid over each other, a panel for each channel.
+
+    The title says what the scenes have in common, the legend in what they differ.
+
+    Parameters
+    ----------
+    results
+        1 to 8 of them.
+    channels
+        Names of :data:`birm3d.result.history_channels.HISTORY_CHANNELS`.
+    labels
+        One for each run in place of that in which the scenes differ.
+
+    Raises
+    ------
+    ValueError
+        If there are no or too many results, a channel is unknown, or the labels are not as many as the runs.
+    """
+    names = checked_channels(channels)
+    if not 1 <= len(results) <= _MOST_RUNS:
+        raise ValueError(f"results must be 1 to {_MOST_RUNS} runs, got {len(results)}")
+    if labels is not None and len(labels) != len(results):
+        raise ValueError(f"labels must be {len(results)}, one for each run, got {len(labels)}")
+    common, differ = _told_apart([result.scene for result in results])
+    texts = differ if labels is None else list(labels)
+    figure, panels = _panels(names)
+    for axes, name in zip(panels, names, strict=True):
+        channel = HISTORY_CHANNELS[name]
+        for i, (result, text) in enumerate(zip(results, texts, strict=True)):
+            values = channel.values(result) / channel.size
+            axes.plot(result.time * 1e3, values, color=CYCLE[i], label=text)
+        _finish(axes, name)
+    for axes in panels:
+        axes.set_xlim(0.0, max(float(result.time[-1]) for result in results) * 1e3)
+    handles, shown = panels[0].get_legend_handles_labels()
+    figure.legend(handles, shown, loc="outside lower center", ncols=2, frameon=False, fontsize="small")
+    figure.suptitle(common)
+    return figure
+
+
+def plot_history_bands(bands: HistoryBands) -> Figure:
+    """Return the median and the band of each channel over time, some of the runs as thin lines behind."""
+    names = tuple(bands.median)
+    figure, panels = _panels(names)
+    ms = bands.time * 1e3
+    step = -(-bands.n // _THIN)
+    for axes, name in zip(panels, names, strict=True):
+        size = HISTORY_CHANNELS[name].size
+        axes.plot(
+            ms, bands.runs[name][::step].T / size, color="0.5", ls=SOLID, lw=0.5, alpha=0.4, label="_runs"
+        )
+        band = f"{bands.share:.0%} of {bands.n} runs"
+        axes.fill_between(
+            ms, bands.low[name] / size, bands.high[name] / size, color=BLUE, alpha=0.25, lw=0, label=band
+        )
+        axes.plot(ms, bands.median[name] / size, color=BLUE, ls=SOLID, lw=2.0, label="median")
+        _finish(axes, name)
+        axes.set_xlim(0.0, float(ms[-1]))
+        legend([axes])
+    figure.suptitle(bands.title, fontsize="medium")
+    return figure
+
+
+def _panels(names: Sequence[str]) -> tuple[Figure, list[Axes]]:
+    columns = 1 if len(names) == 1 else 2
+    rows = -(-len(names) // columns)
+    figure = new_figure(5.8 * columns, 3.1 * rows + 0.9)
+    panels = list(figure.subplots(rows, columns, squeeze=False, sharex=True).flat)
+    for unused in panels[len(names) :]:
+        unused.remove()
+    prepare(*panels[: len(names)])
+    return figure, panels[: len(names)]
+
+
+def _finish(axes: Axes, name: str) -> None:
+    channel = HISTORY_CHANNELS[name]
+    words = channel.label
+    axes.set_title(f"{words[0].upper()}{words[1:]}", fontsize="medium")
+    axes.set_ylabel(f"{name.replace('_', ' ')} [{channel.unit}]")
+    axes.set_xlabel("time [ms]")
+    if channel.unit == "deg":
+        at_least(axes, LEAST_ANGLE)
+
+
+def _told_apart(scenes: Sequence[Scene]) -> tuple[str, list[str]]:
+    """Return what scenes have in common as a title, and what each has for itself as a label."""
+    told = {name: [tell(scene) for scene in scenes] for name, tell in _PARTS.items()}
+    same = {name: texts[0] for name, texts in told.items() if len(set(texts)) == 1}
+    head = ", ".join(same[name] for name in _ALWAYS[:-1] if name in same)
+    common = "\n".join(part for part in (head, same.get("barrier", "")) if part) or "several scenes"
+    labels = [
+        ", ".join(texts[i] for name, texts in told.items() if name not in same) or f"run {i + 1}"
+        for i in range(len(scenes))
+    ]
+    if len(set(labels)) < len(labels):  # scenes that differ in what is not told
+        labels = [
+            f"run {i + 1}: {label}" if not label.startswith("run ") else label
+            for i, label in enumerate(labels)
+        ]
+    return common, labels

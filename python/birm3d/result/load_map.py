@@ -1,0 +1,339 @@
+"""Where on a wall the load acts: force over time in the cells of a grid, as a wall of load cells reads it."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterable
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import pictures
+from ..barrier.rigid_wall import RigidWall
+from ..base.arguments import checked
+from ..base.checks import array
+from ..io.atomic_write import whole_file
+from ..scene.text import scene_text
+from ..signals.filters import cfc, moving_average
+from ..units import Quantity, si
+from .element_loads import element_loads
+from .face_loads import SPREAD, Face, FaceStep, face_steps
+from .record import RunRecord
+from .unit_result import read_only
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["LoadMap", "load_map"]
+
+Floats = npt.NDArray[np.float64]
+
+_USUAL_CELL = 0.25  # m
+_LEAST_CELL, _MOST_NUMBERS = 0.01, 30_000_000
+# Below this share of the greatest force what nodes do not account for is an error of interpolation.
+_REST = 0.03
+_CLASS = 60.0  # SAE J211-1, barrier forces
+
+
+class LoadMap:
+    """Force on the cells of a grid over a wall's face; made by :meth:`birm3d.Result.load_map`.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n,)
+        Of the result's rows [s].
+    lateral, height : ndarray, shape (columns + 1,), (rows + 1,)
+        Edges of the cells: along the wall's line from its origin, and above its foot [m]. Seen by the vehicle
+        the columns run from right to left, as y does.
+    force : ndarray, shape (n, rows, columns)
+        Across the wall's line, into the wall, means over the output interval [N]. Friction is not in it.
+    outside : ndarray, shape (n,)
+        Force that no cell has, where edges were given and the vehicle pushes beside them [N].
+    title : str
+        Of the scene, as figures have it.
+    """
+
+    def __init__(
+        self, time: Floats, lateral: Floats, height: Floats, force: Floats, outside: Floats, title: str
+    ) -> None:
+        self.time, self.lateral, self.height = time, lateral, height
+        self.force, self.outside = read_only(force), read_only(outside)
+        self.title = title
+
+    @property
+    def interval(self) -> float:
+        """Between rows [s]."""
+        return float(self.time[1] - self.time[0])
+
+    @cached_property
+    def resultant(self) -> Floats:
+        """Sum of all cells and of what is outside them, shape (n,) [N]."""
+        return read_only(self.force.sum(axis=(1, 2)) + self.outside)
+
+    @cached_property
+    def impulse(self) -> Floats:
+        """Of each cell, shape (rows, columns) [N s]."""
+        return read_only(self.force[1:].sum(axis=0) * self.interval)
+
+    @cached_property
+    def peak(self) -> Floats:
+        """Greatest force of each cell after CFC 60 (SAE J211-1), shape (rows, columns) [N].
+
+        Where the output interval is too long for that class, the greatest of the unfiltered means.
+        """
+        cells = self.force.reshape(len(self.time), -1)
+        if self.interval * _CLASS <= 0.1:
+            cells = np.column_stack([cfc(cell, _CLASS, self.interval) for cell in cells.T])
+        return read_only(cells.max(axis=0).reshape(self.force.shape[1:]))
+
+    @cached_property
+    def peak_50ms(self) -> Floats:
+        """Greatest mean force of each cell over 50 ms, shape (rows, columns) [N]."""
+        cells = self.force.reshape(len(self.time), -1)
+        means = [moving_average(cell, 0.05, self.interval).max() for cell in cells.T]
+        return read_only(np.array(means).reshape(self.force.shape[1:]))
+
+    def at(self, time: Quantity) -> Floats:
+        """Return the forces of the row that is nearest to an instant, shape (rows, columns) [N].
+
+        Raises
+        ------
+        ValueError
+            If the instant is outside the run.
+        """
+        instant = si("time", time, "time")
+        if not 0.0 <= instant <= self.time[-1]:
+            raise ValueError(f"time must be within the run, 0 to {self.time[-1]:g} s, got {instant:g}")
+        return read_only(self.force[int(np.argmin(np.abs(self.time - instant)))])
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write a row a cell: its edges, impulse, peak after CFC 60, and greatest 50-ms mean; SI."""
+        head = (
+            *("lateral from [m]", "lateral to [m]", "height from [m]", "height to [m]"),
+            *("impulse [N s]", "peak force CFC 60 [N]", "50-ms force [N]"),
+        )
+        with whole_file(path) as part, part.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(head)
+            for i, j in np.ndindex(*self.impulse.shape):
+                edges = (*self.lateral[j : j + 2].tolist(), *self.height[i : i + 2].tolist())
+                values = (self.impulse[i, j], self.peak[i, j], self.peak_50ms[i, j])
+                writer.writerow((*edges, *map(float, values)))
+
+    def summary(self) -> str:
+        """Return the table of impulses, the highest row of cells first, columns as y runs."""
+        middles = 0.5 * (self.lateral[1:] + self.lateral[:-1])
+        lines = [f"{self.title}: impulse by cell [kN s]", "height [m]  " + _row(f"{y:+.2f}" for y in middles)]
+        for i in reversed(range(len(self.height) - 1)):
+            range_ = f"{self.height[i]:.2f}-{self.height[i + 1]:.2f}"
+            lines.append(f"{range_:<12}" + _row(_number(value / 1e3) for value in self.impulse[i].tolist()))
+        total = self.impulse.sum() / 1e3
+        lines.append(
+            f"sum of the cells {total:.3g} kN s, greatest cell {self.peak.max() / 1e3:,.0f} kN, CFC 60"
+        )
+        return "\n".join(lines)
+
+    __str__ = summary
+
+    def plot(self, time: Quantity | None = None) -> Figure:
+        """Return a picture of impulse and peak force by cell; of an instant, of the force then."""
+        return pictures.plot_load_map(self, None if time is None else si("time", time, "time"))
+
+    def _repr_html_(self) -> str:
+        return pictures.text_html(self.summary(), self.plot(), "load map")
+
+    def __repr__(self) -> str:
+        rows, columns = self.impulse.shape
+        return f"LoadMap({rows} x {columns} cells, {self.impulse.sum():.4g} N s)"
+
+
+@checked
+def load_map(
+    result: RunRecord,
+    cell: Quantity | None = None,
+    *,
+    lateral: npt.ArrayLike | None = None,
+    height: npt.ArrayLike | None = None,
+) -> LoadMap:
+    """Return the force on the cells of a grid over the face of a rigid wall.
+
+    The scene is run once more, and at each step every node that presses on the face is in the cell in which
+    it stands then. Between steps forces are linear in time. In each row the cells are scaled to the force
+    that the result has across the line, so that they add up to it. What the rigid body or a tyre presses by
+    itself is in the cell where the moments of the wall's load put it.
+
+    Parameters
+    ----------
+    cell
+        Side of the square cells [m], at least 0.01; they begin at the wall's foot and at its origin.
+        ``None``: 0.25 m, doubled where the map of a long run would have more than 30 million numbers.
+    lateral, height
+        Edges of the cells in place of those, increasing [m]: those of a load-cell wall.
+
+    Raises
+    ------
+    ValueError
+        If the barrier is no rigid wall that is fixed, the cells are too small or their edges do not increase,
+        or the scene does not run the same way again.
+    """
+    wall = result.scene.barrier
+    if not isinstance(wall, RigidWall):
+        kind = "none" if wall is None else type(wall).__name__
+        raise ValueError(f"barrier must be a rigid wall to have a load map, got {kind}")
+    side = _USUAL_CELL if cell is None else si("cell", cell, "length")
+    if not side >= _LEAST_CELL:
+        raise ValueError(f"cell must be >= {_LEAST_CELL} m, got {side:g}")
+    face = Face.of(wall)
+    steps = face_steps(result, face)
+    edges = _grid(result, steps, lateral, height, side, doubled=cell is None)
+    edges_y, edges_z = edges
+    shape = (len(edges_z) - 1, len(edges_y) - 1)
+    cells = _in_time(result.time, steps, edges_y, edges_z)
+    force = _completed(result, wall, face, steps, cells, edges)
+    inner = force[:, :-1].reshape(-1, *shape)
+    return LoadMap(result.time, edges_y, edges_z, inner, force[:, -1], scene_text(result.scene, "\n"))
+
+
+def _grid(
+    result: RunRecord,
+    steps: list[FaceStep],
+    lateral: npt.ArrayLike | None,
+    height: npt.ArrayLike | None,
+    side: float,
+    *,
+    doubled: bool,
+) -> tuple[Floats, Floats]:
+    """Return the edges of the cells along the line and up; of larger ones where they may be doubled."""
+    most = _MOST_NUMBERS // len(result.time)
+    while True:
+        y = _edges("lateral", lateral, side, [step.along for step in steps], from_foot=False)
+        z = _edges("height", height, side, [step.height for step in steps], from_foot=True)
+        count = (len(y) - 1) * (len(z) - 1)
+        if count <= most:
+            return y, z
+        if not doubled or (lateral is not None and height is not None):
+            raise ValueError(
+                f"cell must give at most {most:,} cells for {len(result.time):,} rows, "
+                f"got {count:,} of {side:g} m"
+            )
+        side *= 2.0
+
+
+def _edges(
+    name: str, given: npt.ArrayLike | None, side: float, places: list[Floats], *, from_foot: bool
+) -> Floats:
+    """Return the edges that were given, else those of as many cells as hold all places."""
+    if given is not None:
+        edges = array(name, given, "n")
+        if len(edges) < 2 or not (np.diff(edges) > 0.0).all():
+            raise ValueError(f"{name} must have at least 2 edges that increase, got {edges.tolist()}")
+        return read_only(edges)
+    all_ = np.concatenate(places)
+    low, high = (float(all_.min()) - SPREAD, float(all_.max()) + SPREAD) if len(all_) else (0.0, side)
+    if from_foot and low >= -SPREAD:
+        low = 0.0
+    first = math.floor(low / side)
+    last = max(math.floor(high / side) + 1, first + 1)
+    return read_only(side * np.arange(first, last + 1))
+
+
+def _spread(
+    step: FaceStep, quarters: Iterable[tuple[float, float]], edges: tuple[Floats, Floats], count: int
+) -> Floats:
+    """Return the forces of cells at the end of a step, each node's force in four quarters."""
+    cells = np.zeros(count)
+    for aside, up in quarters:
+        # No part of a load above the ground is below it.
+        height = np.where(step.height >= 0.0, np.maximum(step.height + up, 0.0), step.height + up)
+        cells += np.bincount(_cells_of(step.along + aside, height, edges), 0.25 * step.force, minlength=count)
+    return cells
+
+
+def _cells_of(along: Floats, height: Floats, edges: tuple[Floats, Floats]) -> npt.NDArray[np.intp]:
+    """Return the flat index of the cell of each place; the last index is that outside all cells."""
+    y, z = edges
+    column, row = (np.searchsorted(e, p, side="right") - 1 for e, p in ((y, along), (z, height)))
+    inside = (column >= 0) & (column < len(y) - 1) & (row >= 0) & (row < len(z) - 1)
+    return np.where(inside, row * (len(y) - 1) + column, (len(y) - 1) * (len(z) - 1))
+
+
+def _in_time(time: Floats, steps: list[FaceStep], y: Floats, z: Floats) -> Floats:
+    """Return the forces of cells, and outside them, in the middles of the result's rows, (n, cells + 1)."""
+    count = (len(y) - 1) * (len(z) - 1) + 1
+    quarters = [(a, h) for a in (-SPREAD, SPREAD) for h in (-SPREAD, SPREAD)]
+    at_ends = np.array([_spread(step, quarters, (y, z), count) for step in steps])
+    ends = np.array([step.time for step in steps])
+    middles = _middles(time)
+    place = np.clip(np.searchsorted(ends, middles, side="right") - 1, 0, len(ends) - 2)
+    cells = np.zeros((len(middles), count))
+    for i in np.unique(place).tolist():
+        if not (at_ends[i].any() or at_ends[i + 1].any()):
+            continue
+        rows = slice(*np.searchsorted(place, [i, i + 1]).tolist())
+        share = np.clip((middles[rows] - ends[i]) / (ends[i + 1] - ends[i]), 0.0, 1.0)[:, None]
+        cells[rows] = at_ends[i] * (1.0 - share) + at_ends[i + 1] * share
+    return cells
+
+
+def _middles(time: Floats) -> Floats:
+    """Return the middles of the intervals of the rows; the first row has that which begins there."""
+    return np.concatenate([[0.5 * (time[0] + time[1])], 0.5 * (time[1:] + time[:-1])])
+
+
+def _completed(
+    result: RunRecord,
+    wall: RigidWall,
+    face: Face,
+    steps: list[FaceStep],
+    cells: Floats,
+    edges: tuple[Floats, Floats],
+) -> Floats:
+    """Scale the cells in place to the result's force, and add what no node presses at its own place."""
+    force = np.zeros(len(cells))
+    moments = np.zeros((len(cells), 2))  # of the force across the line: along and height [N m]
+    for i, load in enumerate(element_loads(result)):
+        across = load.force @ face.across
+        foot = 0.0 if wall.segments == 1 else wall.width * ((i + 0.5) / wall.segments - 0.5)
+        # The face goes through the foot, so that friction on it has no part in these.
+        moments[:, 0] += foot * across - load.moment[:, 2]
+        moments[:, 1] += load.moment @ face.line
+        force += across
+    nodes = cells.sum(axis=1)
+    rest = force - nodes
+    by_others = np.abs(rest) > _REST * np.abs(force).max(initial=0.0)
+    known = nodes > 0.0
+    scaled = known & ~by_others
+    cells *= np.divide(force, nodes, out=np.ones_like(force), where=scaled)[:, None]
+    alone = np.flatnonzero((by_others | ~known) & (force != 0.0))
+    if len(alone):
+        own = _moments_of(result.time, steps)
+        turned = (moments[alone] - own[alone]) / np.where(rest[alone] == 0.0, 1.0, rest[alone])[:, None]
+        all_y, all_z = (
+            np.concatenate([getattr(step, name) for step in steps]) for name in ("along", "height")
+        )
+        limits = [
+            (p.min(), p.max()) if len(p) else (e[0], e[-1])
+            for p, e in zip((all_y, all_z), edges, strict=True)
+        ]
+        along, height = (np.clip(turned[:, k], *limits[k]) for k in range(2))
+        np.add.at(cells, (alone, _cells_of(along, height, edges)), rest[alone])
+    return cells
+
+
+def _moments_of(time: Floats, steps: list[FaceStep]) -> Floats:
+    """Return the moments of what nodes press in the middles of the rows, shape (n, 2) [N m]."""
+    ends = np.array([step.time for step in steps])
+    at_ends = np.array([(step.force @ step.along, step.force @ step.height) for step in steps])
+    return np.column_stack([np.interp(_middles(time), ends, at_ends[:, k]) for k in range(2)])
+
+
+def _row(cells: Iterable[str]) -> str:
+    return "".join(f"{cell:>8}" for cell in cells)
+
+
+def _number(value: float) -> str:
+    return "." if abs(value) < 5e-4 else f"{value:.3g}"
