@@ -195,12 +195,31 @@ def _rows(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
+def load_map() -> Figure:
+    """Impulse and peak force on the cells of a wall, a car at 20 m/s and 25 degrees."""
+    import birm3d
+
+    car, wall = birm3d.Vehicle.preset("passenger_car"), birm3d.Barrier.rigid_wall(friction=0.3)
+    return birm3d.Simulation(car, wall, 20.0, 25.0).run().load_map().plot()
+
+
+def history_bands() -> Figure:
+    """Deceleration and travel of 32 cars of the class at a wall, 35 mph."""
+    import birm3d
+
+    car, wall = birm3d.Vehicle.preset("passenger_car"), birm3d.Barrier.rigid_wall()
+    crash = birm3d.Simulation(car, wall, impact_speed="35 mph")
+    return birm3d.history_bands(birm3d.predict(crash, progress=False), progress=False).plot()
+
+
 MADE: dict[str, Callable[[], Figure]] = {
     made.__name__: made
     for made in (
         sedan,
         tutorial,
         design_loads,
+        load_map,
+        history_bands,
         limits,
         truss_law,
         architecture,

@@ -4,6 +4,7 @@ The first half are methods of :class:`birm3d.Result`. No other module imports fr
 test holds this. Only what a picture needs is loaded, and only when it is made.
 """
 
+# Longer than 300 lines: a function of a few lines for each picture.
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence

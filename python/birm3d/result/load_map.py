@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import math
 from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
@@ -15,12 +14,12 @@ import numpy.typing as npt
 from .. import pictures
 from ..barrier.rigid_wall import RigidWall
 from ..base.arguments import checked
-from ..base.checks import array
 from ..io.atomic_write import whole_file
 from ..scene.text import scene_text
 from ..signals.filters import cfc, moving_average
 from ..units import Quantity, si
 from .element_loads import element_loads
+from .face_grid import USUAL_CELL, cells_of, face_grid, forces_of_cells
 from .face_loads import SPREAD, Face, FaceStep, face_steps
 from .record import RunRecord
 from .unit_result import read_only
@@ -32,8 +31,7 @@ __all__ = ["LoadMap", "load_map"]
 
 Floats = npt.NDArray[np.float64]
 
-_USUAL_CELL = 0.25  # m
-_LEAST_CELL, _MOST_NUMBERS = 0.01, 30_000_000
+_LEAST_CELL = 0.01  # m
 # Below this share of the greatest force what nodes do not account for is an error of interpolation.
 _REST = 0.03
 _CLASS = 60.0  # SAE J211-1, barrier forces
@@ -184,12 +182,12 @@ def load_map(
     if not isinstance(wall, RigidWall):
         kind = "none" if wall is None else type(wall).__name__
         raise ValueError(f"barrier must be a rigid wall to have a load map, got {kind}")
-    side = _USUAL_CELL if cell is None else si("cell", cell, "length")
+    side = USUAL_CELL if cell is None else si("cell", cell, "length")
     if not side >= _LEAST_CELL:
         raise ValueError(f"cell must be >= {_LEAST_CELL} m, got {side:g}")
     face = Face.of(wall)
     steps = face_steps(result, face)
-    edges = _grid(result, steps, lateral, height, side, doubled=cell is None)
+    edges = face_grid(result, steps, lateral, height, side, doubled=cell is None)
     edges_y, edges_z = edges
     shape = (len(edges_z) - 1, len(edges_y) - 1)
     cells = _in_time(result.time, steps, edges_y, edges_z)
@@ -198,74 +196,11 @@ def load_map(
     return LoadMap(result.time, edges_y, edges_z, inner, force[:, -1], scene_text(result.scene, "\n"))
 
 
-def _grid(
-    result: RunRecord,
-    steps: list[FaceStep],
-    lateral: npt.ArrayLike | None,
-    height: npt.ArrayLike | None,
-    side: float,
-    *,
-    doubled: bool,
-) -> tuple[Floats, Floats]:
-    """Return the edges of the cells along the line and up; of larger ones where they may be doubled."""
-    most = _MOST_NUMBERS // len(result.time)
-    while True:
-        y = _edges("lateral", lateral, side, [step.along for step in steps], from_foot=False)
-        z = _edges("height", height, side, [step.height for step in steps], from_foot=True)
-        count = (len(y) - 1) * (len(z) - 1)
-        if count <= most:
-            return y, z
-        if not doubled or (lateral is not None and height is not None):
-            raise ValueError(
-                f"cell must give at most {most:,} cells for {len(result.time):,} rows, "
-                f"got {count:,} of {side:g} m"
-            )
-        side *= 2.0
-
-
-def _edges(
-    name: str, given: npt.ArrayLike | None, side: float, places: list[Floats], *, from_foot: bool
-) -> Floats:
-    """Return the edges that were given, else those of as many cells as hold all places."""
-    if given is not None:
-        edges = array(name, given, "n")
-        if len(edges) < 2 or not (np.diff(edges) > 0.0).all():
-            raise ValueError(f"{name} must have at least 2 edges that increase, got {edges.tolist()}")
-        return read_only(edges)
-    all_ = np.concatenate(places)
-    low, high = (float(all_.min()) - SPREAD, float(all_.max()) + SPREAD) if len(all_) else (0.0, side)
-    if from_foot and low >= -SPREAD:
-        low = 0.0
-    first = math.floor(low / side)
-    last = max(math.floor(high / side) + 1, first + 1)
-    return read_only(side * np.arange(first, last + 1))
-
-
-def _spread(
-    step: FaceStep, quarters: Iterable[tuple[float, float]], edges: tuple[Floats, Floats], count: int
-) -> Floats:
-    """Return the forces of cells at the end of a step, each node's force in four quarters."""
-    cells = np.zeros(count)
-    for aside, up in quarters:
-        # No part of a load above the ground is below it.
-        height = np.where(step.height >= 0.0, np.maximum(step.height + up, 0.0), step.height + up)
-        cells += np.bincount(_cells_of(step.along + aside, height, edges), 0.25 * step.force, minlength=count)
-    return cells
-
-
-def _cells_of(along: Floats, height: Floats, edges: tuple[Floats, Floats]) -> npt.NDArray[np.intp]:
-    """Return the flat index of the cell of each place; the last index is that outside all cells."""
-    y, z = edges
-    column, row = (np.searchsorted(e, p, side="right") - 1 for e, p in ((y, along), (z, height)))
-    inside = (column >= 0) & (column < len(y) - 1) & (row >= 0) & (row < len(z) - 1)
-    return np.where(inside, row * (len(y) - 1) + column, (len(y) - 1) * (len(z) - 1))
-
-
 def _in_time(time: Floats, steps: list[FaceStep], y: Floats, z: Floats) -> Floats:
     """Return the forces of cells, and outside them, in the middles of the result's rows, (n, cells + 1)."""
     count = (len(y) - 1) * (len(z) - 1) + 1
     quarters = [(a, h) for a in (-SPREAD, SPREAD) for h in (-SPREAD, SPREAD)]
-    at_ends = np.array([_spread(step, quarters, (y, z), count) for step in steps])
+    at_ends = np.array([forces_of_cells(step, quarters, (y, z), count) for step in steps])
     ends = np.array([step.time for step in steps])
     middles = _middles(time)
     place = np.clip(np.searchsorted(ends, middles, side="right") - 1, 0, len(ends) - 2)
@@ -320,7 +255,7 @@ def _completed(
             for p, e in zip((all_y, all_z), edges, strict=True)
         ]
         along, height = (np.clip(turned[:, k], *limits[k]) for k in range(2))
-        np.add.at(cells, (alone, _cells_of(along, height, edges)), rest[alone])
+        np.add.at(cells, (alone, cells_of(along, height, edges)), rest[alone])
     return cells
 
 
