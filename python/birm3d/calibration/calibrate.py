@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from typing import TYPE_CHECKING, Any, Literal
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from ..base.arguments import checked
 from ..base.checks import check_runs
+from ..signals.channel import Channel
+from ..units import Quantity
 from .curve_target import CurveTarget
 from .errors import CalibrationError, CalibrationInterruptedError
 from .evaluator import Evaluator, Progress
@@ -30,13 +33,22 @@ if TYPE_CHECKING:
 __all__ = ["calibrate"]
 
 Floats = npt.NDArray[np.float64]
+Given: TypeAlias = Target | Channel
+
+# What a channel is held against, by what it measures.
+_OF_CHANNELS = {
+    "force": "normal_force",
+    "acceleration": "acceleration_r",
+    "speed": "velocity_normal",
+    "length": "displacement_normal",
+}
 
 
 @checked
 def calibrate(
     simulations: Simulation | Sequence[Simulation],
-    targets: Target | Sequence[Target] | Sequence[Sequence[Target]],
-    parameters: Parameter | Sequence[Parameter],
+    targets: Given | Sequence[Given] | Sequence[Sequence[Given]],
+    parameters: Parameter | Sequence[Parameter] | Mapping[str, tuple[Quantity, Quantity]],
     *,
     method: Literal["local", "global"] = "local",
     starts: int = 4,
@@ -62,9 +74,12 @@ def calibrate(
     simulations
         One, or several that share parameters.
     targets
-        For one simulation its targets, for several one sequence each.
+        For one simulation its targets, for several one sequence each. A :class:`birm3d.Channel` stands for
+        ``CurveTarget.from_channel``: a force is that along the normal, an acceleration that along r, velocity
+        and displacement those towards the barrier.
     parameters
-        Unknowns with their bounds.
+        Unknowns with their bounds. A mapping of names (:mod:`birm3d.scene_parameters`) to (lower, upper)
+        stands for parameters of these, with ``log`` where the lower bound is above 0.
     method
         ``"local"``, or ``"global"``: a differential evolution over the bounds gives the second start.
     starts
@@ -107,7 +122,7 @@ def calibrate(
         After Ctrl-C, a ``KeyboardInterrupt`` with the same two.
     """
     scenes, goals = _paired(simulations, targets)
-    unknowns = (parameters,) if isinstance(parameters, Parameter) else tuple(parameters)
+    unknowns = _unknowns(parameters)
     _check(method, starts, seed, intervals, uncertainty, confidence, tolerance, max_steps)
     problem = Problem(scenes, goals, unknowns, tolerance)
     notes = problem.check(problem.parameters.start)
@@ -139,9 +154,38 @@ def calibrate(
     return outcome(evaluator, found, analysis, profiles, notes, confidence, settings)
 
 
+def _unknowns(
+    parameters: Parameter | Sequence[Parameter] | Mapping[str, tuple[Quantity, Quantity]],
+) -> tuple[Parameter, ...]:
+    """Return parameters of what may be one of them, several, or names with bounds."""
+    if isinstance(parameters, Parameter):
+        return (parameters,)
+    if not isinstance(parameters, Mapping):
+        return tuple(parameters)
+    found = []
+    for name, bounds in parameters.items():
+        if isinstance(bounds, str) or not isinstance(bounds, Sequence) or len(bounds) != 2:
+            raise ValueError(f"parameters must give {name!r} its (lower, upper), got {bounds!r}")
+        plain = Parameter(name, *bounds)
+        found.append(replace(plain, log=True) if plain.lower > 0.0 else plain)
+    return tuple(found)
+
+
+def _as_target(item: Any) -> Any:
+    """Return the target that a channel stands for; anything else as it is."""
+    if not isinstance(item, Channel):
+        return item
+    if item.quantity not in _OF_CHANNELS:
+        raise ValueError(
+            f"targets must be channels of {', '.join(_OF_CHANNELS)}, or CurveTarget.from_channel with a "
+            f"quantity, got {item.name!r} in {item.unit!r}"
+        )
+    return CurveTarget.from_channel(item, _OF_CHANNELS[item.quantity])
+
+
 def _paired(
     simulations: Simulation | Sequence[Simulation],
-    targets: Target | Sequence[Target] | Sequence[Sequence[Target]],
+    targets: Given | Sequence[Given] | Sequence[Sequence[Given]],
 ) -> tuple[tuple[Simulation, ...], tuple[tuple[Target, ...], ...]]:
     """Return simulations and the targets of each."""
     from ..simulation.simulation import Simulation
@@ -152,20 +196,22 @@ def _paired(
     for scene in scenes:
         if not isinstance(scene, Simulation):
             raise TypeError(f"simulations must be birm3d.Simulation, got {type(scene).__name__}")
-    listed: list[Any] = [targets] if isinstance(targets, (CurveTarget, ScalarTarget)) else list(targets)
+    alone = isinstance(targets, (CurveTarget, ScalarTarget, Channel))
+    several: Sequence[Any] = [targets] if alone else targets  # type: ignore[list-item, assignment]
+    listed = [_as_target(one) for one in several]
     flat = all(isinstance(item, (CurveTarget, ScalarTarget)) for item in listed)
     if flat and len(scenes) > 1:
         raise ValueError(
             f"targets must be one sequence for each of {len(scenes)} simulations, got {len(listed)} "
             "single targets"
         )
-    goals = (tuple(listed),) if flat else tuple(tuple(own) for own in listed)
+    goals = (tuple(listed),) if flat else tuple(tuple(map(_as_target, own)) for own in listed)
     if len(goals) != len(scenes):
         raise ValueError(f"targets must be as many sequences as simulations, {len(scenes)}; got {len(goals)}")
     for own in goals:
         for target in own:
             if not isinstance(target, (CurveTarget, ScalarTarget)):
-                raise TypeError(f"targets must be CurveTarget or ScalarTarget, got {type(target).__name__}")
+                raise TypeError(f"targets must be CurveTarget, ScalarTarget or Channel, got {type(target).__name__}")
     return scenes, goals
 
 
