@@ -211,7 +211,9 @@ def _paired(
     for own in goals:
         for target in own:
             if not isinstance(target, (CurveTarget, ScalarTarget)):
-                raise TypeError(f"targets must be CurveTarget, ScalarTarget or Channel, got {type(target).__name__}")
+                raise TypeError(
+                    f"targets must be CurveTarget, ScalarTarget or Channel, got {type(target).__name__}"
+                )
     return scenes, goals
 
 
