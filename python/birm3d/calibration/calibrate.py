@@ -197,7 +197,7 @@ def _paired(
         if not isinstance(scene, Simulation):
             raise TypeError(f"simulations must be birm3d.Simulation, got {type(scene).__name__}")
     alone = isinstance(targets, (CurveTarget, ScalarTarget, Channel))
-    several: Sequence[Any] = [targets] if alone else targets  # type: ignore[list-item, assignment]
+    several: Sequence[Any] = [targets] if alone else targets  # type: ignore[assignment]
     listed = [_as_target(one) for one in several]
     flat = all(isinstance(item, (CurveTarget, ScalarTarget)) for item in listed)
     if flat and len(scenes) > 1:
