@@ -46,9 +46,9 @@ void register_extremes(py::module_& m) {
             "unit vector towards the barrier, world; of a path along its line that of the path")
         .def_readonly("approach_speed", &Extremes::Motion::approach_speed,
                       "m/s, towards the barrier, at the start")
-        .def_readonly("turn_time", &Extremes::Motion::turn_time,
+        .def_readonly("reversal_time", &Extremes::Motion::reversal_time,
                       "s, when that speed has come down to zero; None where it never has")
-        .def_readonly("way", &Extremes::Motion::way, "m, greatest towards the barrier")
+        .def_readonly("travel", &Extremes::Motion::travel, "m, greatest towards the barrier")
         .def_readonly("velocity_change", &Extremes::Motion::velocity_change, "m/s, greatest from the start")
         .def_readonly("deceleration", &Extremes::Motion::deceleration,
                       "m/s^2, greatest along r, interval means");

@@ -72,7 +72,7 @@ void register_runner(py::module_& m) {
         .def_readonly("end_reason", &RunSummary::end_reason)
         .def_readonly("state_hash", &RunSummary::state_hash)
         .def_readonly("statistics", &RunSummary::statistics)
-        .def_readonly("ledger", &RunSummary::ledger)
+        .def_readonly("balances", &RunSummary::balances)
         .def_readonly("run_time", &RunSummary::run_time, "s, wall time of the stepping")
         .def_property_readonly(
             "final_velocity",

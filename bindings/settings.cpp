@@ -24,26 +24,26 @@ void set(Settings& settings, const py::handle& value) {
     settings.*member = value.cast<Value>();
 }
 
-struct Row {
+struct SettingRow {
     std::string_view name;
     void (*set)(Settings&, const py::handle&);
 };
 
 // One row for each setting: its name in Python, and the member that it sets.
 constexpr std::array rows = {
-    Row{"time_step", &set<&Settings::time_step>},
-    Row{"tolerance", &set<&Settings::tolerance>},
-    Row{"output_interval", &set<&Settings::output_interval>},
-    Row{"gravity", &set<&Settings::gravity>},
-    Row{"ground", &set<&Settings::ground>},
-    Row{"mu_tire", &set<&Settings::mu_tire>},
-    Row{"mu_body", &set<&Settings::mu_body>},
-    Row{"mu_tire_barrier", &set<&Settings::mu_tire_barrier>},
-    Row{"braking", &set<&Settings::braking>},
-    Row{"cornering_stiffness", &set<&Settings::cornering_stiffness>},
-    Row{"restitution", &set<&Settings::restitution>},
-    Row{"contact_model", &set<&Settings::contact_model>},
-    Row{"tire_model", &set<&Settings::tire_model>},
+    SettingRow{"time_step", &set<&Settings::time_step>},
+    SettingRow{"tolerance", &set<&Settings::tolerance>},
+    SettingRow{"output_interval", &set<&Settings::output_interval>},
+    SettingRow{"gravity", &set<&Settings::gravity>},
+    SettingRow{"ground", &set<&Settings::ground>},
+    SettingRow{"mu_tire", &set<&Settings::mu_tire>},
+    SettingRow{"mu_body", &set<&Settings::mu_body>},
+    SettingRow{"mu_tire_barrier", &set<&Settings::mu_tire_barrier>},
+    SettingRow{"braking", &set<&Settings::braking>},
+    SettingRow{"cornering_stiffness", &set<&Settings::cornering_stiffness>},
+    SettingRow{"restitution", &set<&Settings::restitution>},
+    SettingRow{"contact_model", &set<&Settings::contact_model>},
+    SettingRow{"tire_model", &set<&Settings::tire_model>},
 };
 
 // Settings by name; what is not given has its default.
@@ -51,7 +51,8 @@ Settings settings_from(const py::typing::Dict<py::str, py::object>& given) {
     Settings settings;
     for (const auto& [key, value] : given) {
         const auto name = key.cast<std::string>();
-        const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.name == name; });
+        const auto row =
+            std::find_if(rows.begin(), rows.end(), [&](const SettingRow& r) { return r.name == name; });
         if (row == rows.end()) throw py::type_error("no setting has the name " + name);
         row->set(settings, value);
     }

@@ -101,42 +101,42 @@ void register_simulation(py::module_& m) {
         .def_readonly("least_critical_step", &StepStatistics::least_critical_step,
                       "s, sqrt(3)/omega of the trusses in contact");
 
-    py::class_<Ledger::Departure>(m, "Departure", "The greatest so far, when and where.")
-        .def_readonly("size", &Ledger::Departure::size, "J, or N s")
-        .def_readonly("time", &Ledger::Departure::time, "s")
+    py::class_<Balances::Departure>(m, "Departure", "The greatest so far, when and where.")
+        .def_readonly("size", &Balances::Departure::size, "J, or N s")
+        .def_readonly("time", &Balances::Departure::time, "s")
         .def_property_readonly(
             "place",
-            [](const Ledger::Departure& d) { return std::tuple(d.place.x(), d.place.y(), d.place.z()); },
+            [](const Balances::Departure& d) { return std::tuple(d.place.x(), d.place.y(), d.place.z()); },
             "m, of the mass centre of unit 0, world");
 
-    py::class_<Ledger>(m, "Ledger", "How well a run keeps its own accounts, from step to step.")
-        .def_readonly("kinetic", &Ledger::kinetic, "J, at the start")
-        .def_readonly("at_disposal", &Ledger::at_disposal,
+    py::class_<Balances>(m, "Balances", "How far the balances of energy and momentum are from closing.")
+        .def_readonly("kinetic", &Balances::kinetic, "J, at the start")
+        .def_readonly("at_disposal", &Balances::at_disposal,
                       "J, kinetic at the start and the most that the weight has done")
-        .def_readonly("energy", &Ledger::energy, "of the sum of all terms from that at the start")
-        .def_readonly("momentum", &Ledger::momentum,
+        .def_readonly("energy", &Balances::energy, "of the sum of all terms from that at the start")
+        .def_readonly("momentum", &Balances::momentum,
                       "of a unit's change in a step from the sum of all impulses on it")
-        .def_readonly("largest_momentum", &Ledger::largest_momentum,
+        .def_readonly("largest_momentum", &Balances::largest_momentum,
                       "N s, of a unit, or an impulse in a step")
         .def_property_readonly(
             "largest_fall",
-            [](const Ledger& ledger) {
+            [](const Balances& balances) {
                 double largest = 0.0;
-                for (const Ledger::Departure& fall : ledger.falls)
+                for (const Balances::Departure& fall : balances.falls)
                     largest = std::max(largest, fall.size);
                 return largest;
             },
             "J, of any dissipated term")
         .def_property_readonly(
             "falls",
-            [](const Ledger& ledger) {
-                return std::map<std::string, Ledger::Departure>{
-                    {"crushed", ledger.falls[Ledger::crushed]},
-                    {"barrier_friction", ledger.falls[Ledger::barrier_friction]},
-                    {"tire_friction", ledger.falls[Ledger::tire_friction]},
-                    {"ground_friction", ledger.falls[Ledger::ground_friction]},
-                    {"impacts", ledger.falls[Ledger::impacts]},
-                    {"barrier_ground_friction", ledger.falls[Ledger::segment_friction]}};
+            [](const Balances& balances) {
+                return std::map<std::string, Balances::Departure>{
+                    {"crushed", balances.falls[Balances::crushed]},
+                    {"barrier_friction", balances.falls[Balances::barrier_friction]},
+                    {"tire_friction", balances.falls[Balances::tire_friction]},
+                    {"ground_friction", balances.falls[Balances::ground_friction]},
+                    {"impacts", balances.falls[Balances::impacts]},
+                    {"barrier_ground_friction", balances.falls[Balances::segment_friction]}};
             },
             "of each dissipated term from its highest so far");
 
@@ -202,7 +202,7 @@ void register_simulation(py::module_& m) {
         .def_property_readonly("deepest_anchor", alone(+[](Simulation& s) { return s.deepest_anchor(); }),
                                "m: depth of the deepest truss anchor inside the barrier now, 0 if none is")
         .def_property_readonly("statistics", alone(+[](Simulation& s) { return s.state().statistics; }))
-        .def_property_readonly("ledger", alone(+[](Simulation& s) { return s.state().ledger; }))
+        .def_property_readonly("balances", alone(+[](Simulation& s) { return s.state().balances; }))
         .def("velocity", alone(+[](Simulation& s, std::size_t unit) {
                  return copy(s.state().units.at(unit).body.velocity);
              }),

@@ -43,7 +43,7 @@ def main() -> None:
     options = parser.parse_args()
 
     # That the paper's rule makes energy is what is shown here.
-    warnings.filterwarnings("ignore", "energy_residual.*along_truss", birm3d.LedgerWarning)
+    warnings.filterwarnings("ignore", "energy_residual.*along_truss", birm3d.BalanceWarning)
     results = {
         (model, angle): scenes.oblique(angle, settings=Settings(contact_model=model, tolerance=1e-4)).run()
         for angle in ANGLES

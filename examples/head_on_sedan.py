@@ -2,7 +2,7 @@
 
     python examples/head_on_sedan.py [--output FOLDER]
 
-The shortest way from a preset to an answer that can be checked: a scene, a run, its marks, its ledgers, and
+The shortest way from a preset to an answer that can be checked: a scene, a run, its marks, its balances, and
 the measured wall force under the computed one.
 """
 

@@ -3,7 +3,7 @@
     python examples/paper_table_2.py [--output FOLDER]
 
 The paper compares the peak wall force with mass times peak deceleration, which Newton makes equal for a
-head-on crash; its two columns differ by 4 to 8 %. Here they are two readings of one ledger.
+head-on crash; its two columns differ by 4 to 8 %. Here they are two readings of one balance.
 """
 
 import argparse

@@ -27,7 +27,7 @@ from .pictures import plot_runs
 from .reporting import dossier
 from .result import Result, metrics
 from .result.element_loads import ElementLoad
-from .result.energy_balance import LedgerWarning
+from .result.energy_balance import BalanceWarning
 from .result.load_map import LoadMap
 from .result.overlap import OverlapWarning
 from .result.result import load, write_capsule
@@ -61,6 +61,7 @@ from .vehicle import ArticulatedVehicle, Joint, Vehicle, Zone
 
 __all__ = [
     "ArticulatedVehicle",
+    "BalanceWarning",
     "Barrier",
     "BusyError",
     "Channel",
@@ -73,7 +74,6 @@ __all__ = [
     "FreeStanding",
     "HistoryBands",
     "Joint",
-    "LedgerWarning",
     "Limit",
     "LoadMap",
     "NotInRangeError",
@@ -147,4 +147,4 @@ _moved.keep_old_paths()
 
 def __getattr__(name: str) -> object:
     """Return a module of an earlier version by its old name, see :mod:`birm3d._moved`."""
-    return _moved.old_module(name)
+    return _moved.old_name(name)

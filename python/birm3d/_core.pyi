@@ -6,13 +6,52 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Approach', 'Barrier', 'BusyError', 'ContactModel', 'Departure', 'Element', 'EndReason', 'Event', 'ExtremeAttitude', 'ExtremeElementLoads', 'ExtremeEnergy', 'ExtremeFilteredForce', 'ExtremeGroups', 'ExtremeJointLoads', 'ExtremeMotion', 'ExtremeNormalForce', 'ExtremeSegments', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'Ledger', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Scene', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'TrussMesh', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'along_line', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
+__all__: list[str] = ['Approach', 'Balances', 'Barrier', 'BusyError', 'ContactModel', 'Departure', 'Element', 'EndReason', 'Event', 'ExtremeAttitude', 'ExtremeElementLoads', 'ExtremeEnergy', 'ExtremeFilteredForce', 'ExtremeGroups', 'ExtremeJointLoads', 'ExtremeMotion', 'ExtremeNormalForce', 'ExtremeSegments', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Scene', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'TrussMesh', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'along_line', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
 class Approach:
     """
     How the vehicle comes (SI, rad). Immutable.
     """
     def __init__(self, *, speed: typing.SupportsFloat | typing.SupportsIndex, angle: typing.SupportsFloat | typing.SupportsIndex, offset: typing.SupportsFloat | typing.SupportsIndex, standoff: typing.SupportsFloat | typing.SupportsIndex, yaw: typing.SupportsFloat | typing.SupportsIndex, roll: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
+class Balances:
+    """
+    How far the balances of energy and momentum are from closing.
+    """
+    @property
+    def at_disposal(self) -> float:
+        """
+        J, kinetic at the start and the most that the weight has done
+        """
+    @property
+    def energy(self) -> Departure:
+        """
+        of the sum of all terms from that at the start
+        """
+    @property
+    def falls(self) -> dict[str, Departure]:
+        """
+        of each dissipated term from its highest so far
+        """
+    @property
+    def kinetic(self) -> float:
+        """
+        J, at the start
+        """
+    @property
+    def largest_fall(self) -> float:
+        """
+        J, of any dissipated term
+        """
+    @property
+    def largest_momentum(self) -> float:
+        """
+        N s, of a unit, or an impulse in a step
+        """
+    @property
+    def momentum(self) -> Departure:
+        """
+        of a unit's change in a step from the sum of all impulses on it
+        """
 class Barrier:
     """
     Elements that stand on the ground. Immutable.
@@ -308,24 +347,24 @@ class ExtremeMotion:
         m/s^2, greatest along r, interval means
         """
     @property
+    def reversal_time(self) -> float | None:
+        """
+        s, when that speed has come down to zero; None where it never has
+        """
+    @property
     def towards(self) -> tuple[float, float, float]:
         """
         unit vector towards the barrier, world; of a path along its line that of the path
         """
     @property
-    def turn_time(self) -> float | None:
+    def travel(self) -> float:
         """
-        s, when that speed has come down to zero; None where it never has
+        m, greatest towards the barrier
         """
     @property
     def velocity_change(self) -> float:
         """
         m/s, greatest from the start
-        """
-    @property
-    def way(self) -> float:
-        """
-        m, greatest towards the barrier
         """
 class ExtremeNormalForce:
     @property
@@ -588,45 +627,6 @@ class JointKind:
     @property
     def value(self) -> int:
         ...
-class Ledger:
-    """
-    How well a run keeps its own accounts, from step to step.
-    """
-    @property
-    def at_disposal(self) -> float:
-        """
-        J, kinetic at the start and the most that the weight has done
-        """
-    @property
-    def energy(self) -> Departure:
-        """
-        of the sum of all terms from that at the start
-        """
-    @property
-    def falls(self) -> dict[str, Departure]:
-        """
-        of each dissipated term from its highest so far
-        """
-    @property
-    def kinetic(self) -> float:
-        """
-        J, at the start
-        """
-    @property
-    def largest_fall(self) -> float:
-        """
-        J, of any dissipated term
-        """
-    @property
-    def largest_momentum(self) -> float:
-        """
-        N s, of a unit, or an impulse in a step
-        """
-    @property
-    def momentum(self) -> Departure:
-        """
-        of a unit's change in a step from the sum of all impulses on it
-        """
 class MassProperties:
     """
     Mass, mass centre and inertia about it (paper Eq. 2-7).
@@ -670,6 +670,9 @@ class Outcome:
     What a run came to (SI).
     """
     @property
+    def balances(self) -> Balances:
+        ...
+    @property
     def deflection(self) -> float:
         """
         m, greatest of all trusses, at the end
@@ -690,9 +693,6 @@ class Outcome:
         """
         m/s, of unit 0, world
         """
-    @property
-    def ledger(self) -> Ledger:
-        ...
     @property
     def peak_deflection(self) -> float:
         """
@@ -864,6 +864,9 @@ class Simulation:
         (3,) m/s, world, now
         """
     @property
+    def balances(self) -> Balances:
+        ...
+    @property
     def deepest_anchor(self) -> float:
         """
         m: depth of the deepest truss anchor inside the barrier now, 0 if none is
@@ -886,9 +889,6 @@ class Simulation:
         """
         Did the last step fail half way? Then only reset and restore are of use.
         """
-    @property
-    def ledger(self) -> Ledger:
-        ...
     @property
     def replays(self) -> bool:
         """

@@ -13,7 +13,7 @@ from types import ModuleType
 
 from .base.arguments import caller_level
 
-__all__ = ["keep_old_paths", "keep_short_paths", "old_module"]
+__all__ = ["keep_old_paths", "keep_short_paths", "old_name"]
 
 _SHORT = {
     "filters": "signals.filters",
@@ -132,6 +132,10 @@ _OLD_NAMES = {
 """Names that are in another module than the rest of theirs."""
 
 
+_RENAMED = {"LedgerWarning": ("result.energy_balance", "BalanceWarning")}
+"""Public names of earlier versions -> module and name of today."""
+
+
 class _OldModule(ModuleType):
     """Stands at the path of an earlier version; its names are those of the module that has moved."""
 
@@ -165,14 +169,20 @@ def keep_old_paths() -> None:
         sys.modules.setdefault(f"birm3d.{old}", _OldModule(old, new))
 
 
-def old_module(name: str) -> ModuleType:
-    """Return the module that stands at an old path.
+def old_name(name: str) -> object:
+    """Return what an old name of the package stands for: a module that has moved, or a name of today.
 
     Raises
     ------
     AttributeError
         If there never was one.
     """
+    if name in _RENAMED:
+        module, new = _RENAMED[name]
+        warnings.warn(
+            f"birm3d.{name} has a new name: write birm3d.{new}", DeprecationWarning, stacklevel=caller_level()
+        )
+        return getattr(import_module(f"birm3d.{module}"), new)
     if name in _OLD:
         return sys.modules[f"birm3d.{name}"]
     raise AttributeError(f"module 'birm3d' has no attribute {name!r}")

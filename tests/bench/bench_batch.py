@@ -176,7 +176,7 @@ def main() -> int:
     parser.add_argument("--repeats", type=int, default=5, help="of each row (default: %(default)s)")
     parser.add_argument("--save", action="store_true", help="also write tests/bench/results/batch")
     options = parser.parse_args()
-    warnings.simplefilter("ignore", birm3d.LedgerWarning)  # the error is in the table
+    warnings.simplefilter("ignore", birm3d.BalanceWarning)  # the error is in the table
     runs, repeats = (1000, 1) if options.quick else (options.runs, options.repeats)
     most = 2000 if options.quick else 100_000
 

@@ -1,4 +1,4 @@
-"""Free-standing chains: what a run costs with the number of segments, and how well its ledger closes.
+"""Free-standing chains: what a run costs with the number of segments, and how well its balance closes.
 
     python tests/bench/bench_chains.py --save             # one minute
     python tests/bench/bench_chains.py --quick            # up to 20 segments, for a look

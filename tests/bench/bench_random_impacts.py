@@ -12,7 +12,7 @@ with skins that posts do not dent. Watched step by step (birm3d.study.watched):
 - ghost: the wall is flat and endless for the vehicle, friction is nil, and some force acts along it (relative
   to the greatest normal force, limit 1e-9): a whole wall has none, no more may one in segments or triangles;
 - through: a node or an anchor ends a step inside, or the mass centre gets behind a high wall;
-- ledgers: energy within 0.5 %, momentum within 1e-9.
+- balances: energy within 0.5 %, momentum within 1e-9.
 
 With --any-pose the scenes are those of random_scenes.py, on two processes: a row each in the table, and
 faults with the seeds that replay them. A table that is there already is gone on with.

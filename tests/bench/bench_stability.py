@@ -1,4 +1,4 @@
-"""What holds at the extremes: stiffness, steps, speeds, masses, angles and more, judged by the ledgers.
+"""What holds at the extremes: stiffness, steps, speeds, masses, angles and more, judged by the balances.
 
     python tests/bench/bench_stability.py [--axes NAME ...] [--save]
 

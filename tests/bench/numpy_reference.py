@@ -4,11 +4,11 @@ Nodes are columns of (3, n) arrays that are allocated once; every operation writ
 is done node by node in Python, and the few numbers of the body itself are plain floats, not small arrays.
 Same physics, by leapfrog (kick, drift, kick) with a fixed step: a body that turns, nodes held on a plane,
 the three-segment truss law with unloading and release, the truss force projected on the normal, its torque,
-Coulomb friction where there is any, the energy ledger of the trusses.
+Coulomb friction where there is any, the energy balance of the trusses.
 
-Left out, in NumPy's favour: tyres and ground, closed trusses, the error estimate and the stability
+Left out, in NumPy's favour: tyres and ground, bottomed-out trusses, the error estimate and the stability
 bound, the broad phase, the histories (it keeps one number a step, the wall force), and the 20 ms that BIRM3D
-runs on after the vehicle has left. The `lean` rival also leaves out the turning of the body and the ledger: a
+runs on after the vehicle has left. The `lean` rival also leaves out rotation and energy balance: a
 program for W2 alone.
 
 Two differences. A held node moves along the present normal only; BIRM3D takes the mean of the old and the new
@@ -115,7 +115,7 @@ class Run:
         momentum = [0.0, 0.0, 0.0]  # angular, world axes
         force, torque = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
         forces = np.empty(self.steps)
-        ledger = np.empty((self.steps, 3))
+        balances = np.empty((self.steps, 3))
         work, steps = 0.0, 0
         self.last_push = force
 
@@ -152,7 +152,7 @@ class Run:
                 torque = turned(axes, turning)
                 momentum = [p + 0.5 * dt * t for p, t in zip(momentum, torque, strict=True)]
                 work += self._work()
-                ledger[steps] = (
+                balances[steps] = (
                     0.5 * mass * (velocity[0] ** 2 + velocity[1] ** 2 + velocity[2] ** 2),
                     0.5 / block.k_unloading * float(np.dot(self.last_force, self.last_force)),
                     work,

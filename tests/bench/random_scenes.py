@@ -19,7 +19,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from birm3d import Barrier, LedgerWarning, Settings, Simulation, Vehicle
+from birm3d import BalanceWarning, Barrier, Settings, Simulation, Vehicle
 from birm3d.base.progress import progress_bar
 from birm3d.metrics import relative_to_start
 from birm3d.result.energy_balance import ENERGY_LIMIT, FALL_LIMIT, warn_if_open
@@ -53,7 +53,7 @@ class Drawn:
 
 @dataclass(frozen=True)
 class Row(Drawn):
-    """How its run went; energies relative to that at its disposal, see birm3d.ledger."""
+    """How its run went; energies relative to that at its disposal, see birm3d.result.energy_balance."""
 
     steps: int = 0
     seconds: float = 0.0
@@ -183,14 +183,17 @@ def examine(seed: int, limit: float = 60.0) -> Row:
                     break
         except Exception as error:
             fault = f"{type(error).__name__}: {error}"
-        ledger, scene = simulation._core.ledger, simulation.scene
-        warn_if_open(scene, ledger)
-    energy = relative_to_start(scene, ledger.energy.size, ledger.at_disposal)
+        balances, scene = simulation._core.balances, simulation.scene
+        warn_if_open(scene, balances)
+    energy = relative_to_start(scene, balances.energy.size, balances.at_disposal)
     term, fall = max(
-        ((name, relative_to_start(scene, f.size, ledger.at_disposal)) for name, f in ledger.falls.items()),
+        (
+            (name, relative_to_start(scene, f.size, balances.at_disposal))
+            for name, f in balances.falls.items()
+        ),
         key=lambda pair: pair[1],
     )
-    warned = any(issubclass(one.category, LedgerWarning) for one in told)
+    warned = any(issubclass(one.category, BalanceWarning) for one in told)
     depth = simulation._core.statistics.deepest_point
     place, _ = simulation._core.pose(0)
     faults = [fault] if fault else []

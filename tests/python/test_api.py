@@ -357,3 +357,12 @@ def test_module_paths_of_earlier_versions_work_and_say_what_to_write() -> None:
     assert names["Channel"] is birm3d.Channel
     with pytest.raises(AttributeError, match="no attribute 'chanel'"):
         _ = birm3d.chanel
+
+
+def test_a_renamed_name_works_and_says_what_to_write() -> None:
+    with pytest.warns(
+        DeprecationWarning, match=r"birm3d\.LedgerWarning .*: write birm3d\.BalanceWarning$"
+    ) as told:
+        old = birm3d.LedgerWarning
+    assert old is birm3d.BalanceWarning
+    assert told[0].filename == __file__

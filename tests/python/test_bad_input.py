@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from birm3d import Barrier, LedgerWarning, Result, Settings, Simulation, UnstableError, Vehicle, Zone, scenes
+from birm3d import BalanceWarning, Barrier, Result, Settings, Simulation, UnstableError, Vehicle, Zone, scenes
 
 NAN, INF = math.nan, math.inf
 
@@ -292,7 +292,7 @@ def test_a_checkpoint_of_another_scene_is_refused() -> None:
     ],
     ids=["w1", "w2", "nhtsa_10146", "oblique"],
 )
-@pytest.mark.filterwarnings("ignore::birm3d.LedgerWarning")
+@pytest.mark.filterwarnings("ignore::birm3d.BalanceWarning")
 def test_a_step_that_is_too_long_is_refused_and_a_good_one_named(
     make: Callable[[Settings], Simulation],
 ) -> None:
@@ -328,7 +328,7 @@ def test_a_step_that_could_jump_over_a_barrier_is_refused(barrier: Barrier) -> N
 def test_a_step_that_is_stable_and_too_long_is_warned_of() -> None:
     settings = Settings(time_step=5e-3, gravity=0.0, ground=False)
     with pytest.warns(
-        LedgerWarning, match=r"energy_residual must be at most 0\.005, got .*time_step = 0\.005"
+        BalanceWarning, match=r"energy_residual must be at most 0\.005, got .*time_step = 0\.005"
     ):
         coarse = scenes.w2(4, settings).run()
     assert coarse.metrics["energy_residual"] > 5e-3
@@ -348,7 +348,7 @@ def test_the_refusal_leaves_the_state_as_it_was() -> None:
     assert (simulation.state_hash(), simulation.time) == state[-1]
 
 
-@pytest.mark.filterwarnings("ignore::birm3d.LedgerWarning")
+@pytest.mark.filterwarnings("ignore::birm3d.BalanceWarning")
 def test_the_limit_is_the_root_of_three_over_omega() -> None:
     """A mass on one spring: the scheme is stable below sqrt(3) sqrt(m/k)."""
     k, mass = 1e6, 1000.0

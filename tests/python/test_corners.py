@@ -1,4 +1,4 @@
-"""Nodes that meet the ground and a barrier at once: the energy ledger closes, and the answer converges."""
+"""Nodes that meet the ground and a barrier at once: the energy balance closes, and the answer converges."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rate sensitivity and the pole: exact cases, ledgers, and nothing where the parameter is zero."""
+"""Rate sensitivity and the pole: exact cases, balances, and nothing where the parameter is zero."""
 
 from __future__ import annotations
 

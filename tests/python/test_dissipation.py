@@ -22,7 +22,7 @@ def greatest_fall(run: Result) -> dict[str, float]:
 
 # A plate of 5 mm enters the body between its anchors: that is warned of, and not what is asked here.
 @pytest.mark.filterwarnings("ignore::birm3d.OverlapWarning")
-# Each made 6 to 11 % of energy behind a closed ledger: the blow turned tyres round, and friction drove them.
+# Each made 6 to 11 % of energy behind a closed balance: the blow turned tyres round, and friction drove them.
 @pytest.mark.parametrize(
     ("name", "width", "offset", "speed", "yaw", "friction"),
     [

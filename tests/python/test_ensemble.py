@@ -16,8 +16,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from birm3d import (
+    BalanceWarning,
     Barrier,
-    LedgerWarning,
     Result,
     Settings,
     Simulation,
@@ -264,7 +264,7 @@ def test_whatever_goes_wrong_is_told_as_the_run_alone_tells_it() -> None:
 
 def test_a_fixed_step_that_is_too_long_is_warned_of() -> None:
     coarse = scenes.w2(4, Settings(time_step=5e-3, gravity=0.0, ground=False))
-    with pytest.warns(LedgerWarning, match=r"energy_residual must be at most 0\.005"):
+    with pytest.warns(BalanceWarning, match=r"energy_residual must be at most 0\.005"):
         ensemble([coarse], metrics=METRICS)
 
 

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 from birm3d import (
+    BalanceWarning,
     Barrier,
-    LedgerWarning,
     OverlapWarning,
     Settings,
     Simulation,
@@ -38,13 +38,13 @@ def along_truss() -> Simulation:
 
 
 def test_an_adaptive_run_that_makes_energy_says_so() -> None:
-    with pytest.warns(LedgerWarning, match=r"^energy_residual must be at most 0\.005, got .*" + PLACE):
+    with pytest.warns(BalanceWarning, match=r"^energy_residual must be at most 0\.005, got .*" + PLACE):
         run = along_truss().run()
     assert run.metrics["energy_residual"] > 5e-3
 
 
 def test_so_does_a_study() -> None:
-    with pytest.warns(LedgerWarning, match=r"^energy_residual must be .*" + PLACE):
+    with pytest.warns(BalanceWarning, match=r"^energy_residual must be .*" + PLACE):
         ensemble([along_truss()], metrics=["exit_speed"])
 
 
@@ -59,10 +59,10 @@ def test_a_study_says_it_once_for_all_of_its_runs(pool: type[Executor]) -> None:
     assert (found > 5e-3).tolist() == [True, False, True, True, False, True]
     worst = int(found.argmax())
     (warning,) = told
-    assert warning.category is LedgerWarning
+    assert warning.category is BalanceWarning
     assert warning.filename == __file__
     told_of = Simulation(base.scene.vehicle, base.scene.barrier, speeds[worst], settings=base.scene.settings)
-    with pytest.warns(LedgerWarning) as alone:
+    with pytest.warns(BalanceWarning) as alone:
         told_of.run()
     rows = f" (row {worst}, the worst of 4 in 6 runs: rows 0, 2 to 3, 5)"
     assert str(warning.message) == str(alone[0].message) + rows
@@ -72,14 +72,14 @@ def test_a_study_names_each_quantity_once_and_not_all_of_its_rows() -> None:
     complaints = Complaints()
     for row in range(0, 100, 2):
         overlap = Complaint(OverlapWarning, "contact_overlap", 0.1 + row, lambda: "too deep")
-        complaints.add(row, [overlap, Complaint(LedgerWarning, "energy_residual", 0.1, lambda: "open")])
+        complaints.add(row, [overlap, Complaint(BalanceWarning, "energy_residual", 0.1, lambda: "open")])
     assert list(complaints.summaries(1000)) == [
         (
             OverlapWarning,
             "too deep (row 98, the worst of 50 in 1,000 runs: rows 0, 2, 4, 6, 8, 10, 12, 14 and 42 more)",
         ),
         (
-            LedgerWarning,
+            BalanceWarning,
             "open (row 0, the worst of 50 in 1,000 runs: rows 0, 2, 4, 6, 8, 10, 12, 14 and 42 more)",
         ),
     ]
@@ -108,19 +108,19 @@ def test_a_study_that_is_stopped_says_it_too() -> None:
 def test_the_check_of_the_steps_is_that_of_the_history() -> None:
     simulation = scenes.oblique_car(mesh_density=0.3)
     run = simulation.run()
-    ledger = simulation._core.ledger
+    balances = simulation._core.balances
     residual = np.abs(run.energy["residual"]).max()
-    assert residual <= ledger.energy.size <= 2.0 * residual
-    assert ledger.kinetic == pytest.approx(run.energy["kinetic"][0], rel=1e-12)
-    assert 0.0 < ledger.energy.time <= run.time[-1] + run.scene.settings.output_interval
-    assert ledger.momentum.size < 1e-9 * ledger.largest_momentum
-    assert set(ledger.falls) <= set(run.energy) | {"barrier_ground_friction"}
+    assert residual <= balances.energy.size <= 2.0 * residual
+    assert balances.kinetic == pytest.approx(run.energy["kinetic"][0], rel=1e-12)
+    assert 0.0 < balances.energy.time <= run.time[-1] + run.scene.settings.output_interval
+    assert balances.momentum.size < 1e-9 * balances.largest_momentum
+    assert set(balances.falls) <= set(run.energy) | {"barrier_ground_friction"}
 
 
 def test_a_fall_is_told_by_its_name() -> None:
     worst = SimpleNamespace(size=3e5, time=0.125, place=(1.0, 2.0, 0.5))
     nothing = SimpleNamespace(size=0.0, time=0.0, place=(0.0, 0.0, 0.0))
-    ledger = SimpleNamespace(
+    balances = SimpleNamespace(
         kinetic=1e7,
         at_disposal=1e7,
         largest_momentum=1.0,
@@ -132,8 +132,8 @@ def test_a_fall_is_told_by_its_name() -> None:
     told = (
         "the fall of tire_friction must be at most 0.005, got 0.03 at t = 0.125 s, mass centre at (1, 2, 0.5)"
     )
-    with pytest.warns(LedgerWarning, match=re.escape(told)):
-        warn_if_open(scenes.w2(4).scene, ledger)  # type: ignore[arg-type]
+    with pytest.warns(BalanceWarning, match=re.escape(told)):
+        warn_if_open(scenes.w2(4).scene, balances)  # type: ignore[arg-type]
 
 
 CARS = [Vehicle.preset(name, mesh_density=0.1) for name in ("passenger_car", "pickup", "paper_pickup")]
@@ -182,9 +182,9 @@ def test_accounts_close_in_any_pose_at_any_barrier(
         settings=Settings(tolerance=10.0**power, restitution=restitution),
     )
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LedgerWarning)
+        warnings.simplefilter("ignore", BalanceWarning)
         run = simulation.run()
-    ledger = simulation._core.ledger
-    assert ledger.energy.size < 1e-2 * ledger.at_disposal
-    assert max(fall.size for fall in ledger.falls.values()) < 2e-3 * ledger.at_disposal
+    balances = simulation._core.balances
+    assert balances.energy.size < 1e-2 * balances.at_disposal
+    assert max(fall.size for fall in balances.falls.values()) < 2e-3 * balances.at_disposal
     assert run.metrics["momentum_residual"] < 1e-6

@@ -183,7 +183,7 @@ def test_friction_of_body_and_tires_keeps_to_coulomb_at_the_end_of_every_step(
     assert tires_alone > 0 or scene_name == "oblique_66_friction"
 
 
-@pytest.mark.filterwarnings("ignore:energy_residual.*along_truss:birm3d.LedgerWarning")
+@pytest.mark.filterwarnings("ignore:energy_residual.*along_truss:birm3d.BalanceWarning")
 @pytest.mark.parametrize("angle", [10.0, 24.0, 45.0, 66.0])
 def test_force_along_the_truss_makes_energy(
     angle: float, result_of: Callable[[str], Result], record_property: Callable[[str, object], None]

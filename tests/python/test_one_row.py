@@ -15,7 +15,7 @@ from birm3d.result.metric_table import GROUPS, Metric, Shown
 from birm3d.scene_parameters import unit_of
 from birm3d.simulation.scene_file import _Settings
 from birm3d.study.runner import checked_metrics
-from birm3d.study.verification.errors import BOOKKEEPING, LEDGERS, compared_metrics
+from birm3d.study.verification.errors import BALANCES, BOOKKEEPING, compared_metrics
 
 PACKAGE = Path(birm3d.__file__).parent
 
@@ -27,7 +27,10 @@ def test_rows_are_complete() -> None:
         if metric.needs != "end":
             _core.ExtremeGroups(**{metric.needs: True})  # refuses what is none
         assert METRIC_UNITS[name] == metric.unit
-        assert (name in BOOKKEEPING, name in LEDGERS) == (metric.error == "effort", metric.error == "balance")
+        assert (name in BOOKKEEPING, name in BALANCES) == (
+            metric.error == "effort",
+            metric.error == "balance",
+        )
     assert list(METRIC_UNITS) == list(METRICS)
 
 

@@ -39,7 +39,7 @@ CORE_ENTRIES = (
     "velocity", "pose", "skin_load",
 )  # fmt: skip
 CORE_PROPERTIES = (
-    "state_hash", "time", "end_reason", "event", "ledger", "failed", "replays", "touched",
+    "state_hash", "time", "end_reason", "event", "balances", "failed", "replays", "touched",
     "deepest_node", "deepest_anchor", "statistics",
 )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Random impacts of the presets: no error, no NaN, ledgers that close."""
+"""Random impacts of the presets: no error, no NaN, balances that close."""
 
 from __future__ import annotations
 

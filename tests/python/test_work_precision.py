@@ -14,7 +14,7 @@ import pytest
 from birm3d import Barrier, Settings, Simulation, Vehicle, scenes
 from birm3d.study import PrecisionRow, WorkPrecision, work_precision
 from birm3d.study.verification.convergence import Limit, limit_of, order_of, richardson
-from birm3d.study.verification.errors import BOOKKEEPING, LEDGERS, least_scales, relative_errors
+from birm3d.study.verification.errors import BALANCES, BOOKKEEPING, least_scales, relative_errors
 from birm3d.study.verification.triangulated import triangulated
 
 PROGRAM = Path(__file__).resolve().parents[1] / "bench/bench_accuracy.py"
@@ -111,7 +111,7 @@ def test_errors_near_zero_are_judged_by_a_scale() -> None:
 
 
 def test_every_metric_has_an_error(w2: WorkPrecision) -> None:
-    metrics = set(scenes.w2(24).run().metrics) - BOOKKEEPING - LEDGERS
+    metrics = set(scenes.w2(24).run().metrics) - BOOKKEEPING - BALANCES
     assert set(w2.converged) == set(w2.default.errors) == metrics
 
 

@@ -7,15 +7,16 @@
 
 namespace birm3d {
 
-// On functions of plain loops only: inlined Eigen code would keep the baseline's packets, and its symbols
-// could clash between instruction sets.
+// The compiler clones such a function for each instruction set and chooses when the library is loaded. Only for
+// functions of plain loops: inlined Eigen code would keep the baseline's packets, and its symbols could clash.
+// tests/bench/bench_simd.py measures the gain; BIRM3D_PLAIN_BLOCKS leaves the clones out.
 #if defined(__clang__)
 #define BIRM3D_CLONES(...) \
     __attribute__((target_clones(__VA_ARGS__)))  // never inlined, and not to be told so
 #else
 #define BIRM3D_CLONES(...) __attribute__((noinline, target_clones(__VA_ARGS__)))
 #endif
-#if defined(BIRM3D_BASELINE)
+#if defined(BIRM3D_BASELINE) || defined(BIRM3D_PLAIN_BLOCKS)
 #define BIRM3D_BLOCK_LOOP __attribute__((noinline))
 #elif defined(__x86_64__) && defined(__gnu_linux__) && defined(__GLIBC__) && defined(BIRM3D_UP_TO_AVX2)
 #define BIRM3D_BLOCK_LOOP BIRM3D_CLONES("arch=x86-64-v3", "default")
@@ -41,7 +42,7 @@ BIRM3D_INLINE double block_sum(BlockColumn& values) {
         for (std::size_t i = 0; i < half; ++i)
             values[i] += values[half + i];
     }
-    return row_sum(values.data());
+    return packet_sum(values.data());
 }
 
 // The greatest, in place.

@@ -15,7 +15,7 @@ struct Biquad {
     double b0, b1, b2, a1, a2;
     TwoSignals z1{}, z2{};
 
-    // As after an endless signal of this value.
+    // State after an infinitely long constant signal.
     void settle(const TwoSignals& value) {
         for (std::size_t i = 0; i < 2; ++i) {
             const double out = (b0 + b1 + b2) / (1.0 + a1 + a2) * value[i];

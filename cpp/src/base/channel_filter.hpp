@@ -13,7 +13,8 @@ inline constexpr double window_50ms = 0.05;  // s
 // Rows of a moving mean of this width; both in s.
 std::size_t rows_in(double width, double interval);
 
-// Two signals side by side: each row of a filter waits for the one before, and two wait together.
+// Two signals are filtered together. Each row of a filter depends on the row before, so that one signal would leave
+// the processor idle.
 using TwoSignals = std::array<double, 2>;
 
 // Greatest value of each signal, filtered by a channel frequency class: two-pole Butterworth low-pass, forwards and

@@ -1,5 +1,5 @@
 // Sums over nodes, in eight columns that are added up at the end: a fixed order for any instruction set.
-// Plain, because files that are compiled for several instruction sets include it (see src/base/row.hpp).
+// Plain, because files that are compiled for several instruction sets include it (see src/base/packet.hpp).
 #pragma once
 
 #include "base/inline.hpp"
@@ -7,7 +7,7 @@
 namespace birm3d {
 
 // Of eight columns.
-BIRM3D_INLINE double row_sum(const double* v) {
+BIRM3D_INLINE double packet_sum(const double* v) {
     return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
 }
 

@@ -18,8 +18,8 @@ Quat from_roll_pitch_yaw(const Angles& a) {
 }
 
 Quat cayley(const Quat& q, const Vec3& theta) {
-    const Quat turn(1.0, 0.5 * theta.x(), 0.5 * theta.y(), 0.5 * theta.z());
-    return (q * turn).normalized();
+    const Quat increment(1.0, 0.5 * theta.x(), 0.5 * theta.y(), 0.5 * theta.z());
+    return (q * increment).normalized();
 }
 
 }  // namespace birm3d

@@ -1,4 +1,4 @@
-// Selections by which arithmetic is written that single numbers and rows of eight (src/base/row.hpp) share. Plain, like
+// Selections by which arithmetic is written that single numbers and packets of eight (src/base/packet.hpp) share. Plain, like
 // node_sums.hpp.
 #pragma once
 

@@ -31,14 +31,15 @@ void find_rate_factor(const ContactPass& pass, const ContactBlock& block, std::s
     if (at != several_obstacles) return set(pass.relative_motion[at], factor);
     if (pass.now.segments.empty()) return set(pass.motion, factor);
     alignas(64) BlockColumn own;
-    for (std::size_t k = 0; k < block.seen.size(); ++k) {
-        set(pass.relative_motion[block.seen[k]], own);
+    for (std::size_t k = 0; k < block.reachable.size(); ++k) {
+        set(pass.relative_motion[block.reachable[k]], own);
         for (std::size_t i = 0; i < block_size; ++i)
             if (block.nearest[i] == k) factor[i] = own[i];
     }
 }
 
-// The rate of deflection is that of where the nodes will be. So a rate-sensitive block is first crushed without it.
+// The rate of deflection depends on where the nodes will be. Therefore a rate-sensitive block is first crushed
+// without the rate factor.
 template <class Crush>
 bool crush_with_rate(const ContactPass& pass, const ContactBlock& block, std::size_t at, const Places& places,
                      CrushSums& sums, const Crush& crush) {
@@ -70,23 +71,23 @@ bool crush_on(const ContactPass& pass, std::size_t at, ContactBlock& block, Crus
 
 // The one obstacle that all nodes which push or are inside meet, or several_obstacles.
 std::size_t obstacle_met(const ContactBlock& block) {
-    if (block.seen.size() == 1) return block.seen[0];
+    if (block.reachable.size() == 1) return block.reachable[0];
     std::optional<std::size_t> only;
     for (std::size_t i = 0; i < block_size; ++i) {
         if (!(block.start->force[i] > 0.0 || block.faces.gap[i] < 0.0)) continue;
         if (only && *only != block.nearest[i]) return several_obstacles;
         only = block.nearest[i];
     }
-    return block.seen[only.value_or(0)];
+    return block.reachable[only.value_or(0)];
 }
 
-void add_friction_and_shares(const ContactPass& pass, std::size_t at, ContactBlock& block,
-                             ContactSums& sums) {
+void add_friction_and_distribute(const ContactPass& pass, std::size_t at, ContactBlock& block,
+                                 ContactSums& sums) {
     if (!block.end->touching) return;
     if (at != several_obstacles)
         apply_friction(pass, at, block.contact.places(), block.contact, block, sums);
     else
-        share_loads(pass, block, sums);
+        distribute_loads(pass, block, sums);
 }
 
 // Crushes the block anew from where other surfaces have stopped the released nodes.
@@ -94,14 +95,14 @@ void crush_stopped(const ContactPass& pass, ContactState& state) {
     stop_nodes(pass, state.block, state.sums);
     find_nearest_surface(pass, state.block);
     crush_on(pass, several_obstacles, state.block, state.sums.several);
-    add_friction_and_shares(pass, several_obstacles, state.block, state.sums);
+    add_friction_and_distribute(pass, several_obstacles, state.block, state.sums);
 }
 
 }  // namespace
 
 PlaneSums* only_plane(const ContactPass& pass, const ContactBlock& block, ContactSums& sums) {
-    if (block.seen.size() != 1 || !block.indentations.empty()) return nullptr;
-    const std::size_t k = block.seen[0];
+    if (block.reachable.size() != 1 || !block.indentations.empty()) return nullptr;
+    const std::size_t k = block.reachable[0];
     const Shape& shape = pass.shape(k);
     if (std::holds_alternative<HalfSpace>(shape) && !sums.planes.empty() && sums.planes.back().near == k)
         return &sums.planes.back();  // the same plane to all blocks
@@ -128,11 +129,11 @@ void crush_on_plane(const ContactPass& pass, PlaneSums& plane, ContactState& sta
 
 void crush_on_surfaces(const ContactPass& pass, ContactState& state) {
     ContactBlock& block = state.block;
-    // A node that goes into one obstacle may find itself at another one, too; posts stand apart.
-    const bool may_enter_another = std::any_of(block.seen.begin(), block.seen.end(), [&](std::size_t k) {
-        return std::holds_alternative<Prism>(pass.shape(k));
-    });
-    const bool fixed = block.corners.empty() && (block.seen.size() == 1 || !may_enter_another);
+    // A node that moves into one obstacle may reach another one, too. Posts are too far apart for that.
+    const bool may_enter_another =
+        std::any_of(block.reachable.begin(), block.reachable.end(),
+                    [&](std::size_t k) { return std::holds_alternative<Prism>(pass.shape(k)); });
+    const bool fixed = block.corners.empty() && (block.reachable.size() == 1 || !may_enter_another);
     const std::size_t at = fixed ? obstacle_met(block) : several_obstacles;
     CrushSums& to = at != several_obstacles ? state.sums.obstacles[at].sums : state.sums.several;
     const bool ceased = crush_on(pass, at, block, to);
@@ -142,7 +143,7 @@ void crush_on_surfaces(const ContactPass& pass, ContactState& state) {
         to -= undone;
         return crush_stopped(pass, state);
     }
-    add_friction_and_shares(pass, at, block, state.sums);
+    add_friction_and_distribute(pass, at, block, state.sums);
 }
 
 }  // namespace birm3d

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// How far a held node can have left its surface within the step (m).
+// How far a node in contact can have moved off its surface within the step (m).
 double margin_of(const Scene& scene, std::size_t u, const State& from, const Trial& trial) {
     const Unit& unit = scene.vehicle->units[u];
     const State& now = trial.state;
@@ -37,7 +37,7 @@ void add_touched(const Scene& scene, std::size_t u, const State& before, const S
     }
 }
 
-// Friction and rate-sensitive trusses answer the motion; nothing else does.
+// Only friction and rate-sensitive trusses depend on the motion.
 bool motion_matters(const Scene& scene, const TrussMesh& mesh, const std::vector<NearObstacle>& near) {
     const bool has_friction = std::any_of(near.begin(), near.end(), [&](const NearObstacle& obstacle) {
         return scene.obstacles[obstacle.index].friction > 0.0;
@@ -61,7 +61,7 @@ void find_relative_motions(const Scene& scene, std::size_t u, const State& from,
     trial.state.segments = drifted;
 }
 
-// Can nodes of some panels, bit by bit, within a box meet the obstacle itself?
+// Can nodes within a box meet the obstacle itself? `of`: their panels, one bit each.
 bool can_meet(const ContactPass& pass, std::uint8_t of, std::size_t k, const Box& box, double margin) {
     return !only_indented(pass, of, k) && within_reach(pass.shape(k), pass.near[k].now, box, margin);
 }
@@ -113,21 +113,22 @@ bool find_group_candidates(const ContactPass& pass, std::size_t g, ContactMemory
 void find_block_candidates(const ContactPass& pass, const ContactMemory& memory, ContactBlock& block) {
     const std::size_t b = block.index;
     const bool touching = block.start->touching;
-    block.seen.clear();
+    block.reachable.clear();
     // Where there is one obstacle, nodes that push do so on it.
     if (touching && pass.near.size() == 1 && pass.meets(b, 0)) {
-        block.seen.push_back(0);
+        block.reachable.push_back(0);
     } else {
         for (const std::size_t k : memory.group_near)
             if (pass.meets(b, k) &&
                 can_meet(pass, pass.mesh.panels_of[b], k, block.start->box, touching ? pass.margin : 0.0))
-                block.seen.push_back(k);
+                block.reachable.push_back(k);
     }
     find_block_indentations(pass, memory.group_indentations, block);
-    // A node that pushes stays at its obstacle until it is released, however far the step has drawn it off.
-    if (touching && block.seen.empty())
+    // A node that pushes stays a candidate of its obstacle until it is released, however far it has moved in the
+    // step.
+    if (touching && block.reachable.empty())
         for (std::size_t k = 0; k < pass.near.size(); ++k)
-            if (pass.meets(b, k)) block.seen.push_back(k);
+            if (pass.meets(b, k)) block.reachable.push_back(k);
 }
 
 }  // namespace birm3d

@@ -17,7 +17,7 @@ ContactPass prepare_pass(const Scene& scene, std::size_t unit, const State& from
 // Returns whether any block of the group can push, return to its free length, or meet anything.
 bool find_group_candidates(const ContactPass& pass, std::size_t group, ContactMemory& memory);
 
-// Sets `seen` and `indentations` of the block.
+// Sets `reachable` and `indentations` of the block.
 void find_block_candidates(const ContactPass& pass, const ContactMemory& memory, ContactBlock& block);
 
 }  // namespace birm3d

@@ -11,16 +11,16 @@ namespace birm3d {
 
 namespace {
 
-Wrench turned(const Wrench& w, const Mat3& R) {
+Wrench rotated(const Wrench& w, const Mat3& R) {
     return {R * w.force, R * w.torque};
 }
 
-Mat6 turned(const Mat6& of, const Mat3& R) {
-    Mat6 turned;
+Mat6 rotated(const Mat6& of, const Mat3& R) {
+    Mat6 rotated;
     for (const int i : {0, 3})
         for (const int j : {0, 3})
-            turned.block<3, 3>(i, j) = R * of.block<3, 3>(i, j) * R.transpose();
-    return turned;
+            rotated.block<3, 3>(i, j) = R * of.block<3, 3>(i, j) * R.transpose();
+    return rotated;
 }
 
 // Sums over the nodes of one obstacle, body axes.
@@ -64,7 +64,8 @@ void add(const CrushSums& sums, SkinForces& skin) {
     skin.stiffness += sums.stiffness();
 }
 
-// The load on the k-th near obstacle, world axes; adds what it stores and resists to `skin`. `R`: body to world axes.
+// The load on the k-th near obstacle, world axes. Adds its stored energy and its resistance to `skin`. `R`: body to
+// world axes.
 ContactLoad load_on(const ContactPass& pass, std::size_t k, const ContactSums& all, const Mat3& R,
                     SkinForces& skin) {
     const ObstacleSums& sums = all.obstacles[k];
@@ -81,9 +82,9 @@ ContactLoad load_on(const ContactPass& pass, std::size_t k, const ContactSums& a
         add(plane.sums, skin);
     }
     if (pass.along_trusses) load.contact = sums.by_trusses;
-    load.contact = turned(load.contact, R);
-    load.friction = turned(sums.rubbing.friction, R);
-    if (sums.rubbing.resistance.trace() > 0.0) skin.resistance += sums.rubbing.resistance;
+    load.contact = rotated(load.contact, R);
+    load.friction = rotated(sums.friction_load.friction, R);
+    if (sums.friction_load.resistance.trace() > 0.0) skin.resistance += sums.friction_load.resistance;
     skin.contact += load.contact;
     skin.friction += load.friction;
     skin.normal_force += load.normal_force;
@@ -119,22 +120,22 @@ void apply_friction(const ContactPass& pass, std::size_t k, const Places& places
     const Vec3* const normal = block.flat_normal ? &*block.flat_normal : nullptr;
     const Twist& motion = pass.relative_motion[k];
     if (block.indentations.empty())
-        return add_friction(mu, pass.full_friction_speed, motion, places, contact, normal, to.rubbing);
+        return add_friction(mu, pass.full_friction_speed, motion, places, contact, normal, to.friction_load);
     BlockContact along = contact;
     slide_along_panel(block.faces, along);
-    add_friction(mu, pass.full_friction_speed, motion, places, along, nullptr, to.rubbing);
+    add_friction(mu, pass.full_friction_speed, motion, places, along, nullptr, to.friction_load);
 }
 
-void share_loads(const ContactPass& pass, ContactBlock& block, ContactSums& sums) {
-    if (!block.corners.empty()) share_corner_forces(pass, block, sums);
+void distribute_loads(const ContactPass& pass, ContactBlock& block, ContactSums& sums) {
+    if (!block.corners.empty()) distribute_corner_forces(pass, block, sums);
     BlockContact part = block.contact;
-    for (std::size_t k = 0; k < block.seen.size(); ++k) {
+    for (std::size_t k = 0; k < block.reachable.size(); ++k) {
         const NodeLoads of = select_loads(block.nearest, k, block.contact, part.pressure);
         if (!(of.normal_force > 0.0)) continue;
-        ObstacleSums& to = sums.obstacles[block.seen[k]];
+        ObstacleSums& to = sums.obstacles[block.reachable[k]];
         to.contact += {Vec3(of.x, of.y, of.z), Vec3(of.tx, of.ty, of.tz)};
         to.normal_force += of.normal_force;
-        apply_friction(pass, block.seen[k], block.contact.places(), part, block, sums);
+        apply_friction(pass, block.reachable[k], block.contact.places(), part, block, sums);
     }
 }
 
@@ -144,17 +145,17 @@ void store_loads(const ContactPass& pass, Trial& trial) {
     const Mat3 R = now.body.orientation.toRotationMatrix();
     SkinForces& skin = now.skin;
     skin = {};
-    skin.rubbed = {R * pass.motion.velocity, R * pass.motion.angular_velocity};
+    skin.friction_motion = {R * pass.motion.velocity, R * pass.motion.angular_velocity};
     std::vector<ContactLoad>& loads = trial.skin.contact_loads;
     loads.clear();
     add(sums.several, skin);
     for (std::size_t k = 0; k < pass.near.size(); ++k) {
-        if (!sums.obstacles[k].seen) continue;
-        trial.seen.push_back(pass.near[k].index);
+        if (!sums.obstacles[k].reached) continue;
+        trial.reached.push_back(pass.near[k].index);
         const ContactLoad load = load_on(pass, k, sums, R, skin);
         if (load.normal_force > 0.0) loads.push_back(load);
     }
-    if (skin.resistance.trace() > 0.0) skin.resistance = turned(skin.resistance, R);
+    if (skin.resistance.trace() > 0.0) skin.resistance = rotated(skin.resistance, R);
     keep_ended_loads(pass.before.contact_loads, loads);
     now.contact_loads = loads;
 }

@@ -12,7 +12,7 @@ void apply_friction(const ContactPass& pass, std::size_t k, const Places& places
                     const ContactBlock& block, ContactSums& sums);
 
 // Gives each obstacle that the block's nodes push on the loads of its own nodes, with friction.
-void share_loads(const ContactPass& pass, ContactBlock& block, ContactSums& sums);
+void distribute_loads(const ContactPass& pass, ContactBlock& block, ContactSums& sums);
 
 // Stores the sums as the unit's loads, world axes.
 void store_loads(const ContactPass& pass, Trial& trial);

@@ -26,8 +26,8 @@ struct ObstacleSums {
     Wrench by_trusses;  // of the paper's rule, in place of the projected force
     Wrench contact;     // of blocks that met several obstacles
     double normal_force = 0.0;
-    Rubbing rubbing;
-    bool seen = false;  // by any block
+    FrictionLoad friction_load;
+    bool reached = false;  // by any block
 };
 
 // What the blocks of a unit add up to.
@@ -50,10 +50,11 @@ struct IndentedPanel {
     std::size_t near;
     std::size_t panel;
     Indentation indentation, before;  // at the end and at the start of the step
-    double growth;                    // how far it can have come in within the step, and nodes off it (m)
+    double
+        growth;  // how far the post can have moved in, and nodes can have moved off it, within the step (m)
 };
 
-// An indentation that the block at hand may reach. None of its nodes is nearer to it than `gap` (m).
+// An indentation that the present block may reach. None of its nodes is nearer to it than `gap` (m).
 struct BlockIndentation {
     std::size_t indentation;
     double gap;
@@ -65,7 +66,7 @@ struct ContactMemory {
     std::vector<Twist> relative_motion;  // parallel to near: the unit's, seen from the obstacle, body axes
     std::vector<IndentedPanel> indentations;
     ContactSums sums;
-    // Places in `near` and `indentations` that the group at hand may reach, then the block at hand.
+    // Indices in `near` and `indentations` of what the present group may reach, then the present block.
     std::vector<std::size_t> group_near, group_indentations, block_near;
     std::vector<BlockIndentation> block_indentations;  // the nearest first
     std::vector<ContactLoad> contact_loads;

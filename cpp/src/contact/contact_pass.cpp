@@ -41,19 +41,19 @@ void apply_contact(const ContactPass& pass, std::size_t b, ContactState& state, 
     block.begin(b, pass.before.trusses.block[b], trial.state.units[pass.unit_index].trusses.block[b]);
     snap_back(pass, block);
     find_block_candidates(pass, trial.skin, block);
-    if (block.seen.empty() && !block.is_altered()) return;
+    if (block.reachable.empty() && !block.is_altered()) return;
     trial.state.statistics.node_evaluations += block_size;
-    for (const std::size_t k : block.seen)
-        state.sums.obstacles[k].seen = true;
+    for (const std::size_t k : block.reachable)
+        state.sums.obstacles[k].reached = true;
     PlaneSums* const plane = only_plane(pass, block, state.sums);
-    if (plane == nullptr && !block.seen.empty()) {
+    if (plane == nullptr && !block.reachable.empty()) {
         find_nearest_surface(pass, block);
         if (stays_free(block)) return;
     }
     trial.active[pass.unit_index].add(b);
     trial.stale[pass.unit_index].add(b);
     count_met_nodes(pass, b, trial.state.statistics);
-    if (block.seen.empty())
+    if (block.reachable.empty())
         *block.end = block.altered;
     else if (plane != nullptr)
         crush_on_plane(pass, *plane, state);

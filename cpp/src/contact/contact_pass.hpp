@@ -1,4 +1,4 @@
-// One unit's contacts at one instant, in body axes: what is constant meanwhile, and what changes from block to block.
+// One pass over the blocks of a unit at one instant, in body axes: its constant parameters and what it changes.
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@
 
 namespace birm3d {
 
-// Place of an obstacle that stands for several.
+// Stands for several obstacles in place of an index.
 inline constexpr std::size_t several_obstacles = static_cast<std::size_t>(-1);
 
-// Parameters. They are constant while the blocks are gone through.
+// Constant parameters of a pass.
 struct ContactPass {
     const Scene& scene;
     const std::size_t unit_index;
@@ -35,7 +35,8 @@ struct ContactPass {
     std::span<const Twist> relative_motion = {};  // parallel to near: the unit's, seen from the obstacle
     std::span<const IndentedPanel> indentations = {};
     std::uint8_t indented_before = 0;  // panels that posts had indented before the step, bit by bit
-    double greatest_following = 0.0;   // no node follows these further outwards within the step (m)
+    double greatest_following =
+        0.0;  // bound of how far a node follows an indentation outwards within the step (m)
 
     const Obstacle& obstacle(std::size_t k) const { return scene.obstacles[near[k].index]; }
     const Shape& shape(std::size_t k) const { return obstacle(k).shape; }
@@ -47,16 +48,16 @@ struct ContactPass {
 
 // A released node that another surface stopped on its way.
 struct StoppedNode {
-    std::size_t lane;
+    std::size_t node_index;
     Vec3 place;
     double deflection, residual, peak_deflection, force;  // of its truss there
     double work;                                          // on its truss up to the release (J)
 };
 
-// The block of nodes at hand. One object serves all blocks: what belongs to a block is set anew by begin().
+// The block of nodes that is being computed. One object serves all blocks; begin() resets it.
 struct ContactBlock {
     explicit ContactBlock(ContactMemory& memory)
-        : seen(memory.block_near), indentations(memory.block_indentations) {}
+        : reachable(memory.block_near), indentations(memory.block_indentations) {}
 
     void begin(std::size_t block, const TrussBlockState& at_start, TrussBlockState& at_end) {
         index = block;
@@ -80,25 +81,26 @@ struct ContactBlock {
     const TrussBlockState* start = nullptr;  // as the step finds the block, or `altered`
     TrussBlockState* end = nullptr;          // as the step leaves it
     TrussBlockState altered;
-    std::vector<std::size_t>& seen;               // places in ContactPass::near of what the block can meet
+    std::vector<std::size_t>&
+        reachable;  // indices in ContactPass::near of the obstacles that the block can reach
     std::vector<BlockIndentation>& indentations;  // that it can reach
 
     NodeFaces faces;
     BlockContact contact;
-    std::array<std::size_t, block_size> nearest;  // place in `seen` of each node's obstacle
+    std::array<std::size_t, block_size> nearest;  // index in `reachable` of each node's obstacle
     alignas(64) BlockColumn second_gap;  // of each node, to the second nearest of several obstacles (m)
     alignas(64) BlockColumn released;    // nodes that an indentation releases (1, else 0)
     std::optional<Vec3> flat_normal;     // of all nodes in `contact`, where they met one plane
-    std::vector<Corner> corners;         // nodes that several surfaces hold
+    std::vector<Corner> corners;         // nodes that are on several surfaces
     std::vector<StoppedNode> stopped;
 };
 
-// Obstacles to which only a released node can get: they are looked for when one is released.
+// Obstacles that only a released node can reach. They are searched when a node is released.
 struct DistantObstacles {
     std::vector<NearObstacle> list;
     bool are_found = false;
     bool were_met =
-        false;  // has a node got to one? Then the pass is done again with these among the near ones.
+        false;  // has a node reached one? Then the pass is repeated with these among the near obstacles.
 };
 
 // Everything that a pass changes.

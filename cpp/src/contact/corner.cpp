@@ -11,7 +11,7 @@ namespace {
 // Square of the sine below which two faces make no corner.
 constexpr double parallel = 0.01;
 
-// The least of any subset of faces, in the order in which they are tried: the most faces first.
+// Bit sets of faces in the order in which they are tried: those with the most faces first.
 constexpr std::array<unsigned, 7> subsets{7, 3, 5, 6, 1, 2, 4};
 
 // The faces of a subset, one after the other.
@@ -30,7 +30,7 @@ Mat3 products(const Corner& corner, const Faces& faces) {
     for (std::size_t k = 0; k < faces.count; ++k)
         for (std::size_t j = 0; j < faces.count; ++j)
             products(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j)) =
-                corner.face[faces.at[k]].gradient.dot(corner.face[faces.at[j]].way);
+                corner.face[faces.at[k]].gradient.dot(corner.face[faces.at[j]].direction);
     return products;
 }
 
@@ -61,56 +61,56 @@ bool Corner::add(const CornerFace& further) {
 unsigned Corner::pushing() const {
     unsigned of = 0;
     for (std::size_t k = 0; k < count; ++k)
-        if (face[k].share > 0.0) of |= 1U << k;
+        if (face[k].weight > 0.0) of |= 1U << k;
     return of;
 }
 
-Vec3 Corner::way_onto(unsigned of) const {
+Vec3 Corner::displacement_onto(unsigned of) const {
     const Faces faces(of);
     if (faces.count == 0) return Vec3::Zero();
     Vec3 gaps = Vec3::Zero();
     for (std::size_t k = 0; k < faces.count; ++k)
         gaps[static_cast<Eigen::Index>(k)] = -face[faces.at[k]].gap;
-    const Mat3 of_ways = products(*this, faces);
-    const Vec3 ways = solve(of_ways.row(0), of_ways.row(1), of_ways.row(2), gaps);
+    const Mat3 system = products(*this, faces);
+    const Vec3 amounts = solve(system.row(0), system.row(1), system.row(2), gaps);
     Vec3 sum = Vec3::Zero();
     for (std::size_t k = 0; k < faces.count; ++k)
-        sum += ways[static_cast<Eigen::Index>(k)] * face[faces.at[k]].way;
+        sum += amounts[static_cast<Eigen::Index>(k)] * face[faces.at[k]].direction;
     return sum;
 }
 
-// Do faces of a subset take all of the truss's force that presses on any of them, each a share above zero?
-bool Corner::try_shares(unsigned of, const Vec3& b) {
+// Can the faces of a subset carry the truss's force with positive weights, so that it presses on no other face?
+bool Corner::try_weights(unsigned of, const Vec3& b) {
     const Faces faces(of);
-    Vec3 wanted = Vec3::Zero();
+    Vec3 required = Vec3::Zero();
     for (std::size_t k = 0; k < faces.count; ++k)
-        wanted[static_cast<Eigen::Index>(k)] = b.dot(face[faces.at[k]].way);
-    const Mat3 of_ways = products(*this, faces);
-    const Vec3 shares = solve(of_ways.col(0), of_ways.col(1), of_ways.col(2), wanted);
+        required[static_cast<Eigen::Index>(k)] = b.dot(face[faces.at[k]].direction);
+    const Mat3 system = products(*this, faces);
+    const Vec3 weights = solve(system.col(0), system.col(1), system.col(2), required);
     Vec3 taken = Vec3::Zero();
     for (std::size_t k = 0; k < faces.count; ++k) {
-        if (!(shares[static_cast<Eigen::Index>(k)] > 0.0)) return false;
-        taken += shares[static_cast<Eigen::Index>(k)] * face[faces.at[k]].gradient;
+        if (!(weights[static_cast<Eigen::Index>(k)] > 0.0)) return false;
+        taken += weights[static_cast<Eigen::Index>(k)] * face[faces.at[k]].gradient;
     }
     for (std::size_t k = 0; k < count; ++k)
-        if ((of >> k & 1U) == 0 && (b - taken).dot(face[k].way) > 0.0) return false;
+        if ((of >> k & 1U) == 0 && (b - taken).dot(face[k].direction) > 0.0) return false;
     for (std::size_t k = 0; k < faces.count; ++k)
-        face[faces.at[k]].share = shares[static_cast<Eigen::Index>(k)];
+        face[faces.at[k]].weight = weights[static_cast<Eigen::Index>(k)];
     return true;
 }
 
-std::size_t Corner::share_out(const Vec3& b) {
+std::size_t Corner::distribute(const Vec3& b) {
     for (CornerFace& of : face)
-        of.share = 0.0;
+        of.weight = 0.0;
     for (const unsigned of : subsets)
-        if ((of >> count) == 0 && try_shares(of, b)) return static_cast<std::size_t>(std::popcount(of));
+        if ((of >> count) == 0 && try_weights(of, b)) return static_cast<std::size_t>(std::popcount(of));
     return 0;
 }
 
 void Corner::release() {
     std::size_t kept = 0;
     for (std::size_t k = 0; k < count; ++k)
-        if (face[k].share > 0.0 || face[k].gap < -tolerance::touching_gap) face[kept++] = face[k];
+        if (face[k].weight > 0.0 || face[k].gap < -tolerance::touching_gap) face[kept++] = face[k];
     count = kept;
 }
 

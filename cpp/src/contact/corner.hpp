@@ -1,5 +1,5 @@
-// A node that two or three surfaces hold at once. It stands on all of them, and the force of its truss is shared out so
-// that its work is the work on the truss, whichever way the surfaces come:
+// A node in contact with two or three surfaces at once. It stands on all of them. The force of its truss is
+// distributed over the surfaces so that their work equals the work on the truss, for any motion of the surfaces:
 //   place   u = sum of a_j h_j,             q_k . u = -g_k          for each face k
 //   force   F sum of lambda_k p_k n_k,      sum of lambda_k q_k . h_j = b . h_j  for each face j that the truss pushes on
 // with b the unit vector from the node to its anchor, g the gaps, q their gradients by the node's place, -p n those by
@@ -18,42 +18,42 @@
 namespace birm3d {
 
 struct CornerFace {
-    std::size_t seen = 0;           // place of the obstacle in ContactBlock::seen
-    double gap = 0.0;               // of the node where it was (m)
-    Vec3 normal = Vec3::UnitX();    // of the surface there
-    Vec3 gradient = Vec3::UnitX();  // q: of the gap, by the node's place
-    double per_force = 1.0;         // p: size of the gap's gradient by the obstacle's place
-    Vec3 way = Vec3::UnitX();       // h
-    Vec3 place = Vec3::Zero();      // where the force acts (m), and the torque of a unit of normal force (m)
+    std::size_t reachable_index = 0;  // index of the obstacle in ContactBlock::reachable
+    double gap = 0.0;                 // of the node where it was (m)
+    Vec3 normal = Vec3::UnitX();      // of the surface there
+    Vec3 gradient = Vec3::UnitX();    // q: of the gap, by the node's place
+    double per_force = 1.0;           // p: size of the gap's gradient by the obstacle's place
+    Vec3 direction = Vec3::UnitX();   // h
+    Vec3 place = Vec3::Zero();  // where the force acts (m), and the torque of a unit of normal force (m)
     Vec3 torque = Vec3::Zero();
-    bool indented = false;  // is it an indentation, which says these two itself?
-    double share = 0.0;     // lambda
+    bool indented = false;  // is it an indentation? Then `place` and `torque` are given
+    double weight = 0.0;    // lambda
 };
 
 struct Corner {
     static constexpr std::size_t most = 3;
 
-    std::size_t lane = 0;
+    std::size_t node_index = 0;
     std::size_t count = 0;
     std::array<CornerFace, most> face;
 
     // False where the face is nearly parallel to the known ones: such faces make no corner.
     bool add(const CornerFace& further);
 
-    // Onto all faces; and what of that way leads along those that have a share.
-    Vec3 way() const { return way_onto((1U << count) - 1U); }
-    Vec3 pushed_way() const { return way_onto(pushing()); }
+    // Displacement onto all faces; and onto those with a weight above zero only.
+    Vec3 displacement() const { return displacement_onto((1U << count) - 1U); }
+    Vec3 pushed_displacement() const { return displacement_onto(pushing()); }
 
-    // Sets the shares of a truss with the direction b. Returns on how many faces it pushes.
-    std::size_t share_out(const Vec3& b);
+    // Sets the weights for a truss with the direction b. Returns on how many faces it pushes.
+    std::size_t distribute(const Vec3& b);
 
-    // Faces on which the truss does not push let the node go, but those that drive it in.
+    // Removes faces on which the truss does not push, unless the node is inside them.
     void release();
 
   private:
     unsigned pushing() const;
-    Vec3 way_onto(unsigned of) const;
-    bool try_shares(unsigned of, const Vec3& b);
+    Vec3 displacement_onto(unsigned of) const;
+    bool try_weights(unsigned of, const Vec3& b);
 };
 
 }  // namespace birm3d

@@ -1,4 +1,4 @@
-// Nodes that two or three surfaces hold at once: see corner.hpp.
+// Nodes in contact with two or three surfaces at once: see corner.hpp.
 #pragma once
 
 #include "contact/contact_pass.hpp"
@@ -6,10 +6,10 @@
 
 namespace birm3d {
 
-// Places such nodes on all surfaces that hold them, and notes them in `corners`.
+// Moves such nodes onto all their surfaces, and lists them in `corners`.
 void resolve_corner_contacts(const ContactPass& pass, ContactBlock& block);
 
 // Moves the forces of these nodes from `contact` to the obstacles, to each its fraction.
-void share_corner_forces(const ContactPass& pass, ContactBlock& block, ContactSums& sums);
+void distribute_corner_forces(const ContactPass& pass, ContactBlock& block, ContactSums& sums);
 
 }  // namespace birm3d

@@ -1,5 +1,5 @@
-// Through which face a node came in. Beside an edge of an obstacle the nearest face to a node that is inside need not be
-// the one that presses it: a node just below the top of a wall that goes in by more than that is nearer to the top.
+// Finds the face through which a node entered an obstacle. Near an edge, that need not be the nearest face: a node
+// just below the top of a wall may come in so far that the top is nearer.
 #pragma once
 
 #include <optional>
@@ -13,17 +13,16 @@ namespace birm3d {
 
 // A face that a node went through, at the end of the step.
 struct EnteredFace {
-    std::size_t seen;    // which of the obstacles asked
-    Nearest now;         // gap and outward normal, body axes
-    Vec3 normal_before;  // of the same face an instant earlier, body axes
+    std::size_t reachable_index;  // which of the `reachable` obstacles
+    Nearest now;                  // gap and outward normal, body axes
+    Vec3 normal_before;           // of the same face an instant earlier, body axes
 };
 
-// Follows the node `place` (body axes, m) from where it stood with the body an instant before to where it is now,
-// inside one of the obstacles `seen` (places in `near`). None where the face that is nearest now is as good: the node
-// was inside before, or has slid past the end of the face. `nearest_now`: the one of the obstacles asked whose face that
-// is, `normal_now` its normal (body axes).
+// Follows the node `place` (body axes, m) through the step to where it is now, inside one of the obstacles
+// `reachable` (indices in `near`). None if the nearest face is right: the node was inside before, or has slid past
+// the end of the face. `nearest_now`: which of the obstacles is nearest now; `normal_now`: its normal (body axes).
 std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const NearObstacle> near,
-                                        std::span<const std::size_t> seen, const Vec3& place,
+                                        std::span<const std::size_t> reachable, const Vec3& place,
                                         std::size_t nearest_now, const Vec3& normal_now);
 
 }  // namespace birm3d

@@ -1,4 +1,4 @@
-// Impulses and friction follow from each other: they are found in turns until they stay.
+// Normal impulses and friction depend on each other. They are computed alternately until they converge.
 #include "contact/impulse_iteration.hpp"
 
 #include <algorithm>
@@ -28,12 +28,12 @@ bool slides(const ContactKick& kicked) {
            std::any_of(kicked.on_cores.begin(), kicked.on_cores.end(), is_there);
 }
 
-// Have the normal impulses stayed since the last round? Remembers them.
+// Have the normal impulses converged since the last round? Stores them for the next one.
 bool stayed(const std::vector<RigidContact>& contacts, Column& last) {
     last.resize(contacts.size(), -1.0);
     double sum = 0.0, change = 0.0;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-        if (contacts[i].held) continue;
+        if (contacts[i].bilateral) continue;
         sum += contacts[i].impulse;
         change = std::max(change, std::abs(contacts[i].impulse - last[i]));
         last[i] = contacts[i].impulse;
@@ -41,7 +41,7 @@ bool stayed(const std::vector<RigidContact>& contacts, Column& last) {
     return change <= tolerance::friction_settled * sum;
 }
 
-// Have the frictions of segments on the ground?
+// The same for the friction of segments on the ground.
 bool stayed(const std::vector<Wrench>& on_base, std::vector<Wrench>& last) {
     last.resize(on_base.size());
     double sum = 0.0, change = 0.0;
@@ -64,44 +64,43 @@ void tire_impulses(const Scene& scene, const std::vector<RigidContact>& contacts
 }
 
 // Motions of the bodies at which contacts slide.
-const std::vector<Twist>& motions_that_rub(const KickMemory& memory) {
+const std::vector<Twist>& sliding_motions(const KickMemory& memory) {
     return memory.sliding.empty() ? memory.pushed : memory.sliding;
 }
 
-// Friction brings sliding to rest and does not reverse it: what of its impulse on a body does no more than that.
-// `motion`: of the body without it.
+// Reduces a friction impulse so that it does not reverse the sliding of the body. `motion`: of the body without it.
 Wrench without_reversal(const Wrench& friction, const ContactBody& body, const Twist& motion) {
     const double slides = -power(friction, motion);
-    const double gives =
+    const double change =
         power(friction, {body.inverse_mass * friction.force, body.inverse_inertia * friction.torque});
-    return gives > slides ? scaled(friction, std::max(0.0, slides / gives)) : friction;
+    return change > slides ? scaled(friction, std::max(0.0, slides / change)) : friction;
 }
 
-// Of a unit that friction has kicked.
+// The motion of a unit before the friction impulse.
 Twist motion_without(const Wrench& friction, const ContactBody& body) {
     return {body.motion.velocity - body.inverse_mass * friction.force,
             body.motion.angular_velocity - body.inverse_inertia * friction.torque};
 }
 
 // Greatest speed along the ground that a unit impulse gives any segment that a unit pushes (1/kg).
-double greatest_give(const std::vector<RigidContact>& contacts, std::size_t unit,
-                     const std::vector<ContactBody>& bodies) {
-    double give = 0.0;
+double greatest_other_inverse_mass(const std::vector<RigidContact>& contacts, std::size_t unit,
+                                   const std::vector<ContactBody>& bodies) {
+    double greatest = 0.0;
     for (const RigidContact& contact : contacts) {
         if (contact.source != ContactSource::core || contact.body != unit || contact.other < 0) continue;
         if (!(contact.impulse > 0.0)) continue;
         const ContactBody& other = bodies[static_cast<std::size_t>(contact.other)];
-        give = std::max(give, other.inverse_mass +
-                                  other.inverse_inertia(2, 2) * contact.other_arm.head<2>().squaredNorm());
+        greatest = std::max(greatest, other.inverse_mass + other.inverse_inertia(2, 2) *
+                                                               contact.other_arm.head<2>().squaredNorm());
     }
-    return give;
+    return greatest;
 }
 
 // Friction of both sides of bottomed-out trusses and of tyres, by the present impulses; kicks the units by what has changed.
-void rub_units(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
+void kick_by_friction(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
     ContactKick& kicked = memory.kick;
     const std::size_t units = state.units.size();
-    const std::vector<Twist>& motion = motions_that_rub(memory);
+    const std::vector<Twist>& motion = sliding_motions(memory);
     std::vector<Wrench>& on_cores = memory.on_cores;
     on_cores.assign(memory.bodies.size(), {});
     for (std::size_t u = 0; u < units; ++u) {
@@ -117,7 +116,7 @@ void rub_units(const Scene& scene, const KickedBy& by, KickMemory& memory, State
                 memory.bodies[u], motion_without(all, memory.bodies[u]));
         }
         on_cores[u] = core_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u],
-                                    greatest_give(kicked.contacts, u, memory.bodies));
+                                    greatest_other_inverse_mass(kicked.contacts, u, memory.bodies));
         kick(unit.body, difference(on_ground, kicked.on_ground[u]), body);
         kick(unit.body, difference(on_cores[u], kicked.on_cores[u]), body);
         kicked.on_ground[u] = on_ground;
@@ -125,12 +124,12 @@ void rub_units(const Scene& scene, const KickedBy& by, KickMemory& memory, State
     for (const RigidContact& contact : kicked.contacts)
         if (contact.source == ContactSource::core && contact.other >= 0)
             on_cores[static_cast<std::size_t>(contact.other)] +=
-                {-contact.rubbing, -contact.other_arm.cross(contact.rubbing)};
+                {-contact.friction_impulse, -contact.other_arm.cross(contact.friction_impulse)};
     kicked.on_cores = on_cores;
 }
 
-// Motions of the bodies without normal impulses and pins.
-void set_rubbed_motions(const State& state, const ContactKick& kicked, std::vector<ContactBody>& bodies) {
+// Motions of the bodies without normal impulses and pins, at which friction is evaluated.
+void set_friction_motions(const State& state, const ContactKick& kicked, std::vector<ContactBody>& bodies) {
     set_motions(state, bodies);
     const std::size_t units = state.units.size();
     for (std::size_t i = 0; i < kicked.on_base.size(); ++i) {
@@ -142,7 +141,7 @@ void set_rubbed_motions(const State& state, const ContactKick& kicked, std::vect
     }
 }
 
-// Where the rigid body meets segments, the pins between these are rows of the solver, too.
+// If the rigid body meets free-standing segments, the pins between them are rows of the solver, too.
 void prepare_solver(const Scene& scene, const State& state, KickMemory& memory) {
     std::erase_if(memory.kick.contacts,
                   [&](const RigidContact& row) { return row.body >= state.units.size(); });
@@ -150,7 +149,7 @@ void prepare_solver(const Scene& scene, const State& state, KickMemory& memory) 
     memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
 }
 
-// The motions at which they slide are those at hand; `memory.solver` is prepared.
+// Iterates normal impulses and friction from the present motions. `memory.solver` is prepared.
 void settle_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
     ContactKick& kicked = memory.kick;
     std::vector<ContactBody>& bodies = memory.bodies;
@@ -160,20 +159,20 @@ void settle_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory,
     list_motions(state, bodies, memory.pushed);
     for (RigidContact& contact : kicked.contacts) {
         if (contact.source != ContactSource::core || contact.other < 0) continue;
-        const Twist& other = motions_that_rub(memory)[static_cast<std::size_t>(contact.other)];
+        const Twist& other = sliding_motions(memory)[static_cast<std::size_t>(contact.other)];
         contact.sliding_surface = other.velocity + other.angular_velocity.cross(contact.other_arm);
     }
     memory.tire.resize(units);
     const bool meets = meets_segments(kicked.contacts);
-    if (meets) rub_on_ground(scene, by, state, memory);
+    if (meets) find_segment_friction(scene, by, state, memory);
     const auto solve = [&] {
         if (meets) prepare_solver(scene, state, memory);
-        set_rubbed_motions(state, kicked, bodies);
+        set_friction_motions(state, kicked, bodies);
         memory.solver.solve(kicked.contacts, bodies);
         tire_impulses(scene, kicked.contacts, memory.tire);
     };
     solve();
-    // Friction follows from the normal impulses and tips the body, which changes them: to and fro, until they stay.
+    // Friction depends on the normal impulses. It also tips the body, which changes these impulses: iterate.
     constexpr int most_rounds = 30;
     memory.last.clear();
     memory.on_base.clear();
@@ -181,8 +180,8 @@ void settle_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory,
         const bool pushes_stay = stayed(kicked.contacts, memory.last);
         const bool frictions_stay = !meets || (round > 0 && stayed(kicked.on_base, memory.on_base));
         if (pushes_stay && frictions_stay) break;
-        rub_units(scene, by, memory, state);
-        if (meets) rub_on_ground(scene, by, state, memory);
+        kick_by_friction(scene, by, memory, state);
+        if (meets) find_segment_friction(scene, by, state, memory);
         if (!meets && !slides(kicked)) break;
         solve();
     }
@@ -193,13 +192,13 @@ void settle_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory,
         if (on_unit)
             kick_body(scene, static_cast<std::size_t>(contact.other), wrench_on_other(contact), state);
     }
-    // An impact that meets no segment is none to them.
+    // An impact that meets no segment does not change the segments.
     if (state.segments.empty() || (by.is_impact && !meets)) return;
-    rub_on_ground(scene, by, state, memory);
+    find_segment_friction(scene, by, state, memory);
     move_segments(scene, memory, state);
 }
 
-// Takes what would be left of the joints' gaps at the end of the drift from their targets; returns the greatest.
+// Subtracts the joint gaps that would remain after the drift from the targets. Returns the greatest gap.
 double correct_targets(const Scene& scene, const State& kicked, double dt,
                        std::vector<RigidContact>& contacts) {
     std::vector<BodyState> bodies;
@@ -208,9 +207,9 @@ double correct_targets(const Scene& scene, const State& kicked, double dt,
         drift(rigid_body(scene, b), dt, bodies[b]);
     double widest = 0.0;
     for (RigidContact& contact : contacts) {
-        if (!contact.held) continue;
+        if (!contact.bilateral) continue;
         const Joint& joint = scene.joints[contact.index];
-        const double gap = held_gap(joint, contact, bodies[joint.leading], bodies[joint.trailing]);
+        const double gap = bilateral_gap(joint, contact, bodies[joint.leading], bodies[joint.trailing]);
         contact.target -= gap / dt;
         widest = std::max(widest, std::abs(gap));
     }
@@ -238,7 +237,7 @@ void kick_towards_closed_joints(const Scene& scene, const KickedBy& by, KickMemo
     memory.kick.on_pins.clear();
     std::vector<BodyState> start;
     list_body_states(state, start);
-    // Each round leaves about omega dt of the gap.
+    // Each round reduces the gap to about omega dt of it.
     constexpr int most_rounds = 20;
     double last = infinity;
     for (int round = 0; round < most_rounds; ++round) {

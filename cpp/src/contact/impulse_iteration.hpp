@@ -5,9 +5,9 @@
 
 namespace birm3d {
 
-// What contacts act on, beside the bodies' motions.
+// Inputs of a kick, beside the bodies' motions.
 struct KickedBy {
-    const Column& pressed;          // (segments) with what else they press on the ground (N s)
+    const Column& pressed;  // (segments) impulse of all other forces that presses them on the ground (N s)
     std::span<const Twist> at_end;  // (bodies) their motions at that end of the step (see TireMotion)
     std::span<const Twist> from;    // (bodies) before anything acted
     double drift = 0.0;             // that follows, after which joints are closed (s)

@@ -30,7 +30,7 @@ bool pushed_before(const ContactPass& pass, std::size_t obstacle) {
     });
 }
 
-// Which panels the post indents: those that it comes into from in front, until it has released them.
+// The panels that the post indents: it came into them from in front and has not released them.
 IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
                                     std::vector<IndentedPanel>& list) {
     const TrussMesh& mesh = pass.mesh;
@@ -53,7 +53,7 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
             now.passed |= bit;
             continue;
         }
-        // A post can have come in this far within the step, and nodes can have left it. One that was in before must touch.
+        // Bound of how far the post can have moved in, and nodes can have moved off it, within the step.
         const double growth = 2.0 * pass.margin * indentation.fastest_growth(panel);
         const double deepest = indents || passed ? 0.0 : growth;
         const double gap =
@@ -108,9 +108,10 @@ void find_block_indentations(const ContactPass& pass, const std::vector<std::siz
                                               block.start->touching);
         if (gap == infinity) continue;
         block.indentations.push_back({d, gap});
-        if (std::find(block.seen.begin(), block.seen.end(), indented.near) == block.seen.end())
-            block.seen.insert(std::lower_bound(block.seen.begin(), block.seen.end(), indented.near),
-                              indented.near);
+        if (std::find(block.reachable.begin(), block.reachable.end(), indented.near) == block.reachable.end())
+            block.reachable.insert(
+                std::lower_bound(block.reachable.begin(), block.reachable.end(), indented.near),
+                indented.near);
     }
     std::sort(block.indentations.begin(), block.indentations.end(),
               [](const BlockIndentation& x, const BlockIndentation& y) {
@@ -132,14 +133,14 @@ BIRM3D_BLOCK_LOOP void omit_panel(const BlockColumn& panel_of, double panel, Blo
         gap[i] = panel_of[i] == panel ? infinity : gap[i];
 }
 
-BIRM3D_BLOCK_LOOP void note_nearest(const BlockColumn& follows, std::size_t seen,
+BIRM3D_BLOCK_LOOP void note_nearest(const BlockColumn& follows, std::size_t k,
                                     std::array<std::size_t, block_size>& nearest) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < block_size; ++i)
-        nearest[i] = follows[i] > 0.0 ? seen : nearest[i];
+        nearest[i] = follows[i] > 0.0 ? k : nearest[i];
 }
 
-// What a node stood at before it followed an indentation can hold it as well: the ground below a bumper.
+// A node that follows an indentation may also touch its previous surface, as the ground below a bumper.
 BIRM3D_BLOCK_LOOP void note_second(const BlockColumn& follows, const BlockColumn& gap, BlockColumn& second) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < block_size; ++i)
@@ -175,8 +176,10 @@ void follow_indentations(const ContactPass& pass, ContactBlock& block) {
                            block.faces, block.contact, rank, follows);
         note_second(follows, gap, block.second_gap);
         note_released(follows, block.released);
-        const auto seen = std::find(block.seen.begin(), block.seen.end(), indented.near) - block.seen.begin();
-        if (block.seen.size() > 1) note_nearest(follows, static_cast<std::size_t>(seen), block.nearest);
+        const auto reachable = std::find(block.reachable.begin(), block.reachable.end(), indented.near) -
+                               block.reachable.begin();
+        if (block.reachable.size() > 1)
+            note_nearest(follows, static_cast<std::size_t>(reachable), block.nearest);
     }
 }
 

@@ -18,9 +18,9 @@ Mat6 inertia_of(const RigidBody& body, const Mat3& R) {
     return inertia;
 }
 
-// Inertia matrix of the ground under wheels that would sink into it without the impulse of the second half of the step.
-// `motion` assumes that this impulse is that of the first half: see settled().
-Mat6 hold_of_ground(const Unit& unit, const BodyState& body, const Mat6& inertia, const Twist& motion,
+// Inertia matrix of the ground under wheels that would otherwise sink into it in the second half of the step.
+// `motion` assumes equal tyre impulses in both halves: see settled().
+Mat6 ground_support(const Unit& unit, const BodyState& body, const Mat6& inertia, const Twist& motion,
                     const std::vector<double>& tire_impulses, std::vector<RigidContact>& memory) {
     memory.clear();
     find_tire_contacts(unit, 0, body, memory);
@@ -34,14 +34,14 @@ Mat6 hold_of_ground(const Unit& unit, const BodyState& body, const Mat6& inertia
     for (const RigidContact& contact : memory)
         push += tire_impulses[contact.index] * row_of(contact);
     unpushed -= inertia.ldlt().solve(push);
-    Mat6 held = Mat6::Zero();
+    Mat6 support = Mat6::Zero();
     for (const RigidContact& contact : memory) {
         const bool stands = tire_impulses[contact.index] > 0.0 || contact.gap <= tolerance::touching_gap;
         const Vec6 row = row_of(contact);
         if (stands && row.dot(unpushed) < 0.0)
-            held += tolerance::held_by_ground * unit.body.mass * row * row.transpose();
+            support += tolerance::ground_mass_ratio * unit.body.mass * row * row.transpose();
     }
-    return held;
+    return support;
 }
 
 }  // namespace
@@ -57,10 +57,11 @@ Twist predicted_motion(const Scene& scene, std::size_t u, const State& from, Tri
     const SkinForces& before = from.units[u].skin;
     if (before.resistance.trace() > 0.0) {
         const Mat6 inertia = inertia_of(unit.body, R);
-        Mat6 held = Mat6::Zero();
+        Mat6 support = Mat6::Zero();
         if (scene.settings.ground)
-            held = hold_of_ground(unit, body, inertia, motion, trial.impulses[u].tire, trial.memory.contacts);
-        motion = settled(motion, before.rubbed, before.resistance, trial.dt, inertia, held);
+            support =
+                ground_support(unit, body, inertia, motion, trial.impulses[u].tire, trial.memory.contacts);
+        motion = settled(motion, before.friction_motion, before.resistance, trial.dt, inertia, support);
     }
     return {R.transpose() * motion.velocity, R.transpose() * motion.angular_velocity};
 }

@@ -1,16 +1,16 @@
-// How bodies will move at the end of a step whose loads there are not known yet: friction and the rate of deflection
-// answer it.
+// The motion of bodies at the end of a step, predicted before the loads there are known. Friction and the rate of
+// deflection depend on it.
 #pragma once
 
 #include "contact/trial.hpp"
 
 namespace birm3d {
 
-// Of a unit that has drifted, body axes. The second half of the step adds what the first did, gravity and the ground's
-// push too, but for the friction on the skin, which answers the motion (settled() in kernels/friction.hpp).
+// Predicted motion of a unit after the drift, body axes. The second half of the step is taken to add what the first
+// half did. Only the friction on the skin is computed for the new motion (settled() in kernels/friction.hpp).
 Twist predicted_motion(const Scene& scene, std::size_t u, const State& from, Trial& trial);
 
-// Of the barrier's segments, in `now`: the second half goes on as the loads did.
+// Predicts the motions of the barrier's segments in `now`, from the extrapolated loads.
 void predict_segments(const Scene& scene, const State& from, double dt, State& now);
 
 }  // namespace birm3d

@@ -10,7 +10,7 @@ namespace birm3d {
 
 namespace {
 
-// A surface between two points of the path is seen where they are this far apart (m).
+// Least distance between two tested points of a path (m): thinner surfaces may be missed.
 constexpr double least_stride = 2e-3;
 
 // How far the truss of any node that pushed has extended (m).
@@ -30,7 +30,7 @@ double gap_at(const ContactPass& pass, const NearObstacle& distant, const Vec3& 
     return nearest(pass.scene.obstacles[distant.index].shape, distant.now.to_own(place)).gap;
 }
 
-// Obstacles that a node may get to, though nothing of the vehicle is near them yet.
+// Finds obstacles that a released node may reach, though no other part of the vehicle is near them.
 void find_distant(const ContactPass& pass, DistantObstacles& distant) {
     if (distant.are_found) return;
     distant.are_found = true;
@@ -47,13 +47,13 @@ void find_distant(const ContactPass& pass, DistantObstacles& distant) {
 
 // The path of a released node.
 struct Path {
-    std::size_t block, lane;
+    std::size_t block, node_index;
     Vec3 start, end;
 
     Vec3 at(double fraction) const { return start + fraction * (end - start); }
 };
 
-// Least gap of a place on the path to any surface that can stop the node, but no more than `enough` (m).
+// Least gap between a point of the path and any surface that can stop the node, at most `enough` (m).
 double least_gap(const ContactPass& pass, const DistantObstacles& distant, const Path& path, double fraction,
                  double enough) {
     const Vec3 place = path.at(fraction);
@@ -62,17 +62,18 @@ double least_gap(const ContactPass& pass, const DistantObstacles& distant, const
         if (other.index != pass.scene.ground || path.block < pass.mesh.shell_blocks)
             least = std::min(least, gap_at(pass, other, place));
     for (std::size_t k = 0; k < pass.near.size(); ++k)
-        if (is_solid_to(pass, path.block, path.lane, k)) least = std::min(least, gap_at(pass, k, place));
+        if (is_solid_to(pass, path.block, path.node_index, k))
+            least = std::min(least, gap_at(pass, k, place));
     return least;
 }
 
-// Where the first surface stops the node; none where the path is free.
+// The point at which the first surface stops the node; none if the path is free.
 std::optional<Vec3> first_stop(const ContactPass& pass, const DistantObstacles& distant, const Path& path) {
     const double length = (path.end - path.start).norm();
     const auto gap_of = [&](double fraction) { return least_gap(pass, distant, path, fraction, length); };
     double outside = 0.0, gap = gap_of(0.0);
     if (gap < -tolerance::touching_gap) return path.start;
-    // Nothing is nearer than the gap: that far the path is free.
+    // No surface is nearer than the gap, so the path is free over that distance.
     while (gap >= -tolerance::touching_gap) {
         if (outside >= 1.0) return std::nullopt;
         const double next = std::min(1.0, outside + std::max(gap, least_stride) / length);
@@ -91,8 +92,8 @@ std::optional<Vec3> first_stop(const ContactPass& pass, const DistantObstacles& 
     return path.at(outside);
 }
 
-// Has an indentation released the node, or vanished within this step, as where its post comes to lie across the panel?
-// A vanished one shows as a displacement outwards that is larger than any motion of the step allows.
+// Has an indentation released the node, or vanished within this step, as when its post tips across the panel? A
+// vanished one shows as an outward displacement that is larger than the motions of the step allow.
 bool leaves_indentation(const ContactPass& pass, const ContactBlock& block, std::size_t i) {
     if (!block.indentations.empty() && block.released[i] > 0.0) return true;
     const TrussBlockState &last = *block.start, &next = *block.end;
@@ -120,10 +121,10 @@ void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i,
     const TrussBlock& truss = pass.mesh.block[block.index];
     const TrussBlockState &last = *block.start, &next = *block.end;
     if (!(last.force[i] > 0.0 && next.force[i] == 0.0)) return;
-    if (plane == nullptr && block.faces.per_force[i] > 0.0) return;  // an indentation keeps it
+    if (plane == nullptr && block.faces.per_force[i] > 0.0) return;  // an indentation holds it
     const Vec3 anchor(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
     const Vec3 to(next.x[i], next.y[i], next.z[i]), was(last.x[i], last.y[i], last.z[i]);
-    // The face held the node to the end of the step, unless it left by itself: see release() in crush_rows.cpp.
+    // The face held the node to the end of the step, unless it left by itself: see release() in crush_simd.cpp.
     const Vec3 held = plane != nullptr
                           ? Vec3(was - (plane->face.normal.dot(was) - plane->face.offset) * plane->holding)
                           : Vec3(block.contact.px[i], block.contact.py[i], block.contact.pz[i]);
@@ -198,12 +199,12 @@ bool find_stopped(const ContactPass& pass, const FlatContact* plane, ContactBloc
     return !block.stopped.empty() && !distant.were_met;
 }
 
-// The work on their trusses up to their release was done all the same.
+// Counts the work on their trusses up to their release.
 void stop_nodes(const ContactPass& pass, ContactBlock& block, ContactSums& sums) {
     TrussBlockState& nodes = block.alter();
     nodes.touching = true;
     for (const StoppedNode& node : block.stopped) {
-        const std::size_t i = node.lane;
+        const std::size_t i = node.node_index;
         nodes.unloading[i] = block.end->unloading[i];
         nodes.x[i] = node.place.x(), nodes.y[i] = node.place.y(), nodes.z[i] = node.place.z();
         nodes.deflection[i] = node.deflection;
@@ -212,14 +213,14 @@ void stop_nodes(const ContactPass& pass, ContactBlock& block, ContactSums& sums)
         nodes.force[i] = node.force;
         sums.several.released_work += node.work;
         for (std::size_t k = 0; k < pass.near.size(); ++k) {
-            const auto place = std::lower_bound(block.seen.begin(), block.seen.end(), k);
-            if ((place == block.seen.end() || *place != k) && pass.meets(block.index, k) &&
+            const auto place = std::lower_bound(block.reachable.begin(), block.reachable.end(), k);
+            if ((place == block.reachable.end() || *place != k) && pass.meets(block.index, k) &&
                 gap_at(pass, k, node.place) < least_stride)
-                block.seen.insert(place, k);
+                block.reachable.insert(place, k);
         }
     }
-    for (const std::size_t k : block.seen)
-        sums.obstacles[k].seen = true;
+    for (const std::size_t k : block.reachable)
+        sums.obstacles[k].reached = true;
 }
 
 }  // namespace birm3d

@@ -1,5 +1,6 @@
-// Nodes that a surface releases. The truss of such a node drives it off the surface, outwards along itself, until it has
-// its residual length or another surface stops it. On that way nothing outside does work: what the truss loses is lost.
+// Nodes that a surface releases. The truss of such a node extends and pushes it off the surface, until the truss has
+// its residual length or another surface stops the node. Nothing receives the work of this motion: the energy that
+// the truss releases is dissipated.
 #pragma once
 
 #include "contact/contact_pass.hpp"
@@ -7,21 +8,21 @@
 
 namespace birm3d {
 
-// Nodes that an obstacle has drawn out beyond the free length of their trusses return to it once their way is free.
+// Returns nodes that an obstacle held beyond the free length of their trusses, once their path is free.
 void snap_back(const ContactPass& pass, ContactBlock& block);
 
 // Can the obstacle stop the node itself? A node of a panel that it indents follows the indentation instead.
-bool is_solid_to(const ContactPass& pass, std::size_t block, std::size_t lane, std::size_t k);
+bool is_solid_to(const ContactPass& pass, std::size_t block, std::size_t node_index, std::size_t k);
 
-// Can nodes of the crushed block have been released? `ceased`: has any ceased to push?
+// Can nodes of the crushed block have been released? `ceased`: has any node stopped pushing?
 bool may_release(const ContactPass& pass, const ContactBlock& block, bool ceased);
 
-// Finds the released nodes that another surface stops. `plane` releases them or, where it is null, the block's faces.
-// Nodes that leave an indentation at once stop where they stand. Returns whether there are any of either.
+// Finds the released nodes that another surface stops. `plane` has released them, or the block's faces if it is null.
+// Nodes of a vanished indentation stop where they are. Returns whether there are any of either.
 bool find_stopped(const ContactPass& pass, const FlatContact* plane, ContactBlock& block,
                   DistantObstacles& distant);
 
-// Places the stopped nodes and adds what they meet there to what the block sees.
+// Places the stopped nodes and adds the obstacles that they meet there to those that the block reaches.
 void stop_nodes(const ContactPass& pass, ContactBlock& block, ContactSums& sums);
 
 }  // namespace birm3d

@@ -55,14 +55,14 @@ void list_bodies(const Scene& scene, const State& state, std::vector<ContactBody
     bodies.clear();
     for (std::size_t b = 0; b < body_count(state); ++b) {
         const RigidBody& body = rigid_body(scene, b);
-        const bool level = b >= state.units.size();
-        // What turns about the vertical only is the same however it has turned.
+        const bool planar = b >= state.units.size();
+        // A body that rotates about the vertical only has the same inertia at any yaw.
         Mat3 inverse_inertia = Mat3::Zero();
-        if (level)
+        if (planar)
             inverse_inertia(2, 2) = body.inverse_inertia(2, 2);
         else
             inverse_inertia = inverse_inertia_in_world(body, body_state(state, b));
-        bodies.push_back({body.inverse_mass, inverse_inertia, {}, level});
+        bodies.push_back({body.inverse_mass, inverse_inertia, {}, planar});
     }
     set_motions(state, bodies);
 }
@@ -100,7 +100,7 @@ void add_impulses(const Scene& scene, const State& state, const ContactKick& kic
                 sum.tire[contact.index] += contact.impulse;
                 break;
             case ContactSource::core:
-                add_to_obstacle(scene, state, contact, impulse + contact.rubbing, sum.obstacles);
+                add_to_obstacle(scene, state, contact, impulse + contact.friction_impulse, sum.obstacles);
                 if (contact.obstacle != scene.ground) sum.barrier_normal += contact.impulse;
                 if (contact.impulse > 0.0) ++sum.core_contacts;
                 break;
@@ -135,10 +135,11 @@ void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vec
     for (std::size_t u = 0; u < kicked.on_ground.size(); ++u)
         state.energies.tire_friction -= power(kicked.on_ground[u], motion(u));
     for (const RigidContact& contact : kicked.contacts) {
-        (contact.held ? state.energies.joints : state.energies.impacts) += loss_of(contact, before, after);
+        (contact.bilateral ? state.energies.joints : state.energies.impacts) +=
+            loss_of(contact, before, after);
         if (contact.source == ContactSource::core)
             friction_of(scene, contact.obstacle, state.energies) -=
-                power({contact.rubbing, contact.arm.cross(contact.rubbing)},
+                power({contact.friction_impulse, contact.arm.cross(contact.friction_impulse)},
                       relative_motion(scene, state, contact.body, contact.obstacle, before, after));
     }
 }

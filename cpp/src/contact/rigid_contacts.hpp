@@ -1,5 +1,5 @@
-// What rigid contacts and joints do at one end of the drift: their impulses with the friction that goes with them, the
-// kicks, and their place in sums and ledgers.
+// Rigid contacts and joints at one end of the drift: their impulses and friction, the kicks, and their terms in sums
+// and balances.
 #pragma once
 
 #include <span>
@@ -11,21 +11,22 @@
 
 namespace birm3d {
 
-// Where what is lost to friction on an obstacle is booked.
+// The energy term that friction on an obstacle adds to.
 double& friction_of(const Scene& scene, std::size_t obstacle, Energies& energies);
 
 double power(const Wrench& w, const Twist& motion);
 Twist mean(const Twist& a, const Twist& b);
 
-// Units and segments as the solver sees them.
+// Lists units and segments for the solver.
 void list_bodies(const Scene& scene, const State& state, std::vector<ContactBody>& bodies);
 // Brings the motions of the listed bodies up to date.
 void set_motions(const State& state, std::vector<ContactBody>& bodies);
 
-// Their motions, which are brought up to date.
+// Lists the motions of the bodies, after updating them.
 void list_motions(const State& state, std::vector<ContactBody>& bodies, std::vector<Twist>& motions);
 
-// Of a unit from an obstacle, about the unit's mass centre, world axes: mean of the bodies' motions before and after.
+// Motion of a unit relative to an obstacle, about the unit's mass centre, world axes: mean of the motions before and
+// after.
 Twist relative_motion(const Scene& scene, const State& state, std::size_t unit, std::size_t obstacle,
                       std::span<const Twist> before, std::span<const Twist> after);
 
@@ -35,8 +36,8 @@ void add_impulses(const Scene& scene, const State& state, const ContactKick& kic
 // Energy that the normal impulse of a contact takes from the bodies (J).
 double loss_of(const RigidContact& contact, std::span<const Twist> before, std::span<const Twist> after);
 
-// Adds the contacts' work to the energy balance, by the mean of the velocities before and after: so the change of kinetic
-// energy is exact. Contacts that last have a term of their own, which is the error of the steps alone.
+// Adds the contacts' work to the energy balance. The work uses the mean of the velocities before and after, so that
+// the change of kinetic energy is exact. Joints have a term of their own, which holds only the error of the steps.
 void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vector<Twist>& before,
                    const std::vector<Twist>& after, State& state);
 

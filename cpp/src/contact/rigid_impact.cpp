@@ -12,10 +12,10 @@ namespace birm3d {
 
 namespace {
 
-// Share of the kinetic energy that an impact may make by rounding.
+// Fraction of the kinetic energy that rounding may add in an impact.
 constexpr double rounding = 1e-9;
 
-// Speed of the hardest impact within `reach` (s), zero without any (m/s).
+// Greatest approach speed of any contact that touches within `reach` (s); zero if none does (m/s).
 double hardest_impact(double reach, std::span<const ContactBody> bodies,
                       const std::vector<RigidContact>& contacts) {
     double fastest = 0.0;
@@ -27,22 +27,22 @@ double hardest_impact(double reach, std::span<const ContactBody> bodies,
     return fastest;
 }
 
-// Leaves the contacts that take part. Points that arrive nearly together share one impact: their order would be chance.
-// The later a point comes, the faster it may still approach afterwards. So the outcome is a continuous function of the
-// gaps.
+// Keeps the contacts that take part. Points that arrive nearly at the same time share one impact, as rounding would
+// decide their order. The later a point arrives, the faster it may still approach afterwards. So the result is a
+// continuous function of the gaps.
 void set_impact_targets(double restitution, double reach, double fastest, std::span<const ContactBody> bodies,
                         std::vector<RigidContact>& contacts) {
-    // Of its gap, what the coming `reach` leaves.
+    // The gap of a contact at the end of `reach`.
     const auto late = [&](const RigidContact& contact) {
         return std::max(0.0, contact.gap + reach * std::min(0.0, separation_velocity(contact, bodies)));
     };
     std::erase_if(contacts, [&](const RigidContact& contact) {
-        return !contact.held && late(contact) >= tolerance::joint_impact_gap;
+        return !contact.bilateral && late(contact) >= tolerance::joint_impact_gap;
     });
     for (RigidContact& contact : contacts) {
         const double v = separation_velocity(contact, bodies);
         contact.target = approaches_hard(contact, bodies) ? -restitution * v : 0.0;
-        if (contact.held) continue;
+        if (contact.bilateral) continue;
         const double by = late(contact);
         contact.target -= fastest * by / (tolerance::joint_impact_gap - by);
     }
@@ -55,7 +55,7 @@ double kinetic_energy_of(const Scene& scene, const State& state) {
     return sum;
 }
 
-// State and energies beside an impact.
+// Stores state and energies beside an impact.
 void keep(const Scene& scene, const State& state, Impact& impact) {
     impact.happened = true;
     impact.bodies.clear();
@@ -66,7 +66,7 @@ void keep(const Scene& scene, const State& state, Impact& impact) {
         impact.bodies.push_back(unit.body);
 }
 
-// One impact, tried with less restitution and less friction until no part of it makes energy.
+// One impact, tried with less restitution and less friction until no part of it increases the energy.
 class Attempts {
   public:
     Attempts(const Scene& scene, double reach, double fastest, const std::vector<Twist>& before,
@@ -87,9 +87,9 @@ class Attempts {
 
     void settle(double restitution) {
         attempt(restitution);
-        constexpr int most_turns = 6;
-        for (int turn = 0; turn < most_turns && drives(); ++turn) {
-            turn_friction();
+        constexpr int most_passes = 6;
+        for (int pass = 0; pass < most_passes && drives(); ++pass) {
+            redirect_friction();
             attempt(restitution);
         }
         // Each round leaves out the friction of one point or more.
@@ -125,16 +125,16 @@ class Attempts {
         list_motions(state_, memory_.bodies, after_);
     }
 
-    // Do all normal impulses together take energy?
+    // Do all normal impulses together dissipate energy?
     bool takes() const {
         double loss = 0.0;
         for (const RigidContact& contact : memory_.kick.contacts)
-            if (!contact.held) loss += loss_of(contact, before_, after_);
+            if (!contact.bilateral) loss += loss_of(contact, before_, after_);
         return loss >= least_;
     }
 
     double loss_by_friction(const RigidContact& contact) const {
-        return -power({contact.rubbing, contact.arm.cross(contact.rubbing)},
+        return -power({contact.friction_impulse, contact.arm.cross(contact.friction_impulse)},
                       relative_motion(scene_, state_, contact.body, contact.obstacle, before_, after_));
     }
     double loss_by_tires(std::size_t u) const {
@@ -150,8 +150,8 @@ class Attempts {
             });
     }
 
-    // Friction acts against the mean of the motions before and after, or half way to there.
-    void turn_friction() {
+    // Lets friction act against the mean of the motions before and after, or half way towards it.
+    void redirect_friction() {
         const bool first = memory_.sliding.empty();
         if (first) memory_.sliding.resize(before_.size());
         for (std::size_t b = 0; b < before_.size(); ++b) {
@@ -160,7 +160,7 @@ class Attempts {
         }
     }
 
-    // Takes the friction from points that it drives; were there any?
+    // Removes friction from points that it accelerates. Were there any?
     bool leave_out_driving() {
         bool any = false;
         for (std::size_t u = 0; u < memory_.kick.on_ground.size(); ++u)
@@ -196,7 +196,7 @@ class Attempts {
 }  // namespace
 
 bool approaches_hard(const RigidContact& contact, std::span<const ContactBody> bodies) {
-    return !contact.held && separation_velocity(contact, bodies) < -tolerance::restitution_speed;
+    return !contact.bilateral && separation_velocity(contact, bodies) < -tolerance::restitution_speed;
 }
 
 void impact_at_once(const Scene& scene, Stage stage, double reach, const std::vector<Twist>& before,

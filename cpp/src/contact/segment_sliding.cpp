@@ -19,7 +19,7 @@ void find_limits(const Scene& scene, const Column& pressed, const ContactKick& k
     limits = pressed;
     for (const RigidContact& contact : kicked.contacts)
         if (pushes_segment(contact))
-            limits[contact.obstacle] += contact.impulse * contact.normal.z() + contact.rubbing.z();
+            limits[contact.obstacle] += contact.impulse * contact.normal.z() + contact.friction_impulse.z();
     for (double& limit : limits)
         limit = scene.barrier->free_standing->ground_friction * std::max(0.0, limit);
 }
@@ -28,18 +28,19 @@ bool is_pinned(const Scene& scene) {
     return scene.barrier->free_standing->joint == SegmentJoint::pinned;
 }
 
-Vec3 level_motion(const RigidBody& body, const Vec3& velocity, double spin_momentum) {
+Vec3 planar_motion(const RigidBody& body, const Vec3& velocity, double spin_momentum) {
     return {velocity.x(), velocity.y(), body.inverse_inertia(2, 2) * spin_momentum};
 }
 
 // First two axes of a body that turns about the vertical only.
-struct LevelAxes {
-    explicit LevelAxes(const Quat& turn)
-        : x(1.0 - 2.0 * turn.z() * turn.z(), 2.0 * turn.w() * turn.z()), y(-x.y(), x.x()) {}
+struct PlanarAxes {
+    explicit PlanarAxes(const Quat& orientation)
+        : x(1.0 - 2.0 * orientation.z() * orientation.z(), 2.0 * orientation.w() * orientation.z()),
+          y(-x.y(), x.x()) {}
     Vec2 x, y;
 };
 
-// Without friction and pins, and with what they are thought to do.
+// Lists the segments with their motions without friction and pins, and a first guess of the motions with both.
 void list_slabs(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
     const std::size_t units = state.units.size();
     std::vector<PinnedSlab>& slabs = memory.slabs;
@@ -51,14 +52,14 @@ void list_slabs(const Scene& scene, const KickedBy& by, const State& state, Kick
         slab.mass = segment.body.mass;
         slab.inertia = segment.body.inertia(2, 2);
         slab.limit = memory.limits[i];
-        const LevelAxes axes(body.orientation);
+        const PlanarAxes axes(body.orientation);
         for (std::size_t c = 0; c < slab.arm.size(); ++c)
             slab.arm[c] = segment.corner[c].x() * axes.x + segment.corner[c].y() * axes.y;
-        slab.motion = level_motion(segment.body, body.velocity, body.angular_momentum.z());
+        slab.motion = planar_motion(segment.body, body.velocity, body.angular_momentum.z());
         const Wrench& push = memory.kick.on_cores[units + i];
         slab.motion += segment.body.inverse_mass * Vec3(push.force.x(), push.force.y(), 0.0);
         slab.motion.z() += segment.body.inverse_inertia(2, 2) * push.torque.z();
-        // What rested and is held still rests, and at rest its friction is easiest to find.
+        // A segment that was at rest probably stays at rest, and the solver converges fastest from there.
         const Twist& from = by.from[units + i];
         const bool rested = from.velocity.isZero(0.0) && from.angular_velocity.isZero(0.0);
         const Twist& guess = by.at_end[units + i];
@@ -80,8 +81,8 @@ void list_pins(const Scene& scene, const State& state, std::vector<SlabPin>& pin
     for (std::size_t i = 0; i < pins.size(); ++i) {
         const BodyState &first = state.segments[i], &next = state.segments[i + 1];
         SlabPin& pin = pins[i];
-        pin.on_first = scene.barrier->segments[i].half_length * LevelAxes(first.orientation).y;
-        pin.on_next = -scene.barrier->segments[i + 1].half_length * LevelAxes(next.orientation).y;
+        pin.on_first = scene.barrier->segments[i].half_length * PlanarAxes(first.orientation).y;
+        pin.on_next = -scene.barrier->segments[i + 1].half_length * PlanarAxes(next.orientation).y;
         pin.gap = (first.position - next.position).head<2>() + pin.on_first - pin.on_next;
     }
 }
@@ -90,7 +91,7 @@ Wrench wrench_along_ground(const Vec3& push) {
     return {Vec3(push.x(), push.y(), 0.0), Vec3(0.0, 0.0, push.z())};
 }
 
-void rub_pinned(const KickedBy& by, KickMemory& memory) {
+void find_pinned_friction(const KickedBy& by, KickMemory& memory) {
     memory.chain.solve(memory.slabs, memory.pins, by.drift);
     for (std::size_t i = 0; i < memory.slabs.size(); ++i) {
         memory.segment_motions[i] = memory.chain.motions()[i];
@@ -99,7 +100,7 @@ void rub_pinned(const KickedBy& by, KickMemory& memory) {
     }
 }
 
-void rub_loose(const Scene& scene, KickMemory& memory) {
+void find_loose_friction(const Scene& scene, KickMemory& memory) {
     for (std::size_t i = 0; i < memory.slabs.size(); ++i) {
         const PinnedSlab& slab = memory.slabs[i];
         Wrench& friction = memory.kick.on_base[i];
@@ -123,19 +124,19 @@ bool meets_segments(const std::vector<RigidContact>& contacts) {
     return std::any_of(contacts.begin(), contacts.end(), pushes_segment);
 }
 
-void rub_on_ground(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
+void find_segment_friction(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
     find_limits(scene, by.pressed, memory.kick, memory.limits);
     list_slabs(scene, by, state, memory);
     memory.segment_motions.resize(state.segments.size());
     memory.kick.on_base.resize(state.segments.size());
     memory.kick.on_pins.assign(state.segments.size(), {});
-    if (!is_pinned(scene) || state.segments.size() == 1) return rub_loose(scene, memory);
+    if (!is_pinned(scene) || state.segments.size() == 1) return find_loose_friction(scene, memory);
     list_pins(scene, state, memory.pins);
-    rub_pinned(by, memory);
+    find_pinned_friction(by, memory);
 }
 
 void move_segments(const Scene& scene, const KickMemory& memory, State& state) {
-    // Share of the speed that friction can take from a segment which rounding may have left.
+    // Fraction of the speed that friction can remove from a segment, below which a remaining speed is rounding.
     constexpr double left_over = 1e-4;
     for (std::size_t i = 0; i < state.segments.size(); ++i) {
         const Segment& segment = scene.barrier->segments[i];

@@ -1,4 +1,4 @@
-// What the ground and the pins do to free-standing segments at one end of the drift, on top of what pushes them.
+// Friction of the ground and impulses of the pins on free-standing segments at one end of the drift.
 #pragma once
 
 #include "contact/impulse_iteration.hpp"
@@ -10,11 +10,12 @@ namespace birm3d {
 // Does the rigid body meet a segment?
 bool meets_segments(const std::vector<RigidContact>& contacts);
 
-// Finds frictions and pins with the present impulses of `memory.kick.contacts` and `memory.kick.on_cores`, to
-// `memory.kick` and `memory.segment_motions`. `state` has the segments' motions without any of these.
-void rub_on_ground(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory);
+// Finds ground friction and pin impulses for the present impulses of `memory.kick.contacts` and
+// `memory.kick.on_cores`. Stores them in `memory.kick` and `memory.segment_motions`. `state` has the segments'
+// motions without any of these.
+void find_segment_friction(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory);
 
-// Segments as they move with all that was found. What friction holds is at rest but for rounding; then it is at rest.
+// Sets the segments' motions to those found. A segment that friction holds gets exactly zero velocity.
 void move_segments(const Scene& scene, const KickMemory& memory, State& state);
 
 // Appends rows of the pins between segments that move or are pushed, with the speeds that they were found to have.

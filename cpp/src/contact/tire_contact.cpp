@@ -26,10 +26,11 @@ void add_tire_friction(const ContactPass& pass, ContactSums& sums) {
         const auto end = std::find_if(first, sums.tire_nodes.end(), [&](const TireNodeContact& node) {
             return node.wheel != first->wheel;
         });
-        const double turning =
-            pass.scene.settings.braking < 1.0 ? free_turning(full_speed, {first, end}) : 0.0;
+        const double rolling =
+            pass.scene.settings.braking < 1.0 ? free_rolling_speed(full_speed, {first, end}) : 0.0;
         for (; first != end; ++first)
-            add_tire_node_friction(mu, full_speed, turning, *first, sums.obstacles[first->near].rubbing);
+            add_tire_node_friction(mu, full_speed, rolling, *first,
+                                   sums.obstacles[first->near].friction_load);
     }
 }
 

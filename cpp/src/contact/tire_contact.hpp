@@ -6,11 +6,12 @@
 
 namespace birm3d {
 
-// Notes the nodes of a block of tire nodes that push on the k-th near obstacle.
+// Lists the tyre contact nodes of a block that push on the k-th near obstacle.
 void note_tire_nodes(const ContactPass& pass, std::size_t k, std::size_t block, const Places& places,
                      const BlockContact& contact, ContactSums& sums);
 
-// Adds the friction of all noted nodes. How fast a wheel turns follows from all its nodes, so none is added earlier.
+// Adds the friction of all listed nodes. It is added at the end because the speed of a free wheel follows from all
+// its nodes.
 void add_tire_friction(const ContactPass& pass, ContactSums& sums);
 
 }  // namespace birm3d

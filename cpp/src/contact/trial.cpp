@@ -58,7 +58,7 @@ void Trial::begin(const State& from, double step) {
     critical_step = impact_after = infinity;
     at_start.happened = at_end.happened = false;
     by_contacts.assign(body_count(from), Twist{});
-    seen.clear();
+    reached.clear();
     for (std::size_t u = 0; u < from.units.size(); ++u) {
         static_cast<UnitMotion&>(state.units[u]) = from.units[u];
         active[u].clear();

@@ -1,4 +1,4 @@
-// The step that is being tried: what half_kick, find_contact_forces and try_step hand to each other.
+// The trial step: the data that half_kick, find_contact_forces and try_step pass to each other.
 #pragma once
 
 #include <limits>
@@ -15,14 +15,14 @@
 
 namespace birm3d {
 
-// What the rigid body of one unit did to one obstacle, world axes.
+// Impulse of the rigid body of one unit on one obstacle, world axes.
 struct ObstacleImpulse {
     std::size_t obstacle = 0;
     Vec3 impulse = Vec3::Zero();  // on the unit (N s)
     Vec3 torque = Vec3::Zero();   // on the obstacle, about its own point (N m s)
 };
 
-// What rigid contacts did to one unit.
+// Impulses of rigid contacts on one unit.
 struct ContactImpulses {
     explicit ContactImpulses(std::size_t wheels) : tire(wheels, 0.0) {}
 
@@ -44,7 +44,7 @@ struct Impact {
     std::vector<Wrench> joint_impulses;     // (joints) on the leading unit, about the joint (N s, N m s)
 };
 
-// What rigid contacts and joints do at one end of the drift.
+// Impulses of rigid contacts and joints at one end of the drift.
 struct ContactKick {
     std::vector<RigidContact> contacts;
     std::vector<Wrench> on_ground;   // (units) friction impulses of tyres
@@ -54,7 +54,7 @@ struct ContactKick {
     std::vector<char> rolls_freely;  // (units) is the friction of its tyres left out? May be empty: of none
 };
 
-// Memory of half kicks, which find it and leave it with nothing of meaning: so that a step allocates nothing.
+// Work buffers of half kicks, so that a step allocates nothing. Their values hold within one half kick only.
 struct KickMemory {
     std::vector<RigidContact> contacts;
     std::vector<PlacedShape> placed;
@@ -64,7 +64,7 @@ struct KickMemory {
     std::vector<Twist>
         sliding;  // motions that the friction of an impact acts against; empty: those before it
     ContactKick kick;
-    // Of the search for its impulses.
+    // Buffers of the search for impulses.
     ImpulseSolver solver;
     std::vector<Column> tire;
     Column last;
@@ -122,7 +122,8 @@ struct Trial {
     std::vector<Twist> by_contacts;         // (bodies) by how much these changed motions before the drift
     Column drift_velocity_z;                // (units) vertical velocity in the drift (m/s)
     Impact at_start, at_end;
-    std::vector<std::size_t> seen;  // obstacles that blocks of nodes had in reach, once for each unit
+    std::vector<std::size_t>
+        reached;  // obstacles within reach of any block of nodes, listed once for each unit
     ContactMemory skin;
     std::vector<LoadHistory>
         histories;  // working memory of correct_loads(), so that a step allocates nothing
@@ -132,7 +133,7 @@ struct Trial {
     double critical_step;  // sqrt(3)/omega of the trusses in contact (s)
     double impact_after;   // a rigid impact begins this long after t (s)
 
-    // Does it begin within the step? Then the step went no further than to see this.
+    // Does the impact begin within the step? Then the trial ended when that was found.
     bool impact_within() const { return impact_after < dt && dt > 2.0 * tolerance::shortest_step; }
 
     bool body_rests() const;  // on tyres or bottomed-out trusses
@@ -140,12 +141,13 @@ struct Trial {
     bool body_held_by_barrier() const;
 };
 
-// Which half of a step's kick: the drift of the bodies lies between them.
+// The two half kicks of a step, before and after the drift.
 enum class Stage { before_drift, after_drift };
 
 struct StepOptions {
-    bool locate_impacts = false;  // report a rigid impact within the step instead of letting it happen early
-    bool hold_core = true;        // hold the rigid body where a truss is closed
+    bool locate_impacts =
+        false;  // report a rigid impact within the step instead of computing it at the start of the step
+    bool hold_core = true;  // apply contacts of the rigid body where a truss is bottomed out
 };
 
 }  // namespace birm3d

@@ -12,7 +12,7 @@ namespace birm3d {
 
 namespace {
 
-// From the nearest point of a convex body around the shape to `p`, own axes.
+// Vector to `p` from the nearest point of a convex hull of the shape, own axes.
 Vec3 from_hull(const Shape& shape, const Box& box, const Vec3& p) {
     if (const auto* plane = std::get_if<HalfSpace>(&shape))
         return std::max(0.0, plane->gap(p)) * plane->normal;
@@ -64,12 +64,12 @@ bool segments_rest(const Scene& scene, const State& state) {
     return fastest_segment(scene, state) == 0.0;
 }
 
-BodyState between(const BodyState& a, const BodyState& b, double share) {
+BodyState between(const BodyState& a, const BodyState& b, double fraction) {
     BodyState body;
-    body.position = a.position + share * (b.position - a.position);
-    body.orientation = a.orientation.slerp(share, b.orientation);
-    body.velocity = a.velocity + share * (b.velocity - a.velocity);
-    body.angular_momentum = a.angular_momentum + share * (b.angular_momentum - a.angular_momentum);
+    body.position = a.position + fraction * (b.position - a.position);
+    body.orientation = a.orientation.slerp(fraction, b.orientation);
+    body.velocity = a.velocity + fraction * (b.velocity - a.velocity);
+    body.angular_momentum = a.angular_momentum + fraction * (b.angular_momentum - a.angular_momentum);
     return body;
 }
 
@@ -82,8 +82,9 @@ bool touches(const State& state) {
 
 namespace {
 
-// Does the vehicle move away from every element? What `must_clear` says must be out of its reach too, else faster than any
-// turning will do.
+// Does the vehicle move away from every element? With Clear::always it must also be out of reach. With
+// Clear::forward_only that holds for forward motion; otherwise it suffices to move away faster than any rotation can
+// bring a point back.
 enum class Clear { forward_only, always };
 bool moves_away(const Scene& scene, const State& state, Clear must_clear) {
     const Vec3 towards = scene.towards();
@@ -91,13 +92,13 @@ bool moves_away(const Scene& scene, const State& state, Clear must_clear) {
         const Unit& unit = scene.vehicle->units[u];
         const BodyState& body = state.units[u].body;
         const bool clear = must_clear == Clear::always || body.velocity.dot(towards) > 0.0;
-        const double turning = angular_velocity(unit.body, body).norm() * unit.trusses.reach;
+        const double rotation_speed = angular_velocity(unit.body, body).norm() * unit.trusses.reach;
         for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
             const Obstacle& element = scene.obstacles[i];
             if (element.structure != i) continue;
             const Pose pose = pose_of(scene, i, state);
-            const Placement seen = placement(pose, body);
-            const Vec3 from = from_hull(element.shape, box_of_structure(scene, i), seen.position);
+            const Placement in_shape = placement(pose, body);
+            const Vec3 from = from_hull(element.shape, box_of_structure(scene, i), in_shape.position);
             const double distance = from.norm();
             if (!(distance > 0.0)) return false;
             const Vec3 direction = from / distance;
@@ -107,7 +108,7 @@ bool moves_away(const Scene& scene, const State& state, Clear must_clear) {
                 away -= std::max(0.0, segment.dot(direction)) +
                         fastest_point(scene.barrier->segments[i], state.segments[i]) - segment.norm();
             }
-            const bool outruns = !clear && away >= turning;
+            const bool outruns = !clear && away >= rotation_speed;
             if (!(away > 0.0 && (outruns || distance > unit.trusses.reach))) return false;
         }
     }
@@ -144,16 +145,16 @@ double time_of_decision(const Scene& scene, std::span<const BodyState> before, d
     if (!is_over(scene, now)) return now.time;  // all came to rest
     std::vector<BodyState> after;
     list_body_states(now, after);
-    const auto is_over_at = [&](double share) {
+    const auto is_over_at = [&](double fraction) {
         for (std::size_t b = 0; b < after.size(); ++b)
-            body_state(now, b) = between(before[b], after[b], share);
+            body_state(now, b) = between(before[b], after[b], fraction);
         return is_over(scene, now);
     };
     double open = released / dt, over = 1.0;
     if (is_over_at(open)) over = open;
     while ((over - open) * dt > tolerance::decision_resolution) {
-        const double share = 0.5 * (open + over);
-        (is_over_at(share) ? over : open) = share;
+        const double fraction = 0.5 * (open + over);
+        (is_over_at(fraction) ? over : open) = fraction;
     }
     for (std::size_t b = 0; b < after.size(); ++b)
         body_state(now, b) = after[b];

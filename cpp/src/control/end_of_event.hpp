@@ -10,16 +10,16 @@ namespace birm3d {
 // Does any node push?
 bool touches(const State& state);
 
-// Moving away from every element, and either faster than any turning could bring a point back or already out of its
-// reach. On a straight path what recedes goes on receding. From a segment that slides and will stop it recedes both as
-// that moves now and as it will stand. What goes on past the barrier must be out of reach: the rest of the vehicle still has
-// to pass the element that its mass centre recedes from.
+// Is the vehicle moving away from every element, either out of its reach or faster than any rotation could bring a
+// point back? On a straight path a body that recedes goes on receding. It must recede from a sliding segment both as
+// that moves now and as it will come to rest. A vehicle that passes the barrier must be out of reach, as its rear
+// still has to pass the element.
 bool has_left(const Scene& scene, const State& state);
 
-// The same whatever the direction: moving away from every element and out of its reach.
+// Is the vehicle moving away from every element and out of its reach, in any direction?
 bool is_out_of_reach(const Scene& scene, const State& state);
 
-// Has the vehicle left for good, its wheels not rising and what slides at rest?
+// Has the vehicle left the barrier for good, with no wheel rising and all segments at rest?
 bool is_over(const Scene& scene, const State& state);
 
 // Kinetic and stored energy below which all is at rest: a millionth of the kinetic energy of the approach (J).
@@ -28,9 +28,9 @@ double rest_energy(const Scene& scene);
 // Has all come to rest?
 bool at_rest(const Scene& scene, const State& state);
 
-// Of a step of dt at whose end the outcome is decided: the instant from which it was (s), within the step, so that it does
-// not hang on how long that is. `before`: the bodies at the start; nothing pushes from `released` on (s after the start);
-// `now`: the state at the end, whose bodies are moved about meanwhile.
+// The instant within a step of dt from which the outcome is decided (s), so that it does not depend on the length of
+// the step. The outcome is decided at the end of the step. `before`: the bodies at the start. No node pushes from
+// `released` on (s after the start). `now`: the state at the end; its bodies are moved in the search and restored.
 double time_of_decision(const Scene& scene, std::span<const BodyState> before, double released, double dt,
                         State& now);
 

@@ -69,40 +69,41 @@ double greatest_stiffness(const State& state) {
     return stiffness;
 }
 
-// Where the approach turns into separation within a step, the trusses' peak is passed unseen and unloading
-// begins late, by up to the way back in half the step: the error in velocity is the force of that way, half
-// a step long (m/s).
-double turn_error(double dt, double stiffness, double separation) {
+// Velocity error of a step in which the approach turns into separation (m/s). The step passes over the trusses' peak
+// deflection, so that unloading begins late by up to the return distance of half a step. The error is the force of
+// that deflection over half a step.
+double reversal_error(double dt, double stiffness, double separation) {
     return 0.25 * dt * dt * stiffness * separation;
 }
 
-// A located turn is no nearer to either end of the step that was to be taken.
-constexpr double least_share = 0.1;
+// A located velocity reversal is no nearer than this fraction to either end of the step.
+constexpr double least_fraction = 0.1;
 
-// A step that ends where the approach turns, or half way to there, if a longer one would miss the turn (s).
-double step_to_turn(const Scene& scene, const State& state, double approach, double dt) {
+// A step that ends at the velocity reversal, or half way to it, if a longer step would pass over it (s).
+double step_to_reversal(const Scene& scene, const State& state, double approach, double dt) {
     if (!(approach < 0.0)) return dt;
     const double rate = separation_rate(scene, state);
     if (!(rate > 0.0)) return dt;
-    const double turn = -approach / rate;
-    const double way = turn < dt ? dt : 2.0 * dt;
-    if (!(turn < way)) return dt;
-    if (turn_error(dt, greatest_stiffness(state), rate * (way - turn)) <= allowed_error(scene)) return dt;
-    return turn < dt ? std::max(turn, least_share * dt) : 0.5 * turn;
+    const double reversal = -approach / rate;
+    const double horizon = reversal < dt ? dt : 2.0 * dt;
+    if (!(reversal < horizon)) return dt;
+    if (reversal_error(dt, greatest_stiffness(state), rate * (horizon - reversal)) <= allowed_error(scene))
+        return dt;
+    return reversal < dt ? std::max(reversal, least_fraction * dt) : 0.5 * reversal;
 }
 
-// A step to the turn that this one has gone beyond (s); infinite where it makes no error that counts.
-double located_turn(const Scene& scene, const Trial& tried, double approach, double separation) {
+// A shorter step, to the velocity reversal that the tried step has passed (s); infinite if the error is negligible.
+double located_reversal(const Scene& scene, const Trial& tried, double approach, double separation) {
     if (!(approach < 0.0 && separation > 0.0)) return infinity;
-    if (turn_error(tried.dt, greatest_stiffness(tried.state), separation) <= allowed_error(scene))
+    if (reversal_error(tried.dt, greatest_stiffness(tried.state), separation) <= allowed_error(scene))
         return infinity;
-    return tried.dt * std::clamp(approach / (approach - separation), least_share, 1.0 - least_share);
+    return tried.dt * std::clamp(approach / (approach - separation), least_fraction, 1.0 - least_fraction);
 }
 
-// Where the body turns, its nodes cease to approach one after the other. Those that do within the step pass their peak
-// unseen, by up to a dt^2/8, and begin to unload late: half a step long the force is greater by what that way makes along
-// the unloading slope (m/s).
-double error_of_turns(const Scene& scene, const Trial& tried, double separation) {
+// Velocity error by nodes whose approach ends within the step, one after the other while the body rotates (m/s). The
+// step passes over their peak deflections by up to a dt^2/8. Over half a step their forces are too great by that
+// distance times the unloading slope.
+double error_of_reversals(const Scene& scene, const Trial& tried, double separation) {
     const double rate = separation_rate(scene, tried.state);
     if (!(rate > 0.0)) return 0.0;
     double spread = 0.0;
@@ -111,10 +112,10 @@ double error_of_turns(const Scene& scene, const Trial& tried, double separation)
         const double spin = angular_velocity(unit.body, tried.state.units[u].body).norm();
         spread = std::max(spread, spin * unit.trusses.reach);
     }
-    // All together within a step is what located_turn() looks for.
-    const double change = rate * tried.dt, share = change / (2.0 * spread);
-    if (!(share < 1.0 && std::abs(separation) < spread + change)) return 0.0;
-    return share * change * tried.dt * tried.dt / 16.0 * greatest_stiffness(tried.state);
+    // If all nodes reverse within the step, located_reversal() shortens it.
+    const double change = rate * tried.dt, fraction = change / (2.0 * spread);
+    if (!(fraction < 1.0 && std::abs(separation) < spread + change)) return 0.0;
+    return fraction * change * tried.dt * tried.dt / 16.0 * greatest_stiffness(tried.state);
 }
 
 // Time at which the parabola through the last three normal forces falls to zero (s); infinite where it does not.
@@ -129,7 +130,7 @@ double time_to_release(const LoadHistory& history) {
     return falls_to_zero ? 2.0 * force / (std::sqrt(discriminant) - slope) : infinity;
 }
 
-// A step at whose end the next segment that slides straight on, untouched, comes to rest (s): its way is exact then.
+// A step that ends when the next untouched, straight sliding segment comes to rest (s): its distance is exact then.
 double time_to_stop(const Scene& scene, const State& state) {
     double earliest = infinity;
     if (state.segments.empty() || touches(state)) return earliest;
@@ -142,16 +143,16 @@ double time_to_stop(const Scene& scene, const State& state) {
     return earliest;
 }
 
-// Steps that an estimate asks for are taken from a ladder of sixteen lengths an octave: estimates are made of
-// high differences of the load, and their rounding must not travel from step to step.
+// Rounds a step down to one of sixteen lengths an octave. Error estimates are high differences of the load; their
+// rounding errors must not spread from step to step.
 double quantize_step(double dt) {
     int octave = 0;
     const double part = std::frexp(dt, &octave);  // 0.5 to 1
     return std::ldexp(std::floor(part * 32.0) / 32.0, octave);
 }
 
-// The course of what carries the vehicle, of joints and of segments is followed to second order, which nothing
-// estimates: longest step at which it keeps up with the tolerance (s).
+// Longest step for resting contacts, joints and segments (s). They are integrated to second order without an error
+// estimate, so that the step follows from the tolerance alone.
 double longest_step(const Scene& scene, const Trial& tried) {
     if (!tried.body_rests() && scene.joints.empty() && tried.state.segments.empty())
         return tolerance::longest_step;
@@ -159,8 +160,8 @@ double longest_step(const Scene& scene, const Trial& tried) {
            std::sqrt(std::min(1.0, scene.settings.tolerance / Settings{}.tolerance));
 }
 
-// The instant at which the last load ends is located within this (s): better than the usual tolerance needs nothing, and
-// four times as loosely at the most.
+// The instant at which the last load ends is located to within this (s). It grows with the tolerance, between the
+// value at the default tolerance and four times that.
 double release_resolution(const Scene& scene) {
     const double looser = std::sqrt(scene.settings.tolerance / Settings{}.tolerance);
     return tolerance::release_resolution * std::clamp(looser, 1.0, 4.0);
@@ -170,8 +171,8 @@ double longest_stable(const Trial& tried) {
     return 0.9 * tolerance::stable_fraction * tried.critical_step;
 }
 
-// The end of free flight: no further than to the first instant at which a node can be at the barrier. Before the first
-// load has a rate, the error is as the product of the step and of its share in touch.
+// A step that ends free flight at the first instant at which a node can be at the barrier (s). Until the first load
+// has a rate, the error is proportional to the step and to its fraction in contact.
 double landing_step(const Scene& scene, const State& from, const Trial& tried, StepSearch& search) {
     const double dt = tried.dt;
     search.lands = true;
@@ -204,7 +205,7 @@ StepSearch begin_search(const Scene& scene, const State& state, double longest) 
     if (!touches(state)) return search;
     dt = std::min(dt, std::max(time_to_release(scene, state), release_resolution(scene)));
     search.approach = separation_speed(scene, state);
-    dt = step_to_turn(scene, state, search.approach, dt);
+    dt = step_to_reversal(scene, state, search.approach, dt);
     return search;
 }
 
@@ -222,14 +223,14 @@ double shorter_step(const Scene& scene, const State& from, const Trial& tried, S
     }
     const double allowed = allowed_error(scene);
     const double separation = separation_speed(scene, tried.state);
-    search.error = std::max(tried.error, error_of_turns(scene, tried, separation));
+    search.error = std::max(tried.error, error_of_reversals(scene, tried, separation));
     double wanted = dt;
     if (dt > tolerance::stable_fraction * tried.critical_step) wanted = longest_stable(tried);
     if (search.error > allowed && dt > tolerance::jump_resolution)
         wanted = std::min(wanted, std::max(dt * std::max(0.2, 0.9 * std::sqrt(allowed / search.error)),
                                            tolerance::jump_resolution));
     double shorter = std::min(wanted < dt ? quantize_step(wanted) : infinity,
-                              located_turn(scene, tried, search.approach, separation));
+                              located_reversal(scene, tried, search.approach, separation));
     const double resolution = release_resolution(scene);
     if (dt > resolution && touches(from) && !touches(tried.state))
         shorter = std::min(shorter, std::max(0.5 * dt, resolution));
@@ -239,8 +240,9 @@ double shorter_step(const Scene& scene, const State& from, const Trial& tried, S
 double step_after(const Scene& scene, const Trial& accepted, const StepSearch& search) {
     const double dt = accepted.dt;
     const double room = allowed_error(scene) / std::max(search.error, least_error);
-    // The sixth root rather than the fourth, by which a smooth load's error grows: gentle changes of the step
-    // keep the estimates, which compare three steps, quiet. Far below what is allowed there is nothing to disturb.
+    // The error of a smooth load grows with the fourth power of the step. The sixth root changes the step more
+    // gently, which keeps the estimates steady: they compare three steps. Far below the allowed error that is not
+    // needed.
     const double growth =
         0.9 * std::max(std::pow(room, 1.0 / 6.0), std::pow(room / tolerance::ample_room, 1.0 / 3.0));
     const double longer = growth > 1.0

@@ -1,4 +1,4 @@
-// How long adaptive steps are: what the step at hand, once tried, says of itself and of the next.
+// Adaptive step control: whether a tried step is accepted, and how long the next one is.
 #pragma once
 
 #include <limits>
@@ -12,10 +12,11 @@ namespace birm3d {
 struct StepSearch {
     double first = 0.0;     // the first to be tried (s)
     double approach = 0.0;  // separation speed of the nodes that push at the start (m/s)
-    double error = 0.0;     // estimate of the step tried last, turns of single nodes included (m/s)
+    double error = 0.0;     // estimate of the step tried last, reversals of single nodes included (m/s)
     bool lands = false;     // is the landing on the barrier known?
-    double pressing = std::numeric_limits<double>::infinity();  // a step that can begin there (s)
-    double cut = 0.0;  // what an impact has cut short: the next step is no shorter for it (s)
+    double pressing =
+        std::numeric_limits<double>::infinity();  // first step that can be taken when contact begins (s)
+    double cut = 0.0;  // length that an impact cut off the step (s); the next step is not shortened for it
 };
 
 // For a step of at most `longest` (s).
@@ -27,7 +28,7 @@ double shorter_step(const Scene& scene, const State& from, const Trial& tried, S
 // The one after a step that is accepted (s).
 double step_after(const Scene& scene, const Trial& accepted, const StepSearch& search);
 
-// When the last load is gone, by its course so far (s); infinite where that does not tell.
+// When the last load will be zero, extrapolated (s); infinite where that is not known.
 double time_to_release(const Scene& scene, const State& state);
 
 }  // namespace birm3d

@@ -1,4 +1,4 @@
-// How long a step may be, as to what is around.
+// Limits of the step by the surfaces around the vehicle.
 #pragma once
 
 #include "birm3d/scene/scene.hpp"
@@ -6,8 +6,8 @@
 
 namespace birm3d {
 
-// A step of at most `longest` in which no node reaches an element of the barrier: straight on towards the surface that is
-// nearest to it now, and no further than another surface may lie.
+// A step of at most `longest` in which no node reaches an element of the barrier (s). Each node moves straight on
+// towards the surface that is nearest now, and not so far that another surface could be nearer.
 double untouched_step(const Scene& scene, const State& state, double longest);
 
 // A step of at most `longest` in which no point of a unit goes further than a quarter through the thinnest obstacle in its reach (s): in a

@@ -28,7 +28,7 @@ RunSummary Runner::run(const Approach& approach, const ExtremeGroups& wanted,
     outcome.end_reason = simulation_->end_reason();
     outcome.state_hash = state.hash();
     outcome.statistics = state.statistics;
-    outcome.ledger = state.ledger;
+    outcome.balances = state.balances;
     outcome.final_velocity = state.units.front().body.velocity;
     const Scene& scene = simulation_->scene();
     const Deflections deflections = greatest_deflections(*scene.vehicle, state);

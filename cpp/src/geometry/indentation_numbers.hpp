@@ -15,7 +15,8 @@ struct IndentationNumbers {
     double radius, stretch;  // the post's, and that of its section with a plane of e and w over it
     double surface;          // into, of the outermost node of the panel
     double per_reach, per_stretch;
-    double grip;  // share of the post's way that the skin takes at the deepest place of the post in the panel
+    double
+        grip;  // fraction of the post's displacement that the skin follows, at the deepest point of the post in the panel
     double steep_arc, rise_there;  // across and deep, of the place from where the flank is steepest
 };
 

@@ -11,7 +11,7 @@ namespace birm3d {
 //
 //   outside: distance to the side, the top disc or the rim between them, whichever is nearest;
 //   inside: depth below the side or below the top, whichever is smaller.
-// On the axis any direction across it will do: +x. On the rim the normal is that of the side or of the top.
+// On the axis the normal is +x by convention. On the rim the normal is that of the side or of the top.
 BIRM3D_INLINE void nearest_of_post(double radius, double height, double x, double y, double z, double& gap,
                                    double& nx, double& ny, double& nz) {
     const double square = x * x + y * y;

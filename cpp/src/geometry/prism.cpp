@@ -150,11 +150,11 @@ std::shared_ptr<const Prism::Outline> Prism::outline_of(const Profile& profile,
         is_covered[edge] = true;
     }
     // Counter-clockwise: the solid lies to the left of every edge.
-    const bool turn = twice_area(profile) < 0.0;
+    const bool reversed = twice_area(profile) < 0.0;
     std::vector<PrismEdge> all;
     for (std::size_t i = 0; i < n; ++i) {
         const Point &a = profile[i], &b = profile[(i + 1) % n];
-        all.push_back(turn ? edge_between(b, a) : edge_between(a, b));
+        all.push_back(reversed ? edge_between(b, a) : edge_between(a, b));
     }
     auto outline = std::make_shared<Outline>();
     outline->low = outline->high = profile[0];
@@ -195,7 +195,7 @@ Prism Prism::box(double thickness, double width, double height, double foot) {
                 -0.5 * width,
                 0.5 * width,
                 Cover{.edges = {0}}};
-    // No top: the two sides go on for ever.
+    // Without a top, the two sides extend to infinity.
     auto outline = std::make_shared<Outline>();
     outline->edges = {{0.0, -foot, 0.0, -1.0, -infinity, 0.0, -foot, infinity, 0.0},
                       {thickness, -foot, 0.0, 1.0, 0.0, infinity, -foot, infinity, 0.0}};

@@ -1,5 +1,5 @@
 // Distance from a prism in plain numbers and selections, so that single points (Number: double) and rows of nodes
-// (src/base/row.hpp) share it.
+// (src/base/packet.hpp) share it.
 //
 // In the plane of the profile (x to the right, z up) the nearest edge gives a vector from the surface to the
 // point; along y the ends add their part. |gap| is the length of the shortest such vector over the faces that
@@ -49,7 +49,8 @@ BIRM3D_INLINE NearestEdge<Number> nearer_edge(const PrismEdge& edge, const Numbe
             nearer(edge.tx, best.tx), nearer(edge.tz, best.tz)};
 }
 
-// +1 outside, -1 inside, once all edges have been asked, beginning with +1.
+// Flips the sign where a line from the point along +x crosses the edge. Starting with +1 and after all edges: +1
+// outside, -1 inside.
 template <class Number>
 BIRM3D_INLINE Number side_after_edge(const PrismEdge& edge, const Number& x, const Number& z,
                                      const Number& side) {

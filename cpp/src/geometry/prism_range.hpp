@@ -39,7 +39,7 @@ inline Crossing crossing_of(const PrismEdge& edge, const Rectangle& all) {
     if (!(all.z_low < edge.z_high && all.z_high >= edge.z_low)) return Crossing::none;
     const double a = edge.x + (all.z_low - edge.z) * edge.slope,
                  b = edge.x + (all.z_high - edge.z) * edge.slope;
-    // Far enough for any rounding of theirs.
+    // A margin above all rounding errors.
     const double clear = 1e-9 * (1.0 + std::abs(a) + std::abs(b));
     if (std::max(a, b) < all.x_low - clear) return Crossing::none;
     const bool beside = all.z_low >= edge.z_low && all.z_high < edge.z_high;

@@ -9,7 +9,7 @@
 
 namespace birm3d {
 
-// What the surface is like around a part.
+// The surface around a part of a triangle: flat, bent, or the rim of an open mesh.
 enum class Vicinity { flat, bent, rim };
 
 struct Triangle {

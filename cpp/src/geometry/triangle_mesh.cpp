@@ -30,8 +30,9 @@ double least_thickness(const TriangleMeshData& mesh) {
             const Triangle& other = mesh.triangles[i];
             const double along = -t.normal.dot(other.normal);
             if (other.face == t.face || along <= 0.0) return;
-            const double way = (other.offset - other.normal.dot(middle)) / along;
-            if (way > 0.0 && way < thickness && holds(other, middle - way * t.normal)) thickness = way;
+            const double depth = (other.offset - other.normal.dot(middle)) / along;
+            if (depth > 0.0 && depth < thickness && holds(other, middle - depth * t.normal))
+                thickness = depth;
         });
     }
     return thickness;
@@ -58,7 +59,7 @@ Nearest nearest_from(const Triangle& t, const OnTriangle& on, const Vec3& p) {
 TriangleMesh::TriangleMesh(const std::vector<Vec3>& vertices, const std::vector<Face>& faces) {
     auto data = std::make_shared<TriangleMeshData>();
     data->triangles = triangles_of(vertices, faces, data->closed);
-    // Points of a flat face may lie this far beside the triangles that hold them.
+    // By rounding, points of a flat face may lie this far beside their triangles.
     data->tree = TriangleTree(data->triangles, tolerance::triangle_area * size_of(data->triangles));
     data->thickness = least_thickness(*data);
     data_ = std::move(data);
@@ -106,7 +107,7 @@ std::optional<Nearest> TriangleMesh::vertex_to_face(const Vec3& p, const Vec3& d
 
 Nearest TriangleMesh::contact(const Vec3& p, const Vec3& motion, const Nearest& exact) const {
     if (exact.gap >= 0.0) return exact;
-    // Without a limit a vertex that slides along a wall would find the wall's end behind it.
+    // The limit keeps a vertex that slides along a wall from finding the end of the wall behind it.
     const double longest = motion.norm() + tolerance::touching_gap;
     return vertex_to_face(p, motion, longest).value_or(exact);
 }

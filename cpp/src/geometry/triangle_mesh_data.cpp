@@ -118,7 +118,7 @@ double twelvefold_volume(const std::vector<Triangle>& triangles) {
 }
 
 // Turns every triangle over; `beyond` follows.
-void turn(std::vector<Triangle>& triangles, std::vector<std::size_t>& beyond) {
+void flip(std::vector<Triangle>& triangles, std::vector<std::size_t>& beyond) {
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         Triangle& t = triangles[i];
         std::swap(t.corner[1], t.corner[2]);
@@ -208,7 +208,7 @@ std::vector<Triangle> triangles_of(const std::vector<Vec3>& vertices,
     std::vector<Triangle> triangles = checked_triangles(vertices, faces);
     std::vector<std::size_t> beyond = neighbours(triangles);
     closed = std::find(beyond.begin(), beyond.end(), none) == beyond.end();
-    if (closed && twelvefold_volume(triangles) < 0.0) turn(triangles, beyond);
+    if (closed && twelvefold_volume(triangles) < 0.0) flip(triangles, beyond);
     double size = 0.0;
     for (const Triangle& t : triangles)
         for (const Vec3& corner : t.corner)

@@ -1,4 +1,4 @@
-// What a TriangleMesh is made of, prepared once.
+// The data of a TriangleMesh, prepared once.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,8 @@ struct TriangleMeshData {
     double thickness = 0.0;  // m
 };
 
-// What `p` sees whose nearest point lies on a part of a triangle, by the vector from there.
+// Signed distance and normal at `p`, whose nearest point lies on a part of a triangle. `on`: the vector from there to
+// p.
 Nearest nearest_from(const Triangle& triangle, const OnTriangle& on, const Vec3& p);
 
 // Checks the arguments of TriangleMesh and gives triangles with their neighbourhood.

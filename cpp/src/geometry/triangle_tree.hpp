@@ -1,4 +1,4 @@
-// Boxes around triangles, boxes around those: finds triangles near a point or along a line without asking all.
+// A tree of bounding boxes: finds triangles near a point or along a line without testing all.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@ class TriangleTree {
     // `slack` widens every box (m).
     TriangleTree(const std::vector<Triangle>& triangles, double slack);
 
-    // Calls visit(i) for the triangles whose boxes are nearer to the box from `low` to `high` than the root of
-    // `square`, near ones first; visit may lower it.
+    // Calls visit(i) for the triangles whose boxes are nearer to the box from `low` to `high` than sqrt(square), near
+    // ones first. visit may lower `square`.
     template <class Visit>
     void near(const Vec3& low, const Vec3& high, double& square, const Visit& visit) const;
 

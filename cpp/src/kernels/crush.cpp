@@ -5,7 +5,8 @@
 
 #include "base/block_loop.hpp"
 #include "birm3d/base/tolerances.hpp"
-#include "kernels/crush_dispatch.hpp"
+#include "kernels/crush_columns.hpp"
+#include "kernels/simd_table.hpp"
 
 namespace birm3d {
 
@@ -86,7 +87,7 @@ bool crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, con
     alignas(64) BlockColumn gap;
     const Vec3& n = surface.face.normal;
     const Vec3& h = surface.holding;
-    const PressedNodes nodes = press_rows.flat(
+    const PressedNodes nodes = simd.press_flat(
         columns_of(mesh, b, factor), {n.x(), n.y(), n.z(), surface.face.offset, h.x(), h.y(), h.z()},
         columns_of<const double>(before), columns_of<double>(now), gap.data(), contact.pressure.data(),
         sums.nodes);
@@ -101,7 +102,7 @@ bool crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh,
     const Mat3& q = body.inverse_inertia;
     alignas(64) BlockColumn gap;
     const PressedNodes nodes =
-        press_rows.curved(columns_of(mesh, b, factor),
+        simd.press_curved(columns_of(mesh, b, factor),
                           {faces.gap.data(),  contact.nx.data(), contact.ny.data(), contact.nz.data(),
                            faces.bx.data(),   faces.by.data(),   faces.bz.data(),   faces.per_force.data(),
                            contact.px.data(), contact.py.data(), contact.pz.data(), contact.tx.data(),
@@ -116,14 +117,14 @@ bool crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh,
 
 Wrench total_wrench(const FlatContact& surface, const CrushSums& sums) {
     const NodeSums& nodes = sums.nodes;
-    const Vec3 moment(row_sum(nodes.moment_x), row_sum(nodes.moment_y), row_sum(nodes.moment_z));
-    return {row_sum(nodes.force) * surface.face.normal, moment.cross(surface.face.normal)};
+    const Vec3 moment(packet_sum(nodes.moment_x), packet_sum(nodes.moment_y), packet_sum(nodes.moment_z));
+    return {packet_sum(nodes.force) * surface.face.normal, moment.cross(surface.face.normal)};
 }
 
 Wrench total_wrench(const CrushSums& sums) {
     const NodeSums& nodes = sums.nodes;
-    return {Vec3(row_sum(nodes.push_x), row_sum(nodes.push_y), row_sum(nodes.push_z)),
-            Vec3(row_sum(nodes.moment_x), row_sum(nodes.moment_y), row_sum(nodes.moment_z))};
+    return {Vec3(packet_sum(nodes.push_x), packet_sum(nodes.push_y), packet_sum(nodes.push_z)),
+            Vec3(packet_sum(nodes.moment_x), packet_sum(nodes.moment_y), packet_sum(nodes.moment_z))};
 }
 
 Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const BlockContact& contact) {

@@ -7,11 +7,10 @@
 //   deflection d = B_0 - |B|,  truss force F(d) by the law of Fig. 3,  b = B/|B|
 //   force on the vehicle:  projected   F * (-b . n) * n      (default)
 //                          along_truss F * (-b)              (the paper's rule)
-// A truss that has turned so far that it would push its node off the surface (b . n > 0) does not push: the node
-// springs to its residual length.
+// A truss that points away from the surface (b . n > 0) does not push. It extends at once to its residual length.
 //
-// Both are cases of one rule: with h the way of the node, h . n = 1, the force is F * (-b . h) * n. Nodes that an indentation
-// draws in have their own h and n (indentation.hpp).
+// Both are cases of one rule: with h the direction of the node's displacement, h . n = 1, the force is F * (-b . h) *
+// n. Nodes that follow an indentation have their own h and n (indentation.hpp).
 //
 // Deviations from the paper: its Eq. 14 (left side P2) as printed moves away from the plane; the push-back
 // is p - gap*n. The force is projected on the normal, because the node is free to slide: along the truss it
@@ -44,36 +43,38 @@ struct FlatContact {
     FlatContact(const RigidBody& body, const HalfSpace& face_, const HalfSpace& face_before);
 
     HalfSpace face;
-    // Held nodes move along it for each unit of gap: along n + m, m the normal of the instant before, so that a path is
-    // followed to second order while the body turns.
+    // Displacement of nodes in contact for each unit of gap: along n + m, with m the normal at the start of the step.
+    // So paths are followed to second order while the body rotates.
     Vec3 holding;
     InverseMass inverse_mass;
 };
 
-// What the blocks of a unit add up to.
+// Sums over the blocks of a unit.
 struct CrushSums {
     NodeSums nodes;
-    double released_work = 0.0;   // work on trusses whose nodes were let go on the way, in addition (J)
+    double released_work =
+        0.0;  // correction of the work on trusses whose nodes were released within the step (J)
     double flat_stiffness = 0.0;  // of flat surfaces, see SkinForces (1/s^2)
 
-    double work() const { return 0.5 * row_sum(nodes.twice_work) + released_work; }  // on trusses (J)
-    double stored() const { return 0.5 * row_sum(nodes.twice_stored); }              // J
-    double stiffness() const { return flat_stiffness + row_sum(nodes.stiffness); }   // 1/s^2
-    double normal_force() const { return row_sum(nodes.force); }                     // N
+    double work() const { return 0.5 * packet_sum(nodes.twice_work) + released_work; }  // on trusses (J)
+    double stored() const { return 0.5 * packet_sum(nodes.twice_stored); }              // J
+    double stiffness() const { return flat_stiffness + packet_sum(nodes.stiffness); }   // 1/s^2
+    double normal_force() const { return packet_sum(nodes.force); }                     // N
 
-    // Takes a block's part out again.
+    // Subtracts the part of a block.
     CrushSums& operator-=(const CrushSums& part);
 };
 
-// Takes block `b` from `before` to `now`, fills in the pressures of `contact` and adds to the sums; the normals of
-// `contact` are the caller's to set. `factor`: on the loading envelopes, may be null. Did any node cease to push?
+// Moves block `b` from `before` to `now`, sets the pressures of `contact` and adds to the sums. The caller has set
+// the normals of `contact`. `factor`: on the loading envelopes, may be null. Returns whether any node stopped
+// pushing.
 bool crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const BlockColumn* factor,
            const TrussBlockState& before, TrussBlockState& now, BlockContact& contact, CrushSums& sums);
 bool crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh, std::size_t b,
            const BlockColumn* factor, const TrussBlockState& before, TrussBlockState& now,
            BlockContact& contact, CrushSums& sums);
 
-// Force and torque of the blocks that saw one plane, and of those that saw surfaces of any shape; projected, body
+// Force and torque of the blocks that met one plane, and of those that met surfaces of any shape; projected, body
 // axes.
 Wrench total_wrench(const FlatContact& surface, const CrushSums& sums);
 Wrench total_wrench(const CrushSums& sums);
@@ -81,8 +82,8 @@ Wrench total_wrench(const CrushSums& sums);
 // The force of a block by the paper's rule: each truss pushes along itself (body axes).
 Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const BlockContact& contact);
 
-// The factor on the loading envelopes of a block by its rate of deflection (TrussInput), from the motion of the body
-// against the surface at that instant (body axes) and the block as it is without that factor.
+// Sets the factor on the loading envelopes by the rate of deflection (TrussInput). `motion`: of the body relative to
+// the surface (body axes). The block has been crushed without the factor before.
 void set_rate_factor(double rate_sensitivity, const BlockColumn& force, const Twist& motion,
                      const Places& places, const BlockContact& contact, BlockColumn& factor);
 

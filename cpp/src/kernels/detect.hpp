@@ -17,20 +17,20 @@ struct alignas(64) NearestOfBlock {
     BlockColumn gap, nx, ny, nz;
 };
 
-// Of the nodes x, y, z (body axes, m) of a body that stands at `now`. `before`: where it stood an instant
-// earlier; only meshes ask, for the way on which each node has come. `force`, unless null: of nodes that are outside and
-// have no force the gap may be infinite, and then there is no normal.
+// Finds gaps and normals of the nodes x, y, z (body axes, m) of a body at `now`. `before`: its placement at the start
+// of the step; meshes need it for the path of each node. With `force` given, nodes outside that have no force may get
+// an infinite gap and no normal.
 void nearest_of(const Shape& shape, const Placement& now, const Placement& before, const BlockColumn& x,
                 const BlockColumn& y, const BlockColumn& z, NearestOfBlock& out,
                 const BlockColumn* force = nullptr);
 
-// Can any point of a box in body axes be nearer to the surface than `margin` (m), or inside? Cheap, and never
-// no where it is yes; it may be yes where it is no.
+// Can any point of a box in body axes be nearer to the surface than `margin` (m), or inside? A cheap conservative
+// test: true may be wrong, false never is.
 bool within_reach(const Shape& shape, const Placement& now, const Box& box, double margin);
 
-// The plane (body axes) that is the nearest surface to every point of a box in body axes: nearest_of would
-// give its gap and its normal for all of them. None where there is no such plane or this can not be seen at
-// little cost: always one for half-spaces, often one for the faces along prisms, never one for posts and meshes.
+// The plane (body axes) that is the nearest surface for all points of a box in body axes. None if there is no such
+// plane, or if finding it would be costly. Half-spaces always have one, faces along prisms often, posts and meshes
+// never.
 std::optional<HalfSpace> flat_part(const Shape& shape, const Placement& now, const Box& box);
 
 }  // namespace birm3d

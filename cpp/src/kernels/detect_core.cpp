@@ -10,17 +10,18 @@ namespace birm3d {
 
 namespace {
 
-// How far a point that comes with `approach` can get within the step: a turn adds its centripetal part. However short the
-// step, points that would share an impact are found.
-double way(const TrussMesh& mesh, const Twist& motion, double approach, double dt) {
-    const double bend = 0.5 * motion.angular_velocity.squaredNorm() * mesh.reach * dt * dt;
-    return std::max(tolerance::joint_impact_gap, tolerance::touching_gap + bend + dt * approach);
+// How far a point with the speed `approach` can get within the step, with the centripetal part of rotation. It is
+// never less than the gap of points that share an impact.
+double reach_within_step(const TrussMesh& mesh, const Twist& motion, double approach, double dt) {
+    const double centripetal = 0.5 * motion.angular_velocity.squaredNorm() * mesh.reach * dt * dt;
+    return std::max(tolerance::joint_impact_gap, tolerance::touching_gap + centripetal + dt * approach);
 }
 
 }  // namespace
 
 double core_margin(const TrussMesh& mesh, const Twist& motion, double dt) {
-    return way(mesh, motion, motion.velocity.norm() + motion.angular_velocity.norm() * mesh.reach, dt);
+    return reach_within_step(mesh, motion,
+                             motion.velocity.norm() + motion.angular_velocity.norm() * mesh.reach, dt);
 }
 
 void find_core_contacts(const TrussMesh& mesh, std::size_t body, const BodyState& state,
@@ -42,7 +43,7 @@ void find_core_contacts(const TrussMesh& mesh, std::size_t body, const BodyState
             if (within_reach(*shape.shape, shape.placement, mesh.anchor_box[b], margin))
                 near.push_back(&shape);
         if (near.empty()) continue;
-        // Of the nearest surface only: behind a neighbour's face its edges are no obstacle.
+        // Only the nearest surface counts: edges behind a neighbour's face are no obstacle.
         const TrussBlock& block = mesh.block[b];
         nearest.gap.fill(margin);
         at.fill(nullptr);
@@ -64,7 +65,7 @@ void find_core_contacts(const TrussMesh& mesh, std::size_t body, const BodyState
             const double gap = nearest.gap[i];
             const Twist there = relative(*at[i]);
             const double approach = -normal.dot(there.velocity + there.angular_velocity.cross(anchor));
-            if (gap >= way(mesh, there, std::max(0.0, approach), dt)) continue;
+            if (gap >= reach_within_step(mesh, there, std::max(0.0, approach), dt)) continue;
             RigidContact contact;
             contact.source = ContactSource::core;
             contact.index = truss;

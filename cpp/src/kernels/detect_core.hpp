@@ -1,4 +1,4 @@
-// Bottomed-out trusses: anchors at an obstacle, where the rigid body itself must be held.
+// Bottomed-out trusses: anchors at an obstacle, where the rigid body itself is in contact.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace birm3d {
 
-// An obstacle seen from a body.
+// An obstacle in the axes of a body.
 struct PlacedShape {
     const Shape* shape = nullptr;
     Placement placement;
@@ -22,7 +22,7 @@ struct PlacedShape {
     Twist motion = {};  // its own, seen as if it were part of the body: about the body's origin, body axes
 };
 
-// How near an anchor must be to be at a surface within dt, whichever way it goes (m); `motion` in body axes.
+// Distance within which an anchor can reach a surface in dt, in any direction (m); `motion` in body axes.
 double core_margin(const TrussMesh& mesh, const Twist& motion, double dt);
 
 // Adds a contact for each anchor that is at the nearest of the surfaces or, as it now moves, will be within dt;

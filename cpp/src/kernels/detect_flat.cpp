@@ -79,8 +79,8 @@ bool farther(const PlacedBox& box, const PrismEdge& edge, const PrismEdge& face,
     return distance - factor * ahead - reach >= 0.0;
 }
 
-// Lies the edge beside the rectangle that is swept when the box moves straight onto the face?
-bool beside_way(const PrismEdge& edge, const PrismEdge& face, const Spread& along, const Spread& ahead) {
+// Is the edge outside the rectangle that the box sweeps when it moves straight onto the face?
+bool beside_path(const PrismEdge& edge, const PrismEdge& face, const Spread& along, const Spread& ahead) {
     const auto [u_low, u_high] = extent(edge, tangent(face), face);
     if (u_high <= along.least() || u_low >= along.most()) return true;
     const auto [n_low, n_high] = extent(edge, normal(face), face);
@@ -95,8 +95,9 @@ bool end_is_farther(const PlacedBox& box, double end, double outward, const Pris
     return outward * (end - box.center.y()) - factor * ahead - reach >= 0.0;
 }
 
-// Every point of the box has to stand straight before or behind the face, with nothing nearer to it. Before the
-// face, what lies behind its plane is never nearer; covered edges are no surface, but must not lie between.
+// Is the face the nearest surface for every point of the box? All points must project onto the face, and no other
+// edge may be nearer. In front of the face, edges behind its plane are never nearer. Covered edges are no surface,
+// but must not lie between.
 bool is_nearest_everywhere(const Prism& prism, const PrismEdge& face, const PlacedBox& box) {
     const Spread along = box.along(tangent(face), face);
     if (along.least() < face.low || along.most() > face.high) return false;
@@ -114,7 +115,7 @@ bool is_nearest_everywhere(const Prism& prism, const PrismEdge& face, const Plac
     }
     for (const PrismEdge& edge : prism.covered_edges()) {
         all_behind = all_behind && behind(edge, face);
-        if (!beside_way(edge, face, along, ahead)) return false;
+        if (!beside_path(edge, face, along, ahead)) return false;
     }
     for (const double factor : {1.0, -1.0}) {
         if (!(factor > 0.0 ? before && !all_behind : inside)) continue;

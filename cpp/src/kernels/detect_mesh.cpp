@@ -13,13 +13,13 @@ namespace {
 // More triangles than this are not tried on whole blocks: found by measuring.
 constexpr std::size_t most_triangles = 32;
 
-// What is known of each node's nearest triangle.
-struct alignas(64) TriangleLanes {
+// The nearest triangle of each node so far.
+struct alignas(64) NearestTriangles {
     BlockColumn square, x, y, z, part;  // as OnTriangle
     BlockColumn index;                  // of the triangle
 };
 
-BIRM3D_BLOCK_LOOP void begin(double square, TriangleLanes& best) {
+BIRM3D_BLOCK_LOOP void begin(double square, NearestTriangles& best) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < block_size; ++i) {
         best.square[i] = square;
@@ -28,8 +28,8 @@ BIRM3D_BLOCK_LOOP void begin(double square, TriangleLanes& best) {
 }
 
 // Returns the largest square of a distance that is left.
-BIRM3D_BLOCK_LOOP double ask_triangle(const PlainTriangle& triangle, double index, const OwnLanes& own,
-                                      TriangleLanes& best) {
+BIRM3D_BLOCK_LOOP double ask_triangle(const PlainTriangle& triangle, double index, const OwnNodes& own,
+                                      NearestTriangles& best) {
     const PlainTriangle t = triangle;
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < block_size; ++i) {
@@ -51,15 +51,15 @@ BIRM3D_BLOCK_LOOP double ask_triangle(const PlainTriangle& triangle, double inde
 void nearest_of_mesh(const TriangleMesh& mesh, const Placement& now, const Placement& before,
                      const BlockColumn& x, const BlockColumn& y, const BlockColumn& z, NearestOfBlock& out) {
     const TriangleMeshData& data = mesh.data();
-    OwnLanes own;
-    const Extent extent = to_own(turn_of(now), x, y, z, own);
+    OwnNodes own;
+    const Extent extent = to_own(plain_placement(now), x, y, z, own);
     const Eigen::Map<const Vec3> low(extent.low), high(extent.high);
     const Vec3 middle = 0.5 * (low + high);
 
     // The triangle nearest to the middle of the block is near all of it.
     std::size_t hint = 0;
     mesh.nearest(middle, hint);
-    TriangleLanes best;
+    NearestTriangles best;
     begin(std::numeric_limits<double>::infinity(), best);
     double most = ask_triangle(data.triangles[hint].plain, static_cast<double>(hint), own, best);
     std::size_t asked = 1;

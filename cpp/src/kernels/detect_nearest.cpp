@@ -17,7 +17,7 @@ BIRM3D_BLOCK_LOOP void to_plane(double nx, double ny, double nz, double offset, 
     }
 }
 
-BIRM3D_BLOCK_LOOP void to_post(const Turn& t, double radius, double height, const BlockColumn& x,
+BIRM3D_BLOCK_LOOP void to_post(const PlainPlacement& t, double radius, double height, const BlockColumn& x,
                                const BlockColumn& y, const BlockColumn& z, NearestOfBlock& out) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < block_size; ++i) {
@@ -43,7 +43,9 @@ struct Block {
         const HalfSpace plane = now.plane_from_own(shape);
         to_plane(plane.normal.x(), plane.normal.y(), plane.normal.z(), plane.offset, x, y, z, out);
     }
-    void operator()(const Post& post) const { to_post(turn_of(now), post.radius, post.height, x, y, z, out); }
+    void operator()(const Post& post) const {
+        to_post(plain_placement(now), post.radius, post.height, x, y, z, out);
+    }
     void operator()(const Prism& prism) const { nearest_of_prism(prism, now, x, y, z, force, out); }
     void operator()(const TriangleMesh& mesh) const { nearest_of_mesh(mesh, now, before, x, y, z, out); }
 };

@@ -1,4 +1,4 @@
-// Prisms: of the edges of the profile those are left out that can be nearest to no node of the block.
+// Prisms: edges of the profile that can be nearest to no node of the block are left out.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -6,7 +6,7 @@
 
 #include "geometry/prism_range.hpp"
 #include "kernels/detect_block.hpp"
-#include "kernels/detect_dispatch.hpp"
+#include "kernels/simd_table.hpp"
 
 namespace birm3d {
 
@@ -79,9 +79,9 @@ class EdgesInView {
 
 void nearest_of_prism(const Prism& prism, const Placement& now, const BlockColumn& x, const BlockColumn& y,
                       const BlockColumn& z, const BlockColumn* force, NearestOfBlock& out) {
-    const Turn turn = turn_of(now);
-    OwnLanes own;
-    const auto [low, high] = to_own(turn, x, y, z, own);
+    const PlainPlacement placed = plain_placement(now);
+    OwnNodes own;
+    const auto [low, high] = to_own(placed, x, y, z, own);
     const Rectangle block{low[0], high[0], low[2], high[2]};
     EdgesInView faces(prism.edges(), block), covered(prism.covered_edges(), block);
     // An end that is further away than a face is nearest to no node.
@@ -98,8 +98,8 @@ void nearest_of_prism(const Prism& prism, const Placement& now, const BlockColum
     view.splitting = faces.splitting(block, view.side);
     view.covered_splitting = covered.splitting(block, view.side);
     view.force = force ? force->data() : nullptr;
-    detect_rows.ask_prism(view, turn, {own.x.data(), own.y.data(), own.z.data()}, out.gap.data(),
-                          {out.nx.data(), out.ny.data(), out.nz.data()});
+    simd.ask_prism(view, placed, {own.x.data(), own.y.data(), own.z.data()}, out.gap.data(),
+                   {out.nx.data(), out.ny.data(), out.nz.data()});
 }
 
 }  // namespace birm3d

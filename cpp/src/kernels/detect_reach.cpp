@@ -12,13 +12,13 @@ double distance(const Box& a, const Box& b) {
     return ((a.center - b.center).cwiseAbs() - a.half - b.half).cwiseMax(0.0).norm();
 }
 
-// What is this far away (m), or overlaps at zero.
+// Is a distance above the margin? A distance of zero means overlap (m).
 bool too_far(double least_distance, double margin) {
     return least_distance > 0.0 && least_distance >= margin;
 }
 
 // The box around a turned box.
-Box turned(const Placement& now, const Box& box) {
+Box rotated(const Placement& now, const Box& box) {
     return {now.to_own(box.center), now.rotation.cwiseAbs() * box.half};
 }
 
@@ -41,14 +41,14 @@ bool reaches(const Post& post, const Placement& now, const Box& box, double marg
 }
 
 bool reaches(const Prism& prism, const Placement& now, const Box& box, double margin) {
-    const Box own = turned(now, box);
+    const Box own = rotated(now, box);
     return !too_far(distance(prism.bounds(), own), margin) && !too_far(prism.no_nearer(own), margin);
 }
 
 bool reaches(const TriangleMesh& mesh, const Placement& now, const Box& box, double margin) {
     // Behind an open mesh a point is inside wherever its nearest point is not on the rim: no bounds.
     if (!mesh.closed()) return true;
-    const Box own = turned(now, box);
+    const Box own = rotated(now, box);
     return !too_far(distance(mesh.bounds(), own), margin) &&
            !too_far(mesh.nearest(own.center).gap - box.half.norm(), margin);
 }

@@ -2,7 +2,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "kernels/friction_dispatch.hpp"
+#include "kernels/simd_table.hpp"
 
 namespace birm3d {
 
@@ -14,8 +14,8 @@ Mat3 crossing(const Vec3& a) {
     return cross;
 }
 
-Mat6 on_surface(const BlockColumn& slow, const RubbedNodes& nodes) {
-    const ResistanceSums of = friction_rows.find_resistance(slow.data(), nodes);
+Mat6 on_surface(const BlockColumn& slow, const SlidingNodes& nodes) {
+    const ResistanceSums of = simd.find_resistance(slow.data(), nodes);
     Mat6 resistance;
     resistance << of.xx, of.xy, of.xz, of.rxx, of.ryx, of.rzx,  //
         of.xy, of.yy, of.yz, of.rxy, of.ryy, of.rzy,            //
@@ -34,8 +34,8 @@ Mat6 on_plane(double q, const Vec3& qr, const Mat3& qrr, const Vec3& normal) {
     return resistance;
 }
 
-Mat6 on_plane(const BlockColumn& slow, const RubbedNodes& nodes, const Vec3& normal) {
-    const Moments of = friction_rows.find_moments(slow.data(), nodes);
+Mat6 on_plane(const BlockColumn& slow, const SlidingNodes& nodes, const Vec3& normal) {
+    const Moments of = simd.find_moments(slow.data(), nodes);
     Mat3 qrr;
     qrr << of.xx, of.xy, of.xz, of.xy, of.yy, of.yz, of.xz, of.yz, of.zz;
     return on_plane(of.q, {of.x, of.y, of.z}, qrr, normal);
@@ -50,17 +50,17 @@ Vec6 column(const Twist& twist) {
 }  // namespace
 
 void add_friction(double mu, double full_speed, const Twist& motion, const Places& places,
-                  const BlockContact& contact, const Vec3* common_normal, Rubbing& rubbing) {
+                  const BlockContact& contact, const Vec3* common_normal, FrictionLoad& friction_load) {
     const Vec3& v = motion.velocity;
     const Vec3& w = motion.angular_velocity;
-    const RubbedNodes nodes{places.x.data(),   places.y.data(),   places.z.data(),        contact.nx.data(),
-                            contact.ny.data(), contact.nz.data(), contact.pressure.data()};
+    const SlidingNodes nodes{places.x.data(),   places.y.data(),   places.z.data(),        contact.nx.data(),
+                             contact.ny.data(), contact.nz.data(), contact.pressure.data()};
     alignas(64) BlockColumn slow;
-    const FrictionSums by = friction_rows.find_friction(
-        {mu, full_speed, v.x(), v.y(), v.z(), w.x(), w.y(), w.z()}, nodes, slow.data());
-    rubbing.friction += {Vec3(by.fx, by.fy, by.fz), Vec3(by.tx, by.ty, by.tz)};
+    const FrictionSums by =
+        simd.find_friction({mu, full_speed, v.x(), v.y(), v.z(), w.x(), w.y(), w.z()}, nodes, slow.data());
+    friction_load.friction += {Vec3(by.fx, by.fy, by.fz), Vec3(by.tx, by.ty, by.tz)};
     if (!by.slow) return;
-    rubbing.resistance +=
+    friction_load.resistance +=
         common_normal != nullptr ? on_plane(slow, nodes, *common_normal) : on_surface(slow, nodes);
 }
 
@@ -69,10 +69,11 @@ Mat6 resistance(double q, const Vec3& r, const Vec3& normal) {
 }
 
 Twist settled(const Twist& motion, const Twist& before, const Mat6& resistance, double dt,
-              const Mat6& inertia, const Mat6& held) {
+              const Mat6& inertia, const Mat6& support) {
     const Mat6 half = 0.5 * dt * resistance;
     const Vec6 free = column(motion);
-    const Vec6 loss = (inertia + held + half).ldlt().solve(half * (free - column(before)) + held * free);
+    const Vec6 loss =
+        (inertia + support + half).ldlt().solve(half * (free - column(before)) + support * free);
     return {motion.velocity - loss.head<3>(), motion.angular_velocity - loss.tail<3>()};
 }
 

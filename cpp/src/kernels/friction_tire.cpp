@@ -10,16 +10,16 @@ namespace birm3d {
 
 namespace {
 
-// Square of t_i below which the wheel's turning does not move the node along the surface.
-constexpr double no_turning = 1e-12;
+// Square of t_i below which the rotation of the wheel does not move the node along the surface.
+constexpr double no_rolling = 1e-12;
 
 Vec3 along_surface(const Vec3& v, const Vec3& normal) {
     return v - v.dot(normal) * normal;
 }
 
-// Sliding over its speed, or over that of full friction.
-Vec3 share_of_full(const TireNodeContact& node, double turning, double full_speed) {
-    const Vec3 u = node.sliding + turning * node.turning;
+// Sliding velocity divided by its magnitude, or by the speed of full friction if that is greater.
+Vec3 fraction_of_full(const TireNodeContact& node, double rolling, double full_speed) {
+    const Vec3 u = node.sliding + rolling * node.rolling;
     return u / std::max(u.norm(), full_speed);
 }
 
@@ -28,18 +28,18 @@ Vec3 share_of_full(const TireNodeContact& node, double turning, double full_spee
 TireNodeContact tire_node_contact(const TireNode& node, std::size_t near, const Twist& motion,
                                   const Vec3& arm, const Vec3& normal, double pressure) {
     const Vec3 u = motion.velocity + motion.angular_velocity.cross(arm);
-    const Vec3 t(node.turn_r, 0.0, node.turn_t);
+    const Vec3 t(node.tread_r, 0.0, node.tread_t);
     return {node.wheel, near, arm, along_surface(u, normal), along_surface(t, normal), normal, pressure};
 }
 
-double free_turning(double full_speed, std::span<const TireNodeContact> wheel) {
-    // Each node alone has no torque where it slides along its spoke, less below and more above: the torque of all
-    // grows with q, from below zero at the least of these to above zero at the greatest.
+double free_rolling_speed(double full_speed, std::span<const TireNodeContact> wheel) {
+    // The torque of one node is zero at the q at which it slides along its spoke, and it grows with q. So the zero of
+    // the total torque lies between the least and the greatest of these q.
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const TireNodeContact& node : wheel) {
-        const double square = node.turning.squaredNorm();
-        if (!(square > no_turning) || !(node.pressure > 0.0)) continue;
-        const double own = -node.sliding.dot(node.turning) / square;
+        const double square = node.rolling.squaredNorm();
+        if (!(square > no_rolling) || !(node.pressure > 0.0)) continue;
+        const double own = -node.sliding.dot(node.rolling) / square;
         low = std::min(low, own);
         high = std::max(high, own);
     }
@@ -47,7 +47,7 @@ double free_turning(double full_speed, std::span<const TireNodeContact> wheel) {
     const auto torque = [&](double q) {
         double sum = 0.0;
         for (const TireNodeContact& node : wheel)
-            sum += node.pressure * share_of_full(node, q, full_speed).dot(node.turning);
+            sum += node.pressure * fraction_of_full(node, q, full_speed).dot(node.rolling);
         return sum;
     };
     // The Illinois method (Dowell and Jarratt, BIT 11, 1971, p. 168). Every third round halves: that finds the corners too
@@ -73,14 +73,14 @@ double free_turning(double full_speed, std::span<const TireNodeContact> wheel) {
     return 0.5 * (low + high);
 }
 
-void add_tire_node_friction(double mu, double full_speed, double turning, const TireNodeContact& node,
-                            Rubbing& rubbing) {
-    const Vec3 u = node.sliding + turning * node.turning;
+void add_tire_node_friction(double mu, double full_speed, double rolling, const TireNodeContact& node,
+                            FrictionLoad& friction_load) {
+    const Vec3 u = node.sliding + rolling * node.rolling;
     const double speed = u.norm(), q = mu * node.pressure / std::max(speed, full_speed);
     const Vec3 force = -q * u;
-    rubbing.friction += {force, node.arm.cross(force)};
+    friction_load.friction += {force, node.arm.cross(force)};
     if (speed < tolerance::fast_sliding * full_speed)
-        rubbing.resistance += resistance(q, node.arm, node.normal);
+        friction_load.resistance += resistance(q, node.arm, node.normal);
 }
 
 }  // namespace birm3d

@@ -1,10 +1,10 @@
 // Coulomb friction between a wheel's tread and a barrier.
 //
 // The tread slides with the motion of the body, u = v + w x r, and with that of the wheel about its axle: together
-// u_i + q t_i at node i, t_i = (s x d_i)/R, where q is the speed with which the wheel would roll as fast as it turns.
-// A wheel on the road has q = v_r. Pressed on a barrier it does not keep that: the angular momentum of a car's wheel,
-// some 100 N m s at 30 m/s, is gone after 10 ms under 30 kN of friction. A wheel that is free to turn is taken to have
-// the q at which friction has no torque about its axle,
+// u_i + q t_i at node i, t_i = (s x d_i)/R, where q is the rolling speed that belongs to the wheel's rotation. A
+// wheel on the road has q = v_r. Pressed on a barrier it does not keep that: the angular momentum of a car's wheel,
+// some 100 N m s at 30 m/s, is gone after 10 ms under 30 kN of friction. A wheel that is free to turn is taken to
+// have the q at which friction has no torque about its axle,
 //     sum_i F_i . t_i = 0,   F_i = -mu N_i (u_i + q t_i)/|u_i + q t_i|,
 // as nodes are taken to have no mass: what is left of the sliding is along the spokes, so that a tread that a barrier
 // meets below and ahead of the axle is pushed up and back. The wheel then gives and takes no energy; the power of
@@ -27,7 +27,7 @@ struct TireNodeContact {
     std::size_t near = 0;         // the caller's number of what it pushes on
     Vec3 arm = Vec3::Zero();      // place about the mass centre (m)
     Vec3 sliding = Vec3::Zero();  // of the body there, along the surface (m/s)
-    Vec3 turning = Vec3::Zero();  // t_i, along the surface
+    Vec3 rolling = Vec3::Zero();  // t_i, along the surface
     Vec3 normal = Vec3::UnitZ();  // of the barrier
     double pressure = 0.0;        // normal force (N)
 };
@@ -37,10 +37,10 @@ TireNodeContact tire_node_contact(const TireNode& node, std::size_t near, const 
                                   const Vec3& arm, const Vec3& normal, double pressure);
 
 // q of a wheel that is free to turn (m/s), from all its nodes that push; 0 where no node pushes.
-double free_turning(double full_speed, std::span<const TireNodeContact> wheel);
+double free_rolling_speed(double full_speed, std::span<const TireNodeContact> wheel);
 
 // Adds a node's friction to `rubbing` (body axes); `turning`: q.
-void add_tire_node_friction(double mu, double full_speed, double turning, const TireNodeContact& node,
-                            Rubbing& rubbing);
+void add_tire_node_friction(double mu, double full_speed, double rolling, const TireNodeContact& node,
+                            FrictionLoad& friction_load);
 
 }  // namespace birm3d

@@ -68,17 +68,17 @@ Vec3 minimum(const Slide& slide, double soft, Vec3 q) {
     return q;
 }
 
-// Do the corners hold the slab if they share force and moment evenly? There may be other ways to hold it: the minimum
-// finds them.
-bool can_be_held(const RigidBody& body, const std::array<Vec3, 4>& arm, double limit, const Vec3& v,
-                 double spin) {
+// Can the corners hold the slab at rest if each takes an equal part of force and moment? If not, another distribution
+// may hold it, which the minimum finds.
+bool can_be_at_rest(const RigidBody& body, const std::array<Vec3, 4>& arm, double limit, const Vec3& v,
+                    double spin) {
     double square = 0.0;
     for (const Vec3& r : arm)
         square += r.x() * r.x() + r.y() * r.y();
-    const double turning = body.inertia(2, 2) * spin / square;
+    const double per_radius = body.inertia(2, 2) * spin / square;
     return std::all_of(arm.begin(), arm.end(), [&](const Vec3& r) {
-        const Vec3 share = 0.25 * body.mass * v + turning * Vec3(-r.y(), r.x(), 0.0);
-        return share.squaredNorm() <= limit * limit;
+        const Vec3 impulse = 0.25 * body.mass * v + per_radius * Vec3(-r.y(), r.x(), 0.0);
+        return impulse.squaredNorm() <= limit * limit;
     });
 }
 
@@ -91,17 +91,17 @@ Wrench slide_friction(const RigidBody& body, const std::array<Vec3, 4>& arm, dou
     const double reach = limit * body.inverse_mass;  // speed that it can take (m/s)
     if (!(reach > 0.0) || (v.isZero(0.0) && spin == 0.0)) return {};
     if (spin == 0.0) {
-        // Corners that slide alike turn nothing.
-        const double share = std::min(1.0, reach / v.norm());
-        return {-share * body.mass * v, Vec3::Zero()};
+        // If all corners slide with the same velocity, friction causes no rotation.
+        const double fraction = std::min(1.0, reach / v.norm());
+        return {-fraction * body.mass * v, Vec3::Zero()};
     }
-    if (can_be_held(body, arm, 0.25 * limit, v, spin))
+    if (can_be_at_rest(body, arm, 0.25 * limit, v, spin))
         return {-body.mass * v, Vec3(0.0, 0.0, -inertia * spin)};
     const double gyration = std::sqrt(inertia * body.inverse_mass);
     Slide slide{{v.x(), v.y(), gyration * spin}, {}, 0.25 * reach};
     for (std::size_t i = 0; i < arm.size(); ++i)
         slide.corner[i] << 1.0, 0.0, -arm[i].y() / gyration, 0.0, 1.0, arm[i].x() / gyration;
-    // Where corners nearly stop, the rounding is taken away step by step.
+    // If corners nearly stop, the regularisation is reduced step by step.
     constexpr double softest = 0.1, hardest = 1e-6, far = 10.0, held = 1e-4;
     Vec3 q = slide.start;
     const bool far_from_rest = slide.slowest(q) > far * reach;

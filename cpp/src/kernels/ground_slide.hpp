@@ -4,8 +4,8 @@
 //   M (v - v0) = sum of J_i^T p_i,   p_i = -c u_i/|u_i| where the corner slides, |p_i| <= c where it does not,
 // with u_i = J_i v its velocity and c its share of the friction limit: v is the minimum of the convex function
 //   (v - v0) . M (v - v0) / 2 + sum of c |u_i|
-// (maximum dissipation: Moreau, in Unilateral Problems in Structural Analysis, 1985). So friction never reverses a
-// sliding, and a slab that can be held is at rest exactly.
+// (maximum dissipation: Moreau, in Unilateral Problems in Structural Analysis, 1985). So friction never reverses the
+// sliding, and a slab that friction can hold is exactly at rest.
 #pragma once
 
 #include <array>

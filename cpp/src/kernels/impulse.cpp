@@ -19,11 +19,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Lower triangle; zero for a body that can not be turned.
 Mat3 root_of(const ContactBody& body) {
     if (body.inverse_inertia.isZero(0.0)) return Mat3::Zero();
-    if (body.level) return Vec3(0.0, 0.0, std::sqrt(body.inverse_inertia(2, 2))).asDiagonal();
+    if (body.planar) return Vec3(0.0, 0.0, std::sqrt(body.inverse_inertia(2, 2))).asDiagonal();
     return body.inverse_inertia.llt().matrixL();
 }
 
-// What of a force moves a body that stands on the ground.
+// The part of a force that moves a body that slides on the ground.
 Vec3 along_ground(const Vec3& force) {
     return {force.x(), force.y(), 0.0};
 }
@@ -45,7 +45,7 @@ double separation_velocity(const RigidContact& contact, std::span<const ContactB
 double inverse_effective_mass(const RigidContact& contact, std::span<const ContactBody> bodies) {
     const auto of = [&contact](const ContactBody& body, const Vec3& arm) {
         const Wrench wrench = unit_wrench(contact, arm);
-        if (body.level)
+        if (body.planar)
             return body.inverse_mass * along_ground(wrench.force).squaredNorm() +
                    body.inverse_inertia(2, 2) * wrench.torque.z() * wrench.torque.z();
         return body.inverse_mass * wrench.force.squaredNorm() +
@@ -65,38 +65,38 @@ void ImpulseSolver::prepare(std::span<const RigidContact> contacts, std::span<co
     roots_.clear();
     rows_.clear();
     for (const ContactBody& body : bodies)
-        roots_.push_back({std::sqrt(body.inverse_mass), root_of(body), body.level});
+        roots_.push_back({std::sqrt(body.inverse_mass), root_of(body), body.planar});
     for (const RigidContact& contact : contacts) {
-        Row row{contact.body, contact.other, {}, Vec6::Zero()};
-        row.held = contact.held;
+        ConstraintRow row{contact.body, contact.other, {}, Vec6::Zero()};
+        row.bilateral = contact.bilateral;
         row.g = in_unit_mass(unit_wrench(contact, contact.arm), row.body);
         if (row.other >= 0) {
             row.g_other =
                 -in_unit_mass(unit_wrench(contact, contact.other_arm), static_cast<std::size_t>(row.other));
         }
-        row.own = influence(row, row);
-        row.give = std::max(contact.compliance * bodies[row.body].inverse_mass,
-                            tolerance::body_compliance * row.own);
+        row.diagonal = influence(row, row);
+        row.compliance = std::max(contact.compliance * bodies[row.body].inverse_mass,
+                                  tolerance::body_compliance * row.diagonal);
         rows_.push_back(row);
     }
     for (std::size_t i = 0; i < rows_.size(); ++i)
-        if (rows_[i].held && rows_[i].own > 0.0) activate(i);
+        if (rows_[i].bilateral && rows_[i].diagonal > 0.0) activate(i);
 }
 
 void ImpulseSolver::solve(std::span<RigidContact> contacts, std::span<ContactBody> bodies) {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-        rows_[i].lack = contacts[i].target - separation_velocity(contacts[i], bodies);
+        rows_[i].rhs = contacts[i].target - separation_velocity(contacts[i], bodies);
         rows_[i].before = 0.0;
     }
     constexpr int most_passes = 10;
     double given = infinity;
     for (int pass = 0; pass < most_passes && given > 0.1 * tolerance_; ++pass) {
-        for (Row& row : rows_)
-            row.wanted = row.lack + row.give * row.before;
+        for (ConstraintRow& row : rows_)
+            row.shifted_rhs = row.rhs + row.compliance * row.before;
         find_impulses();
         given = 0.0;
-        for (Row& row : rows_) {
-            given = std::max(given, row.give * std::abs(row.impulse - row.before));
+        for (ConstraintRow& row : rows_) {
+            given = std::max(given, row.compliance * std::abs(row.impulse - row.before));
             row.before = row.impulse;
         }
     }
@@ -111,24 +111,24 @@ void ImpulseSolver::solve(std::span<RigidContact> contacts, std::span<ContactBod
 
 ImpulseSolver::Vec6 ImpulseSolver::in_unit_mass(const Wrench& wrench, std::size_t body) const {
     Vec6 g;
-    g.head<3>() = roots_[body].mass * (roots_[body].level ? along_ground(wrench.force) : wrench.force);
+    g.head<3>() = roots_[body].mass * (roots_[body].planar ? along_ground(wrench.force) : wrench.force);
     g.tail<3>() = roots_[body].inertia.transpose() * wrench.torque;
     return g;
 }
 
-double ImpulseSolver::along(const Row& row, const Eigen::VectorXd& motion) {
+double ImpulseSolver::along(const ConstraintRow& row, const Eigen::VectorXd& motion) {
     double sum = row.g.dot(motion.segment<6>(6 * static_cast<Index>(row.body)));
     if (row.other >= 0) sum += row.g_other.dot(motion.segment<6>(6 * row.other));
     return sum;
 }
 
-void ImpulseSolver::push(const Row& row, double impulse, Eigen::VectorXd& motion) {
+void ImpulseSolver::push(const ConstraintRow& row, double impulse, Eigen::VectorXd& motion) {
     motion.segment<6>(6 * static_cast<Index>(row.body)) += impulse * row.g;
     if (row.other >= 0) motion.segment<6>(6 * row.other) += impulse * row.g_other;
 }
 
 // A_ij.
-double ImpulseSolver::influence(const Row& i, const Row& j) {
+double ImpulseSolver::influence(const ConstraintRow& i, const ConstraintRow& j) {
     const int bi = static_cast<int>(i.body), bj = static_cast<int>(j.body);
     double sum = 0.0;
     if (bi == bj) sum += i.g.dot(j.g);
@@ -144,10 +144,10 @@ void ImpulseSolver::activate(std::size_t row) {
     factorised_ = false;
 }
 
-// From the impulses there are, which may be those of the last solution.
+// Starts from the present impulses, which may be those of the last solution.
 void ImpulseSolver::find_impulses() {
-    for (Row& row : rows_) {
-        row.settled = row.own == 0.0;  // nothing there can be moved
+    for (ConstraintRow& row : rows_) {
+        row.settled = row.diagonal == 0.0;  // nothing there can be moved
         row.joined = 0;
     }
     if (active_.empty())
@@ -155,8 +155,8 @@ void ImpulseSolver::find_impulses() {
     else
         settle_active();
 
-    // Joining together is fast but may go in circles, joining one by one may not, but for rounding: then some rows join
-    // and leave over and over.
+    // Activating all violated rows at once is fast but may cycle. Activating one by one can cycle only by rounding,
+    // when some rows become active and inactive again and again.
     constexpr std::size_t first_alone = 1, last_together = 5;
     constexpr int most_joins = 10;
     const std::size_t most_rounds = 1000 + rows_.size();
@@ -166,9 +166,9 @@ void ImpulseSolver::find_impulses() {
         double largest = tolerance_;
         for (std::size_t i = 0; i < rows_.size(); ++i) {
             if (rows_[i].settled || rows_[i].active) continue;
-            const double lack = shortfall(rows_[i]);
-            if (!(lack > tolerance_)) continue;
-            if (lack > largest) largest = lack, worst = i;
+            const double missing = shortfall(rows_[i]);
+            if (!(missing > tolerance_)) continue;
+            if (missing > largest) largest = missing, worst = i;
             if (together) activate(i);
         }
         if (worst == rows_.size()) break;
@@ -178,49 +178,51 @@ void ImpulseSolver::find_impulses() {
         if (!together) activate(worst);
         settle_active();
         if (together) continue;
-        Row& row = rows_[worst];
+        ConstraintRow& row = rows_[worst];
         row.settled = !row.active || ++row.joined == most_joins;
     }
 }
 
-// Moves from the present impulses towards the solution of the active rows; those that would pull leave where
-// their impulse reaches zero.
+// Moves from the present impulses towards the solution of the active rows. A row that would pull becomes inactive
+// where its impulse reaches zero.
 void ImpulseSolver::settle_active() {
     for (bool done = false; !done;) {
         solve_active();
         double step = 1.0;
         for (const std::size_t i : active_) {
-            const Row& row = rows_[i];
-            if (!row.held && row.next <= 0.0) step = std::min(step, row.impulse / (row.impulse - row.next));
+            const ConstraintRow& row = rows_[i];
+            if (!row.bilateral && row.next <= 0.0)
+                step = std::min(step, row.impulse / (row.impulse - row.next));
         }
         done = !(step < 1.0);
         kept_.clear();
         for (const std::size_t i : active_) {
-            Row& row = rows_[i];
-            row.active = done || row.held || row.next > 0.0 || row.impulse / (row.impulse - row.next) > step;
+            ConstraintRow& row = rows_[i];
+            row.active =
+                done || row.bilateral || row.next > 0.0 || row.impulse / (row.impulse - row.next) > step;
             if (row.active) kept_.push_back(i);
             row.impulse = !row.active ? 0.0 : done ? row.next : row.impulse + step * (row.next - row.impulse);
         }
         if (kept_.size() < active_.size()) factorised_ = false;
         std::swap(active_, kept_);
     }
-    move_by(&Row::impulse, motion_);
+    move_by(&ConstraintRow::impulse, motion_);
 }
 
-// What the active rows would take, with their give.
+// Solves the system of the active rows, with their compliance.
 void ImpulseSolver::solve_active() {
     if (!factorised_) factorise();
     for (const std::size_t i : active_)
-        rows_[i].residual = rows_[i].wanted, rows_[i].next = 0.0;
-    add_solution(&Row::next);
+        rows_[i].residual = rows_[i].shifted_rhs, rows_[i].next = 0.0;
+    add_solution(&ConstraintRow::next);
     const int refinements = by_bodies_ ? 3 : 0;
     for (int pass = 0; pass < refinements; ++pass) {
-        move_by(&Row::next, working_);
+        move_by(&ConstraintRow::next, working_);
         for (const std::size_t i : active_) {
-            Row& row = rows_[i];
-            row.residual = row.wanted - along(row, working_) - row.give * row.next;
+            ConstraintRow& row = rows_[i];
+            row.residual = row.shifted_rhs - along(row, working_) - row.compliance * row.next;
         }
-        add_solution(&Row::next);
+        add_solution(&ConstraintRow::next);
     }
 }
 
@@ -231,39 +233,39 @@ void ImpulseSolver::factorise() {
     if (!by_bodies_) {
         system_.resize(rows, rows);
         for (Index r = 0; r < rows; ++r) {
-            const Row& row = rows_[active_[static_cast<std::size_t>(r)]];
+            const ConstraintRow& row = rows_[active_[static_cast<std::size_t>(r)]];
             for (Index c = 0; c < r; ++c)
                 system_(r, c) = influence(row, rows_[active_[static_cast<std::size_t>(c)]]);
-            system_(r, r) = row.own + row.give;
+            system_(r, r) = row.diagonal + row.compliance;
         }
     } else {
         system_.setIdentity(motion_.size(), motion_.size());
         for (const std::size_t i : active_) {
-            const Row& row = rows_[i];
+            const ConstraintRow& row = rows_[i];
             const auto a = 6 * static_cast<Index>(row.body);
-            system_.block<6, 6>(a, a) += row.g / row.give * row.g.transpose();
+            system_.block<6, 6>(a, a) += row.g / row.compliance * row.g.transpose();
             if (row.other < 0) continue;
             const auto b = Index{6} * row.other;
-            system_.block<6, 6>(b, b) += row.g_other / row.give * row.g_other.transpose();
+            system_.block<6, 6>(b, b) += row.g_other / row.compliance * row.g_other.transpose();
             // The lower triangle is what the factors are made of.
             if (a > b)
-                system_.block<6, 6>(a, b) += row.g / row.give * row.g_other.transpose();
+                system_.block<6, 6>(a, b) += row.g / row.compliance * row.g_other.transpose();
             else
-                system_.block<6, 6>(b, a) += row.g_other / row.give * row.g.transpose();
+                system_.block<6, 6>(b, a) += row.g_other / row.compliance * row.g.transpose();
         }
     }
     factors_.compute(system_);
 }
 
-// Adds to the active rows' impulses what (A + C) j = residual asks for.
-void ImpulseSolver::add_solution(double Row::* impulses) {
+// Adds the solution of (A + C) j = residual to the active rows' impulses.
+void ImpulseSolver::add_solution(double ConstraintRow::* impulses) {
     if (by_bodies_) {
         unknown_.setZero(motion_.size());
         for (const std::size_t i : active_)
-            push(rows_[i], rows_[i].residual / rows_[i].give, unknown_);
+            push(rows_[i], rows_[i].residual / rows_[i].compliance, unknown_);
         factors_.solveInPlace(unknown_);
         for (const std::size_t i : active_)
-            rows_[i].*impulses += (rows_[i].residual - along(rows_[i], unknown_)) / rows_[i].give;
+            rows_[i].*impulses += (rows_[i].residual - along(rows_[i], unknown_)) / rows_[i].compliance;
     } else {
         unknown_.resize(static_cast<Index>(active_.size()));
         for (std::size_t k = 0; k < active_.size(); ++k)
@@ -274,7 +276,7 @@ void ImpulseSolver::add_solution(double Row::* impulses) {
     }
 }
 
-void ImpulseSolver::move_by(double Row::* impulses, Eigen::VectorXd& motion) const {
+void ImpulseSolver::move_by(double ConstraintRow::* impulses, Eigen::VectorXd& motion) const {
     motion.setZero(motion_.size());
     for (const std::size_t i : active_)
         push(rows_[i], rows_[i].*impulses, motion);

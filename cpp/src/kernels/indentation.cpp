@@ -5,14 +5,13 @@
 #include <utility>
 
 #include "base/block_loop.hpp"
-#include "kernels/indentation_dispatch.hpp"
+#include "kernels/simd_table.hpp"
 
 namespace birm3d {
 
 namespace {
 
-// A rim's highest place, sine * radius above the middle of the top, is rounded off below this sine: at a corner there the
-// torque would jump.
+// Below this sine of the tilt, the highest point of the rim is rounded off. Otherwise the torque would jump there.
 constexpr double rounded = 0.05;
 
 // Sine of the angle between a post's axis and a panel beyond which it does not begin to indent it, or ceases to.
@@ -40,7 +39,7 @@ Indentation::Indentation(const Post& post, const Placement& stands, const Panel&
     wx = w.x(), wy = w.y(), wz = w.z();
     lx = l.x(), ly = l.y(), lz = l.z();
     ox = o.x(), oy = o.y(), oz = o.z();
-    // The middles of the edges at either side. Corners of the box would change places with every sway of the post.
+    // The middles of the edges at either side. Corners of the box would alternate with small rotations of the post.
     Eigen::Index side = 0;
     w.cwiseAbs().maxCoeff(&side);
     const Vec3 edge = std::copysign(panel.box.half[side], w[side]) * Vec3::Unit(side);
@@ -57,8 +56,8 @@ Indentation::Indentation(const Post& post, const Placement& stands, const Panel&
     top_rate = radius * leaning / rim - post.height * tilt;
     per_reach = 1.0 / length;
     per_stretch = upright;
-    const double share = steepest * upright, cosine = 1.0 / std::sqrt(1.0 + share * share);
-    steep_arc = share * cosine * radius;
+    const double slope_there = steepest * upright, cosine = 1.0 / std::sqrt(1.0 + slope_there * slope_there);
+    steep_arc = slope_there * cosine * radius;
     rise_there = stretch * radius * cosine;
 }
 
@@ -75,7 +74,7 @@ bool Indentation::is_beyond(const Panel& panel) const {
     return middle.dot(into()) + box.half.dot(into().cwiseAbs()) < nearest - stretch * radius;
 }
 
-// By the post's own way, across its flanks, and by the growth of the slope.
+// From the post's displacement, its flanks, and the growth of the slope.
 double Indentation::fastest_growth(const Panel& panel) const {
     const Vec3 middle = panel.box.center - foot();
     const double at = middle.dot(along()), half = panel.box.half.dot(along().cwiseAbs());
@@ -91,8 +90,8 @@ bool stands_across(const Placement& post, const Panel& panel, bool indents) {
 
 namespace {
 
-// Of a skin `beside` a post that is at most this deep: greatest of p - slope(p) beside over depths p. Within reach the
-// deepest post draws it in most; beyond, one of some depth, or one so deep that the slope grows no more.
+// Greatest indentation at the distance `beside` from a post of at most this depth: the maximum of p - slope(p) beside
+// over depths p.
 double most_drawn_in(double deepest, double beside, double reach) {
     const double by_deepest = deepest - slope_at<double>(deepest, 1.0 / reach).slope * beside;
     if (beside <= reach) return by_deepest;
@@ -101,13 +100,13 @@ double most_drawn_in(double deepest, double beside, double reach) {
                                                            : std::max(by_deepest, -least_slope * further);
 }
 
-struct BoxInDent {
+struct BoxInIndentation {
     double outermost, depth, drawn_in;
 };
 
-BoxInDent box_in_dent(const Indentation& d, const Box& box) {
-    const auto range = [&](const Vec3& way) {
-        const double middle = (box.center - d.foot()).dot(way), half = box.half.dot(way.cwiseAbs());
+BoxInIndentation box_in_indentation(const Indentation& d, const Box& box) {
+    const auto range = [&](const Vec3& axis) {
+        const double middle = (box.center - d.foot()).dot(axis), half = box.half.dot(axis.cwiseAbs());
         return std::pair(middle - half, middle + half);
     };
     const double outermost = range(d.into()).first;
@@ -123,17 +122,17 @@ BoxInDent box_in_dent(const Indentation& d, const Box& box) {
 }  // namespace
 
 double most_inside(const Indentation& d, const Box& box) {
-    const BoxInDent in = box_in_dent(d, box);
+    const BoxInIndentation in = box_in_indentation(d, box);
     return d.surface + in.drawn_in - in.outermost;
 }
 
 bool spans(const Indentation& d, const Box& box) {
-    return box_in_dent(d, box).drawn_in > 0.0;
+    return box_in_indentation(d, box).drawn_in > 0.0;
 }
 
 double gap_of(const Indentation& indentation, const TrussBlockState& nodes, const BlockColumn& panel_of,
               std::size_t panel) {
-    return indentation_rows.find_indentation_gap(
+    return simd.find_indentation_gap(
         indentation, {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), panel_of.data(),
                       static_cast<double>(panel)});
 }
@@ -141,14 +140,13 @@ double gap_of(const Indentation& indentation, const TrussBlockState& nodes, cons
 void follow_indentation(const Indentation& indentation, const Indentation& then, const TrussBlockState& nodes,
                         const BlockColumn& panel_of, std::size_t panel, NodeFaces& faces,
                         BlockContact& contact, BlockColumn& rank, BlockColumn& follows) {
-    indentation_rows.find_indentation(
-        indentation, then,
-        {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), panel_of.data(),
-         static_cast<double>(panel)},
-        {faces.gap.data(), faces.per_force.data(), faces.bx.data(), faces.by.data(), faces.bz.data(),
-         contact.nx.data(), contact.ny.data(), contact.nz.data(), contact.px.data(), contact.py.data(),
-         contact.pz.data(), contact.tx.data(), contact.ty.data(), contact.tz.data(), rank.data(),
-         follows.data()});
+    simd.find_indentation(indentation, then,
+                          {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(),
+                           panel_of.data(), static_cast<double>(panel)},
+                          {faces.gap.data(), faces.per_force.data(), faces.bx.data(), faces.by.data(),
+                           faces.bz.data(), contact.nx.data(), contact.ny.data(), contact.nz.data(),
+                           contact.px.data(), contact.py.data(), contact.pz.data(), contact.tx.data(),
+                           contact.ty.data(), contact.tz.data(), rank.data(), follows.data()});
 }
 
 double furthest_off(const TrussBlockState& nodes, const BlockColumn& panel_of, std::size_t panel,

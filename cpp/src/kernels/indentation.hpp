@@ -50,39 +50,41 @@ struct Indentation : IndentationNumbers {
     Vec3 along() const { return {lx, ly, lz}; }
     Vec3 foot() const { return {ox, oy, oz}; }
 
-    // How far the post is beside the panel, or ends below it (m). Negative where some of it is before, in or behind it.
+    // Distance of the post beside or below the panel (m). Negative if part of the post is in front of, in or behind
+    // the panel.
     double beside(const Panel& panel) const;
 
-    // Does the post stand wholly behind the panel, however crushed that is?
+    // Is the whole post behind the panel, even if that is fully crushed?
     bool is_beyond(const Panel& panel) const;
 
-    // How fast it can deepen at any node while the post approaches with 1 m/s.
+    // Greatest speed of the indentation at any node while the post approaches with 1 m/s.
     double fastest_growth(const Panel& panel) const;
 };
 
 // Is the post upright enough before the panel to indent it? `indents`: does it do so already?
 bool stands_across(const Placement& post, const Panel& panel, bool indents);
 
-// No node of the box (body axes) is further inside than this (m). Negative where none is reached.
+// Upper bound of the depth of all nodes of the box (body axes) in the indentation (m). Negative if none is reached.
 double most_inside(const Indentation& indentation, const Box& box);
 
 // Can nodes above or before the box, or in it, follow the indentation?
 bool spans(const Indentation& indentation, const Box& box);
 
-// Least gap of those nodes of a block that are of the panel (m); infinite if there are none.
+// Least gap of the nodes of a block that are on the panel (m); infinite if there are none.
 double gap_of(const Indentation& indentation, const TrussBlockState& nodes, const BlockColumn& panel_of,
               std::size_t panel);
 
-// Finds the nodes of the panel that follow the indentation or that it releases, and says in `faces` and `contact` how. It
-// takes no node that it would draw into another surface: a post that came past the panel's edge is behind such nodes.
+// Finds the nodes of the panel that follow the indentation or that it releases, and sets their `faces` and `contact`.
+// A node that would be drawn into another surface does not follow: the post came past the panel's edge behind it.
 // `then`: the indentation at the start of the step. `follows`: 1 for nodes that follow, 2 for released ones, else 0.
-// `rank`: of the indentations that have the nodes so far, at first infinite. Nodes that are outside and without force may
-// be left as they were.
+// `rank`: of the indentation that each node follows so far, at first infinite. Free nodes outside may be left
+// unchanged.
 void follow_indentation(const Indentation& indentation, const Indentation& then, const TrussBlockState& nodes,
                         const BlockColumn& panel_of, std::size_t panel, NodeFaces& faces,
                         BlockContact& contact, BlockColumn& rank, BlockColumn& follows);
 
-// No indentation that is further from all nodes than this holds any of them (m). `gap`: to what is nearest so far.
+// An indentation that is further than this from all nodes holds none of them (m). `gap`: to the nearest surface so
+// far.
 double furthest_off(const TrussBlockState& nodes, const BlockColumn& panel_of, std::size_t panel,
                     const BlockColumn& gap);
 

@@ -31,7 +31,7 @@ void drift(const RigidBody& body, double dt, BodyState& state) {
     const Quat q0 = state.orientation;
     const Vec3 P0 = q0.conjugate() * L;
     Vec3 P1 = P0;
-    // The fixed point contracts by about dt * |omega| / 2; the bound is never met in a step worth taking.
+    // Each iteration reduces the error by about dt * |omega| / 2. Steps of useful length never reach the bound.
     constexpr int most_iterations = 100;
     for (int i = 0; i < most_iterations; ++i) {
         state.orientation = cayley(q0, dt * (body.inverse_inertia * (0.5 * (P0 + P1))));

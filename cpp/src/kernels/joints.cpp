@@ -14,12 +14,12 @@ Vec3 place_of(const BodyState& body, const Vec3& place) {
 }
 
 // Rotation vector of the leading body from the trailing one, world axes (rad).
-Vec3 turn_between(const BodyState& leading, const BodyState& trailing) {
-    const Quat turn = leading.orientation * trailing.orientation.conjugate();
-    const Vec3 half = turn.w() < 0.0 ? Vec3(-turn.vec()) : Vec3(turn.vec());
+Vec3 rotation_between(const BodyState& leading, const BodyState& trailing) {
+    const Quat rotation = leading.orientation * trailing.orientation.conjugate();
+    const Vec3 half = rotation.w() < 0.0 ? Vec3(-rotation.vec()) : Vec3(rotation.vec());
     const double sine = half.norm();
     if (sine < 1e-6) return 2.0 * half;
-    return 2.0 * std::atan2(sine, std::abs(turn.w())) / sine * half;
+    return 2.0 * std::atan2(sine, std::abs(rotation.w())) / sine * half;
 }
 
 }  // namespace
@@ -36,11 +36,11 @@ void find_joint_rows(const Joint& joint, std::size_t index, const BodyState& lea
     row.arm = middle - leading.position;
     row.other_arm = middle - trailing.position;
     row.compliance = tolerance::body_compliance;
-    row.held = true;
+    row.bilateral = true;
     if (joint.kind == JointKind::pinned) {
         for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY())}) {
             row.normal = direction;
-            row.gap = held_gap(joint, row, leading, trailing);
+            row.gap = bilateral_gap(joint, row, leading, trailing);
             rows.push_back(row);
         }
         return;
@@ -48,7 +48,7 @@ void find_joint_rows(const Joint& joint, std::size_t index, const BodyState& lea
     const auto hold_along_axes = [&] {
         for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())}) {
             row.normal = direction;
-            row.gap = held_gap(joint, row, leading, trailing);
+            row.gap = bilateral_gap(joint, row, leading, trailing);
             rows.push_back(row);
         }
     };
@@ -58,9 +58,10 @@ void find_joint_rows(const Joint& joint, std::size_t index, const BodyState& lea
         hold_along_axes();
         return;
     }
-    row.held = false;
+    row.bilateral = false;
     const Vec3 axis = (leading.orientation * Vec3::UnitY()).cross(trailing.orientation * Vec3::UnitZ());
-    // Kingpin in line with the tilting axis: no direction is left to stop, and no stop lets it come there.
+    // Kingpin in line with the tilting axis: the direction of the stop is undefined. The stops keep a joint from this
+    // position.
     const double size = axis.norm();
     if (size < 1e-6) return;
     const double roll = joint_angles(leading.orientation, trailing.orientation).roll;
@@ -71,9 +72,9 @@ void find_joint_rows(const Joint& joint, std::size_t index, const BodyState& lea
     }
 }
 
-double held_gap(const Joint& joint, const RigidContact& row, const BodyState& leading,
-                const BodyState& trailing) {
-    if (row.about_axis) return row.normal.dot(turn_between(leading, trailing));
+double bilateral_gap(const Joint& joint, const RigidContact& row, const BodyState& leading,
+                     const BodyState& trailing) {
+    if (row.about_axis) return row.normal.dot(rotation_between(leading, trailing));
     return row.normal.dot(place_of(leading, joint.place_on_leading) -
                           place_of(trailing, joint.place_on_trailing));
 }

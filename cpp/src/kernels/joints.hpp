@@ -1,4 +1,4 @@
-// Joints as rows of the impulse solver; whatever the two bodies are.
+// Joints as rows of the impulse solver, for any two bodies.
 //
 // Held directions are the world's x, y, z at the joint's place, halfway between its two places so that the pair
 // of impulses keeps the angular momentum whatever gap there is; of a welded joint also turns about x, y, z. The stops of
@@ -19,10 +19,10 @@ namespace birm3d {
 void find_joint_rows(const Joint& joint, std::size_t index, const BodyState& leading,
                      const BodyState& trailing, std::vector<RigidContact>& rows);
 
-// Gap of a held row once the bodies have moved on: way (m) or turn (rad) of the leading body from the trailing
+// Gap of a bilateral row after the drift: displacement (m) or rotation (rad) of the leading body from the trailing
 // one in the row's direction.
-double held_gap(const Joint& joint, const RigidContact& row, const BodyState& leading,
-                const BodyState& trailing);
+double bilateral_gap(const Joint& joint, const RigidContact& row, const BodyState& leading,
+                     const BodyState& trailing);
 
 // Of the trailing body relative to the leading one.
 JointAngles joint_angles(const Quat& leading, const Quat& trailing);

@@ -1,4 +1,4 @@
-// Which slabs are solved for, and what comes out; Newton's method is in slab_chain_newton.cpp.
+// Chooses the slabs that are solved for; Newton's method is in slab_chain_newton.cpp.
 #include "kernels/slab_chain.hpp"
 
 #include <cmath>
@@ -7,7 +7,7 @@ namespace birm3d {
 
 namespace {
 
-// A pin between slabs at rest that is this well closed pulls at nothing (m).
+// A pin between slabs at rest whose gap is below this has no force (m).
 constexpr double closed = 1e-10;
 
 }  // namespace
@@ -49,11 +49,11 @@ void SlabChain::set_up_slab(const PinnedSlab& slab, std::size_t s) {
     for (std::size_t c = 0; c < slab.arm.size(); ++c)
         b.corners[c].arm_x[i] = slab.arm[c].x() / k, b.corners[c].arm_y[i] = slab.arm[c].y() / k;
     for (SlabEnd* end : {&b.low, &b.high})
-        set_up_end(b, *end, i, Vec2::Zero(), Vec2::Zero());  // of an end without a pin
+        set_up_end(b, *end, i, Vec2::Zero(), Vec2::Zero());  // ends without a pin
     parts_[s].awake = parts_[s].fresh = !b.start(i).isZero(0.0) || !b.q(i).isZero(0.0);
 }
 
-// `to_middle` leads from the place on the slab to the middle of the pin's two places.
+// `to_middle`: from the place on the slab to the middle of the pin's two places.
 void SlabChain::set_up_end(const SlabBlock& b, SlabEnd& end, std::size_t i, const Vec2& place,
                            const Vec2& to_middle) {
     const Vec2 arm = (place + to_middle) / b.gyration[i];
@@ -84,7 +84,7 @@ Vec3 SlabChain::pull_on(std::size_t slab) const {
     return sum;
 }
 
-// Is all that moves it the rounding off?
+// Does friction hold the slab, so that it moves only by the regularisation?
 bool SlabChain::is_held(std::size_t slab) const {
     constexpr double well = 0.9;  // of the limit: |u| is twice e there
     const SlabBlock& b = block_of(slab);
@@ -95,7 +95,8 @@ bool SlabChain::is_held(std::size_t slab) const {
            });
 }
 
-// From slab `end` on: a quarter of the run, and one more. So all tries together cost a few times the last one.
+// Adds a quarter of the run, and one more slab, from slab `end` on. So all tries together cost a few times the last
+// one.
 void SlabChain::wake(const Run& run, std::size_t end, int direction) {
     const std::size_t wanted = 1 + (run.end - run.begin) / 4;
     auto i = static_cast<std::ptrdiff_t>(end);
@@ -107,7 +108,7 @@ void SlabChain::wake(const Run& run, std::size_t end, int direction) {
     }
 }
 
-// Are slabs to be taken in before or behind the run?
+// Adds slabs before and behind the run where its ends are not held. Returns whether any were added.
 bool SlabChain::wake_around(const Run& run) {
     const bool before = run.begin > 0 && !is_held(run.begin);
     const bool behind = run.end < parts_.size() && !is_held(run.end - 1);
@@ -116,7 +117,7 @@ bool SlabChain::wake_around(const Run& run) {
     return before || behind;
 }
 
-// Those beside slabs that move or are pushed may hold them.
+// Slabs beside moving or pushed slabs may hold them.
 void SlabChain::take_in_neighbours() {
     for (std::size_t i = 1; i < parts_.size(); ++i)
         parts_[i].awake = parts_[i].awake || parts_[i - 1].fresh;

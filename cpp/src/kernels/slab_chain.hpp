@@ -1,8 +1,8 @@
 // Coulomb friction of slabs that pins hold together end to end: one minimum for all of them.
 //
-// The convex function is that of ground_slide.hpp, summed over the slabs, with what the pins hold as conditions: where a
-// chain is held, and how far it is dragged along, depends on all of it. |u| is rounded off to eta = sqrt(|u|^2 + e^2), e a
-// millionth of the speed that friction can take.
+// The convex function is that of ground_slide.hpp, summed over the slabs, with what the pins hold as conditions:
+// where a chain is held, and how far it is dragged along, depends on all of it. |u| is regularised as eta =
+// sqrt(|u|^2 + e^2), with e a millionth of the speed that friction can remove.
 //
 // Newton's method for the motions and the frictions y_i together, each a share of the corner's limit c (Chan, Golub and
 // Mulet, SIAM J. Sci. Comput. 20, 1999, p. 1964):
@@ -10,8 +10,9 @@
 // A step is a system in the impulses of the pins alone. It is block-tridiagonal, with 2 x 2 blocks, and is eliminated from
 // one end to the other: the cost grows with the number of slabs.
 //
-// What rests behind a slab that is held has nothing to hold and stays out of the system. Slabs are taken in from those
-// that move or are pushed until the outermost are held, which leaves the minimum as it is.
+// Slabs at rest behind a slab that friction holds carry no force and are left out of the system. Starting from slabs
+// that move or are pushed, neighbours are added until friction holds the outermost ones. That does not change the
+// minimum.
 #pragma once
 
 #include <algorithm>
@@ -27,14 +28,14 @@ namespace birm3d {
 using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
 
-// Along the ground and about the vertical, world axes: x, y, turn.
+// Motions along the ground and about the vertical, world axes: x, y, rotation.
 struct PinnedSlab {
     double mass;                 // kg
     double inertia;              // about the vertical (kg m^2)
     std::array<Vec2, 4> arm;     // from the mass centre to the corners of the base, symmetric about it (m)
     double limit;                // friction coefficient times normal impulse of all corners (N s)
     Vec3 motion = Vec3::Zero();  // without friction and pins (m/s, m/s, rad/s)
-    Vec3 guess = Vec3::Zero();   // of the motion with both; zero where it is thought to rest
+    Vec3 guess = Vec3::Zero();   // of the motion with both; zero if it is expected to rest
 };
 
 // Between a slab and the next one.
@@ -43,12 +44,12 @@ struct SlabPin {
     Vec2 gap = Vec2::Zero();  // from the place on the next slab to that on the first one (m)
 };
 
-// A corner of the bases of some slabs, a slab a lane: friction by the law at the motion at hand, y, and what the last step
-// took for both.
+// One corner of the bases of some slabs, a column entry for each slab: friction by the law at the present motion, the
+// dual y, and the values that the last step used.
 struct SlabCorners {
     BlockColumn arm_x, arm_y;  // in units of k
     BlockColumn law_x, law_y, dual_x, dual_y, used_x, used_y;
-    BlockColumn eta;  // |u| rounded off (m/s)
+    BlockColumn eta;  // regularised |u| (m/s)
 };
 
 // An end of some slabs, with the pin there.
@@ -65,11 +66,11 @@ struct SlabResponse {
     BlockColumn xx, xy, yx, yy;
 };
 
-// Some slabs in q = (v_x, v_y, k w), k their radius of gyration. What Newton's steps do slab by slab is done column by
-// column.
+// Some slabs in q = (v_x, v_y, k w), k their radius of gyration. Operations that are independent for each slab run
+// over columns.
 struct alignas(64) SlabBlock {
     BlockColumn mass, gyration, limit, reach;  // of one corner (N s); what friction can take (m/s)
-    BlockColumn start_x, start_y, start_z, q_x, q_y, q_z, way_x, way_y, way_z;
+    BlockColumn start_x, start_y, start_z, q_x, q_y, q_z, step_x, step_y, step_z;
     BlockColumn xx, xy, xz, yy, yz, zz;  // mobility, the inverse of the curvature
     std::array<SlabCorners, 4> corners;
     SlabEnd low, high;  // towards the slab before, and the next one
@@ -81,8 +82,9 @@ struct alignas(64) SlabBlock {
 
 class SlabChain {
   public:
-    // One pin between each two slabs. With a `drift` (s) the pins are closed after a drift of that length. Without, the
-    // places that they join move alike. A pin pushes half way between its places, so that it keeps the angular momentum.
+    // One pin between each two slabs. With a `drift` (s) the pins are closed after a drift of that length. Without,
+    // the joined places have the same velocity. A pin's force acts half way between its two places, so that it keeps
+    // the angular momentum.
     void solve(std::span<const PinnedSlab> slabs, std::span<const SlabPin> pins, double drift);
 
     std::span<const Vec3> motions() const { return motions_; }      // (slabs) with friction and pins
@@ -90,10 +92,10 @@ class SlabChain {
     // (slabs) impulses of the pins on each of them (N s, N s, N m s).
     std::span<const Vec3> pulls() const { return pulls_; }
 
-    // Was the slab solved for? Others rest.
+    // Was the slab part of the system? Others rest.
     bool is_awake(std::size_t slab) const { return slab < parts_.size() && parts_[slab].awake; }
 
-    // What the last solution cost: slabs in Newton's steps, each step counted.
+    // Cost of the last solution: the sum of slabs over all Newton steps.
     std::size_t work() const { return work_; }
 
   private:
@@ -104,7 +106,7 @@ class SlabChain {
         Vec2 target, lack, pull;
         Mat2 inverse, beside;  // of the eliminated block; the block beside it
     };
-    // Slabs that are solved for together; those before and behind rest, and their pins pull at nothing.
+    // Slabs that are solved for together. Slabs before and behind are at rest, and their pins have no force.
     struct Run {
         std::size_t begin, end;
     };
@@ -124,10 +126,10 @@ class SlabChain {
     void solve_run(const Run& run);
     void start_from_pins(const Run& run);
     bool newton(const Run& run, double soft, int most_steps, bool finish);
-    void find_way(const Run& run, bool rubs);
+    void find_newton_step(const Run& run, bool with_friction);
     void find_pulls(const Run& run);
     double search(const Run& run, double soft);
-    double value(const Run& run, double soft, double share);
+    double value(const Run& run, double soft, double fraction);
     double settle_laws(const Run& run, double soft);
     double retarget(const Run& run);
     // Calls f with the slabs of a run that are in each block.

@@ -1,5 +1,4 @@
-// Newton's steps of slab_chain_newton.cpp slab by slab, in plain loops over columns: all of it but what goes from slab to
-// slab along the chain.
+// The parts of slab_chain_newton.cpp that are independent for each slab, in plain loops over columns.
 #pragma once
 
 #include <cstddef>
@@ -14,28 +13,28 @@ struct SlabRange {
     std::size_t first, end;
 };
 
-// Frictions by the law at the motions at hand, rounded off by `soft`. By how much they differ from those used, as a share
-// of the limits.
+// Sets the frictions by the law at the present motions, regularised by `soft`. Returns the greatest difference from
+// the frictions that were used, as a fraction of the limits.
 double settle_laws(const SlabRange& slabs, double soft);
 
-// The law at the motions at hand as dual, and none used so far.
+// Starts with the law at the present motions as dual and as friction.
 void start_from_laws(const SlabRange& slabs, double soft);
 
-// Mobility, and Newton's way without the pins. `rubs`: with friction?
-void find_ways(const SlabRange& slabs, bool rubs);
+// Finds the mobility, and Newton's step without the pins.
+void find_newton_steps(const SlabRange& slabs, bool with_friction);
 
-// How fast the places of the pins get when they are pushed, and how fast they are after the way.
+// Finds the velocities of the pins' places for unit impulses, and after Newton's step.
 void find_responses(const SlabRange& slabs);
 
-// Adds what the pulls of the pins make of the way.
+// Adds the effect of the pins' impulses to Newton's step.
 void add_pulls(const SlabRange& slabs);
 
-// `sum`, and the convex function after a share of the way.
-double add_value(const SlabRange& slabs, double soft, double share, double sum);
+// Returns `sum` plus the convex function after a fraction of Newton's step.
+double add_value(const SlabRange& slabs, double soft, double fraction, double sum);
 
-// The motions after a share of the way; take_step() has the frictions follow.
-void go_on(const SlabRange& slabs, double share);
-void take_step(const SlabRange& slabs, double share);
+// Moves by a fraction of Newton's step; take_step() updates the frictions as well.
+void go_on(const SlabRange& slabs, double fraction);
+void take_step(const SlabRange& slabs, double fraction);
 
 // The motions without friction and pins.
 void back_to_start(const SlabRange& slabs);

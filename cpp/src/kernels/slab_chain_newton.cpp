@@ -10,11 +10,11 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// The friction that a step took is that of the law to this share of the limit, or to what rounding leaves. When it is
-// near, steps are Newton's own.
+// Converged if friction and law differ by less than this fraction of the limit, or by rounding only. Below the third
+// number, full Newton steps are taken.
 constexpr double lawful = 1e-9, rounding = 1e-6, near_lawful = 1e-2;
 
-// Gap of a pin after the drift that is rounding (m).
+// Gap of a pin after the drift below which it is rounding (m).
 constexpr double closed = 1e-12;
 
 Vec2 at(const BlockColumn& x, const BlockColumn& y, std::size_t slab) {
@@ -39,7 +39,7 @@ void SlabChain::for_each_block(const Run& run, F f) {
     }
 }
 
-// Where corners nearly stop, the rounding is taken away step by step, unless the guess does without.
+// If corners nearly stop, the regularisation is reduced step by step, unless the guess converges at once.
 void SlabChain::solve_run(const Run& run) {
     constexpr double softest = 0.1, hardest = 1e-6;
     constexpr int most_from_guess = 15, most_steps = 50;
@@ -50,27 +50,28 @@ void SlabChain::solve_run(const Run& run) {
     newton(run, hardest, most_steps, true);
 }
 
-// The nearest motion to the start that the pins allow.
+// Starts from the motion nearest to the initial one that the pins allow.
 void SlabChain::start_from_pins(const Run& run) {
     for_each_block(run, [](const SlabRange& slabs) { back_to_start(slabs); });
-    find_way(run, false);
+    find_newton_step(run, false);
     for_each_block(run, [](const SlabRange& slabs) { go_on(slabs, 1.0); });
 }
 
-// Did it arrive? `finish`: close the pins, too, and go on until the law is met. The first step goes all the way, so that
-// the pins hold; later ones are halved where they overshoot, until they are small enough for the pins to be closed.
+// Returns whether it converged. `finish`: also close the pins and iterate until the law is met. The first step is a
+// full one, so that the pins hold. Later steps are halved if they overshoot, until they are small enough to close the
+// pins.
 bool SlabChain::newton(const Run& run, double soft, int most_steps, bool finish) {
     for_each_block(run, [soft](const SlabRange& slabs) { start_from_laws(slabs, soft); });
     const bool closes = finish && drift_ > 0.0;
     if (closes) retarget(run);
     double missed = infinity, gap = infinity;
     for (int i = 0; i < most_steps; ++i) {
-        find_way(run, true);
-        const double share = i == 0 || missed < near_lawful ? 1.0 : search(run, soft);
-        for_each_block(run, [share](const SlabRange& slabs) { take_step(slabs, share); });
+        find_newton_step(run, true);
+        const double fraction = i == 0 || missed < near_lawful ? 1.0 : search(run, soft);
+        for_each_block(run, [fraction](const SlabRange& slabs) { take_step(slabs, fraction); });
         const double before = missed, gap_before = gap;
         missed = settle_laws(run, soft);
-        if (share < 1.0) missed = infinity;
+        if (fraction < 1.0) missed = infinity;
         if (!(missed < near_lawful)) continue;
         gap = closes ? retarget(run) : 0.0;
         const bool is_met = missed <= lawful || (missed <= rounding && missed >= before);
@@ -79,10 +80,10 @@ bool SlabChain::newton(const Run& run, double soft, int most_steps, bool finish)
     return false;
 }
 
-// Newton's step H way = -gradient + J^T pull with J (q + way) = target.
-void SlabChain::find_way(const Run& run, bool rubs) {
-    for_each_block(run, [rubs](const SlabRange& slabs) {
-        find_ways(slabs, rubs);
+// Newton's step p: H p = -gradient + J^T pull with J (q + p) = target.
+void SlabChain::find_newton_step(const Run& run, bool with_friction) {
+    for_each_block(run, [with_friction](const SlabRange& slabs) {
+        find_newton_steps(slabs, with_friction);
         find_responses(slabs);
     });
     find_pulls(run);
@@ -118,23 +119,23 @@ void SlabChain::find_pulls(const Run& run) {
     }
 }
 
-double SlabChain::value(const Run& run, double soft, double share) {
+double SlabChain::value(const Run& run, double soft, double fraction) {
     double sum = 0.0;
-    for_each_block(run, [&](const SlabRange& slabs) { sum = add_value(slabs, soft, share, sum); });
+    for_each_block(run, [&](const SlabRange& slabs) { sum = add_value(slabs, soft, fraction, sum); });
     return sum;
 }
 
-// Share of the way after which the function has not grown.
+// Fraction of Newton's step after which the function has not grown.
 double SlabChain::search(const Run& run, double soft) {
     constexpr double least = 1e-9;
     const double now = value(run, soft, 0.0);
-    double share = 1.0;
-    while (share > least && value(run, soft, share) > now)
-        share *= 0.5;
-    return share;
+    double fraction = 1.0;
+    while (fraction > least && value(run, soft, fraction) > now)
+        fraction *= 0.5;
+    return fraction;
 }
 
-// By how much the law at the motions at hand differs from the frictions used, as a share of the limits.
+// Greatest difference between the law at the present motions and the frictions used, as a fraction of the limits.
 double SlabChain::settle_laws(const Run& run, double soft) {
     double most = 0.0;
     for_each_block(run,
@@ -142,8 +143,8 @@ double SlabChain::settle_laws(const Run& run, double soft) {
     return most;
 }
 
-// Speeds of the pins that close them after the drift, to first order in what is missing; returns the widest gap left by
-// the motions at hand (m).
+// Sets the velocities of the pins that close them after the drift, to first order in the gaps. Returns the widest gap
+// that the present motions leave (m).
 double SlabChain::retarget(const Run& run) {
     for_each_block(run, [this](const SlabRange& slabs) { find_drifts(slabs, drift_); });
     double widest = 0.0;

@@ -19,7 +19,7 @@ Vec3 lowest_point(const Wheel& wheel, const Mat3& R) {
     return size > 1e-9 ? Vec3(center + (wheel.radius / size) * down) : center;
 }
 
-// Share of mu N that the brush model mobilises, in [-1, 1].
+// Fraction of mu N that the brush model mobilises, in [-1, 1].
 double brush(double normalised_slip) {
     const double s = std::min(1.0, std::abs(normalised_slip));
     const double rest = 1.0 - s;
@@ -82,9 +82,9 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
     }
 
     const Vec3 across_raw(R(0, 1), R(1, 1), 0.0);  // the axle's direction along the ground
-    const double level = across_raw.norm();
-    if (level < 1e-9) return sum;
-    const Vec3 across = across_raw / level;
+    const double horizontal = across_raw.norm();
+    if (horizontal < 1e-9) return sum;
+    const Vec3 across = across_raw / horizontal;
     const Vec3 along(across.y(), -across.x(), 0.0);
     const double brakes = settings.braking, steers = std::sqrt(1.0 - brakes * brakes);
     for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
@@ -92,9 +92,9 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
         const Vec3 arm = lowest_point(unit.wheels[i], R);
         const Vec3 velocity = velocity_at(arm);
         const double tan_slip = velocity.dot(across) / std::max(std::abs(velocity.dot(along)), slowest);
-        const double share = brush(settings.cornering_stiffness * tan_slip / (3.0 * mu));
-        // What brakes slides against the velocity; what is left of the friction steers.
-        Vec3 mobilised = steers * share * across;
+        const double fraction = brush(settings.cornering_stiffness * tan_slip / (3.0 * mu));
+        // The braking part acts against the velocity; the remaining friction acts across the wheel.
+        Vec3 mobilised = steers * fraction * across;
         if (brakes > 0.0) {
             const Vec3 ground_velocity(velocity.x(), velocity.y(), 0.0);
             mobilised += brakes / std::max(ground_velocity.norm(), mu * speed_change) * ground_velocity;

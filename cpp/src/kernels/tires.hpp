@@ -27,8 +27,8 @@ namespace birm3d {
 void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& state,
                         std::vector<RigidContact>& contacts);
 
-// The vehicle's motion at hand, and at the end of the step that the half kick stands for: with this, friction follows the
-// trapezoid rule. Where a wheel all but sticks, that would shake it, and the motion at hand counts.
+// The vehicle's present motion, and that at the end of the step of this half kick. With the latter, friction follows
+// the trapezoid rule. For a nearly sticking wheel that would oscillate; then the present motion is used.
 struct TireMotion {
     Twist now, at_end;
 };

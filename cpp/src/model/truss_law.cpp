@@ -89,7 +89,7 @@ void require_valid(const TrussCurve& curve, const std::string& name) {
                 refuse(name + "envelope deflection", "increasing", curve.deflection[i]);
             force += curve.slope[i - 1] * length;
         }
-        // A last point reached by rounding a falling slope may stand a hair below zero.
+        // By rounding, the last point of a falling slope may be slightly below zero.
         if (force < -1e-9 * std::abs(slope)) refuse(name + "envelope force", ">= 0", force);
         if (!std::isfinite(slope)) refuse(name + "envelope slope", "finite", slope);
         const double unloading = unloading_slope(curve, force);

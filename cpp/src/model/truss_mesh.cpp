@@ -70,13 +70,13 @@ Box box_around(const std::vector<Vec3>& points) {
     return Box::around(points.size(), [&](std::size_t i) { return points[i]; });
 }
 
-// What makes trusses neighbours: where the node is, and where the truss points, as a way of half a metre: round a corner
-// of the vehicle there is another surface.
+// Position in the space in which trusses are sorted: the node, and the direction of the truss as half a metre. The
+// direction separates the two sides of a corner of the vehicle.
 using Site = std::array<double, 6>;
 
 Site site_of(const Vec3& node, const Vec3& anchor) {
-    constexpr double way = 0.5;
-    const Vec3 points = way * (anchor - node).normalized();
+    constexpr double direction_length = 0.5;
+    const Vec3 points = direction_length * (anchor - node).normalized();
     return {node.x(), node.y(), node.z(), points.x(), points.y(), points.z()};
 }
 
@@ -129,7 +129,7 @@ std::vector<std::vector<std::size_t>> parts_of(const TrussInput& input, std::siz
     return part;
 }
 
-// Of a truss that points `inward`: 2 for each axis, the positive way first.
+// Panel of a truss with the direction `inward`: two for each axis, the positive direction first.
 std::size_t panel_of(const Vec3& inward) {
     Eigen::Index axis = 0;
     inward.cwiseAbs().maxCoeff(&axis);
@@ -209,15 +209,15 @@ void TrussMesh::find_panels(const TrussInput& input) {
     for (std::size_t b = 0; b < blocks; ++b)
         panels_of_group.fill()[b / group_size] |= panels_of[b];
     for (std::size_t p = 0; p < panels; ++p) {
-        const double way = p % 2 == 0 ? 1.0 : -1.0;
-        panel[p] = {way * Vec3::Unit(static_cast<Eigen::Index>(p / 2)), {}, {}, !nodes[p].empty()};
+        const double sign = p % 2 == 0 ? 1.0 : -1.0;
+        panel[p] = {sign * Vec3::Unit(static_cast<Eigen::Index>(p / 2)), {}, {}, !nodes[p].empty()};
         if (!panel[p].any) continue;
         panel[p].box = box_around(nodes[p]);
         panel[p].anchors = box_around(anchors_of[p]);
     }
 }
 
-// Sums of their own for each entry, which stay in registers.
+// A separate sum for each entry, so that the sums stay in registers.
 StiffnessMoments stiffness_of(const TrussBlock& trusses) {
     double k = 0.0, xx = 0.0, xy = 0.0, xz = 0.0, yx = 0.0, yy = 0.0, yz = 0.0, zx = 0.0, zy = 0.0, zz = 0.0;
     for (std::size_t i = 0; i < block_size; ++i) {
@@ -238,7 +238,7 @@ StiffnessMoments stiffness_of(const TrussBlock& trusses) {
 void TrussMesh::fill_block(const TrussInput& input, std::size_t b) {
     const std::size_t nodes = nodes_in(b);
     for (std::size_t i = 0; i < nodes; ++i)
-        fill_lane(input, input_index[first[b] + i], b, i);
+        fill_slot(input, input_index[first[b] + i], b, i);
     if (nodes < block_size) pad(input, b);
     const BlockColumn& k = block[b].k_unloading;
     pushable.fill().push_back(
@@ -248,21 +248,21 @@ void TrussMesh::fill_block(const TrussInput& input, std::size_t b) {
     anchor_box.fill().push_back(box_around(block[b].anchor_x, block[b].anchor_y, block[b].anchor_z));
 }
 
-// Padding stands by an anchor of the skin, where nothing meets it before the body: the one next to the block.
+// Padding nodes are at the skin anchor nearest to the block: nothing touches them before the rigid body.
 void TrussMesh::pad(const TrussInput& input, std::size_t b) {
     const Vec3 next_to = input.node[input_index[first[b]]];
-    const auto by_way = [&](std::size_t i, std::size_t j) {
+    const auto by_distance = [&](std::size_t i, std::size_t j) {
         return (input.anchor[i] - next_to).squaredNorm() < (input.anchor[j] - next_to).squaredNorm();
     };
     const auto begin = input_index.begin(), end = begin + static_cast<std::ptrdiff_t>(skin);
-    const std::size_t place = *std::min_element(begin, end, by_way);
+    const std::size_t place = *std::min_element(begin, end, by_distance);
     constexpr double beside = 1e-3;
     const Vec3& anchor = input.anchor[place];
     for (std::size_t i = nodes_in(b); i < block_size; ++i)
-        place_lane(Vec3(anchor + beside * (input.node[place] - anchor)), anchor, b, i);
+        place_slot(Vec3(anchor + beside * (input.node[place] - anchor)), anchor, b, i);
 }
 
-void TrussMesh::place_lane(const Vec3& node, const Vec3& anchor, std::size_t b, std::size_t i) {
+void TrussMesh::place_slot(const Vec3& node, const Vec3& anchor, std::size_t b, std::size_t i) {
     reach = std::max({reach, node.norm(), b < skin_blocks ? anchor.norm() : 0.0});
     TrussBlock& to = block.fill()[b];
     to.node_x[i] = node.x(), to.node_y[i] = node.y(), to.node_z[i] = node.z();
@@ -270,8 +270,8 @@ void TrussMesh::place_lane(const Vec3& node, const Vec3& anchor, std::size_t b, 
     to.length[i] = (node - anchor).norm();
 }
 
-void TrussMesh::fill_lane(const TrussInput& input, std::size_t source, std::size_t b, std::size_t i) {
-    place_lane(input.node[source], input.anchor[source], b, i);
+void TrussMesh::fill_slot(const TrussInput& input, std::size_t source, std::size_t b, std::size_t i) {
+    place_slot(input.node[source], input.anchor[source], b, i);
     const double scale = input.scale[source];
     const TrussCurve& curve = input.curve[input.curve_of[source]];
     TrussBlock& to = block.fill()[b];

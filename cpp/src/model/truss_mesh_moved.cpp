@@ -50,7 +50,7 @@ TrussBlock moved_block(const TrussBlock& block, const Vec3& origin) {
     return to;
 }
 
-// A column of its own, in place of one that copies share.
+// A separate column in place of a shared one.
 template <class T>
 std::vector<T>& anew(SharedColumn<T>& column, std::size_t size) {
     column = {};

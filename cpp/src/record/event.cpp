@@ -15,9 +15,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// What leaves at a smaller angle to the line neither leaves nor passes it: sine of one degree.
+// A vehicle that moves at a smaller angle to the line neither leaves nor passes it: sine of one degree.
 constexpr double parallel = 0.017452406;
-// Slower than this share of its approach a vehicle is stopped rather than redirected.
+// A vehicle that is slower than this fraction of its approach speed is stopped rather than redirected.
 constexpr double slow = 0.1;
 // Cosine of the up axis to the vertical beyond which a vehicle does not stand upright at the start: about 45 degrees.
 constexpr double upright = 0.7;
@@ -67,7 +67,8 @@ bool runs_along_line(const Scene& scene) {
     return std::abs(std::sin(scene.approach.angle)) < tolerance::along_line;
 }
 
-// Where the line is, along `towards`: at the base; of a path along it where the barrier begins, of meshes where they end.
+// Position of the barrier's line along `towards`: at the base. For a path along the line it is where the barrier
+// begins, for meshes where they end.
 double line_of(const Scene& scene, const State& state, const Vec3& towards) {
     const bool along = runs_along_line(scene);
     double first = infinity, last = -infinity;
@@ -124,7 +125,7 @@ bool stands_over(const Scene& scene, const State& state) {
                 std::clamp(place[axis], box.center[axis] - box.half[axis], box.center[axis] + box.half[axis]);
         place.z() = top;
         const Vec3 from = pose.position + pose.rotation * place - body.position;
-        if (up(body) < upright) {  // on its side: as wide as it is from any side
+        if (up(body) < upright) {  // on its side: its outline from above is taken as a circle
             if (std::hypot(from.x(), from.y()) < mesh.anchors.half.minCoeff()) return true;
             continue;
         }
@@ -156,9 +157,9 @@ bool passes_between(const Scene& scene, const State& state, const Event& event) 
 // Is it beyond the barrier's end in the direction in which it goes?
 bool is_beyond_end(const Scene& scene, const State& state, const Event& event) {
     const BodyState& body = state.units.front().body;
-    const Vec3 line = line_direction(event), way = body.velocity.dot(line) < 0.0 ? Vec3(-line) : line;
+    const Vec3 line = line_direction(event), direction = body.velocity.dot(line) < 0.0 ? Vec3(-line) : line;
     for (std::size_t i = 0; i < element_count(scene); ++i)
-        if (!(range_along(scene, i, state, way).high < body.position.dot(way))) return false;
+        if (!(range_along(scene, i, state, direction).high < body.position.dot(direction))) return false;
     return true;
 }
 
@@ -179,7 +180,7 @@ void judge_departure(const Scene& scene, const State& state, Event& event) {
         return;
     }
     const double along = body.velocity.dot(line_direction(event));
-    // Of the approach, in the same direction. A path square to the line has none.
+    // Component of the approach in that direction. It is zero for a path square to the line.
     const double came = scene.heading().dot(line_direction(event));
     const bool goes_on = std::abs(came) < parallel || along * came > 0.0;
     if (goes_on && std::abs(along) > -into && speed > slow * scene.approach.speed) {
@@ -204,7 +205,8 @@ void judge_rest(const Scene& scene, const State& state, Event& event) {
     }
 }
 
-// Along a straight barrier, with nothing left that could change: no motion across it, no turning, nothing pressed.
+// Does the vehicle slide along a straight barrier in a state that can not change: no motion across, no rotation, no
+// contact load?
 bool slides_on(const Scene& scene, const State& state, const Event& event) {
     if (!state.touched || !state.segments.empty() || runs_along_line(scene)) return false;
     const double least = rest_energy(scene);

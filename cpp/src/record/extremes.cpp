@@ -25,7 +25,7 @@ Extremes::NormalForce normal_force(const History& history) {
     return found;
 }
 
-// Scratch columns stay with their thread: a run's metrics take no memory of their own.
+// Each thread keeps its work buffers, so that the metrics of a run allocate nothing.
 Column& scratch() {
     thread_local Column values;
     return values;

@@ -9,10 +9,10 @@ namespace birm3d {
 
 namespace {
 
-// The anchors of a skin, to be asked for the one that is furthest along a direction.
+// Finds the anchor of a skin that is furthest along a direction.
 //
-// Blocks hold neighbours, and a box tells how far any anchor of a block can be: those that can not hold the furthest are
-// left out. No hull is made, which anchors in a plane or on a line would not have.
+// The box of a block bounds how far its anchors can be, so that most blocks are skipped. A convex hull is not used,
+// as anchors in one plane or on one line have none.
 class Anchors {
   public:
     explicit Anchors(const TrussMesh& mesh) : mesh_(mesh) {}
@@ -50,8 +50,8 @@ double penetration_of(const UnitHistory& unit, const TrussMesh& mesh, const Vec3
                       double least) {
     Anchors anchors(mesh);
     double greatest = least;
-    // The last answer, and the direction it is of: for another direction it changes by no more than the reach times the
-    // distance of the two.
+    // The last result and its direction. For another direction it changes by no more than the reach times the
+    // distance between the two unit vectors.
     Vec3 known = Vec3::Zero();
     double furthest = 0.0;
     const auto look = [&](std::size_t k) {
@@ -64,11 +64,12 @@ double penetration_of(const UnitHistory& unit, const TrussMesh& mesh, const Vec3
         known = direction, furthest = anchors.furthest(direction);
         greatest = std::max(greatest, center + furthest);
     };
-    // The row where the mass centre is furthest leaves few others to look at.
+    // Starting with the row where the mass centre is furthest excludes most other rows.
     std::size_t deepest = 0;
-    double way = -std::numeric_limits<double>::infinity();
+    double furthest_along = -std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < unit.position.size(); ++k)
-        if (const double at = past.dot(unit.position[k]); at > way) way = at, deepest = k;
+        if (const double at = past.dot(unit.position[k]); at > furthest_along)
+            furthest_along = at, deepest = k;
     look(deepest);
     for (std::size_t k = 0; k < unit.position.size(); ++k)
         look(k);

@@ -22,21 +22,21 @@ class Overturning {
     Overturning(const Barrier& barrier, const Shape& shape)
         : about_line_only_(overturns_about_line(shape)),
           line_(-std::sin(barrier.heading), std::cos(barrier.heading), 0.0),
-          any_way_([](double x, double y) { return std::hypot(x, y); }) {}
+          any_direction_([](double x, double y) { return std::hypot(x, y); }) {}
 
     void add(const Vec3& moment) {
         if (about_line_only_)
             about_line_ = std::max(about_line_, std::abs(moment.dot(line_)));
         else
-            any_way_.add(moment.x() * moment.x() + moment.y() * moment.y(), moment.x(), moment.y());
+            any_direction_.add(moment.x() * moment.x() + moment.y() * moment.y(), moment.x(), moment.y());
     }
-    double greatest() const { return about_line_only_ ? about_line_ : any_way_.value(); }
+    double greatest() const { return about_line_only_ ? about_line_ : any_direction_.value(); }
 
   private:
     bool about_line_only_;
     Vec3 line_;
     double about_line_ = 0.0;
-    GreatestOf<double (*)(double, double)> any_way_;
+    GreatestOf<double (*)(double, double)> any_direction_;
 };
 
 }  // namespace

@@ -26,14 +26,14 @@ class Turning {
     explicit Turning(double first, double zero) : zero_(zero), last_(first) {}
 
     void add(double angle) {
-        turns_ -= std::round((angle - last_) / (2.0 * std::numbers::pi));
+        revolutions_ -= std::round((angle - last_) / (2.0 * std::numbers::pi));
         last_ = angle;
-        greatest_ = std::max(greatest_, std::abs(angle + 2.0 * std::numbers::pi * turns_ - zero_));
+        greatest_ = std::max(greatest_, std::abs(angle + 2.0 * std::numbers::pi * revolutions_ - zero_));
     }
     double greatest() const { return greatest_; }
 
   private:
-    double zero_, last_, turns_ = 0.0, greatest_ = 0.0;
+    double zero_, last_, revolutions_ = 0.0, greatest_ = 0.0;
 };
 
 // Angles of any size.
@@ -49,18 +49,18 @@ Extremes::Attitude attitude_at_large(const History& history, double end) {
     return {roll.greatest(), pitch.greatest(), yaw.greatest()};
 }
 
-// Greatest angles where all stay well below a quarter of a turn; none where they do not. Tangents and sines have the order
-// of the angles, so that few angles are worked out.
+// Greatest angles if all stay well below a quarter of a revolution, else none. Tangents and sines have the same order
+// as the angles, so that few inverse functions are computed.
 std::optional<Extremes::Attitude> attitude_in_small(const History& history, double end) {
     constexpr double least_cosine = 0.1;
     const std::vector<Quat>& orientation = history.units.front().orientation;
     const double zero = roll_pitch_yaw(orientation[0]).yaw;
     const auto magnitude = [](double y, double x) { return std::abs(std::atan2(y, x)); };
     const auto slope = [](double sine, double) { return std::asin(sine); };
-    const auto turned = [zero](double y, double x) { return std::abs(std::atan2(y, x) - zero); };
+    const auto change = [zero](double y, double x) { return std::abs(std::atan2(y, x) - zero); };
     GreatestOf roll(magnitude);
     GreatestOf pitch(slope);
-    GreatestOf left(turned, zero != 0.0 ? 1.0 : 0.0), right = left;
+    GreatestOf left(change, zero != 0.0 ? 1.0 : 0.0), right = left;
     for (std::size_t k = 0; k < orientation.size(); ++k) {
         const Mat3 R = orientation[k].toRotationMatrix();
         const double sine = std::abs(R(2, 0));
@@ -87,13 +87,13 @@ Extremes::Motion greatest_motion(const History& history, const Event& event) {
     double change_squared = 0.0;
     for (std::size_t k = 0; k < history.time.size(); ++k) {
         const double speed = unit.velocity[k].dot(towards);
-        if (!found.turn_time && speed <= 0.0) {
+        if (!found.reversal_time && speed <= 0.0) {
             const double last = history.time[k > 0 ? k - 1 : 0];
-            found.turn_time =
+            found.reversal_time =
                 before > speed ? last + before / (before - speed) * (history.time[k] - last) : last;
         }
         before = speed;
-        found.way = std::max(found.way, (unit.position[k] - position).dot(towards));
+        found.travel = std::max(found.travel, (unit.position[k] - position).dot(towards));
         if (history.time[k] <= end)
             change_squared = std::max(change_squared, (unit.velocity[k] - velocity).squaredNorm());
         found.deceleration = std::max(found.deceleration, -unit.acceleration[k].x());

@@ -27,10 +27,10 @@ Ground2 along(double angle) {
 std::array<double, 4> corners(const Segment& segment, const SegmentHistory& motion, double heading,
                               const Vec3& past, std::size_t row) {
     const double angle = heading + motion.yaw[row];
-    const Ground2 way{past.x(), past.y()};
+    const Ground2 past_plane{past.x(), past.y()};
     const double foot = motion.position[row].x() * past.x() + motion.position[row].y() * past.y();
-    const double x = segment.half_base * across(angle).dot(way);
-    const double y = segment.half_length * along(angle).dot(way);
+    const double x = segment.half_base * across(angle).dot(past_plane);
+    const double y = segment.half_length * along(angle).dot(past_plane);
     return {foot - x - y, foot + x - y, foot + x + y, foot - x + y};
 }
 
@@ -50,9 +50,9 @@ double overturning(const Segment& segment, const SegmentHistory& motion, const O
         const Vec3 change = motion.velocity[k] - motion.velocity[k >= window ? k - window : 0];
         const double angle = heading + motion.yaw[k];
         const Ground2 acceleration{change.x() / (interval * rows), change.y() / (interval * rows)};
-        const double turning = Ground2{moment.x() / rows, moment.y() / rows}.dot(along(angle)) -
-                               mass * segment.mass_center_height * acceleration.dot(across(angle));
-        greatest = std::max(greatest, (std::abs(turning) + force.z() / rows * half) / (mass * half));
+        const double moment_along = Ground2{moment.x() / rows, moment.y() / rows}.dot(along(angle)) -
+                                    mass * segment.mass_center_height * acceleration.dot(across(angle));
+        greatest = std::max(greatest, (std::abs(moment_along) + force.z() / rows * half) / (mass * half));
     }
     return greatest;
 }

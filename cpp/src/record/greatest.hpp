@@ -7,13 +7,13 @@
 
 namespace birm3d {
 
-// The greatest value of f(x, y) over many pairs, where a key that is cheap orders the values: f is worked out only where
-// the key does not rule out that it is the greatest. The result has the bits that all values would give. For that, values
-// must differ by more than f's rounding wherever keys differ by more than the margin.
+// The greatest value of f(x, y) over many pairs. A cheap key orders the values, so that f is computed only where the
+// key does not exclude the greatest. The result equals the maximum of all values, bit for bit. For that, values must
+// differ by more than f's rounding wherever keys differ by more than the margin.
 template <class F>
 class GreatestOf {
   public:
-    // Keys are told apart by a part of themselves, or of `scale` if that is more.
+    // Keys are distinguished relative to themselves, or to `scale` if that is greater.
     explicit GreatestOf(F f, double scale = 0.0) : f_(f), scale_(scale) {}
 
     void add(double key, double x, double y) {

@@ -58,7 +58,8 @@ bool Recorder::full() const {
 
 void Recorder::add(const Scene& scene, const Trial& accepted) {
     const State& state = accepted.state;
-    if (rows() == 1) values_.reserve(512 * width_);  // a simulation that is never run has no use for it
+    if (rows() == 1)
+        values_.reserve(512 * width_);  // not before the first step: a simulation may never be run
     if (accepted.at_start.happened) {
         // The forces of that instant are those of the row before.
         const std::size_t before = values_.size() - width_;
@@ -129,15 +130,15 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e, const
             const Load& now = touch.history.now;
             add_to(row + (ground ? at_ground_force : at_barrier_force), now.wrench.force);
             if (!ground) row[at_normal_force] += touch.normal_force;
-            const Load bend = loads.bent ? touch.higher_order.corrector : Load{};
-            add_to(row + (ground ? at_ground_bend : at_barrier_bend), bend.wrench.force);
+            const Load curvature = loads.curved ? touch.higher_order.corrector : Load{};
+            add_to(row + (ground ? at_ground_curvature : at_barrier_curvature), curvature.wrench.force);
             if (ground) continue;
-            row[at_normal_bend] += bend.normal_force;
+            row[at_normal_curvature] += curvature.normal_force;
             double* on = obstacle_row(index, scene.obstacles[touch.obstacle].element).values.data();
             add_to(on + at_load, -now.wrench.force);
             add_to(on + at_load + 3, now.reaction_torque);
-            add_to(on + at_load_bend, -bend.wrench.force);
-            add_to(on + at_load_bend + 3, bend.reaction_torque);
+            add_to(on + at_load_curvature, -curvature.wrench.force);
+            add_to(on + at_load_curvature + 3, curvature.reaction_torque);
         }
         for (const ObstacleImpulse& of : impulses.obstacles) {
             const bool ground = of.obstacle == scene.ground;

@@ -1,4 +1,4 @@
-// The rows of a record: where their numbers stand, and what a step between two of them is.
+// The layout of the rows of a record, and the integrals of loads over a step between two rows.
 #pragma once
 
 #include "birm3d/record/recorder.hpp"
@@ -17,11 +17,11 @@ enum UnitOffset : std::size_t {
     at_tire_friction = 17,     // impulse
     at_barrier_impulse = 20,
     at_normal_impulse = 23,
-    at_barrier_bend = 24,  // what the higher order adds to the straight course of the force: impulse
-    at_normal_bend = 27,
+    at_barrier_curvature = 24,  // impulse of the parabola that the higher order adds to the linear force
+    at_normal_curvature = 27,
     at_ground_force = 28,  // of the ground on the skin: the same three as of the barrier
     at_ground_impulse = 31,
-    at_ground_bend = 34,
+    at_ground_curvature = 34,
     at_joint_impulse = 37,
     at_tire_impulses = 40
 };
@@ -29,7 +29,7 @@ enum UnitOffset : std::size_t {
 enum ObstacleOffset : std::size_t {
     at_load = 0,
     at_load_impulse = 6,
-    at_load_bend = 12,
+    at_load_curvature = 12,
     obstacle_width = 18
 };
 // Behind the units: for each joint force and moment impulse.
@@ -57,26 +57,27 @@ struct StepView {
     const double* b;  // and at the end
     double dt;
 
-    // How much of the step has passed at `t` from its start; an impact's step has no length and is over at once.
-    double share(double t) const { return dt > 0.0 ? t / dt : 1.0; }
-    // Integral from the start of the step to `t` of a force with end values a[i], b[i] (N s).
-    // With it the bend of a parabola that meets the end values, given by its impulse b[bend] over the step.
-    double force_integral(std::size_t i, std::size_t bend, double t) const {
-        const double s = share(t);
-        return t * (a[i] + 0.5 * s * (b[i] - a[i])) + s * s * (3.0 - 2.0 * s) * b[bend];
+    // Fraction of the step that has passed at `t` from its start. The step of an impact has no length and fraction 1.
+    double fraction(double t) const { return dt > 0.0 ? t / dt : 1.0; }
+    // Integral from the start of the step to `t` of a force with end values a[i], b[i] (N s). Includes a parabola
+    // that is zero at both ends, given by its impulse b[curvature] over the step.
+    double force_integral(std::size_t i, std::size_t curvature, double t) const {
+        const double s = fraction(t);
+        return t * (a[i] + 0.5 * s * (b[i] - a[i])) + s * s * (3.0 - 2.0 * s) * b[curvature];
     }
-    Vec3 force_integral3(std::size_t i, std::size_t bend, double t) const {
-        return {force_integral(i, bend, t), force_integral(i + 1, bend + 1, t),
-                force_integral(i + 2, bend + 2, t)};
+    Vec3 force_integral3(std::size_t i, std::size_t curvature, double t) const {
+        return {force_integral(i, curvature, t), force_integral(i + 1, curvature + 1, t),
+                force_integral(i + 2, curvature + 2, t)};
     }
-    double impulse(std::size_t i, double t) const { return share(t) * b[i]; }
+    double impulse(std::size_t i, double t) const { return fraction(t) * b[i]; }
     // Of the barrier on the unit, world axes.
     Vec3 barrier_impulse(double t) const {
-        return force_integral3(at_barrier_force, at_barrier_bend, t) + share(t) * vec(b + at_barrier_impulse);
+        return force_integral3(at_barrier_force, at_barrier_curvature, t) +
+               fraction(t) * vec(b + at_barrier_impulse);
     }
     // Of the magnitudes of the normal forces of all nodes.
     double contact_impulse(double t) const {
-        return force_integral(at_normal_force, at_normal_bend, t) + impulse(at_normal_impulse, t);
+        return force_integral(at_normal_force, at_normal_curvature, t) + impulse(at_normal_impulse, t);
     }
 };
 
@@ -90,10 +91,10 @@ struct Impulses {
     // Those within a step up to `t` from its start.
     void set(const StepView& step, double t, std::size_t wheels) {
         barrier = step.barrier_impulse(t);
-        ground = step.force_integral3(at_ground_force, at_ground_bend, t) +
-                 step.share(t) * vec(step.b + at_ground_impulse);
-        tire_friction = step.share(t) * vec(step.b + at_tire_friction);
-        joints = step.share(t) * vec(step.b + at_joint_impulse);
+        ground = step.force_integral3(at_ground_force, at_ground_curvature, t) +
+                 step.fraction(t) * vec(step.b + at_ground_impulse);
+        tire_friction = step.fraction(t) * vec(step.b + at_tire_friction);
+        joints = step.fraction(t) * vec(step.b + at_joint_impulse);
         tire.resize(wheels);
         for (std::size_t w = 0; w < wheels; ++w)
             tire[w] = step.impulse(at_tire_impulses + w, t);

@@ -50,7 +50,7 @@ void Recorder::resample_energies(const OutputInstants& output, History& history)
         for (const Span& span : output.span) {
             const double a = values_[span.row * width_ + e], b = values_[(span.row + 1) * width_ + e];
             for (std::size_t k = span.first; k < span.end; ++k)
-                (*column)[k] = a + output.share[k] * (b - a);
+                (*column)[k] = a + output.fraction[k] * (b - a);
         }
         ++e;
     }

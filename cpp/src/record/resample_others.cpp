@@ -24,9 +24,9 @@ void Recorder::resample_joints(const Scene& scene, const OutputInstants& output,
         for (std::size_t k = 0; k < count; ++k)
             joint.angles.push_back(joint_angles(leading[k], trailing[k]));
 
-        const auto add = [&](std::size_t row, double share, Wrench& sum) {
+        const auto add = [&](std::size_t row, double fraction, Wrench& sum) {
             const double* impulse = output.view(row, first + j * joint_width).b;
-            sum += {share * vec(impulse), share * vec(impulse + 3)};
+            sum += {fraction * vec(impulse), fraction * vec(impulse + 3)};
         };
         Wrench before_step, previous;
         std::size_t row = 0;
@@ -35,7 +35,7 @@ void Recorder::resample_joints(const Scene& scene, const OutputInstants& output,
                 add(row, 1.0, before_step);
             for (std::size_t k = span.first; k < span.end; ++k) {
                 Wrench now = before_step;
-                add(row, output.share[k], now);
+                add(row, output.fraction[k], now);
                 if (k > 0) {
                     joint.force[k] = output.per[k] * (now.force - previous.force);
                     joint.moment[k] = output.per[k] * (now.torque - previous.torque);
@@ -76,14 +76,14 @@ void Recorder::resample_obstacles(const Scene& scene, const OutputInstants& outp
                 if (!rows_of[row] && !rows_of[row + 1]) continue;
                 const StepView whole = view(row);
                 for (std::size_t i = 0; i < 6; ++i)
-                    before_step[i] += whole.force_integral(at_load + i, at_load_bend + i, whole.dt) +
+                    before_step[i] += whole.force_integral(at_load + i, at_load_curvature + i, whole.dt) +
                                       whole.impulse(at_load_impulse + i, whole.dt);
             }
             if (!rows_of[row] && !rows_of[row + 1] && previous == before_step) continue;
             const StepView step = view(row);
             for (std::size_t i = 0; i < 6; ++i) {
-                output.integrate(span, step.a[at_load + i], step.b[at_load + i], step.b[at_load_bend + i],
-                                 step.b[at_load_impulse + i], now[i].data());
+                output.integrate(span, step.a[at_load + i], step.b[at_load + i],
+                                 step.b[at_load_curvature + i], step.b[at_load_impulse + i], now[i].data());
                 for (std::size_t n = 0; n < span.size(); ++n)
                     now[i][n] += before_step[i];
             }
@@ -108,9 +108,8 @@ void Recorder::resample_obstacles(const Scene& scene, const OutputInstants& outp
     }
 }
 
-// Between rows a segment moves by what the vehicle does to it, as the record has it; what the ground and the pins do
-// within the step, the rest of its change of velocity, is spread evenly. So the momentum of all bodies adds up at every
-// instant.
+// Between rows a segment is moved by the recorded load of the vehicle. Ground and pins make up the rest of its change
+// of velocity, which is spread evenly over the step. So the momentum of all bodies adds up at every instant.
 void Recorder::resample_segments(const Scene& scene, const OutputInstants& output, History& history) const {
     const std::size_t segments = scene.free_segments(), count = history.time.size();
     const std::size_t first = width_ - segment_width * segments;
@@ -134,11 +133,11 @@ void Recorder::resample_segments(const Scene& scene, const OutputInstants& outpu
             const std::size_t row = output.span.empty() ? 0 : output.span[span].row;
             const std::size_t next = rows() > 1 ? row + 1 : row;
             const double *a = at(row), *b = at(next), dt = output.time_at(next) - output.time_at(row);
-            const double t = output.within[k], s = output.share[k];
+            const double t = output.within[k], s = output.fraction[k];
             const StepView load{loads[row], loads[next], dt};
             const auto pushed = [&](double until) -> Vec3 {
-                const Vec3 impulse = load.force_integral3(at_load, at_load_bend, until) +
-                                     load.share(until) * vec(load.b + at_load_impulse);
+                const Vec3 impulse = load.force_integral3(at_load, at_load_curvature, until) +
+                                     load.fraction(until) * vec(load.b + at_load_impulse);
                 return body.inverse_mass * Vec3(impulse.x(), impulse.y(), 0.0);
             };
             const Vec3 v0 = vec(a + at_segment_velocity), v1 = vec(b + at_segment_velocity);

@@ -1,4 +1,4 @@
-// Where the output instants fall in a record, and what all that happens between two rows is made of.
+// The output instants of a record, and integrals of loads from one row of the record to each instant.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace birm3d {
 
-// Most output instants that are worked out together: what they need stays in the nearest cache.
+// Most output instants that are computed together: their numbers fit the first-level cache.
 inline constexpr std::size_t most_together = 64;
 
 // One number at each of them.
@@ -28,8 +28,8 @@ struct OutputInstants {
     std::size_t width, rows;
     const Column& time;      // s
     Column within;           // from the start of the step (s)
-    Column share;            // of the step that has passed
-    Column smooth;           // s^2 (3 - 2 s) of that share
+    Column fraction;         // fraction of the step that has passed
+    Column smooth;           // s^2 (3 - 2 s) of that fraction s
     Column interval;         // since the instant before; of the first one 1 (s)
     Column per;              // the inverse of that (1/s)
     std::vector<Span> span;  // in order; none where no step was taken
@@ -39,14 +39,14 @@ struct OutputInstants {
         : values(values_), width(width_), rows(values_.size() / width_), time(time_) {
         find_spans();
         const std::size_t count = time.size();
-        within.resize(count), share.resize(count, 1.0), smooth.resize(count, 1.0);
+        within.resize(count), fraction.resize(count, 1.0), smooth.resize(count, 1.0);
         interval.resize(count, 1.0), per.resize(count, 1.0);
         for (const Span& s : span) {
             const double start = time_at(s.row), dt = time_at(s.row + 1) - start;
             for (std::size_t k = s.first; k < s.end; ++k) {
                 within[k] = std::clamp(time[k] - start, 0.0, dt);
-                share[k] = dt > 0.0 ? within[k] / dt : 1.0;
-                smooth[k] = share[k] * share[k] * (3.0 - 2.0 * share[k]);
+                fraction[k] = dt > 0.0 ? within[k] / dt : 1.0;
+                smooth[k] = fraction[k] * fraction[k] * (3.0 - 2.0 * fraction[k]);
             }
         }
         for (std::size_t k = 1; k < count; ++k)
@@ -64,14 +64,15 @@ struct OutputInstants {
 
     // Impulse from the start of the step to each instant of a force with end values a and b; `bend` as of
     // StepView::force_integral, `impulse` is spread evenly (N s).
-    void integrate(const Span& s, double a, double b, double bend, double impulse, double* to) const {
-        const double *t = within.data() + s.first, *u = share.data() + s.first, *w = smooth.data() + s.first;
+    void integrate(const Span& s, double a, double b, double curvature, double impulse, double* to) const {
+        const double *t = within.data() + s.first, *u = fraction.data() + s.first,
+                     *w = smooth.data() + s.first;
         for (std::size_t i = 0, n = s.size(); i < n; ++i)
-            to[i] = t[i] * (a + 0.5 * u[i] * (b - a)) + w[i] * bend + u[i] * impulse;
+            to[i] = t[i] * (a + 0.5 * u[i] * (b - a)) + w[i] * curvature + u[i] * impulse;
     }
     // Impulse from the start of the step to each instant of one that is spread evenly (N s).
     void spread(const Span& s, double impulse, double* to) const {
-        const double* u = share.data() + s.first;
+        const double* u = fraction.data() + s.first;
         for (std::size_t i = 0, n = s.size(); i < n; ++i)
             to[i] = u[i] * impulse;
     }

@@ -10,8 +10,8 @@ namespace birm3d {
 
 namespace {
 
-// A force that stops the vehicle within this time is large enough to judge the momentum balance by (s). No crash lasts
-// as long, so that it counts only where next to nothing pushes.
+// The momentum balance is relative to the largest force, but at least to the force that stops the vehicle in this
+// time (s). Forces of a crash are larger.
 constexpr double stopping_time = 1.0;
 
 // The rows of one unit, span by span.
@@ -46,7 +46,7 @@ class UnitRows {
             if (motion_ || forces_ || momentum_)
                 now_.set(output_, span, step);
             else
-                SpanImpulses::integrate(output_, span, step, at_barrier_force, at_barrier_bend,
+                SpanImpulses::integrate(output_, span, step, at_barrier_force, at_barrier_curvature,
                                         at_barrier_impulse, now_.barrier);
             if (motion_) add_motion(span, step);
             if (forces_ || momentum_)
@@ -60,8 +60,8 @@ class UnitRows {
         }
         finish();
     }
-    // Largest force of any row, at least that which stops the unit in `stopping_time`; and by which m a misses the sum
-    // of forces (N).
+    // Largest force of any row, at least the force that stops the unit in `stopping_time`; and the largest difference
+    // between m a and the sum of forces (N).
     double largest() const { return largest_; }
     double worst() const { return worst_; }
 
@@ -111,21 +111,21 @@ class UnitRows {
 
     void add_motion(const Span& span, const StepView& step) {
         add_velocity(span, step);
-        // Cubic Hermite for the path; the chord of the unit sphere for the small turn.
+        // Cubic Hermite interpolation of the path; linear, normalised interpolation of the small rotation.
         const Vec3 a = vec(step.a + at_position), b = vec(step.b + at_position);
         const Vec3 va = vec(step.a + at_velocity), vb = vec(step.b + at_velocity);
         const Eigen::Map<const Eigen::Vector4d> qa(step.a + at_orientation), qb(step.b + at_orientation);
         const double side = qa.dot(qb) < 0.0 ? -1.0 : 1.0;
         for (std::size_t k = span.first; k < span.end; ++k) {
-            const double s = output_.share[k];
+            const double s = output_.fraction[k];
             unit_.position[k] =
                 a + (b - a) * output_.smooth[k] + step.dt * s * (1.0 - s) * ((1.0 - s) * va - s * vb);
             unit_.orientation[k] = Quat(Eigen::Vector4d((1.0 - s) * qa + s * side * qb)).normalized();
         }
         if (wanted_.angular_velocity)
             for (std::size_t k = span.first; k < span.end; ++k)
-                unit_.angular_velocity[k] = (1.0 - output_.share[k]) * vec(step.a + at_angular_velocity) +
-                                            output_.share[k] * vec(step.b + at_angular_velocity);
+                unit_.angular_velocity[k] = (1.0 - output_.fraction[k]) * vec(step.a + at_angular_velocity) +
+                                            output_.fraction[k] * vec(step.b + at_angular_velocity);
         for (std::size_t k = std::max<std::size_t>(span.first, 1); k < span.end; ++k) {
             const Vec3 acceleration = output_.per[k] * (unit_.velocity[k] - unit_.velocity[k - 1]);
             unit_.acceleration[k] = unit_.orientation[k].conjugate() * acceleration;
@@ -146,7 +146,7 @@ class UnitRows {
         for (std::size_t i = 0; i < n; ++i) {
             const std::size_t k = span.first + i;
             unit_.velocity[k] =
-                output_.share[k] < 1.0
+                output_.fraction[k] < 1.0
                     ? Vec3(a + model_.body.inverse_mass * total.at(i) + output_.within[k] * down_)
                     : b;
         }

@@ -1,4 +1,4 @@
-// Impulses on a unit at some output instants within one step, worked out together.
+// Impulses on a unit at some output instants within one step, computed together.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ struct SpanImpulses {
     std::vector<SpanColumn> tire;
 
     void set(const OutputInstants& output, const Span& span, const StepView& step) {
-        integrate(output, span, step, at_barrier_force, at_barrier_bend, at_barrier_impulse, barrier);
-        integrate(output, span, step, at_ground_force, at_ground_bend, at_ground_impulse, ground);
+        integrate(output, span, step, at_barrier_force, at_barrier_curvature, at_barrier_impulse, barrier);
+        integrate(output, span, step, at_ground_force, at_ground_curvature, at_ground_impulse, ground);
         const auto spread = [&](std::size_t from, SpanVectors& to) {
             for (std::size_t c = 0; c < 3; ++c)
                 output.spread(span, step.b[from + c], to.columns()[c]);
@@ -44,9 +44,9 @@ struct SpanImpulses {
                 tire[w][i] += by.tire[w];
     }
     static void integrate(const OutputInstants& output, const Span& span, const StepView& step,
-                          std::size_t force, std::size_t bend, std::size_t impulse, SpanVectors& to) {
+                          std::size_t force, std::size_t curvature, std::size_t impulse, SpanVectors& to) {
         for (std::size_t c = 0; c < 3; ++c)
-            output.integrate(span, step.a[force + c], step.b[force + c], step.b[bend + c],
+            output.integrate(span, step.a[force + c], step.b[force + c], step.b[curvature + c],
                              step.b[impulse + c], to.columns()[c]);
     }
 };

@@ -20,9 +20,9 @@ void note_overlap(const Scene& scene, std::vector<std::size_t>& about, State& st
         scene.map.find(body.position, radius, about);
         for (const std::size_t i : about) {
             if (i == scene.ground) continue;
-            const Placement seen = placement(pose_of(scene, i, state), body);
+            const Placement in_shape = placement(pose_of(scene, i, state), body);
             for (const Box& box : core) {
-                const double overlap = overlap_of_box(scene.obstacles[i].shape, seen, box);
+                const double overlap = overlap_of_box(scene.obstacles[i].shape, in_shape, box);
                 if (!(overlap > statistics.greatest_overlap)) continue;
                 statistics.greatest_overlap = overlap;
                 statistics.greatest_overlap_time = state.time;

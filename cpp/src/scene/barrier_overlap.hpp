@@ -1,4 +1,4 @@
-// How far the rigid bodies overlapped with the barrier in a run.
+// The greatest overlap of the rigid bodies with the barrier in a run.
 #pragma once
 
 #include <vector>

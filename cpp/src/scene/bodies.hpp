@@ -1,4 +1,4 @@
-// All that moves in a scene, one after the other: the vehicle's units, then the free-standing segments of the barrier.
+// The moving bodies of a scene by index: the vehicle's units, then the free-standing segments of the barrier.
 #pragma once
 
 #include <vector>
@@ -16,11 +16,11 @@ BodyState& body_state(State& state, std::size_t body);
 // Of all of them.
 void list_body_states(const State& state, std::vector<BodyState>& bodies);
 
-// impulse: linear and angular about the body's mass centre, world axes (N s, N m s). What pushes a segment down or tips
-// it goes into the ground.
+// impulse: linear and angular about the body's mass centre, world axes (N s, N m s). The ground takes the vertical
+// impulse and the tipping moment on a segment.
 void kick_body(const Scene& scene, std::size_t body, const Wrench& impulse, State& state);
 
-// Place of the body that an obstacle is, or -1 where it is fixed.
+// Index of the body of an obstacle, or -1 if the obstacle is fixed.
 int body_of_obstacle(const Scene& scene, std::size_t obstacle);
 
 // Fastest any point of a segment moves (m/s).

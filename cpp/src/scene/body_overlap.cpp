@@ -10,7 +10,7 @@ namespace {
 
 constexpr int corners = 8;
 constexpr int descent_steps = 60;
-// Of the first step inside the shape, relative to the box, and of each step relative to the one before.
+// Length of the first step inside the shape, relative to the box, and of each step relative to the one before.
 constexpr double first_step = 0.25, next_step = 0.9;
 
 // The i-th corner of the box, from its middle; beyond the last, the middle itself.
@@ -20,8 +20,8 @@ Vec3 start_of(const Box& box, int i) {
             i & 4 ? box.half.z() : -box.half.z()};
 }
 
-// The overlap that a descent from `place`, counted from the box's middle, finds (m). Outside the shape it projects onto
-// the shape and onto the box in turn; inside it steps against the normal, ever shorter.
+// The overlap that a descent from `place` finds (m); places are relative to the box's middle. Outside the shape, it
+// projects alternately onto the shape and onto the box. Inside, it steps against the normal by decreasing lengths.
 double overlap_from(Vec3 place, const Shape& shape, const Placement& now, const Box& box) {
     double least_gap = 0.0, overlap = 0.0;
     double step = first_step * box.half.norm();

@@ -1,4 +1,4 @@
-// How the vehicle of a scene comes: where its path leads, and where it stands at the start.
+// The path of the vehicle in a scene and its position at the start.
 #include "birm3d/scene/scene.hpp"
 
 #include <algorithm>
@@ -39,12 +39,12 @@ double extent(const std::vector<Obstacle>& elements, const Vec3& direction) {
     return most;
 }
 
-void move(State& state, const Vec3& way) {
+void move(State& state, const Vec3& distance) {
     for (UnitState& unit : state.units)
-        unit.body.position += way;
+        unit.body.position += distance;
 }
 
-// A vehicle that is rolled stands on what is then its lowest point.
+// A rolled vehicle stands on its lowest point.
 void raise_to_ground(const Scene& scene, State& state) {
     double lowest = 0.0;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
@@ -62,7 +62,7 @@ void raise_to_ground(const Scene& scene, State& state) {
     move(state, -lowest * Vec3::UnitZ());
 }
 
-// Beside a post a bowed front is drawn in before the post touches a node: back to before that.
+// A post indents a bowed front before it touches a node. Moves the vehicle back to before that.
 void stand_back(const Scene& scene, const Vec3& heading, State& state) {
     constexpr double deepest = 0.3;
     constexpr int most_steps = 50;
@@ -107,7 +107,7 @@ Ends ends_along(const Scene& scene, const State& state, const Vec3& direction) {
 }
 
 // Moves the vehicle of `state` along its path, forward or back, until its nearest point stands `standoff` before the
-// barrier. A path that leads past the barrier starts where the barrier begins.
+// barrier. A path past the barrier starts where the barrier begins.
 void place(const Scene& scene, const Vec3& heading, State& state) {
     const Barrier& barrier = *scene.barrier;
     const std::vector<Obstacle> elements(
@@ -126,21 +126,21 @@ void place(const Scene& scene, const Vec3& heading, State& state) {
     const bool plane_only = elements.size() == 1 && std::holds_alternative<HalfSpace>(elements[0].shape);
     if (plane_only) return;
 
-    // From there step by step by the distance that is certainly free.
+    // From there it moves by the distance that is certainly free, step by step.
     const double longest = (last - first + front - rear) / pace + scene.approach.standoff;
-    double way = 0.0;
+    double distance = 0.0;
     constexpr int most_steps = 1000;
-    for (int i = 0; i < most_steps && way <= longest; ++i) {
+    for (int i = 0; i < most_steps && distance <= longest; ++i) {
         const double free = nearest_gap(scene, state, {.anchors = true}) - scene.approach.standoff;
         move(state, free * heading);
-        way += free;
+        distance += free;
         if (std::abs(free) < tolerance::initial_overlap * 1e-3) break;
     }
-    if (way <= longest) {
+    if (distance <= longest) {
         stand_back(scene, heading, state);
         return;
     }
-    move(state, -way * heading);
+    move(state, -distance * heading);
 }
 
 // At barrier heading 0 the line runs along +y: the path (sin, cos) meets it at the impact angle.
@@ -149,8 +149,8 @@ double yaw_of_path(const Scene& scene) {
     return barrier_heading + 0.5 * std::numbers::pi - scene.approach.angle;
 }
 
-// Of two numbers as a user wrote them: 1000.3 - 1000 is 0.3. Of all that a few roundings of numbers as large as `size`
-// allow, the difference is the one with the fewest decimals.
+// Difference of two decimal numbers without rounding errors: 1000.3 - 1000 is 0.3. Of all values within a few
+// roundings of numbers as large as `size`, it is the one with the fewest decimals.
 double difference_as_written(double a, double b, double size) {
     const double difference = a - b;
     if (size == 0.0) return difference;
@@ -238,11 +238,11 @@ void Scene::start(State& state) const {
     }
     const double yaw = yaw_of_path(*this);
     const Vec3 heading = this->heading();
-    const double turn = yaw + approach.yaw;
-    const Quat orientation = from_roll_pitch_yaw({approach.roll, 0.0, turn});
+    const double total_yaw = yaw + approach.yaw;
+    const Quat orientation = from_roll_pitch_yaw({approach.roll, 0.0, total_yaw});
     const Unit& first = vehicle->units.front();
     const Vec3 center =
-        foot_of_path(*this) - from_origin + from_roll_pitch_yaw({0.0, 0.0, turn}) * first.place();
+        foot_of_path(*this) - from_origin + from_roll_pitch_yaw({0.0, 0.0, total_yaw}) * first.place();
     for (std::size_t u = 0; u < vehicle->units.size(); ++u) {
         BodyState& body = state.units[u].body;
         const Unit& unit = vehicle->units[u];

@@ -16,7 +16,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 namespace {
 
-// No node of a block, or of a group of them, is nearer than `gap`.
+// A block or a group of blocks with a lower bound of its gaps.
 struct Bound {
     double gap;
     std::size_t of;
@@ -64,23 +64,24 @@ double gap_of_panel(const Indentation& indentation, std::size_t panel, const Tru
 
 namespace {
 
-// Calls `use` with each indentation that a post makes or would make, and the numbers of the post and the panel. `about`: of the obstacles. `way`: by
-// which posts beside, before or below a panel count too, as if it had no ends (m).
+// Calls `use` with each indentation that a post makes or would make, and with the indices of the post and the panel.
+// `about`: indices of the obstacles. `distance`: posts that are no further than this beside, in front of or below a
+// panel count too (m).
 template <class Use>
 void for_each_indentation(const Scene& scene, const UnitState& unit, const TrussMesh& mesh,
-                          const std::vector<std::size_t>& about, double way, const Use& use) {
+                          const std::vector<std::size_t>& about, double distance, const Use& use) {
     for (const std::size_t i : about) {
         const Obstacle& obstacle = scene.obstacles[i];
         const Post* post = std::get_if<Post>(&obstacle.shape);
         if (post == nullptr) continue;
-        const Placement seen =
+        const Placement in_shape =
             placement({obstacle.rotation, obstacle.position}, unit.body);  // posts are fixed
         for (std::size_t p = 0; p < panels; ++p) {
             const Panel& panel = mesh.panel[p];
-            if (!panel.any || !stands_across(seen, panel, false)) continue;
-            Indentation indentation(*post, seen, panel, mesh.indentation_length);
-            if (!(indentation.beside(panel) < way) || indentation.is_beyond(panel)) continue;
-            if (way > 0.0) {
+            if (!panel.any || !stands_across(in_shape, panel, false)) continue;
+            Indentation indentation(*post, in_shape, panel, mesh.indentation_length);
+            if (!(indentation.beside(panel) < distance) || indentation.is_beyond(panel)) continue;
+            if (distance > 0.0) {
                 indentation.low = -infinity;
                 indentation.high = infinity;
             }
@@ -110,10 +111,10 @@ double overlap_of_indentations(const Scene& scene, const State& state, double de
 
 namespace {
 
-// Nodes that an indentation has just let go lie on it but for rounding: at this gap it has come already (m).
+// Nodes that an indentation has just released lie on it to rounding: below this gap it counts as reached (m).
 constexpr double come = tolerance::touching_gap;
 
-// Does the post indentation the panel already? Nodes that it has left behind are off its indentation then, however near it stands.
+// Does the post indent the panel already? Then nodes that it has released do not follow it again, however near it is.
 bool indents_already(const UnitState& unit, std::size_t obstacle, std::size_t panel) {
     return std::any_of(unit.indented.begin(), unit.indented.end(), [=](const IndentedPanels& indented) {
         return indented.obstacle == obstacle && (indented.panels >> panel & 1U) != 0;
@@ -125,16 +126,17 @@ bool indents_already(const UnitState& unit, std::size_t obstacle, std::size_t pa
 double step_to_indentation(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
                            double longest) {
     std::vector<std::size_t> about;
-    const double way = longest * fastest;
-    scene.map.find(unit.body.position, unit.trusses.around.radius() + way, about);
+    const double distance = longest * fastest;
+    scene.map.find(unit.body.position, unit.trusses.around.radius() + distance, about);
     for_each_indentation(
-        scene, unit, mesh, about, way,
+        scene, unit, mesh, about, distance,
         [&](const Indentation& indentation, std::size_t obstacle, std::size_t panel) {
             if (indents_already(unit, obstacle, panel)) return;
-            // A post indents what it comes into.
+            // A post indents a panel that it moves into from in front.
             const double grows = indentation.fastest_growth(mesh.panel[panel]);
-            const double gap = gap_of_panel(indentation, panel, mesh, unit, grows * way, come);
-            if (gap > come) longest = std::min(longest, (gap + tolerance::untouched_way) / (grows * fastest));
+            const double gap = gap_of_panel(indentation, panel, mesh, unit, grows * distance, come);
+            if (gap > come)
+                longest = std::min(longest, (gap + tolerance::untouched_distance) / (grows * fastest));
         });
     return longest;
 }

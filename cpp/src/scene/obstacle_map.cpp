@@ -16,12 +16,12 @@ ObstacleMap::ObstacleMap(const std::vector<Obstacle>& obstacles, std::size_t mov
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
         const Obstacle& obstacle = obstacles[i];
         const Box box = bounds(obstacle.shape);
-        // Posts may go down for ever: the level extent is enough.
+        // Posts may extend downwards to infinity: the horizontal extent is enough.
         Vec3 half = Vec3::Zero();
         for (Eigen::Index k = 0; k < 3; ++k)
             for (Eigen::Index j = 0; j < 2; ++j) {
-                const double share = std::abs(obstacle.rotation(j, k));
-                if (share > 0.0) half[j] += share * box.half[k];
+                const double cosine = std::abs(obstacle.rotation(j, k));
+                if (cosine > 0.0) half[j] += cosine * box.half[k];
             }
         const Vec3 middle = obstacle.position + obstacle.rotation * box.center;
         const bool ends = std::isfinite(half.x()) && std::isfinite(half.y()) && middle.head<2>().allFinite();

@@ -20,16 +20,16 @@ struct Points {
     const BlockColumn *x, *y, *z;
 };
 
-// The least of `least` and the gaps of some points, of which a box can be left out that is further away. `block`: the points
-// of a block, or none.
+// The least of `least` and the gaps of the points of some blocks. Blocks whose box is further away are skipped.
+// `block`: returns the points of a block, or none.
 template <class Blocks>
-double nearest_in_blocks(const Shape& shape, const Placement& seen, std::size_t blocks, const Blocks& block,
-                         double least) {
+double nearest_in_blocks(const Shape& shape, const Placement& in_shape, std::size_t blocks,
+                         const Blocks& block, double least) {
     alignas(64) NearestOfBlock found;
     for (std::size_t b = 0; b < blocks; ++b) {
         const std::optional<Points> points = block(b);
-        if (!points || !within_reach(shape, seen, points->box, least)) continue;
-        nearest_of(shape, seen, seen, *points->x, *points->y, *points->z, found);
+        if (!points || !within_reach(shape, in_shape, points->box, least)) continue;
+        nearest_of(shape, in_shape, in_shape, *points->x, *points->y, *points->z, found);
         least = std::min(least, *std::min_element(found.gap.begin(), found.gap.end()));
     }
     return least;
@@ -45,19 +45,19 @@ Pose pose_of(const Scene& scene, std::size_t i, const State& state) {
             segment.position - scene.barrier->segments[i].mass_center_height * Vec3::UnitZ()};
 }
 
-Twist obstacle_motion(const Scene& scene, std::size_t i, const State& state, const BodyState& seen_from) {
+Twist obstacle_motion(const Scene& scene, std::size_t i, const State& state, const BodyState& observer) {
     if (i >= state.segments.size()) return {};
     const BodyState& segment = state.segments[i];
-    const Mat3 R = seen_from.orientation.toRotationMatrix();
+    const Mat3 R = observer.orientation.toRotationMatrix();
     const Vec3 spin = angular_velocity(scene.barrier->segments[i].body, segment);
-    return {R.transpose() * (segment.velocity + spin.cross(seen_from.position - segment.position)),
+    return {R.transpose() * (segment.velocity + spin.cross(observer.position - segment.position)),
             R.transpose() * spin};
 }
 
-Placement placement(const Pose& obstacle, const BodyState& seen_from) {
+Placement placement(const Pose& obstacle, const BodyState& observer) {
     const Mat3 to_own = obstacle.rotation.transpose();
-    return {to_own * seen_from.orientation.toRotationMatrix(),
-            to_own * (seen_from.position - obstacle.position)};
+    return {to_own * observer.orientation.toRotationMatrix(),
+            to_own * (observer.position - obstacle.position)};
 }
 
 void find_near(const Scene& scene, std::size_t u, const State& before, const State& now, double margin,
@@ -67,9 +67,9 @@ void find_near(const Scene& scene, std::size_t u, const State& before, const Sta
     scene.map.find(now.units[u].body.position, box.radius() + margin, about);
     for (const std::size_t i : about) {
         if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
-        const Placement seen = placement(pose_of(scene, i, now), now.units[u].body);
-        if (within_reach(scene.obstacles[i].shape, seen, box, margin))
-            near.push_back({i, seen, placement(pose_of(scene, i, before), before.units[u].body)});
+        const Placement in_shape = placement(pose_of(scene, i, now), now.units[u].body);
+        if (within_reach(scene.obstacles[i].shape, in_shape, box, margin))
+            near.push_back({i, in_shape, placement(pose_of(scene, i, before), before.units[u].body)});
     }
 }
 
@@ -86,7 +86,7 @@ double fastest_segment(const Scene& scene, const State& state) {
 
 namespace {
 
-// Panels of the unit that the obstacle indents, bit by bit. Skin that it has pushed aside may be within its outline
+// Panels of the unit that the obstacle indents, one bit each. Skin that it has pushed aside may be inside its outline
 // (kernels/indentation.hpp).
 std::uint8_t indented_panels(const UnitState& unit, std::size_t obstacle) {
     const auto known =
@@ -95,7 +95,7 @@ std::uint8_t indented_panels(const UnitState& unit, std::size_t obstacle) {
     return known != unit.indented.end() ? known->panels : std::uint8_t{0};
 }
 
-// Nodes of second trusses that push: the others are no part of the skin, whose place is that of the first trusses' nodes.
+// Nodes of second trusses that push. Other such nodes do not count, as the first trusses' nodes are the skin.
 class PushingNodes {
   public:
     explicit PushingNodes(const TrussBlockState& block)
@@ -133,13 +133,13 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
         for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
             if (i == scene.ground && !(what.ground && scene.skin_meets_ground[u])) continue;
             const Shape& shape = scene.obstacles[i].shape;
-            const Placement seen = placement(pose_of(scene, i, state), unit.body);
-            if (!within_reach(shape, seen, all, least)) continue;
+            const Placement in_shape = placement(pose_of(scene, i, state), unit.body);
+            if (!within_reach(shape, in_shape, all, least)) continue;
             const std::uint8_t indented = indented_panels(unit, i);
             std::optional<PushingNodes> pushing;
             if (what.nodes)
                 least = nearest_in_blocks(
-                    shape, seen, i == scene.ground ? mesh.shell_blocks : mesh.blocks,
+                    shape, in_shape, i == scene.ground ? mesh.shell_blocks : mesh.blocks,
                     [&](std::size_t b) -> std::optional<Points> {
                         const TrussBlockState& block = unit.trusses.block[b];
                         if ((mesh.panels_of[b] & indented) != 0) return std::nullopt;
@@ -150,7 +150,7 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
                     least);
             if (!what.anchors) continue;
             least = nearest_in_blocks(
-                shape, seen, mesh.skin_blocks,
+                shape, in_shape, mesh.skin_blocks,
                 [&](std::size_t b) {
                     const TrussBlock& block = mesh.block[b];
                     return Points{mesh.anchor_box[b], &block.anchor_x, &block.anchor_y, &block.anchor_z};

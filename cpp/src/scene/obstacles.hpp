@@ -1,4 +1,4 @@
-// What the units of a scene can touch, and where it stands seen from one of them.
+// The obstacles of a scene, and their positions in the axes of a unit.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace birm3d {
 
-// An obstacle within reach of a unit, seen from the unit's body axes, now and an instant before.
+// An obstacle within reach of a unit, in the unit's body axes, now and at the start of the step.
 struct NearObstacle {
     std::size_t index = 0;  // of Scene::obstacles
     Placement now, before;
@@ -22,15 +22,15 @@ struct Pose {
 };
 Pose pose_of(const Scene& scene, std::size_t obstacle, const State& state);
 
-// The same, seen from a body.
-Placement placement(const Pose& obstacle, const BodyState& seen_from);
+// The placement of a body relative to an obstacle.
+Placement placement(const Pose& obstacle, const BodyState& observer);
 
-// Motion of an obstacle as if it were part of the body that sees it: about the body's mass centre, body axes. Zero of
-// what is fixed.
+// Motion of an obstacle about the mass centre of a body, in body axes. Zero for fixed obstacles.
 Twist obstacle_motion(const Scene& scene, std::size_t obstacle, const State& state,
-                      const BodyState& seen_from);
+                      const BodyState& observer);
 
-// Those that any node or anchor of the unit can be nearer to than `margin`, in their order. `about`: memory.
+// Finds obstacles that any node or anchor of the unit can be nearer to than `margin`, by ascending index. `about`:
+// memory.
 void find_near(const Scene& scene, std::size_t unit, const State& before, const State& now, double margin,
                std::vector<std::size_t>& about, std::vector<NearObstacle>& near);
 
@@ -40,8 +40,8 @@ double fastest_point(const Unit& unit, const BodyState& body);
 // And of any free-standing segment of the barrier.
 double fastest_segment(const Scene& scene, const State& state);
 
-// Gap of the point that is nearest to an obstacle (m), infinite where there is none; exact, so that it does not hang on
-// how nodes are blocked. The ground counts only with `ground`; of the points, nodes and anchors as asked.
+// Gap of the point that is nearest to an obstacle (m); infinite if there is none. It is exact, so that it does not
+// depend on the order of nodes in blocks. The flags choose nodes, anchors and the ground.
 struct Nearness {
     bool ground = false;
     bool nodes = true;

@@ -36,7 +36,7 @@ void add_to(Hash& hash, const TriangleMesh& mesh) {
             hash.add(corner);
 }
 
-// Does a segment of a wall go on where the one before it ends?
+// Can a segment of this shape continue the segment before it?
 bool continues(const Shape& shape) {
     const auto* prism = std::get_if<Prism>(&shape);
     return prism != nullptr && std::isfinite(prism->y_low()) && !prism->low_end_is_surface();
@@ -121,8 +121,8 @@ std::uint64_t Scene::fingerprint() const {
         hash.add(unit.trusses.rate_sensitivity);
         hash.add(unit.trusses.indentation_length);
         for (const TireNode& node : unit.trusses.tire_nodes) {
-            hash.add(node.turn_r);
-            hash.add(node.turn_t);
+            hash.add(node.tread_r);
+            hash.add(node.tread_t);
             hash.add(static_cast<double>(node.wheel));
         }
         for (const Wheel& wheel : unit.wheels) {

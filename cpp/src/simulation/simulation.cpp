@@ -124,7 +124,7 @@ double Simulation::remaining() const {
     else if (state_.decided)
         end = state_.decided_at + tolerance::tail_duration;
     const double rest = end - state_.time;
-    return rest > tolerance::shortest_step ? rest : 0.0;  // no step for what rounding leaves over
+    return rest > tolerance::shortest_step ? rest : 0.0;  // no step for a remainder of rounding
 }
 
 void Simulation::take() {
@@ -137,8 +137,8 @@ void Simulation::take() {
     if (!std::isfinite(trial.state.energies.total()))
         throw std::runtime_error("the state is no longer finite at t = " + to_text(trial.state.time) +
                                  " s, step " + to_text(trial.dt) + " s");
-    failed_ = true;  // unless all of what follows is done
-    check_balances(scene_, state_, trial, state_.ledger);
+    failed_ = true;  // reset to false at the end of this function
+    check_balances(scene_, state_, trial, state_.balances);
     accept(scene_, trial, state_);
     note_overlap(scene_, work_->about, state_);
     recorder_.add(scene_, trial);
@@ -159,8 +159,8 @@ void Simulation::fixed_step() {
     try_step(scene_, state_, dt, {}, work_->trial);
     double critical = work_->trial.critical_step;
     if (work_->trial.body_held()) {
-        // The rigid body was held: would the trusses have stopped it, had the step been short enough to see
-        // them? Look at them on the way there.
+        // The rigid body met the barrier. In shorter steps the trusses might have stopped it before. Check them along
+        // the path.
         Trial free(*scene_.vehicle);
         for (double part = dt; part > 1e-3 * dt; part *= 0.5) {
             try_step(scene_, state_, part, {.hold_core = false}, free);

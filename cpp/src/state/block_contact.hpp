@@ -1,4 +1,4 @@
-// One block of nodes at one instant: what detection hands to the crush, and the crush to friction.
+// One block of nodes at one instant: the output of detection for the crush, and of the crush for friction.
 #pragma once
 
 #include "birm3d/base/block.hpp"
@@ -17,8 +17,8 @@ struct Places {
 struct alignas(64) BlockContact {
     BlockColumn pressure;    // normal force of each node (N)
     BlockColumn nx, ny, nz;  // outward normal at each
-    // Where friction acts (m), and the torque of a unit of normal force about the mass centre (m): not kept up at flat
-    // surfaces, where they are the node and its own.
+    // Where friction acts (m), and the torque of a unit of normal force about the mass centre (m). They are not set
+    // at flat surfaces, where the node gives them.
     BlockColumn px, py, pz, tx, ty, tz;
 
     Vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
@@ -27,12 +27,12 @@ struct alignas(64) BlockContact {
     void set_normal(const Vec3& n) { nx.fill(n.x()), ny.fill(n.y()), nz.fill(n.z()); }
 };
 
-// What each node of a block sees of surfaces of any shape (body axes); its normals now are in the BlockContact.
+// The nearest surface of each node of a block (body axes). Its present normal is in the BlockContact.
 struct alignas(64) NodeFaces {
     BlockColumn gap;         // of the nearest surface (m)
-    BlockColumn bx, by, bz;  // outward normal of the same surface at the instant before
-    // Of nodes that an indentation draws in: b is the way itself, and a truss force along it that much greater as a normal force,
-    // which acts at the place that the BlockContact says. Zero for others.
+    BlockColumn bx, by, bz;  // outward normal of the same surface at the start of the step
+    // Above zero for nodes that follow an indentation. Then b is the direction of the displacement, and the normal
+    // force is this times the truss force along b. It acts at the place in the BlockContact. Zero for other nodes.
     BlockColumn per_force;
 };
 

@@ -10,18 +10,18 @@ namespace birm3d {
 
 namespace {
 
-void note_departure(double size, const Scene& scene, const State& now, Ledger::Departure& greatest) {
+void note_departure(double size, const Scene& scene, const State& now, Balances::Departure& greatest) {
     if (size > greatest.size) greatest = {size, now.time, scene.base + now.units.front().body.position};
 }
 
-void check_energies(const Energies& e, const Scene& scene, const State& now, Ledger& ledger) {
-    note_departure(std::abs(e.total() - ledger.total), scene, now, ledger.energy);
-    ledger.at_disposal = std::max(ledger.at_disposal, ledger.kinetic - e.potential);
-    const std::array<double, Ledger::terms> terms{e.crushed,         e.barrier_friction, e.tire_friction,
-                                                  e.ground_friction, e.impacts,          e.segment_friction};
+void check_energies(const Energies& e, const Scene& scene, const State& now, Balances& balances) {
+    note_departure(std::abs(e.total() - balances.total), scene, now, balances.energy);
+    balances.at_disposal = std::max(balances.at_disposal, balances.kinetic - e.potential);
+    const std::array<double, Balances::terms> terms{
+        e.crushed, e.barrier_friction, e.tire_friction, e.ground_friction, e.impacts, e.segment_friction};
     for (std::size_t i = 0; i < terms.size(); ++i) {
-        note_departure(ledger.highest[i] - terms[i], scene, now, ledger.falls[i]);
-        ledger.highest[i] = std::max(ledger.highest[i], terms[i]);
+        note_departure(balances.highest[i] - terms[i], scene, now, balances.falls[i]);
+        balances.highest[i] = std::max(balances.highest[i], terms[i]);
     }
 }
 
@@ -36,7 +36,7 @@ Vec3 total_impulse(const ContactImpulses& sums) {
 }
 
 // Change of each unit's momentum in the step, against the sum of all impulses that acted on it.
-void check_momentum(const Scene& scene, const State& state, const Trial& trial, Ledger& ledger) {
+void check_momentum(const Scene& scene, const State& state, const Trial& trial, Balances& balances) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const UnitState &from = state.units[u], &to = trial.state.units[u];
         const double mass = scene.vehicle->units[u].body.mass;
@@ -49,9 +49,9 @@ void check_momentum(const Scene& scene, const State& state, const Trial& trial, 
             impulse += 0.5 * trial.dt * contact.history.now.wrench.force +
                        contact.higher_order.corrector.wrench.force;
         const Vec3 change = mass * (to.body.velocity - from.body.velocity);
-        note_departure((change - impulse).norm(), scene, trial.state, ledger.momentum);
-        ledger.largest_momentum =
-            std::max({ledger.largest_momentum, mass * to.body.velocity.norm(), impulse.norm()});
+        note_departure((change - impulse).norm(), scene, trial.state, balances.momentum);
+        balances.largest_momentum =
+            std::max({balances.largest_momentum, mass * to.body.velocity.norm(), impulse.norm()});
     }
 }
 
@@ -72,22 +72,22 @@ void sum_kinetic_energy(const Scene& scene, State& now) {
         now.energies.kinetic += kinetic_energy(rigid_body(scene, body), body_state(now, body));
 }
 
-void check_balances(const Scene& scene, const State& state, const Trial& trial, Ledger& ledger) {
-    if (!ledger.begun) {
-        ledger.begun = true;
-        ledger.kinetic = ledger.at_disposal = state.energies.kinetic;
-        ledger.total = state.energies.total();
-        ledger.largest_momentum = 0.0;
+void check_balances(const Scene& scene, const State& state, const Trial& trial, Balances& balances) {
+    if (!balances.begun) {
+        balances.begun = true;
+        balances.kinetic = balances.at_disposal = state.energies.kinetic;
+        balances.total = state.energies.total();
+        balances.largest_momentum = 0.0;
         for (std::size_t u = 0; u < state.units.size(); ++u)
-            ledger.largest_momentum =
-                std::max(ledger.largest_momentum,
+            balances.largest_momentum =
+                std::max(balances.largest_momentum,
                          scene.vehicle->units[u].body.mass * state.units[u].body.velocity.norm());
     }
     const State& now = trial.state;
-    if (trial.at_start.happened) check_energies(trial.at_start.energies, scene, now, ledger);
-    if (trial.at_end.happened) check_energies(trial.at_end.energies, scene, now, ledger);
-    check_energies(now.energies, scene, now, ledger);
-    check_momentum(scene, state, trial, ledger);
+    if (trial.at_start.happened) check_energies(trial.at_start.energies, scene, now, balances);
+    if (trial.at_end.happened) check_energies(trial.at_end.energies, scene, now, balances);
+    check_energies(now.energies, scene, now, balances);
+    check_momentum(scene, state, trial, balances);
 }
 
 }  // namespace birm3d

@@ -12,6 +12,6 @@ void sum_truss_energies(State& now);
 void sum_kinetic_energy(const Scene& scene, State& now);
 
 // Enters the greatest departures from both balances into `ledger`. `state`: before the trial is accepted.
-void check_balances(const Scene& scene, const State& state, const Trial& trial, Ledger& ledger);
+void check_balances(const Scene& scene, const State& state, const Trial& trial, Balances& balances);
 
 }  // namespace birm3d

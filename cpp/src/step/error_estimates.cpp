@@ -46,11 +46,12 @@ EffectiveInertia::EffectiveInertia(const RigidBody& body_, const BodyState& stat
 
 double velocity_error(const EffectiveInertia& inertia, const Load& departure, double dt) {
     const double force = departure.wrench.force.norm();
-    const Vec3 turning = inertia.inverse_inertia * departure.wrench.torque;
-    double change = inertia.body.inverse_mass * force + inertia.gyration * turning.norm();
+    const Vec3 angular_change = inertia.inverse_inertia * departure.wrench.torque;
+    double change = inertia.body.inverse_mass * force + inertia.gyration * angular_change.norm();
     if (const Segment* segment = inertia.segment) {
-        const double turn = segment->body.inverse_inertia(2, 2) * std::abs(departure.reaction_torque.z());
-        change += segment->body.inverse_mass * force + segment->half_length * turn;
+        const double yaw_change =
+            segment->body.inverse_inertia(2, 2) * std::abs(departure.reaction_torque.z());
+        change += segment->body.inverse_mass * force + segment->half_length * yaw_change;
     }
     return dt / 8.0 * change;
 }

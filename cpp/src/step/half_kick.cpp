@@ -44,12 +44,12 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
         for (const std::size_t i : about) {
             if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
             const Obstacle& obstacle = scene.obstacles[i];
-            const Placement seen = placement(pose_of(scene, i, state), body);
+            const Placement in_shape = placement(pose_of(scene, i, state), body);
             const Twist other = obstacle_motion(scene, i, state, body);
             const Twist relative{motion.velocity - other.velocity,
                                  motion.angular_velocity - other.angular_velocity};
-            if (within_reach(obstacle.shape, seen, anchors, core_margin(unit.trusses, relative, dt)))
-                placed.push_back({&obstacle.shape, seen, i, obstacle.friction, other});
+            if (within_reach(obstacle.shape, in_shape, anchors, core_margin(unit.trusses, relative, dt)))
+                placed.push_back({&obstacle.shape, in_shape, i, obstacle.friction, other});
         }
         if (placed.empty()) continue;
         const std::size_t first = contacts.size();
@@ -76,7 +76,7 @@ void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpuls
     if (stage == Stage::before_drift) {
         for (RigidContact& contact : contacts) {
             contact.target = -contact.gap / dt;
-            if (!contact.held)
+            if (!contact.bilateral)
                 contact.target =
                     std::min(contact.target, std::clamp(-contact.gap / tolerance::recovery_time,
                                                         tolerance::slow_recovery, tolerance::recovery_speed));
@@ -84,7 +84,7 @@ void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpuls
         return;
     }
     std::erase_if(contacts, [&](const RigidContact& contact) {
-        if (contact.held) return false;
+        if (contact.bilateral) return false;
         // A tyre that carried load before the drift is still in contact after it, though rotation may have opened a gap of
         // rounding size. An approach that only the forces of this step make is no impact.
         if (contact.source == ContactSource::tire && before_drift[contact.body].tire[contact.index] > 0.0)

@@ -29,7 +29,7 @@ void count_step(const Scene& scene, const Trial& accepted, State& state) {
         ++statistics.free_steps;
         statistics.free_time += accepted.dt;
     }
-    for (const std::size_t obstacle : accepted.seen)
+    for (const std::size_t obstacle : accepted.reached)
         count_near(scene, obstacle, state);
     for (std::size_t u = 0; u < accepted.impulses.size(); ++u) {
         const ContactImpulses* const sums[] = {&accepted.impulses[u], &accepted.at_start.impulses[u],

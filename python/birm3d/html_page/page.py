@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = ["write_html"]
 
-# Above these the ledgers of a run are worth a look.
+# Above these the balances of a run are worth a look.
 _ENERGY, _MOMENTUM = 5e-3, 1e-9
 
 
@@ -160,8 +160,8 @@ def _check_rows(result: Result) -> list[tuple[str, ...]]:
     metrics = result.metrics
     rows: list[tuple[str, ...]] = []
     for name, label, limit in (
-        ("energy_residual", "energy ledger closes, of the initial kinetic energy", _ENERGY),
-        ("momentum_residual", "momentum ledger closes, of the greatest force", _MOMENTUM),
+        ("energy_residual", "energy balance closes, of the initial kinetic energy", _ENERGY),
+        ("momentum_residual", "momentum balance closes, of the greatest force", _MOMENTUM),
     ):
         good = metrics[name] <= limit
         rows.append((label, "✓ yes" if good else "✗ no", f"{limit:g}", f"{metrics[name]:.1e}"))

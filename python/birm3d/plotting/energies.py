@@ -59,7 +59,7 @@ def shown_energies(result: Result) -> dict[str, npt.NDArray[np.float64]]:
 
 
 def plot_energies(axes: Axes, result: Result) -> None:
-    """Draw the energy ledger into a panel."""
+    """Draw the energy balance into a panel."""
     shown = shown_energies(result)
     looks = energy_look(list(result.energy))
     for name, values in shown.items():

@@ -32,7 +32,7 @@ __all__ = ["plot_result"]
 
 
 def plot_result(result: Result) -> Figure:
-    """Return force and deceleration, motion, angles and the energy ledger against time.
+    """Return force and deceleration, motion, angles and the energy balance against time.
 
     Forces and decelerations are shown as interval means (thin) and after CFC 60 (SAE J211-1).
     """

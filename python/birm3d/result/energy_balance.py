@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
 
-__all__ = ["ENERGY_LIMIT", "FALL_LIMIT", "MOMENTUM_LIMIT", "LedgerWarning", "open_accounts", "warn_if_open"]
+__all__ = ["ENERGY_LIMIT", "FALL_LIMIT", "MOMENTUM_LIMIT", "BalanceWarning", "open_accounts", "warn_if_open"]
 
 ENERGY_LIMIT = 5e-3
 """Energy residual, relative to the energy at the run's disposal, beyond which a run is wrong."""
@@ -25,12 +25,12 @@ MOMENTUM_LIMIT = 1e-6
 """Momentum of a step that no impulse explains, relative to the largest of the run."""
 
 
-class LedgerWarning(UserWarning):
-    """A ledger of a run does not close: energy, momentum, or dissipation that comes back."""
+class BalanceWarning(UserWarning):
+    """A balance of a run does not close: energy, momentum, or dissipation that comes back."""
 
 
-def warn_if_open(scene: Scene, ledger: _core.Ledger) -> None:
-    """Warn with :class:`LedgerWarning` of each account that is out of bounds, with its size, time and place.
+def warn_if_open(scene: Scene, balances: _core.Balances) -> None:
+    """Warn with :class:`BalanceWarning` of each account that is out of bounds, with its size, time and place.
 
     - energy: the sum of all terms departs from that at the start by more than :data:`ENERGY_LIMIT` of the
       energy at disposal, which is the initial kinetic energy and what the weight has done;
@@ -39,26 +39,28 @@ def warn_if_open(scene: Scene, ledger: _core.Ledger) -> None:
     - crush, friction or impacts fall from their highest value by more than :data:`FALL_LIMIT` of the energy
       at disposal.
     """
-    for complaint in open_accounts(scene, ledger):
+    for complaint in open_accounts(scene, balances):
         complaint.warn()
 
 
-def open_accounts(scene: Scene, ledger: _core.Ledger) -> Iterator[Complaint]:
+def open_accounts(scene: Scene, balances: _core.Balances) -> Iterator[Complaint]:
     """Yield what :func:`warn_if_open` warns of."""
 
     def complaint(quantity: str, limit: float, value: float, worst: _core.Departure) -> Complaint:
-        return Complaint(LedgerWarning, quantity, value, partial(_text, scene, quantity, limit, value, worst))
+        return Complaint(
+            BalanceWarning, quantity, value, partial(_text, scene, quantity, limit, value, worst)
+        )
 
-    residual = relative_to_start(scene, ledger.energy.size, ledger.at_disposal)
+    residual = relative_to_start(scene, balances.energy.size, balances.at_disposal)
     if residual > ENERGY_LIMIT:
-        yield complaint("energy_residual", ENERGY_LIMIT, residual, ledger.energy)
-    momentum = ledger.momentum.size / max(ledger.largest_momentum, scene.vehicle.mass)
+        yield complaint("energy_residual", ENERGY_LIMIT, residual, balances.energy)
+    momentum = balances.momentum.size / max(balances.largest_momentum, scene.vehicle.mass)
     if momentum > MOMENTUM_LIMIT:
-        yield complaint("momentum_residual", MOMENTUM_LIMIT, momentum, ledger.momentum)
-    if not relative_to_start(scene, ledger.largest_fall, ledger.at_disposal) > FALL_LIMIT:
+        yield complaint("momentum_residual", MOMENTUM_LIMIT, momentum, balances.momentum)
+    if not relative_to_start(scene, balances.largest_fall, balances.at_disposal) > FALL_LIMIT:
         return
-    for name, fall in ledger.falls.items():
-        share = relative_to_start(scene, fall.size, ledger.at_disposal)
+    for name, fall in balances.falls.items():
+        share = relative_to_start(scene, fall.size, balances.at_disposal)
         if share > FALL_LIMIT:
             yield complaint(f"the fall of {name}", FALL_LIMIT, share, fall)
 

@@ -34,14 +34,14 @@ def _dot(a: Vector, b: Vector) -> float:
 
 def time_of_zero_velocity(run: RunValues) -> float | None:
     """When the motion towards the barrier ends, since the first touch [s]."""
-    if run.turn_time is None:
+    if run.reversal_time is None:
         return None
-    return run.turn_time - run.scene.standoff / run.motion.approach_speed
+    return run.reversal_time - run.scene.standoff / run.motion.approach_speed
 
 
 def restitution(run: RunValues) -> float | None:
     """Return normal separation over approach speed; 0 of a vehicle that rests."""
-    if run.turn_time is None:
+    if run.reversal_time is None:
         return None
     velocity = run.event.exit_velocity
     if velocity is None:

@@ -138,7 +138,7 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
             "of the mass centre towards the barrier since t = 0, less the standoff; on a path along the "
             "barrier's line, towards its end",
             "motion",
-            lambda run: run.motion.way - run.scene.standoff,
+            lambda run: run.motion.travel - run.scene.standoff,
             shown=_metres("travel of the mass centre towards the barrier", headline=True),
         ),
         "vehicle_penetration": Metric(

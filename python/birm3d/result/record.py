@@ -261,7 +261,7 @@ class RunRecord:
 
     @cached_property
     def energy(self) -> Mapping[str, Floats]:
-        """Energy ledger, name -> shape (n,) [J].
+        """Energy balance, name -> shape (n,) [J].
 
         ``kinetic`` and ``potential`` of the body, ``stored`` (elastic) and ``crushed`` (plastic) in trusses,
         ``barrier_friction``, ``tire_friction``, ``ground_friction`` (of the body on the ground) and

@@ -98,7 +98,7 @@ class Result(RunAnalysis):
         )
 
     def report(self) -> str:
-        """Return what was computed, what was left out, and how the ledgers close, as text."""
+        """Return what was computed, what was left out, and how the balances close, as text."""
         return self._report
 
     @cached_property

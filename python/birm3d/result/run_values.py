@@ -90,10 +90,10 @@ class RunValues:
         return self.outcome.peak_deflection
 
     @property
-    def turn_time(self) -> float | None:
+    def reversal_time(self) -> float | None:
         """When the motion towards the barrier ends [s], if it began and anything was crushed."""
         began = self.dynamic_crush > 0.0 and self.motion.approach_speed > 0.0
-        return self.motion.turn_time if began else None
+        return self.motion.reversal_time if began else None
 
     @property
     def residual_crush(self) -> float:
@@ -103,7 +103,7 @@ class RunValues:
 
 
 def energy_residual(scene: Scene, energy: _core.ExtremeEnergy) -> float:
-    """Greatest residual of the energy ledger, relative to the initial kinetic energy."""
+    """Greatest residual of the energy balance, relative to the initial kinetic energy."""
     return relative_to_start(scene, energy.residual, energy.start)
 
 

@@ -19,21 +19,21 @@ __all__ = ["complaints_of_run", "warn_of_run"]
 
 
 def complaints_of_run(
-    scene: Scene, statistics: _core.StepStatistics, ledger: _core.Ledger
+    scene: Scene, statistics: _core.StepStatistics, balances: _core.Balances
 ) -> Iterator[Complaint]:
     """Return complaints of an overlap of body and barrier, and of accounts that do not close."""
-    return chain(overlaps(scene, statistics), open_accounts(scene, ledger))
+    return chain(overlaps(scene, statistics), open_accounts(scene, balances))
 
 
-def warn_of_run(scene: Scene, statistics: _core.StepStatistics, ledger: _core.Ledger) -> None:
+def warn_of_run(scene: Scene, statistics: _core.StepStatistics, balances: _core.Balances) -> None:
     """Warn of an overlap of body and barrier, and of accounts that do not close.
 
     Raises
     ------
     OverlapWarning
         As a warning, if the overlap was beyond :data:`birm3d.result.overlap.OVERLAP_LIMIT`.
-    LedgerWarning
+    BalanceWarning
         As a warning, see :func:`birm3d.result.energy_balance.warn_if_open`.
     """
-    for complaint in complaints_of_run(scene, statistics, ledger):
+    for complaint in complaints_of_run(scene, statistics, balances):
         complaint.warn()

@@ -163,8 +163,8 @@ class Simulation:
             If another thread uses the simulation.
         OverlapWarning
             As a warning, if the rigid body got into the barrier.
-        LedgerWarning
-            As a warning, if a ledger of the run does not close: energy, momentum, or dissipation that falls;
+        BalanceWarning
+            As a warning, if a balance of the run does not close: energy, momentum, or dissipation that falls;
             see :func:`birm3d.result.energy_balance.warn_if_open`.
         ValueError
             If the frames are more than the result's rows or outside the run, or if the run takes more steps
@@ -180,8 +180,8 @@ class Simulation:
             finally:
                 self._run_time += time.perf_counter() - start
             result = self._result()
-            ledger, statistics = self._core.ledger, self._core.statistics
-        warn_of_run(result.scene, statistics, ledger)
+            balances, statistics = self._core.balances, self._core.statistics
+        warn_of_run(result.scene, statistics, balances)
         return result if frames is None else result.with_frames(frames)
 
     def step(self) -> bool:

@@ -250,7 +250,7 @@ def _outcome(
 ) -> Outcome:
     try:
         end = done.outcome()
-        complaints.add(run, complaints_of_run(scene, end.statistics, end.ledger))
+        complaints.add(run, complaints_of_run(scene, end.statistics, end.balances))
         values = values_of_outcome(scene, end, metrics)
         reason = _END_REASONS[int(end.end_reason)]
         return Outcome(values, reason, end.event.outcome, f"{end.state_hash:016x}")

@@ -123,7 +123,7 @@ def run_study(
         runs are in its ``study``, and those before that in the store.
     StudyInterrupted
         A KeyboardInterrupt, with the finished runs in its ``study`` and in the store.
-    OverlapWarning, LedgerWarning, CoarseSkinWarning
+    OverlapWarning, BalanceWarning, CoarseSkinWarning
         As warnings, each once for all runs that were run now: how many and which rows are not to be
         believed, and what is wrong with the worst.
     """

@@ -16,7 +16,7 @@ class NumPy:
     def __init__(self, lean: bool) -> None:
         self.lean = lean
         self.name = "NumPy, lean" if lean else "NumPy"
-        self.setup = "columns, in place, leapfrog" + ("; the body can not turn, no ledger" if lean else "")
+        self.setup = "columns, in place, leapfrog" + ("; the body can not turn, no balance" if lean else "")
         self.wrong: Mapping[str, str] = {"W3": "its body can not turn"} if lean else {}
 
     def build(self, case: Case, n: int) -> Run:

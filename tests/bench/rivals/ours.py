@@ -1,11 +1,11 @@
-"""BIRM3D, by tolerance and with fixed steps; ledgers, histories and 20 ms beyond the end included."""
+"""BIRM3D, by tolerance and with fixed steps; balances, histories and 20 ms beyond the end included."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
 
-from birm3d import Barrier, LedgerWarning, Settings, Simulation, UnstableError
+from birm3d import BalanceWarning, Barrier, Settings, Simulation, UnstableError
 
 from .definition import STEPS, Answer, Case, RefusedError, Run, compared, vehicle
 
@@ -41,7 +41,7 @@ class Ours:
             scene = scenes.setdefault(setting, simulation(case, n, **{self._keyword: setting}))
             try:
                 with warnings.catch_warnings():
-                    warnings.simplefilter("ignore", LedgerWarning)  # what is off shows as the error
+                    warnings.simplefilter("ignore", BalanceWarning)  # what is off shows as the error
                     result = scene.run()
             except UnstableError as error:
                 raise RefusedError(str(error)) from None

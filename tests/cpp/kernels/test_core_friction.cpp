@@ -36,13 +36,13 @@ TEST("friction does not reverse a sliding, however light the other side") {
                 core_friction(contacts, 0, heavy, 0.1, motion,
                               1.0 / mass + inverse_inertia * at_end(0.0).other_arm.head<2>().squaredNorm());
             const RigidContact& contact = contacts[0];
-            const Vec3 push = -contact.rubbing;
+            const Vec3 push = -contact.friction_impulse;
             const double turn = inverse_inertia * contact.other_arm.cross(push).z();
             const double other = push.y() / mass + turn * contact.other_arm.x();
             const double left = motion.velocity.y() + heavy.inverse_mass * sum.force.y() - other;
-            CHECK(contact.rubbing.y() < 0.0);
+            CHECK(contact.friction_impulse.y() < 0.0);
             CHECK(left > 0.0);
-            CHECK(contact.rubbing.norm() <= 0.5 * impulse);
+            CHECK(contact.friction_impulse.norm() <= 0.5 * impulse);
         }
 }
 

@@ -23,7 +23,7 @@ TEST("a plane seen from moved and turned axes is the same plane") {
     const HalfSpace face{Vec3(-3.0, 0.0, 4.0) / 5.0, 1.3};
     const Vec3 place(2.0, -1.0, 0.5);
     const Mat3 R = Quat(Eigen::AngleAxisd(0.8, Vec3(1.0, 1.0, -1.0).normalized())).toRotationMatrix();
-    const HalfSpace seen = face.seen_from(place, R);
+    const HalfSpace seen = face.in_axes(place, R);
     for (const Vec3& p : {Vec3(0.0, 0.0, 0.0), Vec3(1.0, 2.0, 3.0), Vec3(-4.0, 0.0, 1.0)})
         CHECK_CLOSE(seen.gap(p), face.gap(place + R * p), 1e-14, "rounding");
 }

@@ -15,13 +15,13 @@ struct Pressed {
         contact.set_normal(-Vec3::UnitX());
         contact.pressure.fill(pressure);
     }
-    Rubbing friction(double mu, double full_speed, const Twist& motion, bool flat = true) const {
-        Rubbing rubbing;
+    FrictionLoad friction(double mu, double full_speed, const Twist& motion, bool flat = true) const {
+        FrictionLoad friction_load;
         const TrussBlockState& block = state.block[0];
         const Vec3 normal = -Vec3::UnitX();
         add_friction(mu, full_speed, motion, {block.x, block.y, block.z}, contact, flat ? &normal : nullptr,
-                     rubbing);
-        return rubbing;
+                     friction_load);
+        return friction_load;
     }
 
     TrussMesh mesh;
@@ -35,7 +35,7 @@ TEST("full sliding: mu times the normal force against the sliding, nothing along
     const Pressed pressed(250.0);
     const Vec3 sliding(0.0, 3.0, 4.0);
     for (const double approach : {0.0, 20.0, -5.0}) {
-        const Rubbing f = pressed.friction(0.2, 0.1, {Vec3(approach, 0.0, 0.0) + sliding, Vec3::Zero()});
+        const FrictionLoad f = pressed.friction(0.2, 0.1, {Vec3(approach, 0.0, 0.0) + sliding, Vec3::Zero()});
         CHECK_CLOSE((f.friction.force + 0.2 * 250.0 * 64.0 * sliding / 5.0).norm(), 0.0, 1e-9,
                     "rounding of 64 nodes");
         CHECK_CLOSE((f.friction.torque - Vec3(3.0, 0.0, 0.0).cross(f.friction.force)).norm(), 0.0, 1e-8,
@@ -46,7 +46,7 @@ TEST("full sliding: mu times the normal force against the sliding, nothing along
 TEST("below the speed of full friction the force falls with the speed") {
     const Pressed pressed(250.0);
     for (const double share : {1.0, 0.5, 0.1, 0.0}) {
-        const Rubbing f = pressed.friction(0.3, 0.2, {Vec3(0.0, 0.2 * share, 0.0), Vec3::Zero()});
+        const FrictionLoad f = pressed.friction(0.3, 0.2, {Vec3(0.0, 0.2 * share, 0.0), Vec3::Zero()});
         CHECK_CLOSE(f.friction.force.y(), -share * 0.3 * 250.0 * 64.0, 1e-9, "rounding of 64 nodes");
     }
 }
@@ -56,7 +56,7 @@ TEST("friction takes energy out of every motion") {
     for (int i = 0; i < 50; ++i) {
         const Twist motion{Vec3(std::sin(1.0 * i), std::sin(2.0 * i), std::sin(3.0 * i)),
                            Vec3(std::sin(5.0 * i), std::sin(7.0 * i), std::sin(11.0 * i))};
-        const Rubbing f = pressed.friction(0.4, 0.05, motion);
+        const FrictionLoad f = pressed.friction(0.4, 0.05, motion);
         CHECK(f.friction.force.dot(motion.velocity) + f.friction.torque.dot(motion.angular_velocity) <= 0.0);
     }
 }
@@ -67,7 +67,7 @@ TEST("resistance times the motion is the friction of nodes that slide slowly, an
         const Twist motion{0.02 * Vec3(std::sin(1.0 * i), std::sin(2.0 * i), std::sin(3.0 * i)),
                            0.02 * Vec3(std::sin(5.0 * i), std::sin(7.0 * i), std::sin(11.0 * i))};
         for (const double full_speed : {0.2, 0.02}) {
-            const Rubbing f = pressed.friction(0.4, full_speed, motion);
+            const FrictionLoad f = pressed.friction(0.4, full_speed, motion);
             const Mat6 by_normals = pressed.friction(0.4, full_speed, motion, false).resistance;
             CHECK_CLOSE((f.resistance - by_normals).norm(), 0.0, 1e-12 * by_normals.norm(), "rounding");
             Vec6 twist, wrench;
@@ -85,7 +85,7 @@ TEST("slow sliding that linear friction brakes follows the trapezoid rule at any
     const Pressed pressed(250.0);
     const RigidBody body = laboratory::body();
     const Twist before{Vec3(0.0, 0.02, 0.01), Vec3(0.01, 0.0, -0.02)};
-    const Rubbing f = pressed.friction(0.4, 0.2, before);
+    const FrictionLoad f = pressed.friction(0.4, 0.2, before);
     Mat6 inertia = Mat6::Zero();
     inertia.topLeftCorner<3, 3>() = body.mass * Mat3::Identity();
     inertia.bottomRightCorner<3, 3>() = body.inertia;
@@ -113,7 +113,7 @@ TEST("what is held stays at rest whatever friction adds") {
     row << Vec3::UnitZ(), Vec3(0.8, -1.2, 0.0).cross(Vec3::UnitZ());
     const double stiff = 1e6 * body.mass;
     const Twist before{Vec3(0.0, 0.02, 0.01), Vec3(0.01, 0.0, -0.02)}, motion{Vec3(0.0, 0.01, -0.03), {}};
-    const Rubbing f = pressed.friction(0.4, 0.2, before);
+    const FrictionLoad f = pressed.friction(0.4, 0.2, before);
     const Twist end = settled(motion, before, f.resistance, 1e-2, inertia, stiff * row * row.transpose());
     const double speed = row.head<3>().dot(end.velocity) + row.tail<3>().dot(end.angular_velocity);
     CHECK_CLOSE(speed, 0.0, 0.03 * 1e-5,
@@ -123,7 +123,7 @@ TEST("what is held stays at rest whatever friction adds") {
 
 TEST("a turn about the normal is braked by a torque alone") {
     const Pressed pressed(100.0);
-    const Rubbing f = pressed.friction(0.5, 1e-3, {Vec3::Zero(), Vec3(2.0, 0.0, 0.0)});
+    const FrictionLoad f = pressed.friction(0.5, 1e-3, {Vec3::Zero(), Vec3(2.0, 0.0, 0.0)});
     CHECK_CLOSE(f.friction.force.norm(), 0.0, 1e-9, "symmetric; rounding of 64 nodes");
     CHECK(f.friction.torque.x() < 0.0);
     CHECK_CLOSE(f.friction.torque.tail<2>().norm(), 0.0, 1e-9, "symmetric");

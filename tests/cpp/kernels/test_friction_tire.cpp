@@ -21,11 +21,11 @@ TireNodeContact at(double angle, const Twist& motion, double force = 100.0,
     return tire_node_contact({d.z() / radius, -d.x() / radius, 0}, 0, motion, axle + d, normal, force);
 }
 
-Wrench friction(const std::vector<TireNodeContact>& wheel, double turning) {
-    Rubbing rubbing;
+Wrench friction(const std::vector<TireNodeContact>& wheel, double rolling) {
+    FrictionLoad friction_load;
     for (const TireNodeContact& node : wheel)
-        add_tire_node_friction(mu, full_speed, turning, node, rubbing);
-    return rubbing.friction;
+        add_tire_node_friction(mu, full_speed, rolling, node, friction_load);
+    return friction_load.friction;
 }
 
 // About the wheel's axle.
@@ -40,7 +40,7 @@ constexpr double degree = laboratory::pi / 180.0;
 
 TEST("a wheel met below and ahead of its axle is pushed up and back, along the spoke") {
     const std::vector<TireNodeContact> wheel = {at(-45.0 * degree, ahead)};
-    const double q = free_turning(full_speed, wheel);
+    const double q = free_rolling_speed(full_speed, wheel);
     CHECK_CLOSE(q, 20.0 * std::sqrt(0.5), 1e-12, "the tread moves with the body's part across the spoke");
     const Vec3 pushed(-50.0 * std::sqrt(0.5), 0.0, 50.0 * std::sqrt(0.5));
     CHECK_CLOSE((friction(wheel, q).force - pushed).norm(), 0.0, 1e-9, "rounding");
@@ -48,7 +48,7 @@ TEST("a wheel met below and ahead of its axle is pushed up and back, along the s
 
 TEST("a wheel met at its lowest point rolls there: no friction but on what slides sideways") {
     const std::vector<TireNodeContact> wheel = {at(-90.0 * degree, ahead, 100.0, Vec3::UnitZ())};
-    const double q = free_turning(full_speed, wheel);
+    const double q = free_rolling_speed(full_speed, wheel);
     CHECK_CLOSE(q, 20.0, 1e-12, "as on the road");
     CHECK_CLOSE(friction(wheel, q).force.norm(), 0.0, 1e-9, "rounding");
 }
@@ -65,14 +65,14 @@ TEST("friction has no torque about the axle of a wheel that is free, and takes e
             wheel.push_back(at(0.7 * i + 0.4 * node, motion, force, normal));
             pressed += force;
         }
-        const double q = free_turning(full_speed, wheel);
+        const double q = free_rolling_speed(full_speed, wheel);
         const Wrench f = friction(wheel, q);
         CHECK_CLOSE(torque_of(f) / (mu * pressed * radius), 0.0, 1e-9,
                     "q to rounding, over the slope of friction below the full speed");
         const double power = f.force.dot(motion.velocity) + f.torque.dot(motion.angular_velocity);
         double heat = 0.0;
         for (const TireNodeContact& node : wheel) {
-            const Vec3 u = node.sliding + q * node.turning;
+            const Vec3 u = node.sliding + q * node.rolling;
             heat += mu * node.pressure * u.squaredNorm() / std::max(u.norm(), full_speed);
         }
         CHECK_CLOSE(power / heat, -1.0, 1e-9, "the wheel gives and takes none; rounding as above");
@@ -94,8 +94,8 @@ TEST("left and right wheels mirror each other") {
         left.push_back(tire_node_contact(node, 0, mirrored, (axle + d).cwiseProduct(mirror),
                                          normal.cwiseProduct(mirror), 80.0));
     }
-    const double q = free_turning(full_speed, right);
-    CHECK_CLOSE(free_turning(full_speed, left), q, 1e-12, "rounding");
+    const double q = free_rolling_speed(full_speed, right);
+    CHECK_CLOSE(free_rolling_speed(full_speed, left), q, 1e-12, "rounding");
     const Wrench a = friction(right, q), b = friction(left, q);
     CHECK_CLOSE((b.force - a.force.cwiseProduct(mirror)).norm(), 0.0, 1e-10, "rounding");
     CHECK_CLOSE((b.torque + a.torque.cwiseProduct(mirror)).norm(), 0.0, 1e-10, "rounding");
@@ -110,7 +110,7 @@ TEST("a locked wheel slides with the body") {
     contact.pressure[0] = node.pressure;
     BlockColumn x{}, y{}, z{};
     x[0] = node.arm.x(), y[0] = node.arm.y(), z[0] = node.arm.z();
-    Rubbing skin, tread;
+    FrictionLoad skin, tread;
     add_friction(mu, full_speed, motion, {x, y, z}, contact, nullptr, skin);
     add_tire_node_friction(mu, full_speed, 0.0, node, tread);
     CHECK_CLOSE((skin.friction.force - tread.friction.force).norm(), 0.0, 1e-12, "rounding");
@@ -119,8 +119,8 @@ TEST("a locked wheel slides with the body") {
 }
 
 TEST("nodes that nothing presses leave a wheel alone") {
-    CHECK(free_turning(full_speed, {}) == 0.0);
+    CHECK(free_rolling_speed(full_speed, {}) == 0.0);
     const std::vector<TireNodeContact> wheel = {at(0.3, ahead, 0.0)};
-    CHECK(free_turning(full_speed, wheel) == 0.0);
+    CHECK(free_rolling_speed(full_speed, wheel) == 0.0);
     CHECK(friction(wheel, 3.0).force.norm() == 0.0);
 }

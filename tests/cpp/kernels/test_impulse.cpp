@@ -170,11 +170,11 @@ void check_answer(std::span<const RigidContact> rows, std::span<const ContactBod
     for (const RigidContact& row : rows) {
         const double w = separation_velocity(row, bodies) - row.target;
         CHECK(std::isfinite(row.impulse));
-        if (!row.held) {
+        if (!row.bilateral) {
             CHECK(row.impulse >= 0.0);
             CHECK(w >= -tolerance);
         }
-        if (row.held || row.impulse > 0.0) CHECK_CLOSE(w, 0.0, tolerance, "the tolerance of the solver");
+        if (row.bilateral || row.impulse > 0.0) CHECK_CLOSE(w, 0.0, tolerance, "the tolerance of the solver");
     }
 }
 
@@ -199,14 +199,14 @@ TEST("a chain of pinned bodies that are pushed keeps together, and its momentum 
                 row.body = b;
                 row.other = static_cast<int>(b + 1);
                 row.other_arm = pin - place[b + 1];
-                row.held = true;
+                row.bilateral = true;
                 rows.push_back(row);
             }
             RigidContact lock = contact(Vec3::Zero(), Vec3::UnitX());
             lock.body = b;
             lock.other = static_cast<int>(b + 1);
             lock.about_axis = true;
-            lock.held = scene % 2 == 0;
+            lock.bilateral = scene % 2 == 0;
             rows.push_back(lock);
         }
         const std::size_t pins = rows.size();
@@ -250,7 +250,7 @@ TEST("a stop turns a body back and lets it go; a lock holds it both ways") {
         CHECK_CLOSE(bodies[0].motion.angular_velocity.x(), std::max(0.0, spin), 1e-12, "rounding");
         CHECK(bodies[0].motion.velocity == Vec3(1.0, 2.0, 3.0));
 
-        rows[0].held = true;
+        rows[0].bilateral = true;
         bodies[0].motion.angular_velocity.x() = spin;
         solve_impulses(rows, bodies, 2.0);
         CHECK_CLOSE(rows[0].impulse, -500.0 * spin, 1e-9, "rounding");

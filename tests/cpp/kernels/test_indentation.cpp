@@ -24,15 +24,16 @@ Placement standing(const Vec3& foot, double lean = 0.0, double sway = 0.0) {
 }
 
 // How nodes hang on an indentation.
-struct Hung : NodeFaces, BlockContact {
+struct Followed : NodeFaces, BlockContact {
     BlockColumn follows;
 };
 
 // Of nodes that push with `force`; `last`: how the post stood an instant before.
-Hung dent_by(const Post& post, const Placement& stands, const Placement& last, double reach, double force) {
+Followed indentation_by(const Post& post, const Placement& stands, const Placement& last, double reach,
+                        double force) {
     TrussBlockState nodes = uncrushed.block[0];
     nodes.force.fill(force);
-    Hung found;
+    Followed found;
     found.gap.fill(std::numeric_limits<double>::infinity());  // nothing seen so far
     found.per_force.fill(0.0);
     found.set_normal(Vec3::UnitX());
@@ -44,9 +45,9 @@ Hung dent_by(const Post& post, const Placement& stands, const Placement& last, d
 }
 
 // Of nodes without force that the post has just come to, from far in front.
-Hung dent_by(const Post& post, const Placement& stands, double reach) {
+Followed indentation_by(const Post& post, const Placement& stands, double reach) {
     const Placement far{stands.rotation, stands.position - stands.rotation * (100.0 * Vec3::UnitX())};
-    return dent_by(post, stands, far, reach, 0.0);
+    return indentation_by(post, stands, far, reach, 0.0);
 }
 
 // Of a post that stands upright, its surface at x.
@@ -73,7 +74,7 @@ TEST("beside an upright post the skin is drawn in with the slope") {
     int hanging = 0;
     for (const double reach : {0.25, 0.5, 1.0}) {
         const double slope = slope_by(axis - radius, reach);
-        const Hung found = dent_by(Post(radius), standing({axis, 0.1, 0.0}), reach);
+        const Followed found = indentation_by(Post(radius), standing({axis, 0.1, 0.0}), reach);
         const double arc = radius * slope / std::sqrt(1.0 + slope * slope);
         for (std::size_t i = 0; i < block_size; ++i) {
             if (!(found.follows[i] > 0.0)) continue;  // out of reach
@@ -88,8 +89,8 @@ TEST("beside an upright post the skin is drawn in with the slope") {
 
 TEST("above a post the skin is drawn in with the slope, too") {
     const double radius = 0.2, height = 0.3, reach = 0.8, slope = slope_by(2.5, reach);
-    const Hung low = dent_by(Post(radius, height), standing({2.7, 0.0, 0.0}), reach);
-    const Hung tall = dent_by(Post(radius), standing({2.7, 0.0, 0.0}), reach);
+    const Followed low = indentation_by(Post(radius, height), standing({2.7, 0.0, 0.0}), reach);
+    const Followed tall = indentation_by(Post(radius), standing({2.7, 0.0, 0.0}), reach);
     for (std::size_t i = 0; i < block_size; ++i) {
         if (!(low.follows[i] > 0.0 && tall.follows[i] > 0.0)) continue;
         const double above = std::max(0.0, node(i).z() - height);
@@ -103,7 +104,7 @@ TEST("of a post that stands beside the panel only what reaches over its edge pre
     // The axis 0.15 m beyond the edge at y = 1.2 m.
     const double radius = 0.2;
     const double reach = 0.5, slope = slope_by(2.7, reach);
-    const Hung found = dent_by(Post(radius), standing({2.9, 1.35, 0.0}), reach);
+    const Followed found = indentation_by(Post(radius), standing({2.9, 1.35, 0.0}), reach);
     const double at_edge = 2.9 - std::sqrt(radius * radius - 0.15 * 0.15);
     for (std::size_t i = 0; i < block_size; ++i)
         if (found.follows[i] > 0.0)
@@ -114,8 +115,8 @@ TEST("nodes that push go as the post does, wherever they stand, and let it go on
     const Post post(0.2);
     const double way = 1e-3;
     const Placement last = standing({2.8, 0.1, 0.0});
-    const Hung in = dent_by(post, standing({2.8 - way, 0.1, 0.0}), last, 1.0, 1.0);
-    const Hung along = dent_by(post, standing({2.8, 0.1 + way, 0.0}), last, 1.0, 1.0);
+    const Followed in = indentation_by(post, standing({2.8 - way, 0.1, 0.0}), last, 1.0, 1.0);
+    const Followed along = indentation_by(post, standing({2.8, 0.1 + way, 0.0}), last, 1.0, 1.0);
     double left = 0.0, right = 0.0;
     for (std::size_t i = 0; i < block_size; ++i) {
         if (in.follows[i] != 1.0 || along.follows[i] != 1.0) continue;
@@ -140,15 +141,15 @@ TEST("force and torque are what the ways of the nodes ask for by virtual work") 
         const double lean = 0.3 * share(random), sway = 0.3 * share(random);
         const Placement stands = standing(foot, lean, sway);
         // As far as an indentation of 2 m goes: to all nodes.
-        const Hung here = dent_by(post, stands, stands, 2.0, 1.0);
+        const Followed here = indentation_by(post, stands, stands, 2.0, 1.0);
         // Along and about each axis.
         for (int axis = 0; axis < 3; ++axis) {
             const Vec3 way = Vec3::Unit(axis);
             const Placement moved{stands.rotation, stands.position - stands.rotation * (h * way)};
             const Mat3 turn = Eigen::AngleAxisd(h, way).toRotationMatrix();
             const Placement turned{stands.rotation * turn.transpose(), stands.position};
-            const Hung forth = dent_by(post, moved, stands, 2.0, 1.0);
-            const Hung right = dent_by(post, turned, stands, 2.0, 1.0);
+            const Followed forth = indentation_by(post, moved, stands, 2.0, 1.0);
+            const Followed right = indentation_by(post, turned, stands, 2.0, 1.0);
             for (std::size_t i = 0; i < block_size; ++i) {
                 if (here.follows[i] != 1.0 || forth.follows[i] != 1.0 || right.follows[i] != 1.0) continue;
                 ++held;
@@ -179,7 +180,7 @@ TEST("no node is further inside than what the box says, however deep the post") 
         const Placement stands = standing({2.8 + deepest * share(random), 2.0 * share(random), -1.0},
                                           0.4 * share(random), 0.4 * share(random));
         const Indentation indentation(post, stands, front, reach);
-        const Hung found = dent_by(post, stands, reach);
+        const Followed found = indentation_by(post, stands, reach);
         const double least = *std::min_element(found.gap.begin(), found.gap.end());
         CHECK(-least <= most_inside(indentation, front.box) + 1e-12);
         for (std::size_t i = 0; i < block_size; ++i) {

@@ -78,9 +78,9 @@ TEST("a row's velocity is the rate of its gap") {
         for (std::size_t i = 0; i < now.size(); ++i) {
             CHECK_CLOSE(separation_velocity(now[i], bodies), (after[i].gap - before[i].gap) / (2.0 * dt),
                         1e-8, "differences over 2e-6 s");
-            CHECK(now[i].held == (welded || i < 3));
+            CHECK(now[i].bilateral == (welded || i < 3));
             CHECK(now[i].about_axis == (i >= 3));
-            if (now[i].held) CHECK_CLOSE(now[i].gap, 0.0, 1e-14, "closed");
+            if (now[i].bilateral) CHECK_CLOSE(now[i].gap, 0.0, 1e-14, "closed");
         }
         if (!welded) {
             CHECK_CLOSE(now[3].gap, 0.05, 1e-12, "0.1 less the roll");
@@ -96,6 +96,6 @@ TEST("both bodies are pushed at one place, also when the joint gapes") {
     for (const RigidContact& row : rows(joint, leading, trailing)) {
         CHECK_CLOSE((leading.position + row.arm - trailing.position - row.other_arm).norm(), 0.0, 1e-14,
                     "rounding");
-        if (row.held) CHECK_CLOSE(row.gap, -row.normal.dot(Vec3(0.01, -0.02, 0.005)), 1e-14, "rounding");
+        if (row.bilateral) CHECK_CLOSE(row.gap, -row.normal.dot(Vec3(0.01, -0.02, 0.005)), 1e-14, "rounding");
     }
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 
 // Slabs end to end on a crooked line.
-struct Row {
+struct Chain {
     std::vector<PinnedSlab> slabs;
     std::vector<SlabPin> pins;
     std::vector<Vec2> along;  // from the mass centre to the far end
@@ -31,8 +31,8 @@ struct Row {
     }
 };
 
-Row straight(std::size_t count, double limit, double mass = 2000.0) {
-    Row row;
+Chain straight(std::size_t count, double limit, double mass = 2000.0) {
+    Chain row;
     for (std::size_t i = 0; i < count; ++i)
         row.add(mass, 1.5, 0.0, limit);
     return row;
@@ -45,8 +45,8 @@ struct Any {
     }
 };
 
-Row random_row(std::size_t count, Any& any) {
-    Row row;
+Chain random_row(std::size_t count, Any& any) {
+    Chain row;
     double heading = any(-pi, pi);
     const double mass = std::pow(10.0, any(1.0, 4.0)), half = any(0.3, 5.0);
     for (std::size_t i = 0; i < count; ++i) {
@@ -61,11 +61,11 @@ Vec2 at(const Vec3& motion, const Vec2& arm) {
     return {motion.x() - arm.y() * motion.z(), motion.y() + arm.x() * motion.z()};
 }
 
-Vec2 pin_speed(const Row& row, std::span<const Vec3> motions, std::size_t pin) {
+Vec2 pin_speed(const Chain& row, std::span<const Vec3> motions, std::size_t pin) {
     return at(motions[pin], row.pins[pin].on_first) - at(motions[pin + 1], row.pins[pin].on_next);
 }
 
-double value(const Row& row, std::span<const Vec3> motions) {
+double value(const Chain& row, std::span<const Vec3> motions) {
     double sum = 0.0;
     for (std::size_t i = 0; i < row.slabs.size(); ++i) {
         const PinnedSlab& slab = row.slabs[i];
@@ -78,7 +78,7 @@ double value(const Row& row, std::span<const Vec3> motions) {
 }
 
 // J^T of all pins, one column a direction, and the masses.
-Eigen::MatrixXd pin_columns(const Row& row) {
+Eigen::MatrixXd pin_columns(const Chain& row) {
     const auto rows = static_cast<Eigen::Index>(3 * row.slabs.size());
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(2 * row.pins.size()));
     for (std::size_t p = 0; p < row.pins.size(); ++p)
@@ -95,7 +95,7 @@ Eigen::MatrixXd pin_columns(const Row& row) {
     return columns;
 }
 
-Eigen::VectorXd inverse_masses(const Row& row) {
+Eigen::VectorXd inverse_masses(const Chain& row) {
     Eigen::VectorXd result(static_cast<Eigen::Index>(3 * row.slabs.size()));
     for (std::size_t i = 0; i < row.slabs.size(); ++i)
         result.segment<3>(static_cast<Eigen::Index>(3 * i)) =
@@ -104,7 +104,7 @@ Eigen::VectorXd inverse_masses(const Row& row) {
 }
 
 // With the frictions given, dense: v = v0 + W (f + J^T p), J v = 0.
-std::vector<Vec3> dense(const Row& row, std::span<const Vec3> frictions) {
+std::vector<Vec3> dense(const Chain& row, std::span<const Vec3> frictions) {
     const Eigen::MatrixXd J = pin_columns(row);
     const Eigen::VectorXd W = inverse_masses(row);
     Eigen::VectorXd v(W.size());
@@ -147,7 +147,7 @@ TEST("elimination from pin to pin is the dense solution, for random chains") {
     SlabChain chain;
     for (int i = 0; i < 100; ++i) {
         const double most = i % 20 == 0 ? 180.0 : 30.0;  // blocks of slabs are crossed
-        const Row row = random_row(2 + static_cast<std::size_t>(any(0.0, most)), any);
+        const Chain row = random_row(2 + static_cast<std::size_t>(any(0.0, most)), any);
         chain.solve(row.slabs, row.pins, 0.0);
         const std::vector<Vec3> expected = dense(row, chain.frictions());
         for (std::size_t k = 0; k < expected.size(); ++k)
@@ -162,7 +162,7 @@ TEST("friction is the limit against the sliding, and the motion the least of the
     SlabChain chain;
     int sliding = 0;
     for (int i = 0; i < 100; ++i) {
-        const Row row = random_row(2 + static_cast<std::size_t>(any(0.0, 12.0)), any);
+        const Chain row = random_row(2 + static_cast<std::size_t>(any(0.0, 12.0)), any);
         chain.solve(row.slabs, row.pins, 0.0);
         std::vector<Vec3> found(chain.motions().begin(), chain.motions().end());
         const double least = value(row, found);
@@ -175,7 +175,7 @@ TEST("friction is the limit against the sliding, and the motion the least of the
         }
         // Along all that the pins allow it grows.
         for (int j = 0; j < 20; ++j) {
-            Row other = row;
+            Chain other = row;
             const double size = std::pow(10.0, any(-6.0, -1.0));
             std::vector<Vec3> none(row.slabs.size(), Vec3::Zero());
             for (std::size_t k = 0; k < found.size(); ++k)
@@ -194,7 +194,7 @@ TEST("a guess changes nothing but the cost") {
     Any any{std::mt19937(6)};
     SlabChain chain, again;
     for (int i = 0; i < 50; ++i) {
-        Row row = random_row(12, any);
+        Chain row = random_row(12, any);
         chain.solve(row.slabs, row.pins, 0.0);
         for (std::size_t k = 0; k < row.slabs.size(); ++k)
             row.slabs[k].guess = chain.motions()[k];
@@ -206,7 +206,7 @@ TEST("a guess changes nothing but the cost") {
 }
 
 TEST("a row that slides as one loses the limit of each") {
-    Row row = straight(4, 300.0);
+    Chain row = straight(4, 300.0);
     for (PinnedSlab& slab : row.slabs)
         slab.motion = {3.0, -4.0, 0.0};
     SlabChain chain;
@@ -218,7 +218,7 @@ TEST("a row that slides as one loses the limit of each") {
 TEST("what friction can hold rests: one slab alone where it can, as many as it takes where it can not") {
     SlabChain chain;
     for (const double push : {80.0, 250.0}) {
-        Row row = straight(7, 100.0);
+        Chain row = straight(7, 100.0);
         row.slabs[2].motion = {0.0, push / 2000.0, 0.0};
         chain.solve(row.slabs, row.pins, 0.0);
         double sum = 0.0;
@@ -235,7 +235,7 @@ TEST("what friction can hold rests: one slab alone where it can, as many as it t
 }
 
 TEST("a row that is pushed aside bends at its pins: the slab that is pushed slides, its ends drag the next") {
-    Row row = straight(7, 100.0);
+    Chain row = straight(7, 100.0);
     row.slabs[3].motion = {1.0, 0.0, 0.0};
     SlabChain chain;
     chain.solve(row.slabs, row.pins, 0.0);
@@ -251,7 +251,7 @@ TEST("a row that is pushed aside bends at its pins: the slab that is pushed slid
 }
 
 TEST("without friction a row has none, and momentum stays") {
-    Row row = straight(5, 0.0);
+    Chain row = straight(5, 0.0);
     row.slabs[1].motion = {1.0, 2.0, 0.3};
     SlabChain chain;
     chain.solve(row.slabs, row.pins, 0.0);
@@ -267,7 +267,7 @@ TEST("pins are closed after the drift, gaps that were there too") {
     Any any{std::mt19937(9)};
     SlabChain chain;
     for (int i = 0; i < 50; ++i) {
-        Row row = random_row(8, any);
+        Chain row = random_row(8, any);
         for (SlabPin& pin : row.pins)
             pin.gap = 1e-5 * Vec2(any(-1.0, 1.0), any(-1.0, 1.0));
         const double dt = any(1e-4, 5e-3);
@@ -289,7 +289,7 @@ TEST("the cost grows with the slabs that move, not with those that rest") {
     SlabChain chain;
     std::vector<std::size_t> work;
     for (const std::size_t count : {20, 40, 80, 1000}) {
-        Row row = straight(count, 100.0);
+        Chain row = straight(count, 100.0);
         row.slabs[count / 2].motion = {0.5, 0.1, 0.0};
         chain.solve(row.slabs, row.pins, 0.0);
         work.push_back(chain.work());
@@ -297,7 +297,7 @@ TEST("the cost grows with the slabs that move, not with those that rest") {
     }
     CHECK(work[1] == work[2]);
     CHECK(work[2] == work[3]);
-    Row still = straight(50, 100.0);
+    Chain still = straight(50, 100.0);
     chain.solve(still.slabs, still.pins, 1e-3);
     CHECK(chain.work() == 0);
 }

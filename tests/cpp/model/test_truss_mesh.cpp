@@ -113,8 +113,8 @@ TEST("treads stand in blocks of their own behind the skin, which stays as it was
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec3 d = mesh.node(mesh.skin + i) - wheel.center;
         CHECK(mesh.tire_nodes[i].wheel == 0);
-        CHECK_CLOSE(mesh.tire_nodes[i].turn_r, d.z() / 0.4, 1e-15, "rounding");
-        CHECK_CLOSE(mesh.tire_nodes[i].turn_t, -d.x() / 0.4, 1e-15, "rounding");
+        CHECK_CLOSE(mesh.tire_nodes[i].tread_r, d.z() / 0.4, 1e-15, "rounding");
+        CHECK_CLOSE(mesh.tire_nodes[i].tread_t, -d.x() / 0.4, 1e-15, "rounding");
         CHECK(mesh.block[3].k_unloading[i] == 0.5 * 60e6);
     }
     for (std::size_t i = 3; i < block_size; ++i)

@@ -33,8 +33,8 @@ TrussInput skin_and_treads(const std::vector<Wheel>& wheels) {
     return input;
 }
 
-std::vector<Wheel> two_wheels(const Vec3& seen_from) {
-    return {{Vec3(1.5, 0.8, -0.6) - seen_from, 0.4}, {Vec3(-1.5, 0.8, -0.6) - seen_from, 0.4}};
+std::vector<Wheel> two_wheels(const Vec3& observer) {
+    return {{Vec3(1.5, 0.8, -0.6) - observer, 0.4}, {Vec3(-1.5, 0.8, -0.6) - observer, 0.4}};
 }
 
 // What the constructor makes of the moved input.
@@ -113,8 +113,8 @@ TEST("what does not change is shared, and treads turn as they did") {
     CHECK(moved.tire_nodes.size() == 10);
     for (std::size_t i = 0; i < moved.tire_nodes.size(); ++i) {
         CHECK(moved.tire_nodes[i].wheel == anew.tire_nodes[i].wheel);
-        CHECK_CLOSE(moved.tire_nodes[i].turn_r, anew.tire_nodes[i].turn_r, 1e-14, "rounding");
-        CHECK_CLOSE(moved.tire_nodes[i].turn_t, anew.tire_nodes[i].turn_t, 1e-14, "rounding");
+        CHECK_CLOSE(moved.tire_nodes[i].tread_r, anew.tire_nodes[i].tread_r, 1e-14, "rounding");
+        CHECK_CLOSE(moved.tire_nodes[i].tread_t, anew.tire_nodes[i].tread_t, 1e-14, "rounding");
     }
 }
 

@@ -38,7 +38,7 @@ TEST("a wall makes no indentation: the same bits with and without") {
           crash(indented(0.65, 20, 12), wall, 10.0).state().hash());
 }
 
-TEST("the ledger closes with indentations, with and without friction, and better with smaller steps") {
+TEST("the balance closes with indentations, with and without friction, and better with smaller steps") {
     for (const double degrees : {90.0, 60.0})
         for (const double friction : {0.0, 0.3}) {
             const Barrier pole = Barrier::pole(friction, Vec3(0.0, 0.2, 0.0), 0.0, 0.15);

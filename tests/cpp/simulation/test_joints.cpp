@@ -102,7 +102,7 @@ TEST("two free bodies joined keep their momenta; their energy the better the sma
             spinning(floating(JointKind::fifth_wheel, tolerance, 0.2), {0.0, 0.3, 20.0}, {0.0, -0.2, -15.0});
         const Vehicle& vehicle = *simulation.scene().vehicle;
         const Totals start = totals(vehicle, simulation.state());
-        const double ledger = simulation.state().energies.total();
+        const double balances = simulation.state().energies.total();
         double drift = 0.0;
         while (simulation.step()) {
             const Totals now = totals(vehicle, simulation.state());
@@ -110,7 +110,8 @@ TEST("two free bodies joined keep their momenta; their energy the better the sma
             CHECK_CLOSE((now.momentum - start.momentum).norm() / start.momentum.norm(), 0.0, 1e-12,
                         "rounding");
             CHECK_CLOSE((now.angular - start.angular).norm() / start.angular.norm(), 0.0, 1e-12, "rounding");
-            CHECK_CLOSE(simulation.state().energies.total() / ledger, 1.0, 1e-12, "every impulse is booked");
+            CHECK_CLOSE(simulation.state().energies.total() / balances, 1.0, 1e-12,
+                        "every impulse is booked");
             drift = std::max(drift, std::abs(now.energy / start.energy - 1.0));
         }
         CHECK_CLOSE(simulation.state().energies.impacts, 0.0, 0.0, "no stop is met");

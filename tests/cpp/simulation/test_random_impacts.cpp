@@ -30,7 +30,7 @@ Gaps least_gaps(const Simulation& simulation) {
 
 }  // namespace
 
-TEST("random impacts: nothing passes through a wall or a pole, and the ledger closes") {
+TEST("random impacts: nothing passes through a wall or a pole, and the balance closes") {
     std::mt19937 random(3);
     const auto draw = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);

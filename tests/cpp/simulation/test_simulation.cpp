@@ -127,7 +127,7 @@ TEST("a wall that ploughs along a panel meets the second trusses alone, as a spr
     CHECK(simulation.state().energies.impacts == 0.0);
 }
 
-TEST("energy is kept, and the ledger's terms only grow") {
+TEST("energy is kept, and the balance's terms only grow") {
     Simulation simulation(busy_scene(0.0));
     const double start = simulation.state().energies.total();
     Energies last = simulation.state().energies;

@@ -16,7 +16,7 @@ class Hash {
         std::memcpy(&bits, &value, sizeof bits);
         add(bits);
     }
-    // Each number goes in by a one-to-one map of the value: the product carries its bits up, the shift brings them down.
+    // The map of the hash is one-to-one: the product spreads low bits upwards, the shift spreads high bits downwards.
     void add(std::uint64_t bits) {
         value_ = (value_ ^ bits) * 0x9e3779b97f4a7c15ULL;
         value_ ^= value_ >> 32;

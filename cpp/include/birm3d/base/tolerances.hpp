@@ -3,8 +3,8 @@
 
 namespace birm3d::tolerance {
 
-// Approach speed below which a rigid contact does not rebound (m/s). Zero: a parked car hums, because
-// gravity gives every resting tyre a small approach speed in each step. Large: light bounces are lost.
+// Approach speed below which a rigid contact does not rebound (m/s). Zero: a parked car vibrates, because gravity
+// gives every resting tyre a small approach speed in each step. Large: light rebounds are lost.
 inline constexpr double restitution_speed = 0.1;
 
 // Share of a unit's inverse mass added to each of its tyres as compliance, so that tyres on a plane share the load
@@ -25,49 +25,48 @@ inline constexpr double critical_phase = 1.7320508;
 // Share of the critical step that adaptive stepping uses at the most. 1: the edge of stability.
 inline constexpr double stable_fraction = 0.65;
 
-// Share of the critical step that is advised for fixed steps. Larger: stable, but peaks and turns are passed
-// unseen.
+// Share of the critical step that is advised for fixed steps. Larger: stable, but steps pass over peaks and velocity
+// reversals.
 inline constexpr double advised_fraction = 0.25;
 
-// Longest and shortest adaptive step (s). Longest: beyond it an estimate has too little to go by. Shortest: a scene that
-// asks for less is refused rather than run for ever.
+// Longest and shortest adaptive step (s). Above the longest, too few loads are known to estimate an error. A scene
+// that needs steps below the shortest is refused.
 inline constexpr double longest_step = 50e-3;
 inline constexpr double shortest_step = 1e-9;
 
-// Longest step of the usual tolerance where tyres or bottomed-out trusses carry the vehicle, or joints and segments are (s).
-// Large: what comes down gently lands over a long time.
+// Longest step at the default tolerance while tyres or bottomed-out trusses carry load, or with joints or
+// free-standing segments (s). Large: a slow landing is spread over a long time.
 inline constexpr double longest_resting_step = 5e-3;
 
-// A step may grow by the third root of how far its error is below what is allowed once that is more than so many times as
-// much, and by this factor at the most. Small: estimates chase each other.
+// A step grows only if the allowed error is more than this many times its estimated error. It grows by the third root
+// of that ratio, but at most by the second number. Small: the step length oscillates.
 inline constexpr double ample_room = 16.0;
 inline constexpr double fastest_growth = 10.0;
 
-// The instant at which a load jumps is located within this (s): half of the jump over that time is missed, and the error
-// of a step across it falls no faster than the step.
+// The instant at which a load jumps is located to within this (s). Half of the jump is missed over that time.
 inline constexpr double jump_resolution = 1e-8;
 
-// The instant at which a vehicle leaves a barrier is located within this, see release_resolution() (s): the end of the run,
-// and every value taken there, follows on it.
+// The instant at which a vehicle leaves a barrier is located to within this, see release_resolution() (s). The end of
+// the run and all values taken there depend on it.
 inline constexpr double release_resolution = 1e-4;
 
-// A segment that slides is brought to rest at the end of a step, unless it would rest within this (s): one that pins hold
-// back comes to rest ever more slowly. At full friction the way missed is 5e-8 m.
+// A step ends where a sliding segment comes to rest, unless that is within this time (s). A segment that pins hold
+// back slows down ever more gradually. At full friction the distance missed is 5e-8 m.
 inline constexpr double shortest_stop = 1e-4;
 
 // First step of a contact (s); the error estimate corrects it at once.
 inline constexpr double first_contact_step = 2e-4;
 
-// Where nothing touches, a node that glides along a surface goes this far in a step at the most (m): beyond it another
-// surface may lie. Small: steps are short beside a wall. Large: steps that met something are done again.
-inline constexpr double untouched_way = 0.05;
+// Without contact, a node that moves along a surface goes at most this far in a step (m): another surface may lie
+// beyond. Small: steps beside a wall are short. Large: more steps are rejected.
+inline constexpr double untouched_distance = 0.05;
 
-// Local velocity error allowed in one step, relative to the reference speed and per unit of
-// Settings::tolerance. Larger: the asked and the achieved error of the metrics part.
+// Local velocity error allowed in one step, relative to the reference speed and per unit of Settings::tolerance.
+// Larger: the error of the metrics exceeds the tolerance that was asked for.
 inline constexpr double step_error_per_tolerance = 0.01;
 
 // Shortest time over which a divided difference of the load is taken, as a fraction of the step before. Over shorter
-// times, as in the steps up to an impact, the difference is that of single nodes and predicts nothing.
+// times, as in the steps up to an impact, the difference shows single nodes only and predicts nothing.
 inline constexpr double min_informative_step = 0.05;
 
 // The load is smooth if its second difference changes within a step by less than this fraction of itself; then the
@@ -77,41 +76,41 @@ inline constexpr double smooth_change = 0.6;
 // Speed scale of a scene that starts at rest (m/s): errors are judged against it.
 inline constexpr double slowest_reference_speed = 0.1;
 
-// Sliding speed at which friction is fully developed, relative to the reference speed. Smaller: sticking
-// becomes stiff and the steps short. Larger: what should stick creeps at up to this speed.
+// Sliding speed at which friction is fully developed, relative to the reference speed. Smaller: sticking is stiff and
+// steps are short. Larger: bodies that should stick creep at up to this speed.
 inline constexpr double full_friction_speed = 0.01;
 
-// What slides faster than so many times the speed of full friction has a force that hardly changes with its motion within
-// a step.
+// Above this many times the speed of full friction, the friction force is taken as constant within a step.
 inline constexpr double fast_sliding = 10.0;
 
-// Where friction and motion are found from each other, the ground under a wheel that it carries is so many times as heavy
-// as the vehicle. Large: rounding; small: friction is taken to lift what it only presses down.
-inline constexpr double held_by_ground = 1e3;
+// Mass of the ground relative to the vehicle, where friction and motion are solved together. Large: rounding errors.
+// Small: friction seems to lift a wheel that it only presses down.
+inline constexpr double ground_mass_ratio = 1e3;
 
-// Friction and normal impulses of rigid contacts are found in turns until these change by less than this share of their
-// sum. Large: which turn is the last follows on rounding, and left and right do not mirror each other.
+// Friction and normal impulses of rigid contacts are iterated until these change by less than this fraction of their
+// sum. Large: rounding decides the number of iterations, and mirrored scenes give different results.
 inline constexpr double friction_settled = 1e-9;
 
-// Rigid contacts: a point found inside a surface is pushed out within the step, but no faster than this (m/s), or the
-// thousandth of a millimetre that a turn has left would be a jump after a short step.
+// Rigid contacts: a point found inside a surface is pushed out within the step, but no faster than this (m/s).
+// Otherwise a depth of a micrometre, left by rotation, would cause a jump in a short step.
 inline constexpr double slow_recovery = 0.02;
 
-// A deep one: within this time (s), and no faster than this (m/s).
+// A point that is deep inside is pushed out within this time (s), and no faster than this (m/s).
 inline constexpr double recovery_time = 1e-3;
 inline constexpr double recovery_speed = 0.5;
 
 // Points nearer than this to a rigid surface count as touching it (m).
 inline constexpr double touching_gap = 1e-6;
 
-// When a point meets a rigid surface hard, points nearer than this share the impact (m): which of two
-// wheels lands first would else hang on rounding. Large: points that are still in the air are stopped.
+// In a rigid impact, all points nearer to a surface than this take part (m). Otherwise rounding would decide which of
+// two wheels lands first. Large: points that are still in the air are stopped.
 inline constexpr double joint_impact_gap = 1e-3;
 
-// A point that the forces of the step press onto a surface within this fraction of the step rests there; it makes no impact.
+// A point that the forces of a step press onto a surface within this fraction of the step rests there without an
+// impact.
 inline constexpr double resting_approach = 0.01;
 
-// Places of a joint on its two bodies may differ by this much at rest (m): what files are rounded to.
+// The two places of a joint, one on each body, may differ by this much at rest (m): files are rounded.
 inline constexpr double joint_fit = 1e-3;
 
 // Gap of a joint at the end of a step below which its impulses are not corrected any more (m, rad): rounding.
@@ -121,8 +120,8 @@ inline constexpr double joint_gap = 1e-12;
 // histories settle.
 inline constexpr double tail_duration = 0.02;
 
-// A vehicle of which a wheel is further than this above the ground and still rises has not shown its greatest roll and
-// pitch yet (m). Small: every hop after an impact makes the run longer.
+// A run goes on while any wheel is higher than this above the ground and rises (m): roll and pitch may still grow.
+// Small: every small hop after an impact makes the run longer.
 inline constexpr double lifted_wheel = 0.1;
 
 // Below this sine of its angle a path runs along the barrier's line.

@@ -9,12 +9,12 @@
 
 namespace birm3d {
 
-// What a run came to.
+// The end of a run.
 struct RunSummary {
     EndReason end_reason = EndReason::running;
     std::uint64_t state_hash = 0;
     StepStatistics statistics;
-    Ledger ledger;
+    Balances balances;
     double run_time = 0.0;               // wall time of the stepping (s)
     Vec3 final_velocity = Vec3::Zero();  // of unit 0, world (m/s)
     double deflection = 0.0;             // greatest of all trusses of all units, at the end (m)

@@ -20,7 +20,7 @@ struct HalfSpace {
     }
 
     // The same surface seen from axes that stand at `position` and are turned by `rotation` (axes to world).
-    HalfSpace seen_from(const Vec3& position, const Mat3& rotation) const {
+    HalfSpace in_axes(const Vec3& position, const Mat3& rotation) const {
         return {rotation.transpose() * normal, offset - normal.dot(position)};
     }
 };

@@ -1,10 +1,10 @@
 // An extruded profile: a closed polygon of the own x-z plane, convex or not, drawn along y. Walls, Jersey
 // barriers, curbs.
 //
-// Faces can be covered: they stand on the ground or abut a neighbour and are no surface. |gap| is the
-// distance to the faces that are not covered, negative inside the solid, so a point inside is never pushed
-// out through a covered face; across one the sign changes and the size does not. Points under a covered
-// bottom are outside: give a profile a foot in the ground where points may get below it.
+// Faces can be covered: they stand on the ground or abut a neighbour and are no surface. |gap| is the distance to the
+// faces that are not covered, negative inside the solid, so a point inside is never pushed out through a covered
+// face. Across a covered face the sign of the gap changes and its size does not. Points under a covered bottom are
+// outside: where points may get there, extend the profile below the ground.
 #pragma once
 
 #include <memory>
@@ -45,8 +45,8 @@ class Prism {
     // Of a point in own axes.
     Nearest nearest(const Vec3& p) const;
 
-    // No point of the box is nearer than this to the solid, whose faces all count, covered or not (m); 0 where some may be
-    // inside. Of an endless prism: the part that its ends add is left out.
+    // Lower bound of the distance of all points of the box from the solid (m); 0 if some may be inside. Covered faces
+    // count too. Of an endless prism the part that its ends add is left out.
     double no_nearer(const Box& box) const;
 
     const Box& bounds() const { return bounds_; }  // as of a Shape

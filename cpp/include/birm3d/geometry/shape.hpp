@@ -18,8 +18,8 @@ using Shape = std::variant<HalfSpace, Post, Prism, TriangleMesh>;
 // Of a point in own axes.
 Nearest nearest(const Shape& shape, const Vec3& p);
 
-// Around the shape, own axes (m). Along an axis on which the shape has no end, at one side or both, `half` is
-// infinite and `center` a finite place.
+// The box around the shape, own axes (m). Along an axis on which the shape has no end, `half` is infinite and
+// `center` is finite.
 Box bounds(const Shape& shape);
 
 // How thick the shape is where it is thinnest (m): a point that got in by less than half of it is nearer to

@@ -6,7 +6,7 @@
 //   welded       all six held.
 //   pinned       of bodies that stand on the ground: forces along the ground; they turn about the vertical.
 //
-// What a fifth wheel lets go, taken in this order (a Cardan joint): R_leading^T R_trailing = Ry(pitch) Rx(roll) Rz(yaw).
+// The free rotations of a fifth wheel in their order, a Cardan joint: R_leading^T R_trailing = Ry(pitch) Rx(roll) Rz(yaw).
 #pragma once
 
 #include <cstddef>

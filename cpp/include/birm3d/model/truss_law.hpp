@@ -15,8 +15,8 @@
 // so that one loop without branches serves every curve; the paper's knee is its two-slope case.
 // Below the peak deflection d_p (force F_p) the member moves on  F = max(0, F_p - k (d_p - d)).
 //
-// Fig. 3 has one slope k = k_unloading. Metal structures spring back by a nearly constant length r instead, `recovery`. It is
-// less in proportion to what has been crushed: of a truss of length L
+// Fig. 3 has one slope k = k_unloading. Metal structures spring back by a nearly constant length r instead,
+// `recovery`. It is less in proportion to what has been crushed. For a truss of length L:
 //   k = max(k_unloading, F_p / (r (1 - d_p / L)))
 // so that restitution falls with speed. An infinite r leaves Fig. 3; of a curve by itself L is infinite.
 #pragma once
@@ -31,7 +31,7 @@ namespace birm3d {
 // A loading envelope with its unloading slope; per truss (m, N, N/m) or per unit area (m, Pa, Pa/m).
 struct TrussCurve {
     std::vector<double> deflection;  // where the slope changes; starts at 0, increasing (m)
-    std::vector<double> slope;       // slope from there on; the last one holds for ever
+    std::vector<double> slope;       // slope from there on; the last one extends to infinity
     double k_unloading = 0.0;        // with a recovery: the least one
     double recovery = std::numeric_limits<double>::infinity();  // m
 };
@@ -57,7 +57,7 @@ void require_valid(const TrussCurve& curve, const std::string& name);
 
 double envelope_force(const TrussCurve& curve, double deflection);
 
-// One member's history, for a single truss on its own (the columns of TrussState do the same in bulk).
+// The history of a single truss. TrussState holds the same numbers for all trusses of a vehicle.
 struct TrussMemory {
     double peak_deflection = 0.0;
     double peak_force = 0.0;

@@ -1,17 +1,17 @@
 // The crushable skin of one rigid unit: massless shell nodes, each tied by one truss to an anchor on the
 // rigid body (paper 4.1). Constant, in the order the kernels walk it.
 //
-// Trusses are cut into blocks of `block_size` neighbours, so that nodes that touch a barrier together stand together, a block
-// that can not touch anything is left out by one test, and kernels run over whole blocks without gathers. Blocks are left
-// out by the group too. The last block is padded with trusses of no stiffness.
+// Trusses are sorted into blocks of `block_size` neighbours. Neighbours touch a barrier together. One test tells that
+// a whole block touches nothing, and kernels run over whole blocks without gathers. Groups of blocks are tested
+// first. The last block is padded with trusses of no stiffness.
 //
-// A panel may resist in its own plane as well: a node has a second truss then, along the vehicle, which is a node of its own
-// at the same place. It moves as the first one does, meets what that meets and is indented with its panel; its anchor is no
-// part of the rigid body. Their blocks follow those of the skin.
+// A panel may also resist in its own plane. Each of its nodes then has a second truss along the vehicle, with a node
+// of its own at the same place. That node meets the same surfaces and indentations as the first one. The anchor of a
+// second truss is no part of the rigid body. The blocks of second trusses follow those of the skin.
 //
-// Tyres that meet a barrier are nodes too, on the tread's outer edge, each wheel's in blocks of its own after
-// these, padded too. They are no part of the rigid body: their anchors meet nothing. The ground is met by the wheels
-// themselves (kernels/tires.hpp), not by these nodes, and posts do not indentation them.
+// Tyres that meet a barrier have nodes too, on the tread's outer edge. The nodes of each wheel have padded blocks of
+// their own, after all others. Their anchors meet nothing, as they are no part of the rigid body. The wheels
+// themselves meet the ground (kernels/tires.hpp), not these nodes. Posts do not indent tyres.
 #pragma once
 
 #include <algorithm>
@@ -46,7 +46,7 @@ class SharedColumn {
     std::shared_ptr<std::vector<T>> values_ = std::make_shared<std::vector<T>>();
 };
 
-// What a caller gives: one curve for many trusses, scaled by each truss's tributary area (or by 1).
+// The arguments of a mesh: one curve for many trusses, scaled by each truss's tributary area (or by 1).
 struct TrussInput {
     std::vector<Vec3> node;             // (n) body axes, origin at the mass centre (m)
     std::vector<Vec3> anchor;           // (n) the same
@@ -56,7 +56,8 @@ struct TrussInput {
     // What is crushed has inertia and rate strength, which the law of Fig. 3 leaves out: the loading envelope
     // is multiplied by 1 + (this times the rate of deflection)^2; in s/m.
     double rate_sensitivity = 0.0;
-    // How far the indentation that a post makes reaches beyond it (kernels/indentation.hpp); zero: nodes know nothing of each other (m).
+    // How far beyond a post its indentation extends (kernels/indentation.hpp); zero: nodes move independently of each
+    // other (m).
     double indentation_length = 0.0;
     // (n) Number of the wheel whose tread the node is on, -1 for the skin; empty: all skin.
     std::vector<int> wheel_of = {};
@@ -98,11 +99,11 @@ struct alignas(64) Hinge {
     BlockColumn slope_change;  // N/m
 };
 
-// What a node on a tread has in addition. The tread of a wheel that turns as if it rolled with the speed v moves, seen
-// from the body, with v (s x d)/R at d from the axle.
+// What a tire contact node has in addition. At a rolling speed v, the tread at d from the axle moves relative to the
+// body with v (s x d)/R.
 struct TireNode {
-    double turn_r = 0.0, turn_t = 0.0;  // (s x d)/R
-    std::size_t wheel = 0;              // of the unit
+    double tread_r = 0.0, tread_t = 0.0;  // (s x d)/R
+    std::size_t wheel = 0;                // of the unit
 };
 
 struct TrussMesh {
@@ -171,8 +172,8 @@ struct TrussMesh {
     void find_panels(const TrussInput& input);
     void find_tread(const TrussInput& input, const std::vector<Wheel>& wheels);
     void pad(const TrussInput& input, std::size_t b);
-    void fill_lane(const TrussInput& input, std::size_t source, std::size_t b, std::size_t i);
-    void place_lane(const Vec3& node, const Vec3& anchor, std::size_t b, std::size_t i);
+    void fill_slot(const TrussInput& input, std::size_t source, std::size_t b, std::size_t i);
+    void place_slot(const Vec3& node, const Vec3& anchor, std::size_t b, std::size_t i);
 };
 
 }  // namespace birm3d

@@ -35,8 +35,8 @@ struct Unit {
     // Of the mass centre from the vehicle's reference point, forward and to the left in the position of rest; no
     // height (m).
     Vec3 offset;
-    // Boxes that the rigid body behind the trusses fills, body axes: how deep it is inside a barrier is measured on
-    // them. None of a vehicle that is only known by its trusses.
+    // Boxes that the rigid body behind the trusses fills, body axes. They tell how deep it is inside a barrier. Empty
+    // for a vehicle that is given by its trusses only.
     std::vector<Box> core;
 
     // Of the mass centre above the vehicle's reference point on the ground, position of rest (m).

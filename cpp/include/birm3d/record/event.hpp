@@ -1,4 +1,4 @@
-// What became of the vehicle at the barrier, found step by step: it depends neither on the duration nor on histories.
+// The outcome of a run, found step by step. It depends neither on the duration nor on the histories that are kept.
 #pragma once
 
 #include <cstdint>
@@ -61,7 +61,7 @@ struct Event {
     Verdict outcome() const;
 };
 
-// What a step says of contact.
+// Contact of an accepted step.
 struct StepContact {
     double begin = 0.0;            // when the step began (s)
     double released = 0.0;         // when its loads end, after that (s)

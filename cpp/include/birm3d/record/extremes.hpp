@@ -1,5 +1,5 @@
-// Extremes of a history over its output instants, from which scalars are made: in one place, so that a run of which no
-// history is kept has the same scalars, bit for bit, as one with it.
+// Extremes of a history over its output instants, from which metrics are made. A run whose history is not kept has
+// the same extremes, bit for bit.
 #pragma once
 
 #include <cstddef>
@@ -43,12 +43,12 @@ struct Extremes {
         double last;  // in the last interval (N)
     };
     struct Motion {
-        Vec3 towards;                     // History::towards
-        double approach_speed;            // along History::towards, at the start (m/s)
-        std::optional<double> turn_time;  // when that speed has come down to zero (s)
-        double way;                       // greatest along History::towards (m)
-        double velocity_change;           // greatest from the start, until separation (m/s)
-        double deceleration;              // greatest along r, interval means (m/s^2)
+        Vec3 towards;                         // History::towards
+        double approach_speed;                // along History::towards, at the start (m/s)
+        std::optional<double> reversal_time;  // when that speed has come down to zero (s)
+        double travel;                        // greatest along History::towards (m)
+        double velocity_change;               // greatest from the start, until separation (m/s)
+        double deceleration;                  // greatest along r, interval means (m/s^2)
     };
     // Greatest magnitudes, counted on beyond half a turn; yaw from the start, until separation (rad).
     struct Attitude {

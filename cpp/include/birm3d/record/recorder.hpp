@@ -1,10 +1,10 @@
 // The history of a run. One row is kept for each accepted step; evenly spaced output is made from the rows
 // afterwards, so that the output interval costs nothing while stepping and does not bound the step.
 //
-// Within a step the scheme's forces run along the parabola that carries the impulse of its higher order, the impulses of
-// lasting rigid contacts are spread evenly, and rigid impacts stand at the instant at which they happen:
-// velocities at output instants follow from that, and forces are means over the output interval, so that
-// m * (change of velocity) equals the sum of forces times the interval to rounding.
+// Within a step, contact forces follow a parabola whose integral is the impulse of the scheme. The impulses of
+// lasting rigid contacts are spread evenly over the step. A rigid impact acts at the instant at which it happens.
+// Velocities at output instants follow from these impulses, and forces are means over the output interval. So m *
+// (change of velocity) equals the sum of forces times the interval, to rounding.
 #pragma once
 
 #include <array>
@@ -107,7 +107,7 @@ class Recorder {
         const std::vector<BodyState>& segments;
         const std::vector<ContactImpulses>& impulses;
         const std::vector<Wrench>& joint_impulses;
-        bool bent;  // does the step that leads to this row have a bend?
+        bool curved;  // do the forces of the step that leads to this row follow a parabola?
     };
     struct ObstacleRow {
         std::size_t row, obstacle;

@@ -1,4 +1,4 @@
-// Which obstacles lie about a place: of a long row of posts only the few that a vehicle can reach are looked at.
+// Finds the obstacles near a place. Of a long row of posts only the few that a vehicle can reach are tested.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ class ObstacleMap {
   public:
     ObstacleMap() = default;
 
-    // The first `movable` of the obstacles, and those without end, lie everywhere.
+    // The first `movable` obstacles, and those without end, are found at every place.
     ObstacleMap(const std::vector<Obstacle>& obstacles, std::size_t movable);
 
     // Those of which any point can be within `reach` of a place (world, m), in their order; possibly more.

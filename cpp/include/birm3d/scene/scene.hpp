@@ -28,14 +28,14 @@ struct Approach {
     bool operator==(const Approach&) const = default;
 };
 
-// What the vehicle can touch: an element of the barrier, or the ground.
+// A body that the vehicle can touch: an element of the barrier, or the ground.
 struct Obstacle {
     Shape shape;                       // own axes
     Mat3 rotation = Mat3::Identity();  // own axes to those of the run, at the start
     Vec3 position = Vec3::Zero();      // of the own axes' origin, the same (m)
     double friction = 0.0;
-    // Places of the first obstacle that this one is joined to, and of the element that its loads are told of; itself
-    // where it stands alone.
+    // Indices of the first obstacle that this one is joined to, and of the element that its loads are added to. Both
+    // are its own index where it stands alone.
     std::size_t structure = 0, element = 0;
 };
 
@@ -66,9 +66,10 @@ struct Scene {
     // Another start; refuses what the constructor refuses.
     void set_approach(const Approach& approach);
 
-    // Where the axes of the run stand, parallel to the world's (m, world, on the ground). A scene is run in axes of its
-    // own, so that its place in the world rounds nothing: state, record and obstacles are in them, a history is in the
-    // world's. They stand at the barrier's origin; of a barrier without end where the path meets its line.
+    // Origin of the axes of the run, which are parallel to the world's (m, world, on the ground). State, record and
+    // obstacles are in these axes, so that a barrier far from the world's origin costs no digits. Histories are in
+    // world axes. The origin is the barrier's; for a barrier without end it is where the path meets the barrier's
+    // line.
     Vec3 base = Vec3::Zero();
     Vec3 from_origin = Vec3::Zero();  // of the barrier to the base, along the line (m)
 

@@ -42,8 +42,8 @@ class Simulation {
 
     void reset();
 
-    // To the start of another scene, or of this one with another approach. Memory is used again, where the vehicle is
-    // the same one. Refuses what Scene refuses; then a start that is not refused comes next.
+    // Goes to the start of another scene, or of this one with another approach. Memory is reused if the vehicle is
+    // the same. Refuses what Scene refuses; after that only another start is of use.
     void start(const Scene& scene);
     void start(const Approach& approach);
 
@@ -72,8 +72,8 @@ class Simulation {
     // Refuses a checkpoint of another vehicle, barrier, approach or settings, and one beyond the duration of this run.
     void restore(const Snapshot& snapshot);
 
-    // Do as many steps from the start lead to this state? Not where it was restored from a run of another duration, whose
-    // last step was cut to end there.
+    // Does the same number of steps from the start lead to this state? Not if it was restored from a run of another
+    // duration, whose last step was cut short.
     bool replays() const { return replays_; }
 
   private:

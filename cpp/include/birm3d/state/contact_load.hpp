@@ -35,7 +35,7 @@ inline Load difference(const Load& a, const Load& b) {
             a.normal_force - b.normal_force};
 }
 
-// The load over the last steps in Newton's divided differences: what the multistep scheme remembers.
+// The load over the last steps in Newton's divided differences, as the multistep scheme needs it.
 struct LoadHistory {
     Load now;
     Load rate;                   // first divided difference, over the last step (per s)

@@ -1,4 +1,4 @@
-// What the contacts of a unit leave for the next step, beside its trusses.
+// State of a unit's contacts that the next step needs, beside its trusses.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,10 @@ struct SkinForces {
     double work = 0.0;          // done on the trusses since the last instant, trapezoid rule (J)
     double stored = 0.0;        // elastic energy that unloading would return (J), blocks seen only
     double stiffness = 0.0;     // sum of k_unloading of pushing nodes times inverse effective mass (1/s^2)
-    // Of friction, to a change of the unit's motion from `rubbed` at which it was found (kernels/friction.hpp).
+    // Derivative of friction with respect to the unit's motion, at the motion for which friction was found
+    // (kernels/friction.hpp).
     Mat6 resistance = Mat6::Zero();
-    Twist rubbed;
+    Twist friction_motion;
 };
 
 // Which panels of a unit an obstacle indents (src/kernels/indentation.hpp), bit by bit. A panel that it has entered from

@@ -7,14 +7,14 @@
 
 #include "birm3d/base/hash.hpp"
 #include "birm3d/model/vehicle.hpp"
+#include "birm3d/state/balances.hpp"
 #include "birm3d/state/body_state.hpp"
 #include "birm3d/state/contacts.hpp"
-#include "birm3d/state/ledger.hpp"
 #include "birm3d/state/truss_state.hpp"
 
 namespace birm3d {
 
-// What a unit has besides its trusses: small, copied whole with every step that is tried.
+// The state of a unit without its trusses. It is small and is copied with every step that is tried.
 struct UnitMotion {
     BodyState body;
     SkinForces skin;                         // at this instant
@@ -72,8 +72,8 @@ struct StepStatistics {
     double greatest_overlap_time = 0.0;        // when (s)
     std::size_t greatest_overlap_element = 0;  // with which
 
-    // What was left out follows from what was computed, in accepted steps; near: within reach of a block of nodes, or met
-    // by the rigid body.
+    // Counts of what accepted steps computed. "Near" means within reach of a block of nodes, or met by the rigid
+    // body.
     std::uint64_t skin_nodes =
         0;  // nodes of the skin in blocks that anything has come into, each counted once
     std::uint64_t tire_nodes = 0;     // the same of tyres
@@ -108,13 +108,13 @@ struct State : Progress {
         for (std::size_t u = 0; u < units.size(); ++u)
             units[u].reset(vehicle.units[u]);
         segments.clear();
-        ledger = {};
+        balances = {};
     }
 
     std::vector<UnitState> units;
     std::vector<BodyState> segments;  // of the barrier, where they are free-standing; else none
     std::vector<char> was_near;       // (elements of the barrier) in any step? Statistics only
-    Ledger ledger;                    // the same
+    Balances balances;                // the same
 
     std::uint64_t hash() const {
         Hash hash;

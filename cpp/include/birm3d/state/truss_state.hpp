@@ -19,11 +19,11 @@ struct alignas(64) TrussBlockState {
     BlockColumn unloading;                  // slope of that line (N/m)
     Box box;                                // around the nodes, body axes
     bool touching;                          // does any node push on an obstacle?
-    bool slack;  // has an obstacle drawn any node out beyond the free length of its truss?
+    bool slack;  // does an obstacle hold any node beyond the free length of its truss?
     bool met;    // has anything come into it, in any step?
 };
 
-// Was the node drawn out beyond the free length of its truss? A truss does not pull.
+// Does an obstacle hold the node beyond the free length of its truss? A truss does not pull.
 inline bool is_slack(const TrussBlockState& block, std::size_t i) {
     return block.force[i] == 0.0 && block.residual[i] - block.deflection[i] > tolerance::touching_gap;
 }
@@ -78,7 +78,7 @@ struct TrussState {
             around = around.with(of.box);
     }
 
-    // Has an obstacle drawn any node out beyond the free length of its truss? Such a node may return by itself.
+    // Does an obstacle hold any node beyond the free length of its truss? Such a node may return by itself.
     bool hangs_slack() const {
         return std::any_of(groups.begin(), groups.end(), [](const BlockGroup& of) { return of.slack; });
     }
@@ -87,15 +87,15 @@ struct TrussState {
     std::vector<BlockGroup> groups;  // of these blocks, in their order
     Box around;                      // all nodes, however they were drawn out, and the anchors; body axes
 
-    // Eight hashes in turn: each number waits for the one before it in its own hash only.
+    // Eight interleaved hashes: a processor computes them at the same time.
     void add_to(Hash& hash) const {
-        constexpr std::size_t turns = 8;
-        static_assert(block_size % turns == 0);
-        std::array<Hash, turns> parts;
+        constexpr std::size_t streams = 8;
+        static_assert(block_size % streams == 0);
+        std::array<Hash, streams> parts;
         const auto add_column = [&parts](const BlockColumn& column) {
-            for (std::size_t i = 0; i < block_size; i += turns)
-                for (std::size_t turn = 0; turn < turns; ++turn)
-                    parts[turn].add(column[i + turn]);
+            for (std::size_t i = 0; i < block_size; i += streams)
+                for (std::size_t stream = 0; stream < streams; ++stream)
+                    parts[stream].add(column[i + stream]);
         };
         for (const TrussBlockState& b : block) {
             for (const BlockColumn* column :

@@ -28,18 +28,18 @@ from ...base.frozen_mapping import FrozenMapping
 from ...result.metrics import METRIC_UNITS, METRICS
 from ...scene.scene import Scene
 
-__all__ = ["BOOKKEEPING", "LEDGERS", "compared_metrics", "least_scales", "relative_errors"]
+__all__ = ["BALANCES", "BOOKKEEPING", "compared_metrics", "least_scales", "relative_errors"]
 
 BOOKKEEPING = frozenset(name for name, metric in METRICS.items() if metric.error == "effort")
 """How an answer was found, and how long its tail is: no part of the answer."""
 
-LEDGERS = frozenset(name for name, metric in METRICS.items() if metric.error == "balance")
+BALANCES = frozenset(name for name, metric in METRICS.items() if metric.error == "balance")
 """Errors themselves: their converged value is nil, and they are shown as they are."""
 
 
 def compared_metrics(metrics: Collection[str]) -> tuple[str, ...]:
     """Return those of the names that have an error, in the order of :data:`birm3d.metrics.METRIC_UNITS`."""
-    return tuple(name for name in METRIC_UNITS if name in metrics and name not in BOOKKEEPING | LEDGERS)
+    return tuple(name for name in METRIC_UNITS if name in metrics and name not in BOOKKEEPING | BALANCES)
 
 
 def least_scales(scene: Scene, given: Mapping[str, float] | None = None) -> Mapping[str, float]:

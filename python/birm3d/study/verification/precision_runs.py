@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from ...result.energy_balance import LedgerWarning
+from ...result.energy_balance import BalanceWarning
 from ...simulation.parameters import varied
 from ...simulation.simulation import Simulation
 from .convergence import Limit, limit_of
@@ -41,7 +41,7 @@ class PrecisionRun:
             return
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore", LedgerWarning)  # what is off shows as the error
+                warnings.simplefilter("ignore", BalanceWarning)  # what is off shows as the error
                 result = self.simulation.run()
             if not self.times:
                 self.metrics = result.metrics  # too short a run has none

@@ -53,7 +53,7 @@ class PrecisionRow:
     steps, redone, force_evaluations
         Accepted steps, those redone, and forces of nodes computed in both.
     energy_residual, momentum_residual, contact_overlap
-        The ledgers: relative, relative, m.
+        The balances: relative, relative, m.
     refused
         Why there is no answer; empty where there is one.
     """

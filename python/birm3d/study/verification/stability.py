@@ -35,19 +35,19 @@ def stability(
     limits: Limits = LIMITS,
     progress: bool | None = None,
 ) -> Stability:
-    """Take a scene to extremes and judge every run by its ledgers.
+    """Take a scene to extremes and judge every run by its balances.
 
     Stiffness x 1e-3 to 1e6; fixed steps x 1 to 1000 of the one that the program advises; 0.05 to 100 m/s;
     mass x 0.01 to 100; paths down to 0.05 deg from the barrier's line; slopes of unloading up to infinity
     and down to full elasticity; posts of 10 mm; a minute at rest; contact at t = 0; vehicles of one node and
     of 100,000; ten rollovers; a barrier whose segments move.
 
-    A run **held** if the energy and momentum ledgers close, every number is finite, no node or rigid body
+    A run **held** if the energy and momentum balances close, every number is finite, no node or rigid body
     ended a step inside the barrier, and it did what the scene makes it do: met a barrier in its way, stayed
     in front of a post at its middle, stayed at rest. It was **refused** if an error said why not, **warned**
-    of if the run of a fixed step tells that its energy ledger is open (:class:`birm3d.LedgerWarning`), or if
-    the vehicle missed what the scene told it could pass between nodes (:class:`birm3d.CoarseSkinWarning`).
-    All else is a **FAULT**: an answer that its ledgers contradict.
+    of if a run of a fixed step tells that its energy balance is open (:class:`birm3d.BalanceWarning`), or
+    if the vehicle missed what the scene told it could pass between nodes (:class:`birm3d.CoarseSkinWarning`).
+    All else is a **FAULT**: an answer that its balances contradict.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def _judged(case: Case, limits: Limits) -> StabilityRow:
     if faults == ["energy"] and simulation.scene.settings.time_step is not None:
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always")
-            warn_if_open(simulation.scene, simulation._core.ledger)
+            warn_if_open(simulation.scene, simulation._core.balances)
         if told:
             return replace(row, verdict=WARNED, reason=str(told[0].message))
     return replace(row, verdict=FAULT if faults else HELD, reason="; ".join(faults))

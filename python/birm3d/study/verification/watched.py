@@ -27,7 +27,7 @@ class Limits:
         The same of the rigid body: closed trusses are held by rigid contact, which finds what is inside at
         the end of the step [m].
     energy, momentum
-        Greatest residuals of the ledgers, see :func:`birm3d.metrics.compute_metrics`.
+        Greatest residuals of the balances, see :func:`birm3d.metrics.compute_metrics`.
     """
 
     node_depth: float = 5e-3

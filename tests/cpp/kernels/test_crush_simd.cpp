@@ -2,7 +2,8 @@
 #include <random>
 
 #include "check.hpp"
-#include "kernels/crush_dispatch.hpp"
+#include "kernels/crush_columns.hpp"
+#include "kernels/simd_table.hpp"
 #include "laboratory.hpp"
 #include "state/block_contact.hpp"
 
@@ -35,13 +36,13 @@ bool same_bits(const Pressed& a, const Pressed& b) {
 TEST("every instruction set gives the same bits") {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    const auto fill = [&](BlockColumn& lanes_, double middle, double spread) {
-        for (double& value : lanes_)
+    const auto fill = [&](BlockColumn& column_, double middle, double spread) {
+        for (double& value : column_)
             value = middle + spread * uniform(random);
     };
     TrussCurve giving = laboratory::w2_curve();
     giving.recovery = 0.05;
-    const std::vector<PressFunctions> functions = press_functions();
+    const std::vector<SimdPath> functions = simd_paths();
     for (int round = 0; round < 100; ++round) {
         const bool recovers = round >= 50;
         const TrussMesh mesh(laboratory::front_face(recovers ? giving : laboratory::w2_curve(), 8, 8));
@@ -84,12 +85,12 @@ TEST("every instruction set gives the same bits") {
                                      at.pz.data(), at.tx.data(), at.ty.data(), at.tz.data(), 1e-4,
                                      2e-5,         3e-5,         3e-5,         1e-6,         2e-6,
                                      3e-6};
-            by_flat.nodes = functions[k].flat(columns, flat, columns_of<const double>(before),
-                                              columns_of<double>(by_flat.now), gaps.data(),
-                                              by_flat.contact.pressure.data(), by_flat.sums);
-            by_curved.nodes = functions[k].curved(columns, curved, columns_of<const double>(before),
-                                                  columns_of<double>(by_curved.now), gaps.data(),
-                                                  by_curved.contact.pressure.data(), by_curved.sums);
+            by_flat.nodes = functions[k].press_flat(columns, flat, columns_of<const double>(before),
+                                                    columns_of<double>(by_flat.now), gaps.data(),
+                                                    by_flat.contact.pressure.data(), by_flat.sums);
+            by_curved.nodes = functions[k].press_curved(columns, curved, columns_of<const double>(before),
+                                                        columns_of<double>(by_curved.now), gaps.data(),
+                                                        by_curved.contact.pressure.data(), by_curved.sums);
             if (k == 0) {
                 first_flat = by_flat;
                 first_curved = by_curved;

@@ -1,4 +1,4 @@
-// The arithmetic of kernels/friction on one block, compiled once for each instruction set (see base/row.hpp): columns as
+// The arithmetic of kernels/friction on one block, compiled once for each instruction set (see base/packet.hpp): columns as
 // plain pointers, `block_size` numbers each.
 #pragma once
 
@@ -11,7 +11,7 @@ struct Sliding {
 };
 
 // Places, outward normals of the surface there and normal forces.
-struct RubbedNodes {
+struct SlidingNodes {
     const double *x, *y, *z, *nx, *ny, *nz, *pressure;
 };
 
@@ -34,8 +34,8 @@ struct Moments {
 };
 
 // Also q, the force for each unit of sliding velocity, of nodes that slide slowly; else zero.
-using FindFriction = FrictionSums (*)(const Sliding&, const RubbedNodes&, double* q);
-using FindResistance = ResistanceSums (*)(const double* q, const RubbedNodes&);
-using FindMoments = Moments (*)(const double* q, const RubbedNodes&);
+using FindFriction = FrictionSums (*)(const Sliding&, const SlidingNodes&, double* q);
+using FindResistance = ResistanceSums (*)(const double* q, const SlidingNodes&);
+using FindMoments = Moments (*)(const double* q, const SlidingNodes&);
 
 }  // namespace birm3d

@@ -3,7 +3,7 @@
 
 #include "birm3d/state/contacts.hpp"
 #include "check.hpp"
-#include "kernels/friction_dispatch.hpp"
+#include "kernels/simd_table.hpp"
 #include "state/block_contact.hpp"
 
 using namespace birm3d;
@@ -31,7 +31,7 @@ TEST("every instruction set finds the same friction, and rows without pressure a
         for (double& value : to)
             value = middle + spread * uniform(random);
     };
-    const std::vector<FrictionFunctions> functions = friction_functions();
+    const std::vector<SimdPath> functions = simd_paths();
     for (int round = 0; round < 50; ++round) {
         alignas(64) BlockColumn x, y, z, pressure;
         BlockContact contact;
@@ -45,8 +45,8 @@ TEST("every instruction set finds the same friction, and rows without pressure a
         // Some nodes slide slowly, others fast.
         const Vec3 v(0.0, 0.05, 0.02), w(0.3 * uniform(random), 0.05, 0.1);
         const double mu = 0.3, full_speed = 0.01;
-        const RubbedNodes nodes{x.data(),          y.data(),          z.data(),       contact.nx.data(),
-                                contact.ny.data(), contact.nz.data(), pressure.data()};
+        const SlidingNodes nodes{x.data(),          y.data(),          z.data(),       contact.nx.data(),
+                                 contact.ny.data(), contact.nz.data(), pressure.data()};
         RunSummary first;
         for (std::size_t k = 0; k < functions.size(); ++k) {
             RunSummary found;

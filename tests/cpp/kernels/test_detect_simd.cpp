@@ -4,7 +4,7 @@
 #include "birm3d/base/block.hpp"
 #include "birm3d/geometry/prism.hpp"
 #include "check.hpp"
-#include "kernels/detect_dispatch.hpp"
+#include "kernels/simd_table.hpp"
 
 using namespace birm3d;
 
@@ -21,11 +21,12 @@ TEST("every instruction set sees the same bits") {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
     const Prism wall = Prism::symmetric({{0.3, 0.0}, {0.3, 0.1}, {0.1, 0.3}, {0.07, 0.8}}, 1.5, 0.5);
-    const std::vector<DetectFunctions> functions = detect_functions();
+    const std::vector<SimdPath> functions = simd_paths();
     int inside = 0, outside = 0;
     for (int round = 0; round < 50; ++round) {
         const double angle = uniform(random), c = std::cos(angle), s = std::sin(angle);
-        const Turn turn{c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0, uniform(random), uniform(random), 0.4};
+        const PlainPlacement turn{c,  -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0, uniform(random), uniform(random),
+                                  0.4};
         BlockColumn x, y, z, force;
         for (std::size_t i = 0; i < block_size; ++i)
             x[i] = uniform(random), y[i] = uniform(random), z[i] = uniform(random),

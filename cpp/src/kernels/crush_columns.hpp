@@ -1,11 +1,8 @@
-// Between the columns of a mesh and its state and the functions of crush_rows.cpp, of which those serve that the
-// processor can run.
+// The columns of a mesh and of its state as the plain pointers that kernels/crush_simd.hpp takes.
 #pragma once
 
-#include <vector>
-
 #include "birm3d/model/truss_mesh.hpp"
-#include "kernels/crush_rows.hpp"
+#include "kernels/crush_simd.hpp"
 
 namespace birm3d {
 
@@ -30,18 +27,5 @@ PressState<Number> columns_of(State& state) {
             state.deflection.data(), state.force.data(),    state.peak_deflection.data(),
             state.residual.data(),   state.unloading.data()};
 }
-
-// The two functions for one instruction set.
-struct PressFunctions {
-    const char* instruction_set;
-    Press<FlatPress> flat;
-    Press<CurvedPress> curved;
-};
-
-// Those that the processor can run, the best one last; all give the same bits.
-std::vector<PressFunctions> press_functions();
-
-// For the processor that runs.
-extern const PressFunctions press_rows;
 
 }  // namespace birm3d

@@ -1,4 +1,4 @@
-// How well a run keeps the balances of energy and momentum: the greatest departures so far, when and where.
+// The balances of energy and momentum of a run: the greatest departures so far, when and where.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace birm3d {
 
-struct Ledger {
+struct Balances {
     // Dissipated energies: none of them may ever decrease.
     enum Term : std::size_t {
         crushed,

@@ -1,4 +1,4 @@
-// The arithmetic of kernels/detect on one block, compiled once for each instruction set (see base/row.hpp): columns as
+// The arithmetic of kernels/detect on one block, compiled once for each instruction set (see base/packet.hpp): columns as
 // plain pointers, `block_size` numbers each.
 #pragma once
 
@@ -9,7 +9,7 @@
 namespace birm3d {
 
 // A placement in plain numbers, and its way back for directions.
-struct Turn {
+struct PlainPlacement {
     double xx, xy, xz, yx, yy, yz, zx, zy, zz;
     double x, y, z;
 };
@@ -32,21 +32,22 @@ struct EdgeList {
     std::size_t count = 0;
 };
 
-// What of a prism the nodes of a block can see.
+// The edges of a prism that matter for the nodes of a block.
 struct PrismView {
     EdgeList faces, covered;                // of those that can be the nearest
     EdgeList splitting, covered_splitting;  // of those that a line from a node along +x may cross or not
     double side = 1.0;                      // of the nodes, once the line has crossed all others; +1 outside
     double y_low, y_high;                   // m
     bool low_end, high_end;                 // are they surfaces, and near?
-    const double* force;                    // see nearest_of; null: all nodes are asked for
+    const double* force;                    // see nearest_of(); null: gaps of all nodes are needed
 };
 
 // Nodes in the axes of a shape, and their extent.
-using PlaceNodes = void (*)(const Turn& turn, const Points& nodes, const Columns& own, Extent& extent);
+using PlaceNodes = void (*)(const PlainPlacement& placed, const Points& nodes, const Columns& own,
+                            Extent& extent);
 using FindExtent = void (*)(const Points& nodes, Extent& extent);
 // Gaps of nodes in the prism's axes, and their normals in the axes that `turn` comes from.
-using AskPrism = void (*)(const PrismView& prism, const Turn& turn, const Points& own, double* gap,
-                          const Columns& normals);
+using AskPrism = void (*)(const PrismView& prism, const PlainPlacement& placed, const Points& own,
+                          double* gap, const Columns& normals);
 
 }  // namespace birm3d

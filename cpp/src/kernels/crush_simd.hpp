@@ -1,4 +1,4 @@
-// The arithmetic of kernels/crush on one block, compiled once for each instruction set (see base/row.hpp):
+// The arithmetic of kernels/crush on one block, compiled once for each instruction set (see base/packet.hpp):
 // columns as plain pointers, `block_size` numbers each.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace birm3d {
 
-// What does not change while the surface presses.
+// Constant columns of a block.
 struct PressColumns {
     const double *anchor_x, *anchor_y, *anchor_z, *length;  // m
     const double *k_unloading, *compliance;                 // N/m, m/N
@@ -26,25 +26,25 @@ struct PressState {
     Number *x, *y, *z, *deflection, *force, *peak_deflection, *residual, *unloading;
 };
 
-// A flat surface n . p = offset, and the direction h in which it takes along the nodes that it holds already.
+// A flat surface n . p = offset, and the direction h in which it moves the nodes that were already on it.
 struct FlatPress {
     double nx, ny, nz, offset;
     double hx, hy, hz;
 };
 
 // Cosine above which the normals of two instants are one surface's.
-inline constexpr double sharp_turn = 0.5;
+inline constexpr double sharp_edge = 0.5;
 
 // The same for surfaces of any shape, node by node.
 struct CurvedPress {
     const double* gap;
     const double *nx, *ny, *nz;  // outward normal now, and of the same surface at the instant before
     const double *bx, *by, *bz;
-    // Of nodes that an indentation draws in, above zero: b is the way itself, and a truss force along it that much greater as a
-    // normal force.
+    // Above zero for nodes that follow an indentation. Then b is the direction of the displacement, and the normal
+    // force is this times the truss force along b.
     const double* per_force;
-    // Where friction acts and the torque of a unit of normal force: given for nodes that an indentation draws in, else found;
-    // zero in rows of which no node pushes or did.
+    // Where friction acts, and the torque of a unit of normal force. Input for nodes that follow an indentation, else
+    // output. Zero in packets of which no node pushes or pushed.
     double *px, *py, *pz, *tx, *ty, *tz;
     // Inverse effective mass of a node with torque t: mass + t . form t.
     double mass, xx, yy, zz, xy, xz, yz;
@@ -52,7 +52,7 @@ struct CurvedPress {
 
 struct PressedNodes {
     double pushing = 0.0;  // how many nodes push
-    bool ceased = false;   // has any node ceased to push?
+    bool ceased = false;   // has any node stopped pushing?
 };
 
 // Moves the nodes of a block that are at the surface onto it, finds the forces of their trusses and adds to the sums.

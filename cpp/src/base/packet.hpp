@@ -1,8 +1,8 @@
-// Eight numbers side by side, in registers of whatever width the file is compiled for. Plain arithmetic in a
-// fixed order and without contraction: every width gives the same bits.
+// A packet of eight numbers in registers of the width that the file is compiled for. Arithmetic is in a fixed order
+// and without contraction: every width gives the same bits.
 //
-// For files that are compiled once for each instruction set: nothing here, and nothing such a file includes,
-// may leave a symbol that another file could share, for the linker would keep one of them for all processors.
+// For files that are compiled once for each instruction set. Neither this header nor any other that such a file
+// includes may define a shared symbol: the linker would keep one copy for all processors.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 #error "BIRM3D's kernels need the vector types of GCC or Clang"
 #endif
 
-// Told by the build, as flags for a whole build (-march=native) may add instructions to any of them.
+// The build defines it. Compiler macros do not tell, as flags for a whole build (-march=native) may add instructions.
 #if !defined(BIRM3D_INSTRUCTION_SET)
 #define BIRM3D_INSTRUCTION_SET baseline
 #endif
@@ -33,21 +33,21 @@
 
 namespace birm3d::BIRM3D_INSTRUCTION_SET {
 
-inline constexpr std::size_t row_length = 8;
-inline constexpr std::size_t parts = row_length / BIRM3D_REGISTER_LENGTH;
+inline constexpr std::size_t packet_length = 8;
+inline constexpr std::size_t parts = packet_length / BIRM3D_REGISTER_LENGTH;
 
-struct Row {
+struct Packet {
     using Register = double __attribute__((vector_size(8 * BIRM3D_REGISTER_LENGTH)));
     using InMemory __attribute__((aligned(8), may_alias)) = Register;
     Register part[parts];
 
-    Row() = default;
-    BIRM3D_INLINE Row(double value) {
+    Packet() = default;
+    BIRM3D_INLINE Packet(double value) {
         for (std::size_t p = 0; p < parts; ++p)
-            part[p] = value - Register{};  // is value, where value + 0.0 need not be
+            part[p] = value - Register{};  // equals value; value + 0.0 would turn -0.0 into 0.0
     }
-    BIRM3D_INLINE static Row load(const double* from) {
-        Row row;
+    BIRM3D_INLINE static Packet load(const double* from) {
+        Packet row;
         for (std::size_t p = 0; p < parts; ++p)
             row.part[p] = *reinterpret_cast<const InMemory*>(from + p * BIRM3D_REGISTER_LENGTH);
         return row;
@@ -58,12 +58,12 @@ struct Row {
     }
 };
 
-#define BIRM3D_ROW_OPERATOR(op)                                 \
-    BIRM3D_INLINE Row operator op(const Row& a, const Row& b) { \
-        Row row;                                                \
-        for (std::size_t p = 0; p < parts; ++p)                 \
-            row.part[p] = a.part[p] op b.part[p];               \
-        return row;                                             \
+#define BIRM3D_ROW_OPERATOR(op)                                          \
+    BIRM3D_INLINE Packet operator op(const Packet& a, const Packet& b) { \
+        Packet row;                                                      \
+        for (std::size_t p = 0; p < parts; ++p)                          \
+            row.part[p] = a.part[p] op b.part[p];                        \
+        return row;                                                      \
     }
 BIRM3D_ROW_OPERATOR(+)
 BIRM3D_ROW_OPERATOR(-)
@@ -72,57 +72,57 @@ BIRM3D_ROW_OPERATOR(/)
 #undef BIRM3D_ROW_OPERATOR
 
 // As in base/select.hpp.
-BIRM3D_INLINE Row where_above(const Row& a, const Row& b, const Row& yes, const Row& no) {
-    Row row;
+BIRM3D_INLINE Packet where_above(const Packet& a, const Packet& b, const Packet& yes, const Packet& no) {
+    Packet row;
     for (std::size_t p = 0; p < parts; ++p)
         row.part[p] = a.part[p] > b.part[p] ? yes.part[p] : no.part[p];
     return row;
 }
 
-BIRM3D_INLINE Row greater(const Row& a, const Row& b) {
+BIRM3D_INLINE Packet greater(const Packet& a, const Packet& b) {
     return where_above(a, b, a, b);
 }
 
-BIRM3D_INLINE Row square_root(const Row& a) {
-    Row row;
+BIRM3D_INLINE Packet square_root(const Packet& a) {
+    Packet row;
     for (std::size_t p = 0; p < parts; ++p)
         for (std::size_t k = 0; k < BIRM3D_REGISTER_LENGTH; ++k)
             row.part[p][k] = __builtin_sqrt(a.part[p][k]);
     return row;
 }
 
-BIRM3D_INLINE Row lesser(const Row& a, const Row& b) {
+BIRM3D_INLINE Packet lesser(const Packet& a, const Packet& b) {
     return where_above(a, b, b, a);
 }
 
-BIRM3D_INLINE bool any_above(const Row& a, const Row& b) {
+BIRM3D_INLINE bool any_above(const Packet& a, const Packet& b) {
 #if defined(__AVX512F__)
     return _mm512_cmp_pd_mask(a.part[0], b.part[0], _CMP_GT_OQ) != 0;
 #else
     using Two = long long __attribute__((vector_size(16)));
-    Two any[row_length / 2];
+    Two any[packet_length / 2];
     for (std::size_t p = 0; p < parts; ++p) {
         const auto above = a.part[p] > b.part[p];
-        __builtin_memcpy(any + p * (row_length / 2 / parts), &above, sizeof(above));
+        __builtin_memcpy(any + p * (packet_length / 2 / parts), &above, sizeof(above));
     }
     const Two both = (any[0] | any[1]) | (any[2] | any[3]);
     return (both[0] | both[1]) != 0;
 #endif
 }
 
-BIRM3D_INLINE double least_of(const Row& row) {
-    alignas(64) double v[row_length];
+BIRM3D_INLINE double least_of(const Packet& row) {
+    alignas(64) double v[packet_length];
     row.store(v);
-    for (std::size_t half = row_length / 2; half > 0; half /= 2)
+    for (std::size_t half = packet_length / 2; half > 0; half /= 2)
         for (std::size_t i = 0; i < half; ++i)
             v[i] = v[half + i] < v[i] ? v[half + i] : v[i];
     return v[0];
 }
 
-BIRM3D_INLINE double sum_of(const Row& row) {
-    alignas(64) double v[row_length];
+BIRM3D_INLINE double sum_of(const Packet& row) {
+    alignas(64) double v[packet_length];
     row.store(v);
-    return row_sum(v);
+    return packet_sum(v);
 }
 
 }  // namespace birm3d::BIRM3D_INSTRUCTION_SET

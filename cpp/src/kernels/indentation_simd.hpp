@@ -1,4 +1,4 @@
-// The arithmetic of kernels/indentation on one block, compiled once for each instruction set (see base/row.hpp): columns as plain
+// The arithmetic of kernels/indentation on one block, compiled once for each instruction set (see base/packet.hpp): columns as plain
 // pointers, `block_size` numbers each.
 #pragma once
 
@@ -7,13 +7,13 @@
 
 namespace birm3d {
 
-// Slope of a post's flank where a panel ends on it: beyond it small motions would make great forces.
+// Greatest slope of a post's flank that a panel follows: beyond it small motions would make large forces.
 inline constexpr double steepest = 5.0;
 
-// Slope of an indentation that is no more than a touch. Less steep, a post beside a bowed front would draw in its middle.
+// Slope of an indentation of depth zero. With a smaller slope, a post beside a bowed front would indent its middle.
 inline constexpr double least_slope = 0.25;
 
-// Of the post that has come `depth` in; `grows`: for each unit of it.
+// Slope beside a post at the depth `depth`; `grows`: its derivative by the depth.
 template <class Number>
 struct Slope {
     Number slope, grows;
@@ -27,21 +27,21 @@ BIRM3D_INLINE Slope<Number> slope_at(const Number& depth, double per_reach) {
             where_above(slope, limit, zero, by_depth * per_reach / slope)};
 }
 
-// Of a block, those of one panel.
+// The nodes of a block that are on one panel.
 struct PanelNodes {
     const double *x, *y, *z, *force, *panel;
     double of;
 };
 
-// What they have seen so far (NodeFaces, BlockContact); `rank`: the lower
-// that is, the more right an indentation has to a node that pushes. `follows`: on this indentation (1; 2: let go by it; else 0).
-struct SeenColumns {
+// Their faces so far (NodeFaces, BlockContact). `rank`: of several indentations, that of lowest rank holds a pushing
+// node. `follows`: 1 for nodes on this indentation, 2 for nodes that it releases, else 0.
+struct KnownFaces {
     double *gap, *per_force, *bx, *by, *bz, *nx, *ny, *nz, *px, *py, *pz, *tx, *ty, *tz, *rank, *follows;
 };
 
 // See follow_indentation.
 using FindIndentation = void (*)(const IndentationNumbers& indentation, const IndentationNumbers& then,
-                                 const PanelNodes& nodes, const SeenColumns& seen);
+                                 const PanelNodes& nodes, const KnownFaces& known);
 // The least gap; infinite if there are no such nodes.
 using FindIndentationGap = double (*)(const IndentationNumbers& indentation, const PanelNodes& nodes);
 

@@ -1,0 +1,330 @@
+// Compiled once for each instruction set; see base/packet.hpp for what that forbids.
+// Over 300 lines: the loop over a block and all that it inlines must be compiled together.
+#include "kernels/crush_simd.hpp"
+
+#include "base/packet.hpp"
+#include "birm3d/base/tolerances.hpp"
+
+namespace birm3d::BIRM3D_INSTRUCTION_SET {
+
+namespace {
+
+BIRM3D_INLINE void add_to(double* sum, const Packet& row) {
+    (Packet::load(sum) + row).store(sum);
+}
+
+struct Vector {
+    Packet x, y, z;
+};
+
+BIRM3D_INLINE Packet dot(const Vector& a, const Vector& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+// Direction in which a node moves onto the surface, for each unit of gap; and the vector `projector`, whose product
+// with the truss's unit vector turns the truss force into a normal force (see crush.hpp).
+struct Place {
+    Vector direction, projector;
+};
+
+// Both give the directions of the eight nodes from i on. Nodes that arrive at a flat surface are moved along n.
+struct Flat {
+    BIRM3D_INLINE explicit Flat(const FlatPress& s)
+        : n{s.nx, s.ny, s.nz}, h{s.hx, s.hy, s.hz}, offset(s.offset) {}
+    BIRM3D_INLINE Packet gap(std::size_t, const Vector& node) const { return dot(n, node) - offset; }
+    BIRM3D_INLINE Place at(std::size_t, const Packet& F0) const {
+        const Packet zero = 0.0;
+        return {{where_above(F0, zero, h.x, n.x), where_above(F0, zero, h.y, n.y),
+                 where_above(F0, zero, h.z, n.z)},
+                n};
+    }
+    // Above zero for nodes that follow an indentation.
+    BIRM3D_INLINE Packet drawn(std::size_t) const { return 0.0; }
+    Vector n, h;
+    Packet offset;
+};
+
+struct Curved {
+    BIRM3D_INLINE explicit Curved(const CurvedPress& press) : s(press) {}
+    BIRM3D_INLINE Packet gap(std::size_t i, const Vector&) const { return Packet::load(s.gap + i); }
+    BIRM3D_INLINE Vector normal(std::size_t i) const {
+        return {Packet::load(s.nx + i), Packet::load(s.ny + i), Packet::load(s.nz + i)};
+    }
+    // At an edge normals differ sharply; then the normal before is not used for the path.
+    BIRM3D_INLINE Place at(std::size_t i, const Packet& F0) const {
+        const Packet zero = 0.0, one = 1.0;
+        const Vector n = normal(i);
+        const Vector b{Packet::load(s.bx + i), Packet::load(s.by + i), Packet::load(s.bz + i)};
+        const Packet cosine = dot(n, b), per_force = Packet::load(s.per_force + i);
+        const Packet follows = where_above(F0, zero, where_above(cosine, sharp_edge, one, zero), zero);
+        const Packet mean = 1.0 / (1.0 + follows * cosine);
+        const auto way = [&](const Packet& own, const Packet& before) {
+            return where_above(per_force, zero, before, (own + follows * before) * mean);
+        };
+        const auto projector = [&](const Packet& own, const Packet& before) {
+            return where_above(per_force, zero, before * per_force, own);
+        };
+        return {{way(n.x, b.x), way(n.y, b.y), way(n.z, b.z)},
+                {projector(n.x, b.x), projector(n.y, b.y), projector(n.z, b.z)}};
+    }
+    BIRM3D_INLINE Packet drawn(std::size_t i) const { return Packet::load(s.per_force + i); }
+    // Of a unit of normal force; keeps it, and the place, for later.
+    BIRM3D_INLINE Vector torque(std::size_t i, const Vector& node, const Vector& n) const {
+        const Packet of_indentation = drawn(i), zero = 0.0;
+        const auto keep = [&](double* column, const Packet& found) {
+            const Packet kept = where_above(of_indentation, zero, Packet::load(column + i), found);
+            kept.store(column + i);
+            return kept;
+        };
+        keep(s.px, node.x);
+        keep(s.py, node.y);
+        keep(s.pz, node.z);
+        return {keep(s.tx, node.y * n.z - node.z * n.y), keep(s.ty, node.z * n.x - node.x * n.z),
+                keep(s.tz, node.x * n.y - node.y * n.x)};
+    }
+    BIRM3D_INLINE Packet inverse_mass(const Vector& t) const {
+        return s.mass + (t.x * (s.xx * t.x + s.xy * t.y + s.xz * t.z) + t.y * (s.yy * t.y + s.yz * t.z) +
+                         s.zz * t.z * t.z);
+    }
+    BIRM3D_INLINE void leave(std::size_t i) const {
+        double* const columns[] = {s.px, s.py, s.pz, s.tx, s.ty, s.tz};
+        for (double* column : columns)
+            Packet(0.0).store(column + i);
+    }
+    const CurvedPress s;  // a copy, which no column can overlap
+};
+
+template <bool recovers>
+BIRM3D_INLINE void copy(const PressState<const double>& before, const PressState<double>& now,
+                        std::size_t i) {
+    Packet::load(before.x + i).store(now.x + i);
+    Packet::load(before.y + i).store(now.y + i);
+    Packet::load(before.z + i).store(now.z + i);
+    Packet::load(before.deflection + i).store(now.deflection + i);
+    Packet::load(before.force + i).store(now.force + i);
+    Packet::load(before.peak_deflection + i).store(now.peak_deflection + i);
+    Packet::load(before.residual + i).store(now.residual + i);
+    if constexpr (recovers) Packet::load(before.unloading + i).store(now.unloading + i);
+}
+
+// The slope of unloading of each truss, and where its line meets zero force. A truss that loads sets them anew.
+struct Unloading {
+    Packet slope, residual;
+    BIRM3D_INLINE Packet line(const Packet& d) const {
+        const Packet zero = 0.0;
+        return greater(slope * (d - residual), zero);
+    }
+};
+
+// Fig. 3: the slope is constant.
+BIRM3D_INLINE Packet load_one_slope(const PressColumns& truss, Unloading& of, const Packet& d,
+                                    const Packet& line, const Packet& envelope, std::size_t i) {
+    const Packet compliance = Packet::load(truss.compliance + i);
+    of.residual = where_above(line, envelope, d - envelope * compliance, of.residual);
+    return compliance;
+}
+
+// Elastic recovery is a constant fraction of the remaining length of the truss (truss_law.hpp). At first a truss may
+// load and unload along one slope.
+BIRM3D_INLINE Packet load_recovery(const PressColumns& truss, Unloading& of, const Packet& d,
+                                   const Packet& line, const Packet& envelope, std::size_t i) {
+    const Packet zero = 0.0, one = 1.0;
+    const auto where_loading = [&](const Packet& now, const Packet& else_) {
+        return where_above(envelope, zero, where_above(envelope, line, else_, now), else_);
+    };
+    const Packet least = tolerance::truss_length, length = Packet::load(truss.length + i);
+    const Packet per_recovery = Packet::load(truss.per_recovery + i) * length / greater(length - d, least);
+    const Packet steepest = greater(envelope * per_recovery, Packet::load(truss.k_unloading + i));
+    of.slope = where_loading(steepest, of.slope);
+    const Packet compliance = where_above(of.slope, zero, one / of.slope, zero);
+    of.residual = where_loading(d - envelope * compliance, of.residual);
+    return compliance;
+}
+
+// Releases the nodes of the packet at i whose trusses have stopped pushing. A node on a receding surface stops where
+// its truss reaches zero force. A truss that pushes its node off the surface extends at once to that length, and its
+// stored energy is lost. An indentation keeps such a node at its surface. Returns the correction of twice the work on
+// the trusses for the first kind (J).
+template <class Surface>
+Packet release(const PressColumns& truss, const Surface& surface, const PressState<const double>& before,
+               const PressState<double>& now, std::size_t i, const Packet& gap) {
+    const Packet zero = 0.0, one = 1.0, least = tolerance::truss_length;
+    const Packet F0 = Packet::load(before.force + i), d0 = Packet::load(before.deflection + i);
+    const Packet d1 = Packet::load(now.deflection + i), slack = Packet::load(before.residual + i);
+    const Vector anchor{Packet::load(truss.anchor_x + i), Packet::load(truss.anchor_y + i),
+                        Packet::load(truss.anchor_z + i)};
+    const Vector from{Packet::load(before.x + i), Packet::load(before.y + i), Packet::load(before.z + i)};
+    const Vector to{Packet::load(now.x + i), Packet::load(now.y + i), Packet::load(now.z + i)};
+    const Vector projector = surface.at(i, F0).projector;
+    const Packet drawn = surface.drawn(i);
+    const Packet points =
+        dot({anchor.x - to.x, anchor.y - to.y, anchor.z - to.z}, projector);  // above zero: into the surface
+    const Packet ceased = where_above(Packet::load(now.force + i), zero, zero, F0);
+
+    const Packet extension = d0 - d1;
+    const Packet part =
+        where_above(extension, zero, greater(lesser((d0 - slack) / extension, one), zero), zero);
+    const Packet d = where_above(points, zero, d0 - part * extension, slack);
+    // A node that is held beyond the free length stays: at that length it would be inside the surface.
+    const Packet returns = where_above(drawn, zero, zero, where_above(d1, slack, one, zero));
+    const Packet moves = where_above(ceased, zero, where_above(points, zero, gap, returns), zero);
+
+    const auto along = [&](const Packet& a, const Packet& start, const Packet& end) {
+        return where_above(points, zero, start + part * (end - start) - a, end - a);
+    };
+    const Vector b{along(anchor.x, from.x, to.x), along(anchor.y, from.y, to.y),
+                   along(anchor.z, from.z, to.z)};
+    const Packet length = Packet::load(truss.length + i) - d;
+    const Packet scale = where_above(length, least, length / square_root(dot(b, b)), one);
+    where_above(moves, zero, anchor.x + scale * b.x, to.x).store(now.x + i);
+    where_above(moves, zero, anchor.y + scale * b.y, to.y).store(now.y + i);
+    where_above(moves, zero, anchor.z + scale * b.z, to.z).store(now.z + i);
+    where_above(moves, zero, d, d1).store(now.deflection + i);
+    const Packet kept = where_above(drawn, zero, where_above(points, zero, zero, ceased), zero);
+    const Packet residual = Packet::load(now.residual + i);
+    where_above(kept, zero, greater(slack, d1), residual).store(now.residual + i);
+    return where_above(moves, zero, where_above(points, zero, F0 * (d - d1), zero), zero);
+}
+
+// Moves the nodes of a block that are at the surface onto it. Sets their places, deflections, and projections of
+// truss forces on the normal, stored in place of the normal forces. Packets of which no node pushes or is inside stay
+// as they are, and are not `pressed`.
+template <bool flat, bool recovers, class Surface>
+BIRM3D_INLINE void hold(const PressColumns& truss, const Surface& surface,
+                        const PressState<const double>& before, const PressState<double>& now, double* gaps,
+                        double* projections, bool* pressed) {
+    const Packet zero = 0.0, one = 1.0, least = tolerance::truss_length;
+    for (std::size_t i = 0; i < block_size; i += packet_length) {
+        const Vector from{Packet::load(before.x + i), Packet::load(before.y + i), Packet::load(before.z + i)};
+        const Packet F0 = Packet::load(before.force + i);
+        const Packet gap = surface.gap(i, from);
+        gap.store(gaps + i);
+        pressed[i / packet_length] = any_above(greater(F0, -1.0 * gap), zero);
+        if (!pressed[i / packet_length]) {
+            copy<recovers>(before, now, i);
+            zero.store(projections + i);
+            if constexpr (!flat) surface.leave(i);
+            continue;
+        }
+        const Place place = surface.at(i, F0);
+        const Packet depth = where_above(zero, gap, gap, where_above(F0, zero, gap, zero));
+        const Vector node{from.x - depth * place.direction.x, from.y - depth * place.direction.y,
+                          from.z - depth * place.direction.z};
+
+        // From the node to its anchor. A bottomed-out truss has no direction; its force acts along n.
+        const Vector b{Packet::load(truss.anchor_x + i) - node.x, Packet::load(truss.anchor_y + i) - node.y,
+                       Packet::load(truss.anchor_z + i) - node.z};
+        const Packet length = square_root(dot(b, b));
+        const Packet projection =
+            where_above(length, least, greater(dot(b, place.projector), zero) / length, one);
+        node.x.store(now.x + i);
+        node.y.store(now.y + i);
+        node.z.store(now.z + i);
+        (Packet::load(truss.length + i) - length).store(now.deflection + i);
+        projection.store(projections + i);
+    }
+}
+
+// Two passes over the packets, so that square roots and divisions of several packets overlap.
+template <bool flat, bool recovers, class Surface>
+BIRM3D_INLINE PressedNodes press(const PressColumns& truss, const Surface& surface,
+                                 const PressState<const double>& before, const PressState<double>& now,
+                                 double* gaps, double* pressures, NodeSums& sums) {
+    const Packet zero = 0.0, one = 1.0;
+    Packet force = zero, work = zero, stored = zero, pushing = zero;
+    bool ceased = false;
+    Packet stiffness = zero;
+    Vector moment{zero, zero, zero}, push{zero, zero, zero};
+    bool pressed[block_size / packet_length];
+    hold<flat, recovers>(truss, surface, before, now, gaps, pressures, pressed);
+    for (std::size_t i = 0; i < block_size; i += packet_length) {
+        if (!pressed[i / packet_length]) continue;
+        const Packet F0 = Packet::load(before.force + i), gap = Packet::load(gaps + i);
+        const Packet d = Packet::load(now.deflection + i), projection = Packet::load(pressures + i);
+
+        // Fig. 3: the loading envelope by the changes of slope at its hinges, and the unloading line below it.
+        Packet envelope = zero;
+        for (std::size_t j = 0; j < truss.hinges; ++j) {
+            const double* hinge = truss.hinge + j * 2 * block_size + i;
+            envelope = envelope + Packet::load(hinge + block_size) * greater(d - Packet::load(hinge), zero);
+        }
+        if (truss.factor != nullptr) envelope = envelope * Packet::load(truss.factor + i);
+        const double* const slopes = recovers ? before.unloading : truss.k_unloading;
+        Unloading unloading{Packet::load(slopes + i), Packet::load(before.residual + i)};
+        const Packet line = unloading.line(d);
+        // A truss that would push its node off the surface does not push at all.
+        const Packet law = where_above(projection, zero, where_above(line, envelope, envelope, line), zero);
+        const Packet F = where_above(zero, gap, law, where_above(F0, zero, law, zero));
+        const Packet pressure = F * projection;
+
+        F.store(now.force + i);
+        greater(d, Packet::load(before.peak_deflection + i)).store(now.peak_deflection + i);
+        const Packet compliance = recovers ? load_recovery(truss, unloading, d, line, envelope, i)
+                                           : load_one_slope(truss, unloading, d, line, envelope, i);
+        unloading.residual.store(now.residual + i);
+        if constexpr (recovers) unloading.slope.store(now.unloading + i);
+        pressure.store(pressures + i);
+
+        const Vector node{Packet::load(now.x + i), Packet::load(now.y + i), Packet::load(now.z + i)};
+        force = force + pressure;
+        if constexpr (flat) {
+            moment = {moment.x + pressure * node.x, moment.y + pressure * node.y,
+                      moment.z + pressure * node.z};
+        } else {
+            const Vector n = surface.normal(i);
+            push = {push.x + pressure * n.x, push.y + pressure * n.y, push.z + pressure * n.z};
+            const Vector torque = surface.torque(i, node, n);
+            moment = {moment.x + pressure * torque.x, moment.y + pressure * torque.y,
+                      moment.z + pressure * torque.z};
+            const Packet k = unloading.slope * greater(projection * projection, one);
+            stiffness = stiffness + where_above(F, zero, k * surface.inverse_mass(torque), zero);
+        }
+        work = work + (F0 + F) * (d - Packet::load(before.deflection + i));
+        stored = stored + F * F * compliance;
+        pushing = pushing + where_above(F, zero, one, zero);
+        if (any_above(where_above(F, zero, zero, F0), zero)) {
+            ceased = true;
+            work = work + release(truss, surface, before, now, i, gap);
+        }
+    }
+    add_to(sums.force, force);
+    add_to(sums.moment_x, moment.x);
+    add_to(sums.moment_y, moment.y);
+    add_to(sums.moment_z, moment.z);
+    if constexpr (!flat) {
+        add_to(sums.push_x, push.x);
+        add_to(sums.push_y, push.y);
+        add_to(sums.push_z, push.z);
+        add_to(sums.stiffness, stiffness);
+    }
+    add_to(sums.twice_work, work);
+    add_to(sums.twice_stored, stored);
+    return {sum_of(pushing), ceased};
+}
+
+}  // namespace
+
+PressedNodes press_flat(const PressColumns& truss, const FlatPress& surface,
+                        const PressState<const double>& before, const PressState<double>& now, double* gaps,
+                        double* pressures, NodeSums& sums);
+PressedNodes press_curved(const PressColumns& truss, const CurvedPress& surface,
+                          const PressState<const double>& before, const PressState<double>& now, double* gaps,
+                          double* pressures, NodeSums& sums);
+
+PressedNodes press_flat(const PressColumns& truss, const FlatPress& surface,
+                        const PressState<const double>& before, const PressState<double>& now, double* gaps,
+                        double* pressures, NodeSums& sums) {
+    if (truss.per_recovery != nullptr)
+        return press<true, true>(truss, Flat(surface), before, now, gaps, pressures, sums);
+    return press<true, false>(truss, Flat(surface), before, now, gaps, pressures, sums);
+}
+
+PressedNodes press_curved(const PressColumns& truss, const CurvedPress& surface,
+                          const PressState<const double>& before, const PressState<double>& now, double* gaps,
+                          double* pressures, NodeSums& sums) {
+    if (truss.per_recovery != nullptr)
+        return press<false, true>(truss, Curved(surface), before, now, gaps, pressures, sums);
+    return press<false, false>(truss, Curved(surface), before, now, gaps, pressures, sums);
+}
+
+}  // namespace birm3d::BIRM3D_INSTRUCTION_SET

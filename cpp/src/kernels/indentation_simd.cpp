@@ -1,0 +1,229 @@
+// Compiled once for each instruction set; see base/packet.hpp for what that forbids.
+#include "kernels/indentation_simd.hpp"
+
+#include "base/packet.hpp"
+#include "birm3d/base/tolerances.hpp"
+
+namespace birm3d::BIRM3D_INSTRUCTION_SET {
+
+namespace {
+
+// Gap of released nodes: larger than that to any other surface (m).
+constexpr double away = 10.0;
+
+// Fraction of the displacement across the flank of a post that the skin follows. It was chosen between 0.1 and 0.4.
+// With less, a pole 0.35 m off the middle has a smaller sideways force than in finite-element runs. With more, posts
+// at the end of a bumper act as a wedge.
+constexpr double lean = 0.35;
+
+// Least value that marks a node as following an indentation.
+constexpr double least_drawn = 1e-9;
+
+// A node nearer than this to another surface is in contact with it (m).
+constexpr double touching = tolerance::touching_gap;
+
+// Depth of the post's surface beyond its axis at `a` across, and its derivative.
+struct Rise {
+    Packet rise, across;
+};
+BIRM3D_INLINE Rise rise_at(const IndentationNumbers& d, const Packet& a) {
+    const Packet zero = 0.0, steep_arc = d.steep_arc;
+    const Packet far = where_above(zero, a, -1.0 * a, a);
+    const Packet on = lesser(far, steep_arc);
+    const Packet root = square_root(d.radius * d.radius - on * on);
+    return {where_above(far, steep_arc, d.rise_there - steepest * (far - steep_arc), d.stretch * root),
+            where_above(far, steep_arc, where_above(zero, a, steepest, -steepest), -d.stretch * a / root)};
+}
+
+// Positions of a packet of nodes in the post's axes, and the middle of the post at their heights.
+struct Standing {
+    Packet e, w, l, up, deepest;
+};
+BIRM3D_INLINE Standing stand(const IndentationNumbers& d, const PanelNodes& nodes, std::size_t i) {
+    Standing s;
+    const Packet rx = Packet::load(nodes.x + i) - d.ox, ry = Packet::load(nodes.y + i) - d.oy,
+                 rz = Packet::load(nodes.z + i) - d.oz;
+    const Packet top = d.top;
+    s.e = d.ex * rx + d.ey * ry + d.ez * rz;
+    s.w = d.wx * rx + d.wy * ry + d.wz * rz;
+    s.l = d.lx * rx + d.ly * ry + d.lz * rz;
+    s.up = lesser(s.l, top);
+    s.deepest = d.tilt * s.up + d.stretch * d.radius;
+    return s;
+}
+
+// Lower bound of the gaps: the post is taken as deep everywhere as in its middle, with the least slope beside it.
+BIRM3D_INLINE Packet no_less_than(const IndentationNumbers& d, const Standing& s) {
+    const Packet zero = 0.0, by_depth = (s.deepest - d.surface) * d.per_reach;
+    const Packet slope = lesser(greater(by_depth, least_slope), steepest);
+    const Packet beside = greater(where_above(s.w, zero, s.w, -1.0 * s.w) - d.radius, zero);
+    return s.e - (s.deepest - slope * (beside + (s.l - s.up)));
+}
+
+// The point of the post that each node of a packet follows.
+struct FollowedPlace {
+    Slope<Packet> slope;  // of the skin beside the post
+    Packet a, at, beyond, gap;
+    Rise rise;
+};
+BIRM3D_INLINE FollowedPlace find_followed(const IndentationNumbers& d, const Standing& s) {
+    FollowedPlace h;
+    h.slope = slope_at<Packet>(s.deepest - d.surface, d.per_reach);
+    const Packet low = d.low, high = d.high;
+    // The nearest point of the post, within the panel, whose slope is not steeper than that of the indentation.
+    const Packet slope_there = h.slope.slope * d.per_stretch;
+    const Packet arc = d.radius * slope_there / square_root(1.0 + slope_there * slope_there);
+    const Packet near = lesser(greater(s.w, -1.0 * arc), arc), highest = greater(s.w, high),
+                 lowest = lesser(s.w, low);
+    h.a = where_above(near, highest, highest, where_above(lowest, near, lowest, near));
+    h.rise = rise_at(d, h.a);
+    h.at = d.tilt * s.up + h.rise.rise;
+    h.beyond = where_above(s.w, h.a, s.w - h.a, h.a - s.w) + (s.l - s.up);
+    h.gap = s.e - (h.at - h.slope.slope * h.beyond);
+    return h;
+}
+
+// `yes` for nodes of the panel, else `no`.
+BIRM3D_INLINE Packet where_on(const PanelNodes& nodes, const Packet& yes, const Packet& no, std::size_t i) {
+    const Packet zero = 0.0, off = Packet::load(nodes.panel + i) - nodes.of;
+    return where_above(off * off, zero, no, yes);
+}
+
+// Can the indentation affect any node, given a lower bound of the gaps?
+BIRM3D_INLINE bool any_matters(const PanelNodes& nodes, const KnownFaces& known, const Packet& least,
+                               std::size_t i) {
+    const Packet zero = 0.0;
+    const Packet so_far = Packet::load(known.gap + i);
+    const Packet below =
+        where_above(Packet::load(nodes.force + i), zero, infinitely_far, lesser(so_far, zero));
+    return any_above(where_on(nodes, below, -infinitely_far, i), least);
+}
+
+// Displacement along e of a following node for a unit displacement of the post inwards, and along the panel.
+struct Drawn {
+    Packet in, across;
+};
+BIRM3D_INLINE Drawn drawn(const IndentationNumbers& d, const FollowedPlace& h) {
+    const Packet slope = h.slope.slope, flank = lesser(greater(h.rise.across, -1.0 * slope), slope);
+    return {greater(d.grip * (1.0 - h.slope.grows * h.beyond), least_drawn),
+            (lean * d.grip) * flank / square_root(1.0 + flank * flank)};
+}
+
+// Outward displacement of the nodes within the step.
+BIRM3D_INLINE Packet outward_displacement(const Standing& now, const Standing& then, const Drawn& at_end,
+                                          const Drawn& at_start) {
+    const Packet in = (now.deepest - now.e) - (then.deepest - then.e), across = now.w - then.w;
+    return -0.5 * ((at_end.in + at_start.in) * in + (at_end.across + at_start.across) * across);
+}
+
+// Gap to another surface that stops the node from following the indentation; infinite if there is none. A surface
+// along which it slides, as the ground below a bumper, does not stop it.
+BIRM3D_INLINE Packet gap_of_holding_surface(const IndentationNumbers& d, const KnownFaces& known,
+                                            std::size_t i) {
+    const Packet zero = 0.0, far = infinitely_far, faces = 0.5, near = touching;
+    const Packet gap = Packet::load(known.gap + i), along = d.ex * Packet::load(known.nx + i) +
+                                                            d.ey * Packet::load(known.ny + i) +
+                                                            d.ez * Packet::load(known.nz + i);
+    const Packet held = where_above(along, faces, where_above(gap, near, far, gap), far);
+    return where_above(Packet::load(known.per_force + i), zero, far, held);
+}
+
+// Required gap of each node. A loaded node follows the indentation while that extends over it, and is released afterwards.
+// An unloaded one follows once the indentation has reached it.
+struct Asked {
+    Packet gap, releases, rank;
+};
+BIRM3D_INLINE Asked ask(const IndentationNumbers& d, const PanelNodes& nodes, const KnownFaces& known,
+                        const Standing& s, const FollowedPlace& h, const Packet& outward, std::size_t i) {
+    const Packet zero = 0.0, one = 1.0, far = infinitely_far, surface = d.surface;
+    const Packet pushes = Packet::load(nodes.force + i), held = d.grip > 0.0 ? one : zero;
+    const Packet comes = where_above(h.gap, zero, h.gap, greater(h.gap, outward));
+    // A node on another surface follows the indentation only once that has reached it.
+    const Packet other = where_above(far, gap_of_holding_surface(d, known, i), far, outward);
+    const Packet goes = where_above(zero, h.gap, outward, other);
+    const Packet reaches = where_above(s.e - h.gap, surface, held, zero);
+    const Packet off = where_above(pushes, zero, where_above(reaches, zero, zero, one), zero);
+    const Packet gap = where_above(pushes, zero, where_above(reaches, zero, goes, away), comes);
+    return {gap, off, where_above(off, zero, away, where_above(far, gap, h.gap, far))};
+}
+
+// State of the nodes in this indentation: 1 for those that follow it, 2 for those that it releases, else 0. Of
+// several indentations the deepest one at the node governs. A choice by displacements would alternate from step to
+// step.
+BIRM3D_INLINE Packet find_state(const IndentationNumbers& d, const PanelNodes& nodes, const KnownFaces& known,
+                                const Asked& asked, std::size_t i) {
+    const Packet zero = 0.0, one = 1.0, so_far = Packet::load(known.gap + i), gap = asked.gap;
+    const Packet against = d.ex * Packet::load(known.nx + i) + d.ey * Packet::load(known.ny + i) +
+                           d.ez * Packet::load(known.nz + i);
+    const Packet state = one + asked.releases;
+    const Packet drawn_in = where_above(zero, so_far - against * gap, zero, state);
+    const Packet nearer = where_above(zero, against, drawn_in, state);
+    const Packet pushes = Packet::load(nodes.force + i), by_surface = gap_of_holding_surface(d, known, i);
+    const Packet by_indentation =
+        where_above(Packet::load(known.per_force + i), zero, Packet::load(known.rank + i), by_surface);
+    const Packet last = where_above(pushes, zero, by_indentation, so_far);
+    const Packet now = where_above(pushes, zero, asked.rank, gap);
+    return where_on(nodes, where_above(last, now, nearer, zero), zero, i);
+}
+
+}  // namespace
+
+void find_indentation(const IndentationNumbers& d, const IndentationNumbers& then, const PanelNodes& nodes,
+                      const KnownFaces& known);
+double find_indentation_gap(const IndentationNumbers& d, const PanelNodes& nodes);
+
+void find_indentation(const IndentationNumbers& d, const IndentationNumbers& then, const PanelNodes& nodes,
+                      const KnownFaces& known) {
+    const Packet zero = 0.0, top = d.top, top_leans = d.top_rate * d.per_stretch;
+    for (std::size_t i = 0; i < block_size; i += packet_length) {
+        zero.store(known.follows + i);
+        const Standing n = stand(d, nodes, i), was = stand(then, nodes, i);
+        if (!any_matters(nodes, known, no_less_than(d, n), i)) continue;
+        const FollowedPlace h = find_followed(d, n);
+        const Drawn by = drawn(d, h);
+        const Packet outward = outward_displacement(n, was, by, drawn(then, find_followed(then, was)));
+        const Asked asked = ask(d, nodes, known, n, h, outward, i);
+        const Packet state = find_state(d, nodes, known, asked, i);
+        if (!any_above(state, zero)) continue;
+        state.store(known.follows + i);
+        const auto put = [&](double* column, const Packet& found) {
+            where_above(state, zero, found, Packet::load(column + i)).store(column + i);
+        };
+        const Packet fe = by.in, fw = by.across, fl = where_above(n.l, top, zero, fe * d.tilt);
+        const Packet nx = fe * d.ex - fw * d.wx - fl * d.lx, ny = fe * d.ey - fw * d.wy - fl * d.ly,
+                     nz = fe * d.ez - fw * d.wz - fl * d.lz;
+        const Packet size = square_root(fe * fe + fw * fw + fl * fl), per = 1.0 / size;
+        put(known.gap, asked.gap);
+        put(known.rank, asked.rank);
+        put(known.bx, d.ex);
+        put(known.by, d.ey);
+        put(known.bz, d.ez);
+        put(known.nx, nx * per);
+        put(known.ny, ny * per);
+        put(known.nz, nz * per);
+        put(known.per_force, size);
+        put(known.px, d.ox + (h.at * d.ex + h.a * d.wx + n.up * d.lx));
+        put(known.py, d.oy + (h.at * d.ey + h.a * d.wy + n.up * d.ly));
+        put(known.pz, d.oz + (h.at * d.ez + h.a * d.wz + n.up * d.lz));
+
+        // Displacement of the node by rotation of the post about e, and by tilt of its axis along e.
+        const Packet about = fl * n.w - fw * n.l;
+        const Packet leaning = fe * (d.stretch * d.stretch * n.up + d.stretch * d.tilt * d.radius +
+                                     where_above(n.l, top, d.tilt * top_leans, zero));
+        const Packet qx = about * (d.tilt * d.lx - d.ex) + leaning * d.wx,
+                     qy = about * (d.tilt * d.ly - d.ey) + leaning * d.wy,
+                     qz = about * (d.tilt * d.lz - d.ez) + leaning * d.wz;
+        put(known.tx, per * (d.oy * nz - d.oz * ny + qx));
+        put(known.ty, per * (d.oz * nx - d.ox * nz + qy));
+        put(known.tz, per * (d.ox * ny - d.oy * nx + qz));
+    }
+}
+
+double find_indentation_gap(const IndentationNumbers& d, const PanelNodes& nodes) {
+    Packet least = infinitely_far;
+    for (std::size_t i = 0; i < block_size; i += packet_length)
+        least = lesser(least, where_on(nodes, find_followed(d, stand(d, nodes, i)).gap, infinitely_far, i));
+    return least_of(least);
+}
+
+}  // namespace birm3d::BIRM3D_INSTRUCTION_SET
