@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import sys
 import warnings
+from collections.abc import Sequence
 from importlib import import_module
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
 from types import ModuleType
 
-from .base.arguments import caller_level
-
-__all__ = ["keep_old_paths", "keep_short_paths", "old_name"]
+__all__ = ["is_old", "keep_old_paths", "keep_short_paths", "old_name"]
 
 _SHORT = {
     "filters": "signals.filters",
@@ -149,18 +150,35 @@ class _OldModule(ModuleType):
         old = self.__name__.removeprefix("birm3d.")
         place = _OLD_NAMES.get(f"{old}.{name}", self._new)
         value: object = getattr(import_module(f"birm3d.{place}"), name)
-        warnings.warn(
-            f"{self.__name__} has moved: write birm3d.{place}",
-            DeprecationWarning,
-            stacklevel=caller_level(),
-        )
+        _warn(f"{self.__name__} has moved: write birm3d.{place}")
         return value
+
+
+class _ShortPaths(MetaPathFinder, Loader):
+    """Finds a module by its short path: the module itself, which is loaded then and keeps its own name."""
+
+    def __init__(self) -> None:
+        self._spec_of: dict[str, ModuleSpec | None] = {}
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        package, _, short = name.partition(".")
+        return ModuleSpec(name, self) if package == "birm3d" and short in _SHORT else None
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        module = import_module(f"birm3d.{_SHORT[spec.name.partition('.')[2]]}")
+        self._spec_of[module.__name__] = module.__spec__  # the import system replaces it
+        return module
+
+    def exec_module(self, module: ModuleType) -> None:
+        module.__spec__ = self._spec_of.pop(module.__name__)
 
 
 def keep_short_paths() -> None:
     """Let documented short paths lead to their modules, in ``import`` statements too."""
-    for short, place in _SHORT.items():
-        sys.modules[f"birm3d.{short}"] = import_module(f"birm3d.{place}")
+    if not any(isinstance(finder, _ShortPaths) for finder in sys.meta_path):
+        sys.meta_path.insert(0, _ShortPaths())
 
 
 def keep_old_paths() -> None:
@@ -169,20 +187,21 @@ def keep_old_paths() -> None:
         sys.modules.setdefault(f"birm3d.{old}", _OldModule(old, new))
 
 
-def old_name(name: str) -> object:
-    """Return what an old name of the package stands for: a module that has moved, or a name of today.
+def is_old(name: str) -> bool:
+    """Whether the package had this name in an earlier version."""
+    return name in _RENAMED or name in _OLD
 
-    Raises
-    ------
-    AttributeError
-        If there never was one.
-    """
-    if name in _RENAMED:
-        module, new = _RENAMED[name]
-        warnings.warn(
-            f"birm3d.{name} has a new name: write birm3d.{new}", DeprecationWarning, stacklevel=caller_level()
-        )
-        return getattr(import_module(f"birm3d.{module}"), new)
+
+def old_name(name: str) -> object:
+    """Return what an old name of the package stands for: a module that has moved, or a name of today."""
     if name in _OLD:
         return sys.modules[f"birm3d.{name}"]
-    raise AttributeError(f"module 'birm3d' has no attribute {name!r}")
+    module, new = _RENAMED[name]
+    _warn(f"birm3d.{name} has a new name: write birm3d.{new}")
+    return getattr(import_module(f"birm3d.{module}"), new)
+
+
+def _warn(text: str) -> None:
+    from .base.arguments import caller_level  # not needed to load the package
+
+    warnings.warn(text, DeprecationWarning, stacklevel=caller_level())

@@ -88,6 +88,8 @@ def assessed(
     reference_point: str | None = None,
 ) -> tuple[list[Rating], OccupantRisk | None]:
     """Return the ratings of a run by some standards, and its occupant risk where that is asked for."""
+    if not standards and not with_risk:
+        return [], None
     from ..assessment import occupant_risk
     from ..assessment import rate as rate_result
 
