@@ -22,13 +22,13 @@ if TYPE_CHECKING:
         OccupantRisk,
         Rating,
         RatingStudy,
-        design_load,
         occupant_risk,
-        rate,
         test_matrix,
     )
+    from .assessment.design_load import design_load
+    from .assessment.rate import rate
     from .barrier import Barrier, FreeStanding, lateral_load
-    from .calibration import calibrate
+    from .calibration.calibrate import calibrate
     from .io.file_format import FileFormatError
     from .pictures import plot_runs
     from .reporting import dossier
@@ -179,12 +179,12 @@ _WHERE = {
     "WorstOffset": "study.worst_offset:WorstOffset",
     "Zone": "vehicle:Zone",
     "__version__": "_version:__version__",
-    "calibrate": "calibration:calibrate",
+    "calibrate": "calibration.calibrate:calibrate",
     "calibration": "calibration",
     "check_channel": "signals.channel_checks:check_channel",
     "compare_curves": "signals.compare:compare_curves",
     "critical_impact_point": "study.impact_point:critical_impact_point",
-    "design_load": "assessment:design_load",
+    "design_load": "assessment.design_load:design_load",
     "dossier": "reporting:dossier",
     "ensemble": "study.ensemble:ensemble",
     "filters": "signals.filters",
@@ -200,7 +200,7 @@ _WHERE = {
     "occupant_risk": "assessment:occupant_risk",
     "plot_runs": "pictures:plot_runs",
     "predict": "study.predict:predict",
-    "rate": "assessment:rate",
+    "rate": "assessment.rate:rate",
     "read_csv_channels": "signals.readers:read_csv_channels",
     "read_iso_mme": "signals.readers:read_iso_mme",
     "read_nhtsa": "signals.readers:read_nhtsa",
