@@ -45,6 +45,11 @@ def test_title_has_what_is_common_and_legend_what_differs(runs: list[Result], ca
     assert [label.split()[0] for label in labels] == ["8.00", "12.00"]
     twice = birm3d.plot_runs([runs[0], runs[0]])
     assert [text.get_text() for text in twice.legends[0].get_texts()] == ["run 1", "run 2"]
+    post = Simulation(car, Barrier.pole(), 8.0).run()
+    others = birm3d.plot_runs([runs[0], post], labels=["wall", "pole"])
+    labels = [text.get_text() for text in others.legends[0].get_texts()]
+    assert labels[0] == "wall: rigid wall without end"
+    assert labels[1].startswith("pole: 1 bollard")
     named = birm3d.plot_runs(runs, labels=["slow", "fast"])
     assert [text.get_text() for text in named.legends[0].get_texts()] == ["slow", "fast"]
 

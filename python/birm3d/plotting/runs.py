@@ -66,7 +66,7 @@ def plot_runs(
     if labels is not None and len(labels) != len(results):
         raise ValueError(f"labels must be {len(results)}, one for each run, got {len(labels)}")
     common, differ = _told_apart([result.scene for result in results])
-    texts = differ if labels is None else list(labels)
+    texts = differ if labels is None else _with_barriers(labels, [result.scene for result in results])
     figure, panels = _panels(names)
     for axes, name in zip(panels, names, strict=True):
         channel = HISTORY_CHANNELS[name]
@@ -83,7 +83,10 @@ def plot_runs(
 
 
 def plot_history_bands(bands: HistoryBands) -> Figure:
-    """Return the median and the band of each channel over time, some of the runs as thin lines behind."""
+    """Return the median and the band of each channel over time, some of the runs as thin lines behind.
+
+    The vertical ranges are those of the bands: single runs may leave them.
+    """
     names = tuple(bands.median)
     figure, panels = _panels(names)
     ms = bands.time * 1e3
@@ -93,11 +96,14 @@ def plot_history_bands(bands: HistoryBands) -> Figure:
         axes.plot(
             ms, bands.runs[name][::step].T / size, color="0.5", ls=SOLID, lw=0.5, alpha=0.4, label="_runs"
         )
-        band = f"{bands.share:.0%} of {bands.n} runs"
+        band = f"{100 * bands.share:g} % of {bands.n} runs"
         axes.fill_between(
             ms, bands.low[name] / size, bands.high[name] / size, color=BLUE, alpha=0.25, lw=0, label=band
         )
         axes.plot(ms, bands.median[name] / size, color=BLUE, ls=SOLID, lw=2.0, label="median")
+        low, high = float(bands.low[name].min()) / size, float(bands.high[name].max()) / size
+        room = 0.08 * max(high - low, 1e-9)
+        axes.set_ylim(low - room, high + room)
         _finish(axes, name)
         axes.set_xlim(0.0, float(ms[-1]))
         legend([axes])
@@ -124,6 +130,14 @@ def _finish(axes: Axes, name: str) -> None:
     axes.set_xlabel("time [ms]")
     if channel.unit == "deg":
         at_least(axes, LEAST_ANGLE)
+
+
+def _with_barriers(labels: Sequence[str], scenes: Sequence[Scene]) -> list[str]:
+    """Return labels that name the barrier where the title can not."""
+    barriers = [_PARTS["barrier"](scene) for scene in scenes]
+    if len(set(barriers)) == 1:
+        return list(labels)
+    return [f"{label}: {barrier}" for label, barrier in zip(labels, barriers, strict=True)]
 
 
 def _told_apart(scenes: Sequence[Scene]) -> tuple[str, list[str]]:
