@@ -36,6 +36,26 @@ def folder(result: Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
+def study_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The dossier of a study: percentiles, probabilities and the run that was varied."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.2)
+    crash = Simulation(car, Barrier.bollards(count=3), 15.0)
+    study = birm3d.sweep(crash, impact_speed=[14.0, 15.0, 16.0], progress=False)
+    folder = tmp_path_factory.mktemp("browser_study") / "dossier"
+    birm3d.dossier(study, folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wall_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page of a run at a wall, with the load on it by cell."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.2)
+    path = tmp_path_factory.mktemp("browser_wall") / "wall.html"
+    Simulation(car, Barrier.rigid_wall(), 12.0, 60.0).run().write_html(path, frames=21)
+    return path
+
+
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
     with playwright.sync_playwright() as driver:
         # SwiftShader draws WebGL where there is no graphics card.
@@ -93,6 +113,33 @@ def path(request: pytest.FixtureRequest, folder: Path) -> Path:
 
 @pytest.mark.parametrize("viewport", [PHONE, DESK], ids=["phone", "desk"])
 def test_opens_offline_and_fits(browser: Any, path: Path, viewport: dict[str, int]) -> None:
+    opens_offline_and_fits(browser, path, viewport)
+
+
+def test_page_of_a_study(browser: Any, study_folder: Path) -> None:
+    for viewport in (PHONE, DESK):
+        opens_offline_and_fits(browser, study_folder / "index.html", viewport)
+    visit = Visit(browser, study_folder / "index.html", DESK)
+    visit.set_slider(0.0)
+    first = visit.pixels()
+    visit.set_slider(1.0)
+    assert sum(abs(a - b) > 24 for a, b in zip(first, visit.pixels(), strict=True)) > 300
+    assert "3 runs" in visit.page.inner_text("body")
+    assert visit.errors == []
+    visit.close()
+
+
+def test_page_of_a_wall_shows_the_load_by_cell(browser: Any, wall_page: Path) -> None:
+    for viewport in (PHONE, DESK):
+        opens_offline_and_fits(browser, wall_page, viewport)
+    visit = Visit(browser, wall_page, PHONE)
+    picture = visit.page.get_by_alt_text("load on the wall by cell")
+    assert 250 < picture.bounding_box()["width"] <= PHONE["width"]
+    visit.close()
+
+
+def opens_offline_and_fits(browser: Any, path: Path, viewport: dict[str, int]) -> None:
+    """Check that a page asks for nothing, complains of nothing, and is as wide as the screen at the most."""
     visit = Visit(browser, path, viewport)
     assert visit.asked[0] == path.as_uri()
     assert [url for url in visit.asked[1:] if not url.startswith(("data:", "blob:"))] == []

@@ -29,6 +29,9 @@ def test_cells_add_up_to_the_walls_load(oblique: Result, cells: LoadMap) -> None
     assert isinstance(own, np.ndarray)
     assert np.abs(cells.resultant - own).max() < 1e-10 * own.max()
     assert np.abs(cells.outside).max() == 0.0
+    assert cells.height[0] == 0.0
+    assert cells.height[-1] <= 1.5  # the wall's top
+    assert oblique.load_map(0.4).height[-1] <= 1.5
     impulse = own[1:].sum() * oblique.scene.settings.output_interval
     assert cells.impulse.sum() == pytest.approx(impulse, rel=1e-10)
     assert cells.force.min() >= 0.0  # a wall does not pull

@@ -268,6 +268,29 @@ def test_of_a_run_from_its_raw_histories(car_on_jersey: Result) -> None:
     assert 0.7 < risk.thiv / math.hypot(risk.oiv_x, risk.oiv_y) < 1.3
 
 
+def test_head_of_a_run_from_positions_and_angles(car_on_jersey: Result) -> None:
+    """THIV and PHD over the ground: a head that flies straight on, places and angles of the run."""
+    result = car_on_jersey
+    first = int(np.argmax(result.sum_of_contact_forces > 0.0))
+    time, dt = result.time[first:], result.time[1]
+    place, yaw = result.position[first:, :2], np.radians(result.yaw[first:])
+    heading = yaw + math.atan2(*(result.velocity[first, 1::-1])) - yaw[0]
+    flown = place[0] + np.outer(time - time[0], result.velocity[first, :2])
+    # Of the vehicle's axes, seen from the world: the head began at the mass centre.
+    c, s = np.cos(heading), np.sin(heading)
+    way = flown - place
+    x, y = c * way[:, 0] + s * way[:, 1], -s * way[:, 0] + c * way[:, 1]
+    strike = int(np.argmax((x >= 0.6) | (np.abs(y) >= 0.3)))
+    assert strike > 0
+    # A wall of the compartment moves as the vehicle's frame does where the head meets it.
+    seen = np.gradient(np.column_stack([x, y]), dt, axis=0)
+    risk = occupant_risk(result, head_x=0.0)
+    assert risk.thiv == pytest.approx(np.linalg.norm(seen[strike]), rel=0.01)
+    level = np.gradient(np.gradient(place, dt, axis=0), dt, axis=0)
+    tens = np.array([level[i : i + 100].mean(axis=0) for i in range(strike, len(level) - 100)])
+    assert risk.phd == pytest.approx(np.linalg.norm(tens, axis=1).max() / G, rel=0.03)
+
+
 def test_what_it_shows(car_on_jersey: Result) -> None:
     risk = occupant_risk(car_on_jersey)
     text = risk.summary()

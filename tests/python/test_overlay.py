@@ -49,7 +49,7 @@ def test_title_has_what_is_common_and_legend_what_differs(runs: list[Result], ca
     others = birm3d.plot_runs([runs[0], post], labels=["wall", "pole"])
     labels = [text.get_text() for text in others.legends[0].get_texts()]
     assert labels[0] == "wall: rigid wall without end"
-    assert labels[1].startswith("pole: 1 bollard")
+    assert labels[1].startswith("pole: pole, Ø")
     named = birm3d.plot_runs(runs, labels=["slow", "fast"])
     assert [text.get_text() for text in named.legends[0].get_texts()] == ["slow", "fast"]
 

@@ -44,3 +44,25 @@ def test_security_cases(module: ModuleType, name: str, designation: str) -> None
     rating = module.rated(case)
     assert rating.designation == designation
     assert rating.penetration < 0.0  # rigid posts: the load bed stays before them
+
+
+def test_every_case_runs_and_the_page_is_fresh(module: ModuleType) -> None:
+    """Verdict beside the published one, computed anew; a rating that changed is written by the command."""
+    text = (FOLDER / "ratings.md").read_text(encoding="utf-8")
+    right = 0
+    for case in module.CASES:
+        rating = module.rated(case)
+        (row,) = [line for line in text.splitlines() if line.startswith(f"| {case.name} |")]
+        assert f"| {'contained' if rating.contained else 'not contained'} |" in row
+        right += rating.contained == case.measured
+    assert f"as published in {right} of {len(module.CASES)} tests" in text
+
+
+def test_dossier_of_a_case_has_both_verdicts(module: ModuleType, tmp_path: Path) -> None:
+    assert set(module.DOSSIERS) <= {case.name for case in module.CASES}
+    (case,) = [case for case in module.CASES if case.name == module.DOSSIERS[1]]  # which the model gets wrong
+    page = module.write_dossier(case, tmp_path).read_text(encoding="utf-8")
+    assert "published penetrated by 6.0 m" in page
+    assert module.rated(case).designation in page
+    assert "WRONG" in page  # in its own table of given tests
+    assert {path.name for path in tmp_path.iterdir()} == {"8-in-posts-with-a-rail-43-5-mph"}

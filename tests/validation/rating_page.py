@@ -2,11 +2,17 @@
 
     python tests/validation/rating_page.py
 
-writes tests/validation/ratings.md.
+writes tests/validation/ratings.md, and
+
+    python tests/validation/rating_page.py --dossiers FOLDER
+
+a dossier for each of three cases below the folder: one right, one wrong, one of a roadside barrier.
 """
 
 from __future__ import annotations
 
+import argparse
+import re
 from pathlib import Path
 
 import birm3d
@@ -26,6 +32,22 @@ says so.
 
 CASES = tuple(test for test in given_tests() if test.quantity == "containment")
 """Published tests that come with the package, data/published_tests.csv."""
+
+
+DOSSIERS = ("DSC720-1M, fixed bollard", "8-in posts with a rail, 43.5 mph", "TB51, slipform STEP barrier")
+"""Cases that get a dossier."""
+
+
+def write_dossier(case: GivenTest, folder: Path) -> Path:
+    """Write the dossier of a case below a folder, its published verdict in the head; return the page."""
+    name = re.sub(r"[^a-z0-9]+", "-", case.name.lower()).strip("-")
+    return birm3d.dossier(
+        case.simulation().run(),
+        folder / name,
+        standards=[case.standard],
+        title=f"{case.name}: published {case.published}",
+        project=f"Published test; {case.source}",
+    )
 
 
 def _risk_rows() -> list[list[str]]:
@@ -99,7 +121,11 @@ side gives way until the pole is at the rigid body, which it should not.
 ## Left out
 
 JERSEY-4000 (a section broke; angle not stated), TT203, TT210, DSC7000 (not bollards; sizes not published),
-a bus on the STEP barrier (TB51: no preset of a bus), TTI's 1975 sedan at 24 deg (no rating published).
+TTI's 1975 sedan at 24 deg, T60-KIA and FOIL 03008 (neither rating nor outcome published).
+
+## Dossiers
+
+`python tests/validation/rating_page.py --dossiers FOLDER` writes those of: {"; ".join(DOSSIERS)}.
 
 ## Sources
 
@@ -109,6 +135,20 @@ a bus on the STEP barrier (TB51: no preset of a bus), TTI's 1975 sedan at 24 deg
 """
 
 
+def main() -> None:
+    """Write the page, or dossiers."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--dossiers", type=Path, metavar="FOLDER", help="write dossiers there, not the page")
+    folder = parser.parse_args().dossiers
+    if folder is None:
+        PAGE.write_text(page(), encoding="utf-8")
+        print(f"written: {PAGE}")
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    for case in CASES:
+        if case.name in DOSSIERS:
+            print(f"written: {write_dossier(case, folder)}")
+
+
 if __name__ == "__main__":
-    PAGE.write_text(page(), encoding="utf-8")
-    print(f"written: {PAGE}")
+    main()

@@ -28,6 +28,7 @@ def face_grid(
     lateral: npt.ArrayLike | None,
     height: npt.ArrayLike | None,
     side: float,
+    top: float,
     *,
     doubled: bool,
 ) -> tuple[Floats, Floats]:
@@ -36,6 +37,8 @@ def face_grid(
     while True:
         y = _edges("lateral", lateral, side, [step.along for step in steps], from_foot=False)
         z = _edges("height", height, side, [step.height for step in steps], from_foot=True)
+        if height is None:
+            z = read_only(np.append(z[z < top], top) if z[-1] > top else z)
         count = (len(y) - 1) * (len(z) - 1)
         if count <= most:
             return y, z
@@ -66,13 +69,18 @@ def _edges(
 
 
 def forces_of_cells(
-    step: FaceStep, quarters: Iterable[tuple[float, float]], edges: tuple[Floats, Floats], count: int
+    step: FaceStep,
+    quarters: Iterable[tuple[float, float]],
+    edges: tuple[Floats, Floats],
+    top: float,
+    count: int,
 ) -> Floats:
     """Return the forces of cells at the end of a step, each node's force in four quarters."""
     cells = np.zeros(count)
     for aside, up in quarters:
-        # No part of a load above the ground is below it.
+        # No part of a load above the foot is below it, and none is above the top.
         height = np.where(step.height >= 0.0, np.maximum(step.height + up, 0.0), step.height + up)
+        height = np.minimum(height, np.nextafter(top, 0.0))
         cells += np.bincount(cells_of(step.along + aside, height, edges), 0.25 * step.force, minlength=count)
     return cells
 

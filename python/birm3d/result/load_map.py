@@ -187,20 +187,20 @@ def load_map(
         raise ValueError(f"cell must be >= {_LEAST_CELL} m, got {side:g}")
     face = Face.of(wall)
     steps = face_steps(result, face)
-    edges = face_grid(result, steps, lateral, height, side, doubled=cell is None)
+    edges = face_grid(result, steps, lateral, height, side, wall.height, doubled=cell is None)
     edges_y, edges_z = edges
     shape = (len(edges_z) - 1, len(edges_y) - 1)
-    cells = _in_time(result.time, steps, edges_y, edges_z)
+    cells = _in_time(result.time, steps, edges, wall.height)
     force = _completed(result, wall, face, steps, cells, edges)
     inner = force[:, :-1].reshape(-1, *shape)
     return LoadMap(result.time, edges_y, edges_z, inner, force[:, -1], scene_text(result.scene, "\n"))
 
 
-def _in_time(time: Floats, steps: list[FaceStep], y: Floats, z: Floats) -> Floats:
+def _in_time(time: Floats, steps: list[FaceStep], edges: tuple[Floats, Floats], top: float) -> Floats:
     """Return the forces of cells, and outside them, in the middles of the result's rows, (n, cells + 1)."""
-    count = (len(y) - 1) * (len(z) - 1) + 1
+    count = (len(edges[0]) - 1) * (len(edges[1]) - 1) + 1
     quarters = [(a, h) for a in (-SPREAD, SPREAD) for h in (-SPREAD, SPREAD)]
-    at_ends = np.array([forces_of_cells(step, quarters, (y, z), count) for step in steps])
+    at_ends = np.array([forces_of_cells(step, quarters, edges, top, count) for step in steps])
     ends = np.array([step.time for step in steps])
     middles = _middles(time)
     place = np.clip(np.searchsorted(ends, middles, side="right") - 1, 0, len(ends) - 2)
@@ -255,6 +255,7 @@ def _completed(
             for p, e in zip((all_y, all_z), edges, strict=True)
         ]
         along, height = (np.clip(turned[:, k], *limits[k]) for k in range(2))
+        height = np.minimum(height, np.nextafter(wall.height, 0.0))
         np.add.at(cells, (alone, cells_of(along, height, edges)), rest[alone])
     return cells
 
