@@ -18,8 +18,10 @@ import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Study, Vehicle, scenes
 from birm3d.cli import main
 from birm3d.reporting.given_tests import Facts, _facts, errors, given_tests, nearest
+from birm3d.reporting.uncertainty import _bands
 from birm3d.result.skin import skins_at
 from birm3d.result.summary import element_rows, headline_rows
+from scipy import stats
 
 VOID = {"meta", "input", "img", "link", "br"}
 FACTS = {"project": "Plaza <north>", "client": "City", "author": "A. Engineer", "date": "2030-01-02"}
@@ -345,6 +347,20 @@ def test_bad_arguments(result: Result, tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def study() -> Study:
     return birm3d.sweep(crash(), impact_speed=[20.5, 21.0, 22.352], progress=False)
+
+
+def test_bands_of_a_drawn_study_and_load_on_a_wall(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Histories of a Monte Carlo study as bands; of a rigid wall the load by cell. A grid is no draw."""
+    monkeypatch.setattr("birm3d.reporting.study_case.nearest", lambda scene: nearest(scene, 1))
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    wall = Simulation(car, Barrier.rigid_wall(), 10.0)
+    unknown = {"impact_speed": stats.norm(10.0, 0.5)}
+    drawn = birm3d.monte_carlo(wall, unknown, n=8, progress=False)
+    text = birm3d.dossier(drawn, tmp_path / "drawn").read_text(encoding="utf-8")
+    assert "Deceleration and travel over time: median and 80 % of 8 runs" in text
+    assert "Load on the wall by cell" in text
+    grid = birm3d.sweep(wall, impact_speed=np.linspace(9.0, 10.0, 8).tolist(), progress=False)
+    assert list(_bands(grid)) == []
 
 
 def test_study(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

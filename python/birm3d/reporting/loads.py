@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 
+from ..barrier.rigid_wall import RigidWall
 from ..result.element_loads import touched_elements
 from ..result.metrics import METRIC_UNITS
 from ..result.result import Result
@@ -30,11 +31,20 @@ def load_section(case: Case) -> Section:
     blocks: list[Block] = [
         Table("Loads on each element that was touched", ELEMENT_COLUMNS, rows, numbers=True),
         figure(case.result.plot_elements(), "Loads on the elements over time"),
+        *_map_blocks(case.result),
         *_design_blocks(case),
         Caution(_RIGID),
         Items(links=(("The same table with all digits, SI", "loads.csv"),)),
     ]
     return Section("Loads on the barrier", "loads", blocks)
+
+
+def _map_blocks(result: Result) -> list[Block]:
+    """Return the picture of the load by cell; of a barrier that is no rigid wall nothing."""
+    if not isinstance(result.scene.barrier, RigidWall):
+        return []
+    note = "Load on the wall by cell, seen from the vehicle; the cells add up to the force across the wall"
+    return [figure(result.load_map().plot(), note)]
 
 
 def _design_blocks(case: Case) -> list[Block]:

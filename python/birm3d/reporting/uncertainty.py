@@ -10,12 +10,15 @@ from ..plotting.style import shown_unit
 from ..result.metrics import METRIC_UNITS
 from ..result.summary import HEADLINES
 from ..study import Study
+from ..study.history_bands import history_bands
 from .blocks import Block, Caution, Section, Table, Text
+from .figures import figure
 from .study_case import Case
 
 __all__ = ["computing_error", "uncertainty_section"]
 
 _ROUNDING = 1e-9  # angles and lengths below are rounding errors
+_LEAST_RUNS, _MOST_RUNS = 8, 300  # of a study whose histories are drawn as bands
 _NOTHING = 1e-6  # a metric as small as this has no relative error
 
 
@@ -88,6 +91,7 @@ def _study_blocks(case: Case, study: Study) -> Iterator[Block]:
     counts = [(word, f"{n:,}", f"{n / len(done):.1%}") for word, n in study.outcomes.items()]
     yield Table("Outcomes of the study", ("outcome", "runs", "share"), counts, numbers=True)
     yield _percentiles(case, study)
+    yield from _bands(study)
     if case.rating_study is not None:
         rated = case.rating_study
         shares = []
@@ -101,6 +105,16 @@ def _study_blocks(case: Case, study: Study) -> Iterator[Block]:
             note=f"{len(rated.ratings):,} runs were rated.",
             numbers=True,
         )
+
+
+def _bands(study: Study) -> Iterator[Block]:
+    """Yield the bands of two histories, where a study has enough runs and knows its scenes."""
+    ran = len(study) - len(study.failed)
+    if study._scene is None or study.grid is not None or not _LEAST_RUNS <= ran <= _MOST_RUNS:
+        return
+    bands = history_bands(study, progress=False)
+    caption = f"Deceleration and travel over time: median and {100 * bands.share:g} % of {bands.n} runs"
+    yield figure(bands.plot(), caption, raster=True)
 
 
 def _percentiles(case: Case, study: Study) -> Table:
