@@ -360,3 +360,9 @@ def test_scene_files_that_can_not_be(text: str, parts: list[str], tmp_path: Path
         read_scene_file(tmp_path / "scene.toml")
     for part in parts:
         assert part in str(caught.value)
+
+
+def test_a_bare_barrier_names_all_makers() -> None:
+    with pytest.raises(TypeError, match=r" or from_mesh$") as found:
+        Barrier()
+    assert all(kind in str(found.value) for kind in ALL_KINDS)

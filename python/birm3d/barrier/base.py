@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, TypeAlias
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -18,9 +18,6 @@ from ..unit_check import USUAL, given
 from ..units import Quantity, si
 from .description import SeenPart, Size
 from .makers import BarrierMakers, Point, point_of
-
-if TYPE_CHECKING:
-    pass
 
 __all__ = ["Barrier", "Surface"]
 
@@ -64,8 +61,9 @@ class Barrier(BarrierMakers):
     is_straight: ClassVar[bool] = False
     """Whether its face is straight along the line: it redirects, and moments are about the line."""
     has_posts: ClassVar[bool] = False
-    """Whether it is made of posts, which dent the skin beside them."""
+    """Whether it is made of posts, which indent the skin beside them."""
     why_no_dents: ClassVar[str] = "the barrier has no posts"
+    """Why the skin beside it is not indented, for the report of what a run left out."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "origin", point_of(self.origin))
@@ -84,7 +82,8 @@ class Barrier(BarrierMakers):
 
     def elements(self) -> list[_core.Element]:
         """Return the elements for the core; a kind of barrier says which."""
-        raise TypeError("a Barrier is made with rigid_wall, pole, bollards, jersey, planter or from_mesh")
+        makers = [name for name, kind in vars(BarrierMakers).items() if isinstance(kind, staticmethod)]
+        raise TypeError(f"a Barrier is made with {', '.join(makers[:-1])} or {makers[-1]}")
 
     @property
     def draws_in_skin(self) -> bool:

@@ -42,7 +42,7 @@ void check_same(const RunSummary& found, const Scene& scene) {
     CHECK(found.extremes.normal_force->peak == expected.normal_force->peak);
     CHECK(found.extremes.normal_force->last == expected.normal_force->last);
     CHECK(found.extremes.motion->reversal_time == expected.motion->reversal_time);
-    CHECK(found.extremes.motion->way == expected.motion->way);
+    CHECK(found.extremes.motion->travel == expected.motion->travel);
     CHECK(found.extremes.motion->velocity_change == expected.motion->velocity_change);
     CHECK(found.extremes.motion->deceleration == expected.motion->deceleration);
     CHECK(found.extremes.attitude->yaw == expected.attitude->yaw);
