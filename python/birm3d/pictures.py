@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from .study.verification.precision_result import WorkPrecision
     from .study.verification.stability_result import Stability
     from .study.worst_offset import WorstOffset
+    from .vehicle.vehicle import Vehicle
 
 __all__ = [
     "Color",
@@ -58,6 +59,7 @@ __all__ = [
     "plot_sobol",
     "plot_stability",
     "plot_study",
+    "plot_vehicle",
     "plot_work_precision",
     "plot_worst_offset",
     "render",
@@ -323,6 +325,13 @@ def plot_profiles(calibration: CalibrationResult) -> Figure:
     from .plotting.calibration import plot_profiles
 
     return plot_profiles(calibration)
+
+
+def plot_vehicle(vehicle: Vehicle) -> Figure:
+    """Return a figure of what a vehicle is made of; see :func:`birm3d.plotting.plot_vehicle`."""
+    from .plotting.vehicle_views import plot_vehicle
+
+    return plot_vehicle(vehicle)
 
 
 def result_html(result: Result) -> str:

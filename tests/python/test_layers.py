@@ -37,7 +37,13 @@ WAY_UP = "pictures"
 """Every layer may import it; inside its functions, and for types, it imports any layer."""
 MAKERS = {
     "barrier.makers": ("barrier.kinds", "barrier.free_standing"),
-    "vehicle.vehicle": ("vehicle.articulated", "vehicle.builder", "vehicle.from_facts"),
+    "vehicle.vehicle": (
+        "vehicle.articulated",
+        "vehicle.builder",
+        "vehicle.from_facts",
+        "vehicle.mesh_import.facts",
+        "vehicle.mesh_import.vehicle_of_mesh",
+    ),
     "vehicle.variants": ("vehicle.builder",),
 }
 """A class whose methods return classes derived from it, or built of its parts by another module.

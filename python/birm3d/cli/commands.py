@@ -30,6 +30,11 @@ COMMANDS = {
         "from_facts",
         "Make the file of a vehicle by its KIND and what is known of it; prints what was assumed.",
     ),
+    "from-mesh": _Place(
+        "from_mesh",
+        "from_mesh",
+        "Make the file of a vehicle whose skin is a MESH; prints what was assumed.",
+    ),
     "loads": _Place(
         "loads",
         "loads",

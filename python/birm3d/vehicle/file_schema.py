@@ -16,6 +16,7 @@ from pydantic import AfterValidator, Field, model_validator
 from ..io.toml import Strict, reject
 from .class_scatter import STIFFNESSES
 from .scaling import SIZES, Extent, Factors, PlaceMap, Scaling, factors_of, scaling_between
+from .skin_mesh import SkinMesh
 from .zone_law import NonNegative, Positive, ZoneLaw
 
 __all__ = [
@@ -296,6 +297,8 @@ class Exterior(Block):
 
     element_size_m: edge length of a shell element at mesh density 1.
     stations_m: rows [x, half width, z of underside, z of upper edge] from front to rear.
+    mesh: the skin as triangles. Stations and roofs are then the outline of the vehicle that it was placed by:
+    elements follow the mesh alone.
     """
 
     element_size_m: Annotated[float, Field(ge=0.01, le=1.0)]
@@ -303,6 +306,7 @@ class Exterior(Block):
     front: End = End()
     rear: End = End()
     upper: tuple[Upper, ...] = ()
+    mesh: SkinMesh | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Exterior:
@@ -322,7 +326,14 @@ class Exterior(Block):
         check_unique("upper", [upper.name for upper in self.upper])
         if any(upper.name == "body" for upper in self.upper):
             reject("upper", "the name 'body' is taken by the lofted body itself")
+        if self.mesh is not None:
+            check_known("mesh.triangles", tuple(sorted(set(self.mesh.rows[:, 4].tolist()))), set(self.blocks))
         return self
+
+    @property
+    def blocks(self) -> tuple[str, ...]:
+        """Names of body and upper blocks."""
+        return ("body", *(upper.name for upper in self.upper))
 
     def _check_size(self) -> None:
         rows = [*self.stations_m, *((x, half, 0.0, z) for upper in self.upper for x, half, z in upper.roof_m)]

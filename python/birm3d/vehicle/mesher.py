@@ -17,16 +17,16 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from birm3d.vehicle.skin_mesh import PANELS, SkinSurface
 from birm3d.vehicle.vehicle_file import CoreBox, End, Upper, VehicleFile, Zone
 
-__all__ = ["ExteriorMesh", "build_mesh"]
+__all__ = ["ExteriorMesh", "build_mesh", "match_zones", "winding_number"]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 _DENSITY = (0.01, 100.0)  # a handful of elements ... a million; outside it is a mistake in units
 _SAME = 1e-9  # m, positions along the body closer than this are one column of nodes
-_PANELS = ("front", "rear", "side", "top", "bottom")
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,11 +79,18 @@ def build_mesh(vehicle_file: VehicleFile, density: float = 1.0) -> ExteriorMesh:
     low, high = _DENSITY
     if not low <= density <= high:
         raise ValueError(f"mesh_density must be between {low:g} and {high:g}, got {density!r}")
-    surface = _Surface(vehicle_file, density)
+    exterior = vehicle_file.exterior
+    surface: _Surface | SkinSurface
+    if exterior.mesh is None:
+        surface = _Surface(vehicle_file, density)
+    else:
+        surface = exterior.mesh.surface(exterior.blocks, density)
     quad_zone = _zones_of_quads(vehicle_file, surface)
     nodes, quads, zone = _split_at_zone_borders(surface.points, surface.quads, quad_zone)
     area = np.zeros(len(nodes))
-    np.add.at(area, quads, quad_areas(nodes, quads)[:, None] / 4.0)
+    triangle = quads[:, 2:3] == quads[:, 3:]  # its last corner is there twice
+    shares = np.where(triangle, np.array([2.0, 2.0, 1.0, 1.0]) / 6.0, 0.25)
+    np.add.at(area, quads, quad_areas(nodes, quads)[:, None] * shares)
     anchors = np.empty_like(nodes)
     for index, law in enumerate(vehicle_file.zones):
         anchors[zone == index] = _closest(nodes[zone == index], _boxes(vehicle_file, law))
@@ -128,7 +135,7 @@ class _Surface:
         quads: list[Ints] = []
         origin: list[tuple[int, int]] = []
         for block_index, lattice in enumerate(lattices):
-            for panel, name in enumerate(_PANELS):
+            for panel, name in enumerate(PANELS):
                 if name == "bottom" and block_index > 0:
                     continue
                 face = _face(name, lattice)
@@ -256,28 +263,34 @@ def _cells(ids: Ints) -> Ints:
     return np.stack([ids[:-1, :-1], ids[1:, :-1], ids[1:, 1:], ids[:-1, 1:]], axis=-1)
 
 
-def _zones_of_quads(vehicle: VehicleFile, surface: _Surface) -> Ints:
+def _zones_of_quads(vehicle: VehicleFile, surface: _Surface | SkinSurface) -> Ints:
     """Zone of every element: the first one whose panels, blocks and ranges hold its middle."""
     middle = surface.points[surface.quads].mean(axis=1)
-    names = ("body", *(upper.name for upper in vehicle.exterior.upper))
-    zone = np.full(len(middle), -1, dtype=np.int64)
-    for index, law in enumerate(vehicle.zones):
-        match = np.isin(surface.panel, [_PANELS.index(panel) for panel in law.panels if panel != "tire"])
-        if law.blocks:
-            match &= np.isin(surface.block, [names.index(block) for block in law.blocks])
-        beside = np.abs(middle[:, 1])
-        for place, limits in ((middle[:, 0], law.x_m), (beside, law.y_m), (middle[:, 2], law.z_m)):
-            if limits is not None:
-                match &= (limits[0] <= place) & (place <= limits[1])
-        zone[match & (zone < 0)] = index
+    zone = match_zones(vehicle, middle, surface.panel, surface.block)
     if (missing := np.flatnonzero(zone < 0)).size:
         quad = missing[0]
-        where = f"{_PANELS[surface.panel[quad]]} of {names[surface.block[quad]]}"
+        where = f"{PANELS[surface.panel[quad]]} of {vehicle.exterior.blocks[surface.block[quad]]}"
         at = ", ".join(f"{value:.3f}" for value in middle[quad])
         raise ValueError(
             f"zone: every element of the exterior must belong to a zone of '{vehicle.name}'; "
             f"{missing.size} do not, the first at ({at}) m, {where}"
         )
+    return zone
+
+
+def match_zones(vehicle: VehicleFile, middle: Floats, panel: Ints, block: Ints) -> Ints:
+    """Return the zone of elements with middles (m, 3) [m], panels and blocks (m,); -1 where none matches."""
+    names = vehicle.exterior.blocks
+    zone = np.full(len(middle), -1, dtype=np.int64)
+    for index, law in enumerate(vehicle.zones):
+        match = np.isin(panel, [PANELS.index(one) for one in law.panels if one != "tire"])
+        if law.blocks:
+            match &= np.isin(block, [names.index(one) for one in law.blocks])
+        beside = np.abs(middle[:, 1])
+        for place, limits in ((middle[:, 0], law.x_m), (beside, law.y_m), (middle[:, 2], law.z_m)):
+            if limits is not None:
+                match &= (limits[0] <= place) & (place <= limits[1])
+        zone[match & (zone < 0)] = index
     return zone
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
+
 from .file_schema import (
     CoreBox,
     Dents,
@@ -20,6 +22,7 @@ from .file_schema import (
     Zone,
 )
 from .scaling import Extent, Factors, Scaling
+from .skin_mesh import SkinMesh
 
 __all__ = ["Resize", "extent_of"]
 
@@ -27,6 +30,8 @@ __all__ = ["Resize", "extent_of"]
 def extent_of(exterior: Exterior, wheels: Sequence[Wheel], core: Sequence[CoreBox]) -> Extent:
     """Return where a vehicle of these blocks ends."""
     roofs = [row for upper in exterior.upper for row in upper.roof_m]
+    if exterior.mesh is not None:
+        return _extent_of_mesh(exterior, exterior.mesh, wheels, core)
     x = [row[0] for row in exterior.stations_m] + [row[0] for row in roofs]
     x += [wheel.center_m[0] + sign * wheel.radius_m for wheel in wheels for sign in (-1.0, 1.0)]
     half = [row[1] for row in exterior.stations_m] + [row[1] for row in roofs]
@@ -41,6 +46,18 @@ def extent_of(exterior: Exterior, wheels: Sequence[Wheel], core: Sequence[CoreBo
         core_rear=min(box.x_m[0] for box in core),
         core_front=max(box.x_m[1] for box in core),
         wheel=max((wheel.radius_m for wheel in wheels), default=None),
+    )
+
+
+def _extent_of_mesh(
+    exterior: Exterior, mesh: SkinMesh, wheels: Sequence[Wheel], core: Sequence[CoreBox]
+) -> Extent:
+    """Return where a vehicle ends whose skin is a mesh; mirrors are no part of its width."""
+    outline = extent_of(exterior.changed({"mesh": None}), wheels, core)
+    low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
+    ends = [wheel.center_m[0] + sign * wheel.radius_m for wheel in wheels for sign in (-1.0, 1.0)]
+    return outline._replace(
+        rear=float(min([low[0], *ends])), front=float(max([high[0], *ends])), top=float(high[2])
     )
 
 
@@ -122,8 +139,12 @@ class Resize:
             "front": self._end(exterior.front, at_front),
             "rear": self._end(exterior.rear, at_rear),
             "upper": tuple(self._upper(upper) for upper in exterior.upper),
+            "mesh": None if exterior.mesh is None else self._mesh(exterior.mesh),
         }
         return exterior.changed(changes)
+
+    def _mesh(self, mesh: SkinMesh) -> SkinMesh:
+        return mesh.moved_to(np.array([self._point(tuple(point)) for point in mesh.points.tolist()]))
 
     def _upper(self, upper: Upper) -> Upper:
         roof = tuple((self._to.x(x), self._to.y * half, self._to.z(z)) for x, half, z in upper.roof_m)

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from .. import pictures
 from ..base.arguments import checked
 from ..base.checks import array
 from ..units import Quantity, si
@@ -18,6 +19,8 @@ from .variants import VehicleVariants
 from .zone import TRUSS_LAW, Zone
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from .articulated import ArticulatedVehicle
     from .joint import Joint
 
@@ -28,7 +31,7 @@ FloatsLike = npt.ArrayLike
 
 @checked
 class Vehicle(VehicleVariants):
-    """A vehicle; immutable. Make one with :meth:`preset`, :meth:`from_file` or :meth:`from_arrays`.
+    """A vehicle; immutable. See :meth:`preset`, :meth:`from_file`, :meth:`from_facts`, :meth:`from_mesh`.
 
     Arrays are read-only, float64, SI, body axes r, s, t (forward, left, up) with the origin at the mass
     centre unless stated.
@@ -169,6 +172,111 @@ class Vehicle(VehicleVariants):
 
         sizes = {"length": length, "width": width, "height": height, "wheelbase": wheelbase}
         return vehicle_of_facts(kind, mass, sizes, mass_center_height, mesh_density)
+
+    @staticmethod
+    def from_mesh(
+        path: str | Path,
+        *,
+        mass: Quantity,
+        kind: str | None = None,
+        like: Vehicle | str | None = None,
+        unit: str | None = None,
+        forward: str = "+x",
+        up: str = "+z",
+        holes: str | None = None,
+        parts: Sequence[int | str] | None = None,
+        without_parts: Sequence[int | str] = (),
+        clearance: Quantity = 0.0,
+        element_size: Quantity | None = None,
+        wheelbase: Quantity | None = None,
+        front_overhang: Quantity | None = None,
+        wheel_radius: Quantity | None = None,
+        track: Quantity | None = None,
+        mass_center_height: Quantity | None = None,
+        center_of_mass: FloatsLike | None = None,
+        inertia: FloatsLike | None = None,
+        zones: Mapping[str, Mapping[str, Any]] | None = None,
+        core: Mapping[str, Mapping[str, Any]] | None = None,
+        name: str | None = None,
+        mesh_density: float = 1.0,
+    ) -> Vehicle:
+        """Make a vehicle whose skin is a mesh: an LS-DYNA keyword file, STL, OBJ, PLY, glTF, VTK, ...
+
+        A mesh says where the skin is. The rest is that of the vehicle's class, scaled to the mass and to the
+        size of the mesh as :meth:`from_facts` does it: stiffness, rigid core, shares of mass, tyres.
+        :attr:`assumptions` says what was assumed, ``plot()`` shows it, :meth:`save` writes all of it to one
+        file. Needs the extra ``mesh``.
+
+        Of a keyword file, shells and solids of all parts and of included files are read. A closed skin is
+        laid around them; engine and seats do no harm. Parts whose titles say tyre or wheel give the wheels.
+        The middle of the mesh is the vehicle's, its lowest point is on the ground.
+
+        Parameters
+        ----------
+        path
+            Known by its ending: ``.k``, ``.key``, ``.dyn``; ``.stl``, ``.obj``, ``.ply``, ``.off``, ``.glb``,
+            ``.gltf``; ``.vtk``, ``.vtu``, ``.msh``, ``.inp``, ``.bdf``, ...
+        mass
+            As it crashes, load included [kg].
+        kind, like
+            One of both: the class as in :meth:`from_facts`, or a vehicle of one unit (or a preset's name).
+        unit
+            Of the mesh: ``"m"``, ``"mm"``, ``"cm"``, ``"in"`` or ``"ft"``.
+        forward, up
+            Axes of the mesh, as ``"-x"``.
+        holes
+            ``"refuse"``: the mesh has to be a closed skin. ``"close"``: holes are filled. ``"wrap"``: a
+            closed skin is laid around all parts, without wheels and mirrors. ``None``: wrap for keyword
+            files, refuse for others.
+        parts, without_parts
+            Parts of the mesh to take, or to leave out, by numbers or pieces of titles.
+        clearance
+            Of the mesh's lowest point above the ground [m]; 0 where wheels are part of it.
+        element_size
+            Distance of the skin's nodes [m]; ``None``: that of the class.
+        wheelbase, front_overhang, wheel_radius, track
+            [m]; ``None``: those of the tyres in the mesh, or of the class.
+        mass_center_height
+            Above the ground [m].
+        center_of_mass
+            Shape (3,), behind which the first axle is at x = 0: x forward, y left, z above ground [m].
+        inertia
+            About the mass centre, shape (3,) or (3, 3) [kg m^2].
+        zones, core
+            Blocks ``[zone.<name>]`` and ``[[core]]`` of a vehicle file by their names: a new one, or what
+            differs from that of the class.
+        name
+            ``None``: that of the file.
+        mesh_density
+            Number of elements relative to the mesh; above 1 each triangle is cut into 4, 9, ... ones.
+
+        Raises
+        ------
+        FileFormatError
+            If the mesh is damaged, has holes or no volume, or its size is that of another unit.
+        ValueError
+            If another argument is out of range.
+        ImportError
+            If a library that reads the mesh is missing; says what to install.
+        """
+        from .mesh_import.facts import MeshFacts
+        from .mesh_import.vehicle_of_mesh import vehicle_of_mesh
+
+        others = {
+            "kind": kind, "unit": unit, "forward": forward, "up": up, "holes": holes, "parts": parts,
+            "without_parts": without_parts, "clearance": clearance, "element_size": element_size,
+            "wheelbase": wheelbase, "front_overhang": front_overhang, "wheel_radius": wheel_radius,
+            "track": track, "mass_center_height": mass_center_height, "center_of_mass": center_of_mass,
+            "inertia": inertia, "zones": zones, "core": core, "name": name,
+        }  # fmt: skip
+        return vehicle_of_mesh(MeshFacts.given(path, mass, like, others), mesh_density)
+
+    def plot(self) -> Figure:
+        """Return a figure of what the vehicle is made of, from four sides.
+
+        Skin coloured by zones, rigid core, wheels, mass centre, sizes, and what was assumed.
+        """
+        return pictures.plot_vehicle(self)
 
     def save(self, path: str | Path) -> None:
         """Write the vehicle to a file (TOML) that :meth:`from_file` reads back as the same vehicle.

@@ -124,7 +124,7 @@ class VehicleFile(Strict):
         if abs(self.solids_mass - self.gvw_kg) > _MASS * self.gvw_kg:
             limit = f"within {_MASS:.0%} of the solids' mass, {self.solids_mass:.2f}"
             reject("gvw_kg", f"must be {limit}, got {self.gvw_kg}")
-        blocks = {"body", *(upper.name for upper in self.exterior.upper)}
+        blocks = set(self.exterior.blocks)
         boxes = {box.name for box in self.core}
         for zone in self.zones:
             check_known(f"zone.{zone.name}.blocks", zone.blocks, blocks)

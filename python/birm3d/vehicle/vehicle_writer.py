@@ -34,7 +34,7 @@ def save_vehicle(vehicle: VehicleVariants, path: str | Path, read: Callable[[Pat
         document.add(tomlkit.comment(line))
     content = _of_one_unit(vehicle) if vehicle.joint is None else _of_two_units(vehicle)
     for key, value in content.items():
-        document.add(key, tomlkit.item(value))
+        document.add(key, tomlkit.item(_with_lines(value)))
     with whole_file(path) as part:
         part.write_text(tomlkit.dumps(document), encoding="utf-8", newline="\n")
         lost = _differences(vehicle, read(part))
@@ -43,6 +43,17 @@ def save_vehicle(vehicle: VehicleVariants, path: str | Path, read: Callable[[Pat
                 f"vehicle must differ from its file only in what a file can hold (see the methods with_...), "
                 f"got {vehicle.name!r} with another {', '.join(lost)}"
             )
+
+
+def _with_lines(value: Any) -> Any:
+    """Return a value of a file whose text of several lines is written as such."""
+    import tomlkit
+
+    if isinstance(value, dict):
+        return {key: _with_lines(item) for key, item in value.items()}
+    if isinstance(value, list) and any(isinstance(item, dict) for item in value):
+        return [_with_lines(item) for item in value]
+    return tomlkit.string(value, multiline=True) if isinstance(value, str) and "\n" in value else value
 
 
 def check_savable(vehicle: VehicleVariants) -> None:
