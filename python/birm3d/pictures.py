@@ -67,7 +67,9 @@ __all__ = [
     "show",
     "study_html",
     "text_html",
+    "write_gltf",
     "write_html",
+    "write_vtk",
 ]
 
 View: TypeAlias = Literal["three_quarter", "side", "top", "front", "driver"]
@@ -183,6 +185,22 @@ def write_html(self: Result, path: str | Path, *, frames: int = 61) -> None:
     from .html_page import write_html
 
     write_html(self, path, frames=frames)
+
+
+@checked
+def write_gltf(self: Result, path: str | Path, *, frames: int = 41) -> None:
+    """Write the run as glTF for Blender and browsers (.glb, .gltf); see :func:`birm3d.export.write_gltf`."""
+    from .export import write_gltf
+
+    write_gltf(self, path, frames=frames)
+
+
+@checked
+def write_vtk(self: Result, path: str | Path, *, frames: int = 101) -> None:
+    """Write the run as a series that ParaView opens (.pvd); see :func:`birm3d.export.write_vtk`."""
+    from .export import write_vtk
+
+    write_vtk(self, path, frames=frames)
 
 
 def plot_comparison(comparison: CurveComparison) -> Figure:

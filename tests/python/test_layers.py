@@ -28,7 +28,7 @@ LAYERS = (
     ("study", "calibration"),
     ("assessment",),
     ("plotting",),
-    ("rendering", "html_page"),
+    ("rendering", "html_page", "export"),
     ("reporting",),
     ("cli",),
 )

@@ -11,7 +11,7 @@ import click
 from .. import units
 from ..io.atomic_write import whole_file
 from ..result.summary import ELEMENT_COLUMNS, element_rows, elements_in_si, outcome_rows
-from .files import CAPSULE, HTML, LOAD_MAP, MOVIE, PICTURE, RESULT, TABLE
+from .files import CAPSULE, GLTF, HTML, LOAD_MAP, MOVIE, PICTURE, RESULT, TABLE, VTK
 from .rate import STANDARD_HELP, assessed, assessments_as_json, print_assessments
 from .scene import scene_options, simulation_of
 from .table import print_table
@@ -35,6 +35,8 @@ __all__ = ["run"]
 @click.option("--capsule", type=CAPSULE, help="Write a capsule (.birm3d) that `birm3d rerun` runs again.")
 @click.option("--html", type=HTML, help="Write an interactive page that needs no network to this file.")
 @click.option("--movie", type=MOVIE, help="Write a movie to this file (.mp4, .gif, ...).")
+@click.option("--gltf", type=GLTF, help="Write a 3-D animation for Blender and browsers (.glb, .gltf).")
+@click.option("--vtk", type=VTK, help="Write a series for ParaView (.pvd), and a folder beside it.")
 def run(
     scene: Path | None,
     as_json: bool,
@@ -48,6 +50,8 @@ def run(
     capsule: Path | None,
     html: Path | None,
     movie: Path | None,
+    gltf: Path | None,
+    vtk: Path | None,
     **options: Any,
 ) -> None:
     """Run one crash: a SCENE file, or the options --vehicle and --speed."""
@@ -84,6 +88,16 @@ def run(
     if movie is not None:
         result.animate(movie)
         click.echo(f"movie: {movie}", err=True)
+    _export(result, gltf, vtk)
+
+
+def _export(result: Result, gltf: Path | None, vtk: Path | None) -> None:
+    if gltf is not None:
+        result.write_gltf(gltf)
+        click.echo(f"animation: {gltf}", err=True)
+    if vtk is not None:
+        result.write_vtk(vtk)
+        click.echo(f"series: {vtk}", err=True)
 
 
 def _write_load_map(result: Result, path: Path) -> None:

@@ -71,6 +71,8 @@ class Result(RunAnalysis):
     animate = pictures.animate
     show = pictures.show
     write_html = pictures.write_html
+    write_gltf = pictures.write_gltf
+    write_vtk = pictures.write_vtk
     to_dataframe = result_table.to_dataframe
 
     @classmethod
