@@ -139,3 +139,19 @@ def spring_body() -> Callable[..., Vehicle]:
         )
 
     return make
+
+
+@pytest.fixture
+def command(monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
+    """The command line in this process: ``command("run", ...)`` returns the exit code."""
+    from birm3d.cli import main
+
+    def run(*arguments: object) -> int:
+        monkeypatch.setattr("sys.argv", ["birm3d", *map(str, arguments)])
+        try:
+            main()
+        except SystemExit as stop:
+            return int(stop.code or 0)
+        return 0
+
+    return run

@@ -12,7 +12,6 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, FreeStanding, Result, Settings, Simulation, Vehicle, scenes, units
-from birm3d.cli import main
 from birm3d.io.file_format import checksum
 
 CAR = Vehicle.preset("passenger_car", mesh_density=0.15)
@@ -158,7 +157,11 @@ def with_another_end(result: Result, path: Path, monkeypatch: pytest.MonkeyPatch
 
 
 def test_other_bits_are_told(
-    result: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    result: Result,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    command: Callable[..., int],
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     path = tmp_path / "other.birm3d"
     with_another_end(result, path, monkeypatch)
@@ -171,7 +174,7 @@ def test_other_bits_are_told(
     assert "OTHER BITS" in text
     assert f"written by  birm3d {birm3d.__version__}" in text
     assert "-5.00e-01" in text
-    assert command(monkeypatch, "rerun", str(path)) == 1
+    assert command("rerun", str(path)) == 1
     assert f"{result.state_hash:016x}" in capsys.readouterr().out
 
 
@@ -237,30 +240,21 @@ def test_a_changed_manifest_or_member_is_refused(path: Path, tmp_path: Path) -> 
         birm3d.rerun(tmp_path / "text.birm3d")
 
 
-def command(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
-    try:
-        main()
-    except SystemExit as stop:
-        return int(stop.code or 0)
-    return 0
-
-
 def test_command_line(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+    command: Callable[..., int], capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     path = tmp_path / "crash.birm3d"
     run = ["run", "--vehicle", "passenger_car", "--speed", "30mph", "--mesh-density", "0.2", "--json"]
-    assert command(monkeypatch, *run, "--capsule", str(path)) == 0
+    assert command(*run, "--capsule", str(path)) == 0
     state = json.loads(capsys.readouterr().out)["state_hash"]
     assert birm3d.load(path).scene.impact_speed == units.mph(30.0)
-    assert command(monkeypatch, "rerun", str(path)) == 0
+    assert command("rerun", str(path)) == 0
     out = capsys.readouterr().out
     assert out.startswith(f"the same bits: state {state} then, {state} now")
-    assert command(monkeypatch, "rerun", str(path), "--json") == 0
+    assert command("rerun", str(path), "--json") == 0
     assert json.loads(capsys.readouterr().out)["same"] is True
-    assert command(monkeypatch, *run, "--capsule", str(tmp_path / "crash.zip")) == 2
+    assert command(*run, "--capsule", str(tmp_path / "crash.zip")) == 2
     assert "--capsule must end in .birm3d" in capsys.readouterr().err
     path.write_bytes(path.read_bytes()[:500])
-    assert command(monkeypatch, "rerun", str(path)) == 2
+    assert command("rerun", str(path)) == 2
     assert "crash.birm3d" in capsys.readouterr().err

@@ -16,7 +16,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from birm3d import Result, Simulation, Study, load, units
-from birm3d.cli import main
 
 SEDAN = [
     "run",
@@ -36,27 +35,17 @@ LINUX = pytest.mark.skipif(
 )
 
 
-def birm3d(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    """Run the command line in this process; returns the exit code."""
-    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
-    try:
-        main()
-    except SystemExit as stop:
-        return int(stop.code or 0)
-    return 0
-
-
-def test_run_prints_a_table(monkeypatch, capsys):
-    assert birm3d(monkeypatch, *SEDAN) == 0
+def test_run_prints_a_table(command, capsys):
+    assert command(*SEDAN) == 0
     out, err = capsys.readouterr()
     assert "dynamic crush" in out
     assert "1,719 kg" in out
     assert err == ""
 
 
-def test_run_as_json_with_files(monkeypatch, capsys, tmp_path):
+def test_run_as_json_with_files(command, capsys, tmp_path):
     figure, table = tmp_path / "crash.png", tmp_path / "crash.csv"
-    assert birm3d(monkeypatch, *SEDAN, "--json", "--report", "--plot", str(figure), "--csv", str(table)) == 0
+    assert command(*SEDAN, "--json", "--report", "--plot", str(figure), "--csv", str(table)) == 0
     out, err = capsys.readouterr()
     outcome = json.loads(out)
     assert outcome["mass"] == pytest.approx(1719.0)
@@ -68,12 +57,12 @@ def test_run_as_json_with_files(monkeypatch, capsys, tmp_path):
     assert "left out" in err
 
 
-def test_run_with_result_page_and_movie(monkeypatch, capsys, tmp_path):
+def test_run_with_result_page_and_movie(monkeypatch, command, capsys, tmp_path):
     animate = Result.animate  # smaller and shorter
     monkeypatch.setattr(Result, "animate", lambda self, path: animate(self, path, frames=3, size=(160, 90)))
     kept, page, movie = (tmp_path / name for name in ("crash.npz", "crash.html", "crash.gif"))
     files = ["--save", str(kept), "--html", str(page), "--movie", str(movie)]
-    assert birm3d(monkeypatch, *SEDAN, "--json", *files) == 0
+    assert command(*SEDAN, "--json", *files) == 0
     out, err = capsys.readouterr()
     assert load(kept).metrics == json.loads(out)["metrics"]
     assert page.read_text(encoding="utf-8").endswith("</html>\n")
@@ -104,14 +93,14 @@ def test_run_with_result_page_and_movie(monkeypatch, capsys, tmp_path):
     ],
 )
 def test_files_that_can_not_be_written_are_told_before_the_run(
-    monkeypatch, capsys, tmp_path, option, name, message
+    monkeypatch, command, capsys, tmp_path, option, name, message
 ):
     def run(self):
         raise AssertionError("it ran")
 
     monkeypatch.setattr(Simulation, "run", run)
     (tmp_path / "folder.csv").mkdir()
-    assert birm3d(monkeypatch, *SEDAN, option, str(tmp_path / name)) == 2
+    assert command(*SEDAN, option, str(tmp_path / name)) == 2
     out, err = capsys.readouterr()
     assert out == ""
     assert err.startswith(f"birm3d: {message}")
@@ -119,48 +108,48 @@ def test_files_that_can_not_be_written_are_told_before_the_run(
     assert err.count("\n") == 1
 
 
-def test_one_file_for_two_outputs_is_refused(monkeypatch, capsys, tmp_path):
+def test_one_file_for_two_outputs_is_refused(command, capsys, tmp_path):
     page = str(tmp_path / "x.csv.txt")
     table = ["--csv", page, "--vary", "impact_speed=5"]
-    assert birm3d(monkeypatch, *SWEEP, *table, "--store", page) == 2
+    assert command(*SWEEP, *table, "--store", page) == 2
     assert "--store must be another file than --csv" in capsys.readouterr().err
 
 
-def test_a_disk_that_fills_is_one_line(monkeypatch, capsys, tmp_path):
+def test_a_disk_that_fills_is_one_line(monkeypatch, command, capsys, tmp_path):
     def full(self, path):
         raise OSError(errno.ENOSPC, "No space left on device", str(path))
 
     monkeypatch.setattr(Result, "save", full)
     kept = tmp_path / "crash.npz"
-    assert birm3d(monkeypatch, *SEDAN, "--json", "--save", str(kept)) == 1
+    assert command(*SEDAN, "--json", "--save", str(kept)) == 1
     assert capsys.readouterr().err == f"birm3d: {kept}: No space left on device\n"
 
 
-def test_a_duration_that_can_not_be_held_is_one_line(monkeypatch, capsys):
-    assert birm3d(monkeypatch, *SEDAN, "--duration", "100000s") == 2
+def test_a_duration_that_can_not_be_held_is_one_line(command, capsys):
+    assert command(*SEDAN, "--duration", "100000s") == 2
     out, err = capsys.readouterr()
     assert out == ""
     assert err.startswith("birm3d: output_interval must be >= duration / 2e+06 = 0.05 s")
     assert err.count("\n") == 1
     few = ["--duration", "0.2s", "--output-interval", "1ms"]
-    assert birm3d(monkeypatch, *SEDAN, *few, "--csv", "/dev/null") == 0
+    assert command(*SEDAN, *few, "--csv", "/dev/null") == 0
 
 
-def test_missing_extra_is_one_line(monkeypatch, capsys, tmp_path):
+def test_missing_extra_is_one_line(monkeypatch, command, capsys, tmp_path):
     monkeypatch.setitem(sys.modules, "pyvista", None)
-    assert birm3d(monkeypatch, *SEDAN, "--movie", str(tmp_path / "crash.gif")) == 2
+    assert command(*SEDAN, "--movie", str(tmp_path / "crash.gif")) == 2
     assert capsys.readouterr().err == "birm3d: 3-D pictures need pyvista: pip install 'birm3d[render]'\n"
 
 
-def test_vehicles(monkeypatch, capsys):
-    assert birm3d(monkeypatch, "vehicles", "--json") == 0
+def test_vehicles(command, capsys):
+    assert command("vehicles", "--json") == 0
     facts = json.loads(capsys.readouterr().out)
     assert facts["passenger_car"]["mass"] == pytest.approx(1814.37)
     assert "bumper" in facts["pickup"]["zones"]
     sizes = {name: facts["passenger_car"][name] for name in ("length", "width", "height")}
     assert sizes == pytest.approx({"length": 4.896, "width": 1.837, "height": 1.445}, abs=2e-3)
     assert facts["semi_truck"]["wheelbase"] == pytest.approx(18.455, abs=1e-9)
-    assert birm3d(monkeypatch, "vehicles") == 0
+    assert command("vehicles") == 0
     out = capsys.readouterr().out
     assert "paper_pickup" in out
     assert "mass [kg]" in out
@@ -187,8 +176,8 @@ def test_vehicles(monkeypatch, capsys):
         ),
     ],
 )
-def test_errors_say_what_is_wrong(monkeypatch, capsys, arguments, parts):
-    assert birm3d(monkeypatch, "run", *arguments) == 2
+def test_errors_say_what_is_wrong(command, capsys, arguments, parts):
+    assert command("run", *arguments) == 2
     out, err = capsys.readouterr()
     assert out == ""
     for part in parts:
@@ -217,16 +206,16 @@ def scene_file(folder: Path, text: str) -> str:
     return str(path)
 
 
-def test_scene_file(monkeypatch, capsys, tmp_path):
-    assert birm3d(monkeypatch, "run", scene_file(tmp_path, SCENE), "--json") == 0
+def test_scene_file(command, capsys, tmp_path):
+    assert command("run", scene_file(tmp_path, SCENE), "--json") == 0
     outcome = json.loads(capsys.readouterr().out)
     assert outcome["impact_angle"] == 45.0
     assert outcome["mass"] == pytest.approx(4500 * 0.45359237)
 
 
-def test_a_pole_from_file_and_from_options(monkeypatch, capsys, tmp_path):
+def test_a_pole_from_file_and_from_options(command, capsys, tmp_path):
     text = SCENE.replace('"rigid_wall"', '"pole"\ndiameter_m = 0.4').replace("45 deg", "90 deg")
-    assert birm3d(monkeypatch, "run", scene_file(tmp_path, text), "--json") == 0
+    assert command("run", scene_file(tmp_path, text), "--json") == 0
     by_file = json.loads(capsys.readouterr().out)
     arguments = (
         "--vehicle",
@@ -239,15 +228,15 @@ def test_a_pole_from_file_and_from_options(monkeypatch, capsys, tmp_path):
         "pole",
     )
     options = ("--diameter", "0.4m", "--friction", "0", "--speed", "30mph")
-    assert birm3d(monkeypatch, "run", *arguments, *options, "--json") == 0
+    assert command("run", *arguments, *options, "--json") == 0
     by_options = json.loads(capsys.readouterr().out)
     assert by_file["state_hash"] == by_options["state_hash"]
     assert by_file["metrics"]["dynamic_crush"] > 0.3
 
 
-def test_the_example_scene_is_read(monkeypatch, capsys):
+def test_the_example_scene_is_read(command, capsys):
     example = Path(__file__).parents[2] / "examples" / "scene.toml"
-    assert birm3d(monkeypatch, "run", str(example), "--json") == 0
+    assert command("run", str(example), "--json") == 0
     assert json.loads(capsys.readouterr().out)["end_reason"] == "separated"
 
 
@@ -263,28 +252,28 @@ def test_the_example_scene_is_read(monkeypatch, capsys):
         (('"rigid_wall"', '"pole"\nwidth_m = 2.0'), 9, ["width_m", "rigid_wall", "pole"]),
     ],
 )
-def test_scene_file_errors(monkeypatch, capsys, tmp_path, wrong, line, parts):
+def test_scene_file_errors(command, capsys, tmp_path, wrong, line, parts):
     path = scene_file(tmp_path, SCENE.replace(*wrong, 1))
-    assert birm3d(monkeypatch, "run", path) == 2
+    assert command("run", path) == 2
     err = capsys.readouterr().err
     for part in parts:
         assert part in err
     assert f"{path}:{line}:" in err or f"line {line}" in err
 
 
-def test_options_beside_a_scene_file_are_refused(monkeypatch, capsys, tmp_path):
-    assert birm3d(monkeypatch, "run", scene_file(tmp_path, SCENE), "--speed", "5m/s") == 2
+def test_options_beside_a_scene_file_are_refused(command, capsys, tmp_path):
+    assert command("run", scene_file(tmp_path, SCENE), "--speed", "5m/s") == 2
     assert "--speed" in capsys.readouterr().err
 
 
 SWEEP = ["sweep", "--vehicle", "passenger_car", "--mesh-density", "0.1"]
 
 
-def test_sweep_prints_a_table(monkeypatch, capsys, tmp_path):
+def test_sweep_prints_a_table(command, capsys, tmp_path):
     table = tmp_path / "runs.csv"
     vary = ["--vary", "impact_speed=20mph,30mph", "--vary", "impact_angle=20:40:10deg"]
     files = ["--csv", str(table), "--store", str(tmp_path / "runs.db"), "--jobs", "2"]
-    assert birm3d(monkeypatch, *SWEEP, *vary, *files) == 0
+    assert command(*SWEEP, *vary, *files) == 0
     out, err = capsys.readouterr()
     assert "6 runs" in out
     assert "crush" in out
@@ -294,39 +283,39 @@ def test_sweep_prints_a_table(monkeypatch, capsys, tmp_path):
     assert study["impact_angle"].tolist() == [20.0, 30.0, 40.0] * 2
     assert study.grid is not None
     # The same command once more takes all runs from the store.
-    assert birm3d(monkeypatch, *SWEEP, *vary, *files) == 0
+    assert command(*SWEEP, *vary, *files) == 0
     assert capsys.readouterr().out == out
 
 
-def test_sweep_of_a_scene_file_as_json(monkeypatch, capsys, tmp_path):
+def test_sweep_of_a_scene_file_as_json(command, capsys, tmp_path):
     path = scene_file(tmp_path, SCENE)
     vary = ["--vary", "barrier.friction=0, 0.2", "--vary", "settings.contact_model=projected"]
-    assert birm3d(monkeypatch, "sweep", path, *vary, "--metrics", "dynamic_crush,exit_angle", "--json") == 0
+    assert command("sweep", path, *vary, "--metrics", "dynamic_crush,exit_angle", "--json") == 0
     outcome = json.loads(capsys.readouterr().out)
     assert outcome["units"]["exit_angle"] == "deg"
     assert outcome["runs"]["barrier.friction"] == [0.0, 0.2]
-    assert birm3d(monkeypatch, "run", path, "--json") == 0
+    assert command("run", path, "--json") == 0
     by_hand = json.loads(capsys.readouterr().out)
     assert outcome["runs"]["dynamic_crush"][0] == by_hand["metrics"]["dynamic_crush"]
     assert outcome["runs"]["state_hash"][0] == by_hand["state_hash"]
 
 
-def test_random_sweep(monkeypatch, capsys):
+def test_random_sweep(command, capsys):
     vary = ["--vary", "impact_speed=normal(20mph, 1mph)", "--vary", "vehicle.gvw=lognormal(4000lb, 0.1)"]
-    command = [*SWEEP, "--speed", "20mph", *vary, "--vary", "impact_angle=uniform(60, 90)", "--random", "40"]
-    assert birm3d(monkeypatch, *command, "--seed", "3", "--json") == 0
+    arguments = [*SWEEP, "--speed", "20mph", *vary, "--vary", "impact_angle=uniform(60, 90)", "--random", "40"]
+    assert command(*arguments, "--seed", "3", "--json") == 0
     outcome = json.loads(capsys.readouterr().out)
     speeds = np.array(outcome["runs"]["impact_speed"])
     assert len(speeds) == outcome["summary"]["dynamic_crush"]["n"] == 40
     assert abs(speeds.mean() - 20 * units.mph) < 3.5 * units.mph / np.sqrt(40)
     assert 60.0 < min(outcome["runs"]["impact_angle"]) < max(outcome["runs"]["impact_angle"]) < 90.0
     assert np.median(outcome["runs"]["vehicle.gvw"]) == pytest.approx(4000 * units.lb, rel=0.1)
-    assert birm3d(monkeypatch, *command) == 0
+    assert command(*arguments) == 0
     assert "standard deviation" in capsys.readouterr().out
 
 
-def test_failed_runs_of_a_sweep_are_told(monkeypatch, capsys):
-    assert birm3d(monkeypatch, *SWEEP, "--vary", "impact_speed=9m/s,-3m/s", "--metrics", "delta_v") == 0
+def test_failed_runs_of_a_sweep_are_told(command, capsys):
+    assert command(*SWEEP, "--vary", "impact_speed=9m/s,-3m/s", "--metrics", "delta_v") == 0
     out, err = capsys.readouterr()
     assert "failed" in out
     assert "1 of 2 runs failed; run 1: ValueError: impact_speed must be" in err
@@ -355,38 +344,38 @@ def test_failed_runs_of_a_sweep_are_told(monkeypatch, capsys):
         ),
     ],
 )
-def test_sweep_errors_say_what_is_wrong(monkeypatch, capsys, arguments, parts):
-    assert birm3d(monkeypatch, *SWEEP, *arguments) == 2
+def test_sweep_errors_say_what_is_wrong(command, capsys, arguments, parts):
+    assert command(*SWEEP, *arguments) == 2
     out, err = capsys.readouterr()
     assert out == ""
     for part in parts:
         assert part in err
 
 
-def test_a_stopped_sweep_without_a_store_keeps_what_is_done(monkeypatch, capsys, tmp_path):
+def test_a_stopped_sweep_without_a_store_keeps_what_is_done(monkeypatch, command, capsys, tmp_path):
     monkeypatch.chdir(tmp_path)
     Path("birm3d-sweep.db").write_text("of another study")
-    command = [*SWEEP, "--vary", "impact_speed=8:12:0.001m/s"]
+    arguments = [*SWEEP, "--vary", "impact_speed=8:12:0.001m/s"]
     timer = threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
-    assert birm3d(monkeypatch, *command) == 130
+    assert command(*arguments) == 130
     timer.join()
     told, advice = capsys.readouterr().err.strip().splitlines()
     done = int(
         re.fullmatch(r"stopped: (\d+) of 4001 runs are finished and kept in 'birm3d-sweep-2.db'", told)[1]
     )
-    assert advice == f"go on with: birm3d {shlex.join(command)} --store birm3d-sweep-2.db"
+    assert advice == f"go on with: birm3d {shlex.join(arguments)} --store birm3d-sweep-2.db"
     with sqlite3.connect("birm3d-sweep-2.db") as connection:
         assert connection.execute("SELECT count(*) FROM runs").fetchone() == (done,)
     connection.close()
     assert Path("birm3d-sweep.db").read_text() == "of another study"
 
 
-def test_a_stopped_sweep_says_what_is_kept(monkeypatch, capsys, tmp_path, interrupt_once_stored):
+def test_a_stopped_sweep_says_what_is_kept(command, capsys, tmp_path, interrupt_once_stored):
     store = tmp_path / "runs.db"
     interrupt_once_stored(store)
     vary = ["--vary", "impact_speed=8:20:0.001m/s", "--store", str(store)]
-    assert birm3d(monkeypatch, *SWEEP, *vary) == 130
+    assert command(*SWEEP, *vary) == 130
     err = capsys.readouterr().err
     assert "of 12001 runs are finished and kept in" in err
     assert f"go on with: {shlex.join(['birm3d', *SWEEP, *vary])}\n" in err

@@ -3,23 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 from birm3d import Barrier, Simulation, Vehicle, units
-from birm3d.cli import main
 
 CAR = ("run", "--vehicle", "passenger_car", "--mesh-density", "0.1", "--speed", "30mph")
-
-
-def birm3d(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    """Run the command line in this process; returns the exit code."""
-    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
-    try:
-        main()
-    except SystemExit as stop:
-        return int(stop.code or 0)
-    return 0
 
 
 @pytest.mark.parametrize(
@@ -52,9 +42,9 @@ def birm3d(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     ],
 )  # fmt: skip
 def test_the_options_are_the_scene(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], options: str, barrier: Barrier
+    command: Callable[..., int], capsys: pytest.CaptureFixture[str], options: str, barrier: Barrier
 ) -> None:
-    assert birm3d(monkeypatch, *CAR, *options.split(), "--angle", "60", "--json") == 0
+    assert command(*CAR, *options.split(), "--angle", "60", "--json") == 0
     outcome: dict[str, Any] = json.loads(capsys.readouterr().out)
     car = Vehicle.preset("passenger_car", mesh_density=0.1)
     result = Simulation(car, barrier, 30 * units.mph, 60.0).run()
@@ -68,20 +58,20 @@ def test_the_options_are_the_scene(
 
 
 def test_the_table_has_the_posts_that_were_touched(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    command: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert birm3d(monkeypatch, *CAR, "--barrier", "bollards", "--count", "3") == 0
+    assert command(*CAR, "--barrier", "bollards", "--count", "3") == 0
     out = capsys.readouterr().out
     assert "elements of the barrier that were touched" in out
     assert "bollard 2" in out
     assert "50-ms mean [kN]" in out
-    assert birm3d(monkeypatch, *CAR) == 0
+    assert command(*CAR) == 0
     assert "elements of the barrier" not in capsys.readouterr().out
 
 
-def test_yaw_and_roll(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_yaw_and_roll(command: Callable[..., int], capsys: pytest.CaptureFixture[str]) -> None:
     turned = ("--yaw", "90deg", "--roll", "5", "--barrier", "pole", "--duration", "0.05", "--json")
-    assert birm3d(monkeypatch, *CAR, *turned) == 0
+    assert command(*CAR, *turned) == 0
     outcome = json.loads(capsys.readouterr().out)
     car = Vehicle.preset("passenger_car", mesh_density=0.1)
     result = Simulation(
@@ -106,9 +96,9 @@ def test_yaw_and_roll(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFix
     ],
 )
 def test_what_can_not_be(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], options: str, parts: list[str]
+    command: Callable[..., int], capsys: pytest.CaptureFixture[str], options: str, parts: list[str]
 ) -> None:
-    assert birm3d(monkeypatch, *CAR, *options.split()) == 2
+    assert command(*CAR, *options.split()) == 2
     out, err = capsys.readouterr()
     assert out == ""
     for part in parts:

@@ -85,17 +85,8 @@ def folder(tmp_path: Path, crash: Result) -> Path:
     return tmp_path
 
 
-def birm3d(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> int:
-    monkeypatch.setattr("sys.argv", ["birm3d", "calibrate", *map(str, arguments)])
-    try:
-        main()
-    except SystemExit as stop:
-        return int(stop.code or 0)
-    return 0
-
-
-def test_summary_on_stdout_and_progress_on_stderr(monkeypatch, capsys, folder):
-    assert birm3d(monkeypatch, folder / "fit.toml", "--save", folder / "out.json", "--jobs", "2") == 0
+def test_summary_on_stdout_and_progress_on_stderr(command, capsys, folder):
+    assert command("calibrate", folder / "fit.toml", "--save", folder / "out.json", "--jobs", "2") == 0
     out, err = capsys.readouterr()
     assert "95 % interval" in out
     assert "Sprague-Geers magnitude" in out
@@ -108,10 +99,10 @@ def test_summary_on_stdout_and_progress_on_stderr(monkeypatch, capsys, folder):
     assert "NaN" not in out
 
 
-def test_json_and_figures(monkeypatch, capsys, folder):
+def test_json_and_figures(command, capsys, folder):
     figures = [folder / "fit.png", folder / "profiles.pdf"]
-    code = birm3d(
-        monkeypatch, folder / "fit.toml", "--json", "--quiet", "--plot", figures[0], "--profiles", figures[1]
+    code = command(
+        "calibrate", folder / "fit.toml", "--json", "--quiet", "--plot", figures[0], "--profiles", figures[1]
     )
     assert code == 0
     out, err = capsys.readouterr()
@@ -122,10 +113,10 @@ def test_json_and_figures(monkeypatch, capsys, folder):
     assert all(path.stat().st_size > 5_000 for path in figures)
 
 
-def test_the_fitted_vehicle_runs_from_its_file(monkeypatch, capsys, folder):
+def test_the_fitted_vehicle_runs_from_its_file(monkeypatch, command, capsys, folder):
     vehicle = folder / "fitted.toml"
     files = ["--save-vehicle", vehicle, "--save", folder / "out.json"]
-    assert birm3d(monkeypatch, folder / "fit.toml", "--quiet", *files) == 0
+    assert command("calibrate", folder / "fit.toml", "--quiet", *files) == 0
     assert f"vehicle: {vehicle}" in capsys.readouterr().err
     # Run from the file, and by hand with the fitted value.
     arguments = ["run", "--vehicle", str(vehicle), "--speed", "57.09km/h", "--json"]
@@ -138,9 +129,9 @@ def test_the_fitted_vehicle_runs_from_its_file(monkeypatch, capsys, folder):
     assert run["mass"] == pytest.approx(1719.0)
 
 
-def test_files_that_can_not_be_written_are_told_before_the_fit(monkeypatch, capsys, folder):
+def test_files_that_can_not_be_written_are_told_before_the_fit(command, capsys, folder):
     for option, name in (("--save-vehicle", "v.json"), ("--save", "fit.toml2"), ("--profiles", "p.csv")):
-        assert birm3d(monkeypatch, folder / "fit.toml", option, folder / name) == 2
+        assert command("calibrate", folder / "fit.toml", option, folder / name) == 2
         out, err = capsys.readouterr()
         assert out == ""
         assert err.startswith(f"birm3d: {option} must end in .")
@@ -168,16 +159,16 @@ def test_files_that_can_not_be_written_are_told_before_the_fit(monkeypatch, caps
         ("max_displacement", "max_displacment", "near: max_displacement"),
     ],
 )
-def test_errors(monkeypatch, capsys, folder, old, new, message):
+def test_errors(command, capsys, folder, old, new, message):
     path = folder / "fit.toml"
     path.write_text(FIT.replace(old, new, 1))
-    assert birm3d(monkeypatch, path, "--quiet") == 2
+    assert command("calibrate", path, "--quiet") == 2
     out, err = capsys.readouterr()
     assert out == ""
     assert message in err
 
 
-def test_curve_against_displacement(monkeypatch, capsys, folder, crash):
+def test_curve_against_displacement(command, capsys, folder, crash):
     way = crash.position[:, 0] - crash.position[0, 0]
     middle = 0.5 * (way[1:] + way[:-1])[: int(way.argmax()) - 1]
     force = crash.barrier_normal_force[1 : len(middle) + 1]
@@ -189,7 +180,7 @@ def test_curve_against_displacement(monkeypatch, capsys, folder, crash):
     for line in ("cfc = 60\n", "time_zero_s = 0.01\n", "turned = true\n"):
         text = text.replace(line, "")
     (folder / "fit.toml").write_text(text)
-    assert birm3d(monkeypatch, folder / "fit.toml", "--json", "--quiet") == 0
+    assert command("calibrate", folder / "fit.toml", "--json", "--quiet") == 0
     fitted = json.loads(capsys.readouterr().out)["parameters"][0]["value"]
     assert fitted == pytest.approx(0.6e6, rel=5e-3)
 
@@ -250,10 +241,10 @@ class TestNhtsa10146:
         assert profile.upper is None
 
 
-def test_help_and_a_missing_file(monkeypatch, capsys, tmp_path):
-    assert birm3d(monkeypatch, "--help") == 0
+def test_help_and_a_missing_file(command, capsys, tmp_path):
+    assert command("calibrate", "--help") == 0
     assert "FIT_FILE" in capsys.readouterr().out
-    assert birm3d(monkeypatch, tmp_path / "none.toml") == 2
+    assert command("calibrate", tmp_path / "none.toml") == 2
     assert "does not exist" in capsys.readouterr().err
 
 

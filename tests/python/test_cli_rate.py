@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 
 import pytest
-from birm3d.cli import main
 
 TRUCK = [
     *("--vehicle", "cargo_truck", "--speed", "50mph", "--barrier", "bollards", "--count", "3"),
@@ -13,17 +12,8 @@ TRUCK = [
 ]
 
 
-def birm3d(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
-    try:
-        main()
-    except SystemExit as stop:
-        return int(stop.code or 0)
-    return 0
-
-
-def test_rate(monkeypatch, capsys) -> None:
-    assert birm3d(monkeypatch, "rate", *TRUCK, "--standard", "ASTM F2656", "--standard", "SD-STD-02.01") == 0
+def test_rate(command, capsys) -> None:
+    assert command("rate", *TRUCK, "--standard", "ASTM F2656", "--standard", "SD-STD-02.01") == 0
     out, err = capsys.readouterr()
     assert "ASTM F2656, indicative: M50-P1 (vehicle M)" in out
     assert "SD-STD-02.01, indicative: K12-L3" in out
@@ -31,9 +21,9 @@ def test_rate(monkeypatch, capsys) -> None:
     assert err == ""
 
 
-def test_run_with_ratings_as_json(monkeypatch, capsys) -> None:
+def test_run_with_ratings_as_json(command, capsys) -> None:
     arguments = ["run", *TRUCK, "--rate", "ASTM F2656", "--occupant-risk", "--json"]
-    assert birm3d(monkeypatch, *arguments) == 0
+    assert command(*arguments) == 0
     found = json.loads(capsys.readouterr().out)
     (rating,) = found["ratings"]
     assert rating["designation"] == "M50-P1"
@@ -42,21 +32,21 @@ def test_run_with_ratings_as_json(monkeypatch, capsys) -> None:
     assert "dynamic_crush" in found["metrics"]
 
 
-def test_of_a_scene_file_and_a_result(monkeypatch, capsys, tmp_path) -> None:
+def test_of_a_scene_file_and_a_result(command, capsys, tmp_path) -> None:
     scene, result = tmp_path / "scene.toml", tmp_path / "r.npz"
     scene.write_text(
         '[vehicle]\npreset = "cargo_truck"\nmesh_density = 0.3\n[barrier]\nkind = "bollards"\ncount = 3\n'
         '[impact]\nspeed = "50 mph"\n',
         encoding="utf-8",
     )
-    assert birm3d(monkeypatch, "run", str(scene), "--save", str(result), "--rate", "PAS 68") == 2
+    assert command("run", str(scene), "--save", str(result), "--rate", "PAS 68") == 2
     assert "vehicle must be one that PAS 68 knows" in capsys.readouterr().err
-    assert birm3d(monkeypatch, "run", str(scene), "--save", str(result)) == 0
+    assert command("run", str(scene), "--save", str(result)) == 0
     capsys.readouterr()
     texts = []
     for file in (scene, result):
         arguments = ["rate", str(file), "--standard", "PAS 68", "--vehicle-class", "N2", "--occupant-risk"]
-        assert birm3d(monkeypatch, *arguments) == 0
+        assert command(*arguments) == 0
         texts.append(capsys.readouterr().out)
     assert texts[0] == texts[1]
     assert "no rating: mass" in texts[0]
@@ -76,16 +66,16 @@ def test_of_a_scene_file_and_a_result(monkeypatch, capsys, tmp_path) -> None:
         ([], "Missing option '--standard'"),
     ],
 )
-def test_errors_say_what_is_wrong(monkeypatch, capsys, arguments, message) -> None:
-    assert birm3d(monkeypatch, "rate", *TRUCK, *arguments) == 2
+def test_errors_say_what_is_wrong(command, capsys, arguments, message) -> None:
+    assert command("rate", *TRUCK, *arguments) == 2
     assert message in capsys.readouterr().err
 
 
-def test_options_beside_a_result_are_refused(monkeypatch, capsys, tmp_path) -> None:
+def test_options_beside_a_result_are_refused(command, capsys, tmp_path) -> None:
     result = tmp_path / "r.npz"
-    assert birm3d(monkeypatch, "run", *TRUCK, "--save", str(result)) == 0
-    assert birm3d(monkeypatch, "rate", str(result), "--speed", "30mph", "--standard", "ASTM F2656") == 2
+    assert command("run", *TRUCK, "--save", str(result)) == 0
+    assert command("rate", str(result), "--speed", "30mph", "--standard", "ASTM F2656") == 2
     assert "--speed must not be given beside a result" in capsys.readouterr().err
     point = ["--reference-point", "-1.7,1.2,1.0", "--standard", "ASTM F2656", "--json"]
-    assert birm3d(monkeypatch, "rate", str(result), *point) == 0
+    assert command("rate", str(result), *point) == 0
     assert json.loads(capsys.readouterr().out)["ratings"][0]["designation"] == "M50-P1"

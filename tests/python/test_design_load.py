@@ -14,7 +14,6 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, DesignLoad, DesignLoadInterrupted, Settings, Simulation, Vehicle
-from birm3d.cli import main
 from scipy.signal import butter, filtfilt
 
 NUMBERS = ("impulse", "peak_force", "force_50ms", "height", "moment", "equivalent_static_force")
@@ -413,38 +412,29 @@ def test_interrupted(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "envelope of 2 scenes" in stopped.value.design_load.title
 
 
-def birm3d_command(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
-    try:
-        main()
-    except SystemExit as stop:
-        return int(stop.code or 0)
-    return 0
-
-
-def test_command_line(monkeypatch, capsys, tmp_path) -> None:
+def test_command_line(command, capsys, tmp_path) -> None:
     scene = ["--vehicle", "passenger_car", "--mesh-density", "0.3", "--barrier", "bollards", "--count", "3"]
-    command = ["loads", *scene, "--speed", "12m/s", "--period", "50ms", "--ductility", "2"]
+    arguments = ["loads", *scene, "--speed", "12m/s", "--period", "50ms", "--ductility", "2"]
     table, figure = tmp_path / "loads.csv", tmp_path / "loads.png"
-    assert birm3d_command(monkeypatch, *command, "--csv", str(table), "--plot", str(figure)) == 0
+    assert command(*arguments, "--csv", str(table), "--plot", str(figure)) == 0
     out, err = capsys.readouterr()
     assert out.startswith("Design loads: 3 bollards")
     assert "Caution:" in out
     assert f"table: {table}" in err
     assert figure.stat().st_size > 10_000
-    assert birm3d_command(monkeypatch, *command, "--offsets", "0:0.4:0.4", "--json", "--jobs", "2") == 0
+    assert command(*arguments, "--offsets", "0:0.4:0.4", "--json", "--jobs", "2") == 0
     found = json.loads(capsys.readouterr().out)
     assert len(found["scenes"]) == 2
     assert found["natural_period"] == 0.05
-    assert birm3d_command(monkeypatch, *command, "--markdown") == 0
+    assert command(*arguments, "--markdown") == 0
     assert capsys.readouterr().out.startswith("**Design loads")
     saved = tmp_path / "run.npz"
-    assert birm3d_command(monkeypatch, "run", *scene, "--speed", "12m/s", "--save", str(saved)) == 0
+    assert command("run", *scene, "--speed", "12m/s", "--save", str(saved)) == 0
     first = capsys.readouterr().out
-    assert birm3d_command(monkeypatch, "loads", str(saved), "--period", "50ms", "--ductility", "2") == 0
+    assert command("loads", str(saved), "--period", "50ms", "--ductility", "2") == 0
     assert capsys.readouterr().out == out
     assert first != out
-    assert birm3d_command(monkeypatch, "loads", str(saved), "--offsets", "0,1") == 2
-    assert birm3d_command(monkeypatch, *command, "--markdown", "--json") == 2
-    assert birm3d_command(monkeypatch, *command[:-1], "0.5") == 2
+    assert command("loads", str(saved), "--offsets", "0,1") == 2
+    assert command(*arguments, "--markdown", "--json") == 2
+    assert command(*arguments[:-1], "0.5") == 2
     assert "ductility must be" in capsys.readouterr().err

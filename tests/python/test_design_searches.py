@@ -21,7 +21,6 @@ from birm3d import (
     StudyInterrupted,
     Vehicle,
 )
-from birm3d.cli import main
 from birm3d.simulation.parameters import varied
 from birm3d.study import limit_search
 
@@ -313,33 +312,24 @@ def test_interrupted(monkeypatch: pytest.MonkeyPatch) -> None:
     assert len(stopped.value.study) == 6
 
 
-def command(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
-    try:
-        main()
-    except SystemExit as stop:
-        return int(stop.code or 0)
-    return 0
-
-
-def test_command_line(monkeypatch, capsys, tmp_path) -> None:
+def test_command_line(command, capsys, tmp_path) -> None:
     scene = ["--vehicle", "passenger_car", "--mesh-density", "0.3", "--speed", "10m/s"]
     row = [*scene, "--barrier", "bollards"]
     figure = tmp_path / "height.png"
     search = ["search", "height", *row, "--range", "0.2:100cm", "--points", "4"]
-    assert command(monkeypatch, *search, "--plot", str(figure)) == 0
+    assert command(*search, "--plot", str(figure)) == 0
     out, err = capsys.readouterr()
     assert out.startswith("least height: ")
     assert f"figure: {figure}" in err
-    assert command(monkeypatch, "search", "gap", *row, "--range", "0.8:2.4", "--points", "3", "--json") == 0
+    assert command("search", "gap", *row, "--range", "0.8:2.4", "--points", "3", "--json") == 0
     assert json.loads(capsys.readouterr().out)["name"] == "clear gap"
-    assert command(monkeypatch, "search", "offset", *row, "--spacings", "1.2,1.4", "--json") == 0
+    assert command("search", "offset", *row, "--spacings", "1.2,1.4", "--json") == 0
     assert [r["spacing"] for r in json.loads(capsys.readouterr().out)["spacings"]] == [1.2, 1.4]
     free = [*scene, "--barrier", "jersey", "--length", "40", "--segments", "10", "--free-standing"]
     arguments = [*free, "--angle", "25", "--deflection", "0.5", "--points", "3", "--range", "1t:6t"]
-    assert command(monkeypatch, "search", "segment-mass", *arguments) == 0
+    assert command("search", "segment-mass", *arguments) == 0
     assert "segment mass" in capsys.readouterr().out
-    assert command(monkeypatch, "search", "height", *scene, "--barrier", "planter", "--points", "2") == 0
+    assert command("search", "height", *scene, "--barrier", "planter", "--points", "2") == 0
     assert capsys.readouterr().out.startswith("least height: ")
-    assert command(monkeypatch, "search", "gap", *row, "--range", "1") == 2
+    assert command("search", "gap", *row, "--range", "1") == 2
     assert "--range must be LEAST:GREATEST, got '1'" in capsys.readouterr().err

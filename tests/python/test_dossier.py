@@ -7,6 +7,7 @@ import dataclasses
 import json
 import re
 import sys
+from collections.abc import Callable
 from html.parser import HTMLParser
 from pathlib import Path
 from statistics import median
@@ -16,7 +17,6 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Study, Vehicle, scenes
-from birm3d.cli import main
 from birm3d.reporting.given_tests import Facts, _facts, errors, given_tests, nearest
 from birm3d.reporting.uncertainty import _bands
 from birm3d.result.skin import skins_at
@@ -298,7 +298,11 @@ def test_the_same_run_gives_the_same_page(folder: Path, tmp_path: Path) -> None:
 
 
 def test_folders_are_not_mixed(
-    result: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    result: Result,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    command: Callable[..., int],
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     file = tmp_path / "file"
     file.write_text("mine", encoding="utf-8")
@@ -322,7 +326,7 @@ def test_folders_are_not_mixed(
         with pytest.raises(ValueError, match=message):
             birm3d.dossier(result, place)
         options = ["--vehicle", "passenger_car", "--speed", "30mph", "--output", str(place)]
-        assert command(monkeypatch, "report", *options) == 2
+        assert command("report", *options) == 2
         told = capsys.readouterr().err
         assert "--output must" in told
         assert message.removeprefix("folder must ") in told
@@ -432,29 +436,21 @@ def test_other_kinds_of_runs(make: Any, tmp_path: Path, monkeypatch: pytest.Monk
         assert np.abs(moved[-1] - result.segment_position[-1, 1]).max() < 1e-3
 
 
-def command(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
-    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
-    try:
-        main()
-    except SystemExit as stop:
-        return int(stop.code or 0)
-    return 0
-
-
 def test_command_line(
     folder: Path,
     study: Study,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
+    command: Callable[..., int],
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setattr("birm3d.reporting.build.find_spec", lambda name: None)
     out, runs = tmp_path / "out", tmp_path / "study.csv"
     study.save(runs)
     options = ["-o", str(out), "--project", "Plaza", "--study", str(runs)]
-    assert command(monkeypatch, "report", str(folder / "run.birm3d"), *options) == 0
+    assert command("report", str(folder / "run.birm3d"), *options) == 0
     assert capsys.readouterr().out.strip() == str(out / "index.html")
     page = Page(out / "index.html")
     assert "Plaza" in page.texts["dd"]
     assert page.table("Outcomes of the study") == [["stopped", "3", "100.0%"]]
-    assert command(monkeypatch, "rerun", str(out / "run.birm3d")) == 0
+    assert command("rerun", str(out / "run.birm3d")) == 0
