@@ -155,3 +155,12 @@ def command(monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
         return 0
 
     return run
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the functions of ``slow_tests.txt``: those whose cases take the most time together."""
+    names = set((Path(__file__).parent / "slow_tests.txt").read_text(encoding="utf-8").split())
+    for item in items:
+        function = item.nodeid.partition("[")[0].rpartition("/")[2]
+        if function in names:
+            item.add_marker(pytest.mark.slow)

@@ -301,8 +301,16 @@ def test_sweep_of_a_scene_file_as_json(command, capsys, tmp_path):
 
 
 def test_random_sweep(command, capsys):
-    vary = ["--vary", "impact_speed=normal(20mph, 1mph)", "--vary", "vehicle.gvw=lognormal(4000lb, 0.1)"]
-    arguments = [*SWEEP, "--speed", "20mph", *vary, "--vary", "impact_angle=uniform(60, 90)", "--random", "40"]
+    vary = [
+        *SWEEP,
+        "--speed",
+        "20mph",
+        "--vary",
+        "impact_speed=normal(20mph, 1mph)",
+        "--vary",
+        "vehicle.gvw=lognormal(4000lb, 0.1)",
+    ]
+    arguments = [*vary, "--vary", "impact_angle=uniform(60, 90)", "--random", "40"]
     assert command(*arguments, "--seed", "3", "--json") == 0
     outcome = json.loads(capsys.readouterr().out)
     speeds = np.array(outcome["runs"]["impact_speed"])

@@ -113,6 +113,7 @@ void cut_into_blocks(const std::vector<Site>& site, Places some) {
 
 std::vector<Site> sites_of(const TrussInput& input) {
     std::vector<Site> site;
+    site.reserve(input.node.size());
     for (std::size_t i = 0; i < input.node.size(); ++i)
         site.push_back(site_of(input.node[i], input.anchor[i]));
     return site;

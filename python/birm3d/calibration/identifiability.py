@@ -30,7 +30,7 @@ _AS_WIDE_AS_BOUNDS = 0.8
 _PARTNER = 0.8
 # Share of a direction that nothing resolves above which a parameter belongs to it.
 _PART_OF_DIRECTION = 0.1
-# Correlation above which two parameters are said to be told apart poorly.
+# Correlation above which two parameters count as poorly separated.
 _POORLY_APART = 0.95
 # Optima differ if they lie so many standard errors and this share of the bounds apart.
 _APART, _APART_SHARE = 3.0, 5e-3

@@ -71,7 +71,7 @@ def _check_place(option: str, path: Path) -> None:
         raise ValueError(f"{option} must be in a folder that exists, got {str(path)!r}")
     if path.exists() and not path.is_file():
         return  # a device or a pipe: writing tells
-    try:  # rights do not tell of a file system that is read-only or full
+    try:  # access rights do not show a read-only or full file system
         with tempfile.NamedTemporaryFile(dir=path.parent, prefix=".birm3d-") as file:
             file.write(b"\0")
     except OSError as error:

@@ -25,7 +25,7 @@ __all__ = ["plot_history_bands", "plot_runs"]
 _MOST_RUNS = 8  # as many as there are colours
 _THIN = 40  # runs drawn as thin lines behind a band, at the most
 
-# What a scene is told by, in the order of titles.
+# Inputs that distinguish scenes, in the order of titles.
 _PARTS: Mapping[str, Callable[[Scene], str]] = {
     "vehicle": lambda scene: f"{scene.vehicle.name}, {scene.vehicle.mass:,.0f} kg",
     "speed": lambda scene: f"{scene.impact_speed:.2f} m/s ({scene.impact_speed / units.mph:.1f} mph)",
@@ -150,7 +150,7 @@ def _told_apart(scenes: Sequence[Scene]) -> tuple[str, list[str]]:
         ", ".join(texts[i] for name, texts in told.items() if name not in same) or f"run {i + 1}"
         for i in range(len(scenes))
     ]
-    if len(set(labels)) < len(labels):  # scenes that differ in what is not told
+    if len(set(labels)) < len(labels):  # scenes that differ in other inputs
         labels = [
             f"run {i + 1}: {label}" if not label.startswith("run ") else label
             for i, label in enumerate(labels)

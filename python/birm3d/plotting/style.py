@@ -46,7 +46,7 @@ Floats = npt.NDArray[np.float64]
 LEAST_ANGLE, LEAST_RATE = 1.0, 1.0
 """Least ranges of panels with angles [deg] and angular rates [deg/s]."""
 
-# Okabe and Ito's palette, told apart by colour-blind readers; yellow is left out: too faint on white.
+# Okabe and Ito's palette, which colour-blind readers can distinguish. Yellow is too faint on white.
 BLUE, ORANGE, GREEN, RED = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 CYCLE = (BLUE, ORANGE, RED, GREEN, "#CC79A7", "#56B4E9", "#000000", "#7F7F7F")
 _UNFILTERED = "_unfiltered"

@@ -180,7 +180,7 @@ class Stage:
     def picture(self) -> npt.NDArray[np.uint8]:
         """Return what the camera sees, shape (height, width, 3), red, green, blue."""
         with _quiet():
-            self.plotter.render()  # a screenshot by itself is of the last drawing
+            self.plotter.render()  # a screenshot alone shows the last drawing
             image = np.asarray(self.plotter.screenshot(return_img=True))
         if image.ndim != 3 or image.std() == 0.0:
             raise RuntimeError(_NO_DRAWING)

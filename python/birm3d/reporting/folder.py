@@ -37,7 +37,7 @@ def check_folder(folder: str | Path) -> Path:
                 f"got {str(path)!r} with other files: {', '.join(others[:3])}{more}"
             )
     place = path if path.is_dir() else path.absolute().parent
-    try:  # rights do not tell of a file system that is read-only or full
+    try:  # access rights do not show a read-only or full file system
         with tempfile.NamedTemporaryFile(dir=place, prefix=".birm3d-") as file:
             file.write(b"\0")
     except OSError as error:

@@ -220,7 +220,7 @@ def varied_scene(base: Scene, changes: Mapping[str, Any]) -> Scene:
     if len(whole) == len(changes):
         return scene
     if not whole.keys().isdisjoint(("vehicle", "barrier", "settings")):
-        scene.core_scene()  # refuses what is none, before its parts are looked at
+        scene.core_scene()  # refuses other types before it reads their parts
         known = frozenset(_names(scene))
     else:
         known = _known(base)

@@ -126,7 +126,7 @@ class Simulation:
     @staticmethod
     def from_scene(scene: Scene) -> Simulation:
         """Return the simulation of a scene, such as that of a loaded result."""
-        simulation = object.__new__(Simulation)  # its numbers are known: nobody is told of their unit again
+        simulation = object.__new__(Simulation)  # its numbers were checked: no second warning of their unit
         simulation._begin(scene)
         return simulation
 

@@ -45,7 +45,7 @@ __all__ = ["ExecutorError", "Finished", "pool_of", "result_of", "run_all", "subm
 # A chunk takes about this long [s]: long beside what it costs to hand it over, short to wait for or to lose.
 _CHUNK_TIME = 0.2
 _LONGEST_CHUNK = 256
-_MOST_SCENES = 64  # of a chunk that has scenes of its own, which are held until it is done
+_MOST_SCENES = 64  # a chunk holds its scenes until it is done
 
 # Enumerators of the core look for their name each time.
 _END_REASONS = {int(reason): name for name, reason in _core.EndReason.__members__.items()}
@@ -148,7 +148,7 @@ def run_all(
 def _ended(pool: Any, pending: set[Future[Done]], died: bool) -> list[Future[Done]]:
     """Stop what still runs in a pool, and return what had ended well."""
     # dask logs an error for each future that is cancelled while it runs; its few chunks run out instead.
-    # A pool that died marks its futures itself, in a thread of its own that must not find them cancelled.
+    # A pool that died marks its futures in a thread, which must not find them cancelled.
     if isinstance(pool, ThreadPoolExecutor) or (isinstance(pool, ProcessPoolExecutor) and not died):
         for future in pending:
             future.cancel()
@@ -176,7 +176,7 @@ def _shipped(executor: Any, packed: bytes, files: ExitStack) -> Any:
     if not hasattr(executor, "scatter"):
         return packed
     try:
-        # Under a name of its own: the same bytes of an earlier study may just be on their way out.
+        # A new name: the same bytes of an earlier study may be about to be released.
         return executor.scatter(packed, broadcast=True, hash=False)
     except Exception as error:
         raise ExecutorError from error
@@ -282,7 +282,7 @@ def _batches(
         try:
             scene = _scene(simulation, names, row)
             core = scene.core_scene()
-            if simulation is not None:  # of a scene that was given it was told when that was made
+            if simulation is not None:  # a given scene warned when it was made
                 complaints.add(run, coarse_skins(scene))
         except Exception as error:
             finished.append((run, _failed(error, metrics)))

@@ -39,7 +39,7 @@ __all__ = [
 SIZES = ("length", "width", "height", "wheelbase")
 """Names of the dimensions that a vehicle can be scaled to."""
 
-# A dimension beyond these shares of that of the vehicle is most likely in another unit.
+# A dimension beyond these fractions of the vehicle's is most likely in another unit.
 _LEAST, _MOST = 0.25, 4.0
 
 

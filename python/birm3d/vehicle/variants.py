@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["VehicleVariants"]
 
-# A mass beyond these shares of that of the file is most likely in another unit.
+# A mass beyond these fractions of the file's is most likely in another unit.
 _LEAST, _MOST = 0.05, 10.0
 
 
@@ -181,11 +181,11 @@ class VehicleVariants(VehicleData):
     def with_dent_reach(self, dent_reach: Quantity) -> Self:
         """Return the vehicle with a skin that a post draws in beside itself; at 0 that is left out.
 
-        A post (bollard, pole) that has come a depth d into a front, side or rear draws in the skin to either
-        side of it and above it with a slope of about d / dent_reach, at a touch 0.25: its dent reaches about
-        dent_reach [m] beyond it, as far as the beams and panels there carry. The paper's trusses know nothing
-        of each other, and between them a narrow post passes to the rigid core. Walls and meshes make no dent.
-        ``>= 0``.
+        A post (bollard, pole) at the depth d in a front, side or rear draws in the skin beside and above it.
+        The slope of this indentation is about d / dent_reach, at first touch 0.25. So it extends about
+        dent_reach [m] beyond the post, as far as the beams and panels there carry; ``>= 0``. The paper's
+        trusses are independent of each other, so that a narrow post passes between them to the rigid core.
+        Walls and meshes make no indentation.
         """
         return self._changed(self._description.each(dent_reach=given("dent_reach", dent_reach)))
 

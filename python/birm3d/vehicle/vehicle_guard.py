@@ -17,7 +17,7 @@ _DERIVED = (
     *("mass", "center_of_mass", "inertia", "nodes", "anchors", "area", "zone_of_node", "quads", "wheels"),
     *("mass_center_height", "wheel_of_node", "along_of_node"),
 )
-# Of a vehicle of two units all but its name follows from the units.
+# In a vehicle of two units, all fields but the name follow from the units.
 _OF_UNITS = (*_DERIVED, "zones", "rate_sensitivity", "dent_reach")
 
 

@@ -24,8 +24,8 @@ class Limits:
         How far a node may be inside a barrier at the end of a step [m]. Where three faces meet, as those of a
         barrier on the ground, it goes onto two of them.
     anchor_depth
-        The same of the rigid body: closed trusses are held by rigid contact, which finds what is inside at
-        the end of the step [m].
+        The same of the rigid body [m]. Bottomed-out trusses are held by rigid contact, which finds points
+        inside only at the end of the step.
     energy, momentum
         Greatest residuals of the balances, see :func:`birm3d.metrics.compute_metrics`.
     """
