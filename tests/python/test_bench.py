@@ -115,3 +115,8 @@ def test_a_dent_draws_no_node_into_a_post_that_came_past_its_edge() -> None:
     """Seed 3576: nodes of the front that one post dents hopped through another that stands behind them."""
     output = output_of("bench_random_impacts.py", "--first", "3576", "--count", "1")
     assert "1 impacts, 0 with a fault" in output
+
+
+def test_quick_simd() -> None:
+    """The program runs; its full choice builds for each instruction set."""
+    assert "1.00 times installed" in output_of("bench_simd.py", "--quick")
