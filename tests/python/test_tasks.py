@@ -6,7 +6,9 @@ import re
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
+from birm3d import Vehicle
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs/pages/tasks.md"
@@ -26,7 +28,7 @@ EXPECTED = {
     "9": ([], "scatter.front"),
     "10": (["bands.png"], "."),
     "11": (["crash.gif", "dossier"], ""),
-    "12": (["crush.png"], "truck"),
+    "12": (["crush.png", "van.png"], "truck"),
 }
 
 
@@ -66,6 +68,8 @@ def test_a_task_runs(
     files, word = EXPECTED[number(title)]
     if "pulse.csv" in text:
         shutil.copy(ROOT / "examples/nhtsa_10146.csv", tmp_path / "pulse.csv")
+    if "van.stl" in text:
+        write_mesh(tmp_path / "van.stl")
     before = set(tmp_path.iterdir())
     monkeypatch.chdir(tmp_path)
     for block in BLOCK.findall(text):
@@ -74,3 +78,11 @@ def test_a_task_runs(
     assert word in printed
     assert "nan" not in re.findall(r"[a-z]+", printed.lower())
     assert {path.name for path in set(tmp_path.iterdir()) - before} == set(files)
+
+
+def write_mesh(path: Path) -> None:
+    """Write the skin of a preset in millimetres, as a user has a mesh of a vehicle."""
+    trimesh = pytest.importorskip("trimesh", reason="no trimesh to write a mesh with: pip install '.[mesh]'")
+    van = Vehicle.preset("van_3500")
+    triangles = np.vstack([van.quads[:, [0, 1, 2]], van.quads[:, [0, 2, 3]]])
+    trimesh.Trimesh(1e3 * van.nodes, triangles).export(path)
