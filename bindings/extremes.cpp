@@ -1,6 +1,7 @@
 #include "birm3d/record/extremes.hpp"
 
 #include <pybind11/stl.h>
+#include <pybind11/typing.h>
 
 #include <tuple>
 
@@ -9,6 +10,22 @@
 namespace birm3d::bindings {
 
 namespace py = pybind11;
+
+namespace {
+
+// One call instead of one for each.
+py::typing::Dict<py::str, py::object> groups_of(const Extremes& found) {
+    py::typing::Dict<py::str, py::object> groups;
+    const auto add = [&groups](const char* name, const auto& group) {
+        if (group) groups[name] = *group;
+    };
+    add("normal_force", found.normal_force), add("motion", found.motion);
+    add("attitude", found.attitude), add("energy", found.energy);
+    add("filtered_force", found.filtered_force), add("element_loads", found.element_loads);
+    return groups;
+}
+
+}  // namespace
 
 void register_extremes(py::module_& m) {
     py::class_<ExtremeGroups>(m, "ExtremeGroups", "Which groups of extremes are wanted.")
@@ -85,6 +102,7 @@ void register_extremes(py::module_& m) {
         m, "Extremes", "Of a history, over its output instants; a group that was not wanted raises.");
     extremes.def_readonly("rows", &Extremes::rows, "output instants")
         .def_readonly("end_time", &Extremes::end_time, "s, the last of them")
+        .def_property_readonly("groups", &groups_of, "those of several numbers that were found, by name")
         .def_property_readonly("normal_force",
                                [](const Extremes& found) { return found.normal_force.value(); })
         .def_property_readonly("motion", [](const Extremes& found) { return found.motion.value(); })

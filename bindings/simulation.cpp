@@ -119,14 +119,16 @@ void register_simulation(py::module_& m) {
         .def_readonly("largest_momentum", &Balances::largest_momentum,
                       "N s, of a unit, or an impulse in a step")
         .def_property_readonly(
-            "largest_fall",
+            "sizes",
             [](const Balances& balances) {
-                double largest = 0.0;
-                for (const Balances::Departure& fall : balances.falls)
-                    largest = std::max(largest, fall.size);
-                return largest;
+                double fall = 0.0;
+                for (const Balances::Departure& of : balances.falls)
+                    fall = std::max(fall, of.size);
+                return std::tuple(balances.energy.size, balances.momentum.size, fall, balances.at_disposal,
+                                  balances.largest_momentum);
             },
-            "J, of any dissipated term")
+            "sizes of energy and momentum, the largest fall of any dissipated term (J), at_disposal, "
+            "largest_momentum")
         .def_property_readonly(
             "falls",
             [](const Balances& balances) {

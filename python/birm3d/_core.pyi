@@ -38,11 +38,6 @@ class Balances:
         J, at the start
         """
     @property
-    def largest_fall(self) -> float:
-        """
-        J, of any dissipated term
-        """
-    @property
     def largest_momentum(self) -> float:
         """
         N s, of a unit, or an impulse in a step
@@ -51,6 +46,11 @@ class Balances:
     def momentum(self) -> Departure:
         """
         of a unit's change in a step from the sum of all impulses on it
+        """
+    @property
+    def sizes(self) -> tuple[float, float, float, float, float]:
+        """
+        sizes of energy and momentum, the largest fall of any dissipated term (J), at_disposal, largest_momentum
         """
 class Barrier:
     """
@@ -422,6 +422,11 @@ class Extremes:
     @property
     def filtered_force(self) -> ExtremeFilteredForce:
         ...
+    @property
+    def groups(self) -> dict[str, typing.Any]:
+        """
+        those of several numbers that were found, by name
+        """
     @property
     def joint(self) -> ExtremeJointLoads:
         ...

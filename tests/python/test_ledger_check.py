@@ -126,7 +126,7 @@ def test_a_fall_is_told_by_its_name() -> None:
         largest_momentum=1.0,
         energy=nothing,
         momentum=nothing,
-        largest_fall=3e5,
+        sizes=(0.0, 0.0, 3e5, 1e7, 1.0),
         falls={"crushed": nothing, "tire_friction": worst},
     )
     told = (

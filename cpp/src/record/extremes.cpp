@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/channel_filter.hpp"
+#include "base/wide_loops.hpp"
 
 namespace birm3d {
 
@@ -67,13 +68,19 @@ void filter(const History& history, const ExtremeGroups& wanted, Extremes& found
     const std::optional<TwoSignals> peak = peaks_of_filtered(signal, cfc60, interval);
     if (wanted.filtered_force) {
         Column& force = scratch();
-        force.clear();
-        for (const TwoSignals& row : signal)
-            force.push_back(row[0]);
+        force.resize(signal.size());
+        for (std::size_t k = 0; k < signal.size(); ++k)
+            force[k] = signal[k][0];
         found.filtered_force = {peak ? std::optional((*peak)[0]) : std::nullopt,
                                 peak_of_means(force, window_50ms, interval)};
     }
     if (wanted.filtered_deceleration && peak) found.filtered_deceleration = (*peak)[1];
+}
+
+void find_extremes_of_columns(const History& history, const ExtremeGroups& wanted, Extremes& found) {
+    if (wanted.normal_force) found.normal_force = normal_force(history);
+    if (wanted.energy) found.energy = energy(history);
+    filter(history, wanted, found);
 }
 
 }  // namespace
@@ -83,11 +90,9 @@ Extremes extremes_of(const History& history, const Vehicle& vehicle, const Barri
     Extremes found;
     found.rows = history.time.size();
     found.end_time = history.time.back();
-    if (wanted.normal_force) found.normal_force = normal_force(history);
+    run_wide([&] { find_extremes_of_columns(history, wanted, found); });
     if (wanted.motion) found.motion = greatest_motion(history, event);
     if (wanted.attitude) found.attitude = greatest_attitude(history, event);
-    if (wanted.energy) found.energy = energy(history);
-    filter(history, wanted, found);
     if (wanted.wheel_climb) found.wheel_climb = greatest_wheel_climb(history, vehicle);
     if (wanted.momentum) found.momentum_residual = history.momentum_residual;
     if (wanted.joint && !history.joints.empty()) found.joint = greatest_joint_loads(history.joints.front());

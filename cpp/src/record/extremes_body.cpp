@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "birm3d/record/extremes.hpp"
 
@@ -50,18 +51,19 @@ double penetration_of(const UnitHistory& unit, const TrussMesh& mesh, const Vec3
                       double least) {
     Anchors anchors(mesh);
     double greatest = least;
-    // The last result and its direction. For another direction it changes by no more than the reach times the
-    // distance between the two unit vectors.
-    Vec3 known = Vec3::Zero();
+    // The last answer, and the orientation it is of. From one orientation to another the direction changes by no more than
+    // twice the distance of the two quaternions, and the answer by no more than the reach times that; and by rounding.
+    std::optional<Eigen::Vector4d> known;
     double furthest = 0.0;
+    const double twice_reach = 2.0 * anchors.reach(), rounding = 1e-13 * anchors.reach();
     const auto look = [&](std::size_t k) {
         const double center = past.dot(unit.position[k] - origin);
-        if (center + anchors.reach() <= greatest) return;
-        const Vec3 direction = unit.orientation[k].conjugate() * past;
-        if (known != Vec3::Zero() &&
-            center + furthest + anchors.reach() * (direction - known).norm() <= greatest)
-            return;
-        known = direction, furthest = anchors.furthest(direction);
+        const double missing = greatest - center;
+        if (anchors.reach() + rounding <= missing) return;
+        const Eigen::Vector4d& orientation = unit.orientation[k].coeffs();
+        if (const double slack = missing - furthest - rounding; known && slack >= 0.0)
+            if (twice_reach * twice_reach * (orientation - *known).squaredNorm() <= slack * slack) return;
+        known = orientation, furthest = anchors.furthest(unit.orientation[k].conjugate() * past);
         greatest = std::max(greatest, center + furthest);
     };
     // Starting with the row where the mass centre is furthest excludes most other rows.

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/wide_loops.hpp"
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "record/resample_rows.hpp"
@@ -31,7 +32,7 @@ void Recorder::resample(const Scene& scene, const Channels& wanted, History& his
 
     const OutputInstants output(values_, width_, history.time);
     history.towards = scene.towards();
-    if (wanted.energies) resample_energies(output, history);
+    if (wanted.energies) run_wide([&] { resample_energies(output, history); });
     resample_units(output, scene, wanted, history);
     history.obstacles.clear();
     history.joints.clear();

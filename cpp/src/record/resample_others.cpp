@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/wide_loops.hpp"
 #include "birm3d/base/rotation.hpp"
 #include "kernels/joints.hpp"
 #include "record/resample_rows.hpp"
@@ -48,59 +49,69 @@ void Recorder::resample_joints(const Scene& scene, const OutputInstants& output,
     }
 }
 
+namespace {
+
+using ObstacleNumbers = std::array<double, obstacle_width>;
+
+// Means over the output intervals of the force and torque on one obstacle. `loads`: of each row, null where there is none.
+void add_means(const OutputInstants& output, const std::vector<const ObstacleNumbers*>& loads,
+               ObstacleHistory& of) {
+    static constexpr ObstacleNumbers nothing{};
+    const auto view = [&](std::size_t r) {
+        const auto values = [&](std::size_t i) { return loads[i] ? loads[i]->data() : nothing.data(); };
+        return StepView{values(r), values(r + 1), output.time_at(r + 1) - output.time_at(r)};
+    };
+    std::array<double, 6> before_step{}, previous{};
+    std::array<SpanColumn, 6> now;
+    std::size_t row = 0;
+    for (const Span& span : output.span) {
+        for (; row < span.row; ++row) {
+            if (!loads[row] && !loads[row + 1]) continue;
+            const StepView whole = view(row);
+            for (std::size_t i = 0; i < 6; ++i)
+                before_step[i] += whole.force_integral(at_load + i, at_load_curvature + i, whole.dt) +
+                                  whole.impulse(at_load_impulse + i, whole.dt);
+        }
+        if (!loads[row] && !loads[row + 1] && previous == before_step) continue;
+        const StepView step = view(row);
+        for (std::size_t i = 0; i < 6; ++i) {
+            output.integrate(span, step.a[at_load + i], step.b[at_load + i], step.b[at_load_curvature + i],
+                             step.b[at_load_impulse + i], now[i].data());
+            for (std::size_t n = 0; n < span.size(); ++n)
+                now[i][n] += before_step[i];
+        }
+        const std::size_t n = span.size(), skipped = span.first == 0 ? 1 : 0;
+        for (std::size_t i = 0; i < 6; ++i) {
+            const SpanColumn& sum = now[i];
+            const double* interval = output.interval.data() + span.first;
+            SpanColumn mean;
+            mean[0] = (sum[0] - previous[i]) / interval[0];
+            for (std::size_t k = 1; k < n; ++k)
+                mean[k] = (sum[k] - sum[k - 1]) / interval[k];
+            Vec3* to = (i < 3 ? of.force : of.moment).data() + span.first;
+            for (std::size_t k = skipped; k < n; ++k)
+                to[k][static_cast<Eigen::Index>(i % 3)] = mean[k];
+            previous[i] = sum[n - 1];
+        }
+    }
+}
+
+}  // namespace
+
 // Forces and torques on the obstacles that were touched, as means over the output intervals.
 void Recorder::resample_obstacles(const Scene& scene, const OutputInstants& output, History& history) const {
-    std::map<std::size_t, std::vector<const ObstacleRow*>>
-        touched;  // obstacle -> (rows), null where untouched
+    std::map<std::size_t, std::vector<const ObstacleNumbers*>> touched;  // obstacle -> (rows)
     for (const ObstacleRow& row : obstacles_) {
         auto& rows_of = touched[row.obstacle];
         rows_of.resize(rows(), nullptr);
-        rows_of[row.row] = &row;
+        rows_of[row.row] = &row.values;
     }
-    static constexpr std::array<double, obstacle_width> nothing{};
+    const std::size_t count = history.time.size();
     for (const auto& [obstacle, rows_of] : touched) {
-        const auto view = [&](std::size_t r) {
-            const auto values = [&](std::size_t i) {
-                return rows_of[i] ? rows_of[i]->values.data() : nothing.data();
-            };
-            return StepView{values(r), values(r + 1), output.time_at(r + 1) - output.time_at(r)};
-        };
-        const std::size_t count = history.time.size();
         ObstacleHistory of{obstacle, std::vector<Vec3>(count, Vec3::Zero()),
                            std::vector<Vec3>(count, Vec3::Zero())};
-        std::array<double, 6> before_step{}, previous{};
-        std::array<SpanColumn, 6> now;
-        std::size_t row = 0;
-        for (const Span& span : output.span) {
-            for (; row < span.row; ++row) {
-                if (!rows_of[row] && !rows_of[row + 1]) continue;
-                const StepView whole = view(row);
-                for (std::size_t i = 0; i < 6; ++i)
-                    before_step[i] += whole.force_integral(at_load + i, at_load_curvature + i, whole.dt) +
-                                      whole.impulse(at_load_impulse + i, whole.dt);
-            }
-            if (!rows_of[row] && !rows_of[row + 1] && previous == before_step) continue;
-            const StepView step = view(row);
-            for (std::size_t i = 0; i < 6; ++i) {
-                output.integrate(span, step.a[at_load + i], step.b[at_load + i],
-                                 step.b[at_load_curvature + i], step.b[at_load_impulse + i], now[i].data());
-                for (std::size_t n = 0; n < span.size(); ++n)
-                    now[i][n] += before_step[i];
-            }
-            const std::size_t n = span.size(), skipped = span.first == 0 ? 1 : 0;
-            for (std::size_t i = 0; i < 6; ++i) {
-                const SpanColumn& sum = now[i];
-                const double* interval = output.interval.data() + span.first;
-                SpanColumn mean;
-                mean[0] = (sum[0] - previous[i]) / interval[0];
-                for (std::size_t k = 1; k < n; ++k)
-                    mean[k] = (sum[k] - sum[k - 1]) / interval[k];
-                Vec3* to = (i < 3 ? of.force : of.moment).data() + span.first;
-                for (std::size_t k = skipped; k < n; ++k)
-                    to[k][static_cast<Eigen::Index>(i % 3)] = mean[k];
-                previous[i] = sum[n - 1];
-            }
-        }
+        const auto& loads = rows_of;  // lambdas take no structured bindings
+        run_wide([&] { add_means(output, loads, of); });
         for (std::size_t k = 0; k < count; ++k)
             of.moment[k] += scene.from_origin.cross(of.force[k]);
         if (count > 1) of.force[0] = of.force[1], of.moment[0] = of.moment[1];

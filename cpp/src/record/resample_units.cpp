@@ -3,8 +3,9 @@
 #include <array>
 #include <cmath>
 
+#include "base/wide_loops.hpp"
 #include "birm3d/base/tolerances.hpp"
-#include "record/span_impulses.hpp"
+#include "record/span_motion.hpp"
 
 namespace birm3d {
 
@@ -27,7 +28,8 @@ class UnitRows {
           unit_(unit),
           motion_(wanted.motion),
           forces_(wanted.forces),
-          momentum_(wanted.momentum && wanted.motion) {
+          momentum_(wanted.momentum && wanted.motion),
+          pushes_{pushed(at_ground_force, 9), pushed(at_tire_friction, 3), pushed(at_joint_impulse, 3)} {
         const double* start = output.values.data() + offset;
         const double speed = std::max(vec(start + at_velocity).norm(), tolerance::slowest_reference_speed);
         largest_ = model.body.mass * speed / stopping_time;
@@ -44,13 +46,13 @@ class UnitRows {
                 pass(output_.view(row, offset_));
             const StepView step = output_.view(row, offset_);
             if (motion_ || forces_ || momentum_)
-                now_.set(output_, span, step);
+                now_.set(output_, span, step, pushes_);
             else
                 SpanImpulses::integrate(output_, span, step, at_barrier_force, at_barrier_curvature,
                                         at_barrier_impulse, now_.barrier);
             if (motion_) add_motion(span, step);
             if (forces_ || momentum_)
-                now_.add(before_step_, span.size());
+                now_.add(before_step_, span.size(), pushes_);
             else if (wanted_.normal_force)
                 now_.barrier.add(before_step_.barrier, span.size());
             if (wanted_.normal_force) add_normal_force(span, towards);
@@ -66,6 +68,14 @@ class UnitRows {
     double worst() const { return worst_; }
 
   private:
+    // Is any of `count` numbers of the unit other than zero, in any row?
+    bool pushed(std::size_t first, std::size_t count) const {
+        const double* row = output_.values.data() + offset_ + first;
+        for (std::size_t r = 0; r < output_.rows; ++r, row += output_.width)
+            if (std::any_of(row, row + count, [](double number) { return number != 0.0; })) return true;
+        return false;
+    }
+
     void make_columns() {
         const std::size_t count = output_.time.size();
         if (wanted_.normal_force) unit_.barrier_normal_force.assign(count, 0.0);
@@ -110,46 +120,33 @@ class UnitRows {
     }
 
     void add_motion(const Span& span, const StepView& step) {
-        add_velocity(span, step);
-        // Cubic Hermite interpolation of the path; linear, normalised interpolation of the small rotation.
-        const Vec3 a = vec(step.a + at_position), b = vec(step.b + at_position);
-        const Vec3 va = vec(step.a + at_velocity), vb = vec(step.b + at_velocity);
-        const Eigen::Map<const Eigen::Vector4d> qa(step.a + at_orientation), qb(step.b + at_orientation);
-        const double side = qa.dot(qb) < 0.0 ? -1.0 : 1.0;
-        for (std::size_t k = span.first; k < span.end; ++k) {
-            const double s = output_.fraction[k];
-            unit_.position[k] =
-                a + (b - a) * output_.smooth[k] + step.dt * s * (1.0 - s) * ((1.0 - s) * va - s * vb);
-            unit_.orientation[k] = Quat(Eigen::Vector4d((1.0 - s) * qa + s * side * qb)).normalized();
-        }
-        if (wanted_.angular_velocity)
-            for (std::size_t k = span.first; k < span.end; ++k)
-                unit_.angular_velocity[k] = (1.0 - output_.fraction[k]) * vec(step.a + at_angular_velocity) +
-                                            output_.fraction[k] * vec(step.b + at_angular_velocity);
-        for (std::size_t k = std::max<std::size_t>(span.first, 1); k < span.end; ++k) {
-            const Vec3 acceleration = output_.per[k] * (unit_.velocity[k] - unit_.velocity[k - 1]);
-            unit_.acceleration[k] = unit_.orientation[k].conjugate() * acceleration;
-        }
-    }
-    void add_velocity(const Span& span, const StepView& step) {
-        const Vec3 a = vec(step.a + at_velocity), b = vec(step.b + at_velocity);
-        const std::size_t n = span.size();
+        const std::size_t n = span.size(), first = span.first;
         SpanVectors total;
-        for (std::size_t i = 0; i < n; ++i) {
-            total.x[i] = now_.barrier.x[i] + now_.ground.x[i] + now_.tire_friction.x[i] + now_.joints.x[i];
-            total.y[i] = now_.barrier.y[i] + now_.ground.y[i] + now_.tire_friction.y[i] + now_.joints.y[i];
-            total.z[i] = now_.barrier.z[i] + now_.ground.z[i] + now_.tire_friction.z[i] + now_.joints.z[i];
-        }
+        total.set(now_.barrier, n);
+        for_others([&](const SpanVectors& impulse, const Vec3&) { total.add(impulse, n); });
         for (const SpanColumn& tire : now_.tire)
             for (std::size_t i = 0; i < n; ++i)
                 total.z[i] += tire[i];
+        moved_.set_velocity(output_, span, step, total, model_.body.inverse_mass, down_);
+        moved_.set_place(output_, span, step);
+        moved_.set_acceleration(output_, span, first > 0 ? unit_.velocity[first - 1] : moved_.velocity.at(0));
         for (std::size_t i = 0; i < n; ++i) {
-            const std::size_t k = span.first + i;
-            unit_.velocity[k] =
-                output_.fraction[k] < 1.0
-                    ? Vec3(a + model_.body.inverse_mass * total.at(i) + output_.within[k] * down_)
-                    : b;
+            unit_.position[first + i] = moved_.position.at(i);
+            unit_.velocity[first + i] = moved_.velocity.at(i);
+            unit_.orientation[first + i] = moved_.orientation_at(i);
+            unit_.acceleration[first + i] = moved_.body_acceleration.at(i);
         }
+        if (!wanted_.angular_velocity) return;
+        for (std::size_t k = first; k < span.end; ++k)
+            unit_.angular_velocity[k] = (1.0 - output_.fraction[k]) * vec(step.a + at_angular_velocity) +
+                                        output_.fraction[k] * vec(step.b + at_angular_velocity);
+    }
+    // What pushes beside the barrier and the wheels' normal forces: impulses at the instants and at the one before.
+    template <class Use>
+    void for_others(const Use& use) const {
+        if (pushes_.ground) use(now_.ground, previous_.ground);
+        if (pushes_.tire_friction) use(now_.tire_friction, previous_.tire_friction);
+        if (pushes_.joints) use(now_.joints, previous_.joints);
     }
 
     void add_normal_force(const Span& span, const Vec3& towards) {
@@ -201,15 +198,12 @@ class UnitRows {
         const Vec3 weight = mass * down_;
         SpanVectors barrier, force, part;
         means(span, now_.barrier, previous_.barrier, barrier);
-        force = barrier;
         const std::size_t n = span.size();
-        const auto add = [&](const SpanVectors& impulse, const Vec3& previous) {
+        force.set(barrier, n);
+        for_others([&](const SpanVectors& impulse, const Vec3& previous) {
             means(span, impulse, previous, part);
-            for (std::size_t i = 0; i < n; ++i)
-                force.x[i] += part.x[i], force.y[i] += part.y[i], force.z[i] += part.z[i];
-        };
-        add(now_.ground, previous_.ground), add(now_.tire_friction, previous_.tire_friction);
-        add(now_.joints, previous_.joints);
+            force.add(part, n);
+        });
         force.add(weight, n);
         for (std::size_t w = 0; w < now_.tire.size(); ++w) {
             means(span, now_.tire[w], previous_.tire[w], part.z);
@@ -218,9 +212,7 @@ class UnitRows {
         }
         double worst = 0.0, largest = 0.0;  // squared
         for (std::size_t i = span.first == 0 ? 1 : 0; i < n; ++i) {
-            const std::size_t k = span.first + i;
-            const Vec3 acceleration = output_.per[k] * (unit_.velocity[k] - unit_.velocity[k - 1]);
-            worst = std::max(worst, (mass * acceleration - force.at(i)).squaredNorm());
+            worst = std::max(worst, (mass * moved_.acceleration.at(i) - force.at(i)).squaredNorm());
             largest = std::max({largest, force.at(i).squaredNorm(), barrier.at(i).squaredNorm()});
         }
         worst_ = std::max(worst_, std::sqrt(worst));
@@ -256,7 +248,9 @@ class UnitRows {
     const Channels& wanted_;
     UnitHistory& unit_;
     bool motion_, forces_, momentum_;
+    Pushes pushes_;
     SpanImpulses now_;
+    SpanMotion moved_;
     Impulses before_step_;  // up to the start of the step that holds the span
     Impulses passed_;       // of one step
     Impulses previous_;     // up to the last instant of the span before
@@ -273,7 +267,7 @@ void Recorder::resample_units(const OutputInstants& output, const Scene& scene, 
     for (std::size_t u = 0; u < history.units.size(); ++u) {
         const Unit& model = scene.vehicle->units[u];
         UnitRows rows(output, offset, model, scene.settings.gravity, wanted, history.units[u]);
-        rows.run(history.towards);
+        run_wide([&] { rows.run(history.towards); });
         if (wanted.motion)
             for (Vec3& position : history.units[u].position)
                 position += scene.base;

@@ -14,31 +14,49 @@ struct SpanVectors {
     SpanColumn x, y, z;
     Vec3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
     std::array<double*, 3> columns() { return {x.data(), y.data(), z.data()}; }
+    void set(const SpanVectors& from, std::size_t n) {
+        for (std::size_t i = 0; i < n; ++i)
+            x[i] = from.x[i], y[i] = from.y[i], z[i] = from.z[i];
+    }
     void add(const Vec3& by, std::size_t n) {
         for (std::size_t i = 0; i < n; ++i)
             x[i] += by.x(), y[i] += by.y(), z[i] += by.z();
     }
+    void add(const SpanVectors& by, std::size_t n) {
+        for (std::size_t i = 0; i < n; ++i)
+            x[i] += by.x[i], y[i] += by.y[i], z[i] += by.z[i];
+    }
+};
+
+// What may push a unit beside the barrier and the wheels' normal forces; false where it never does in a record.
+struct Pushes {
+    bool ground, tire_friction, joints;
 };
 
 // Impulses on a unit at the instants of a span: from the start of the step, then from the start of the run (N s).
+// Columns of what never pushes are zero from the start, and stay so.
 struct SpanImpulses {
-    SpanVectors barrier, ground, tire_friction, joints;
+    SpanVectors barrier{}, ground{}, tire_friction{}, joints{};
     std::vector<SpanColumn> tire;
 
-    void set(const OutputInstants& output, const Span& span, const StepView& step) {
+    void set(const OutputInstants& output, const Span& span, const StepView& step, const Pushes& pushes) {
         integrate(output, span, step, at_barrier_force, at_barrier_curvature, at_barrier_impulse, barrier);
-        integrate(output, span, step, at_ground_force, at_ground_curvature, at_ground_impulse, ground);
+        if (pushes.ground)
+            integrate(output, span, step, at_ground_force, at_ground_curvature, at_ground_impulse, ground);
         const auto spread = [&](std::size_t from, SpanVectors& to) {
             for (std::size_t c = 0; c < 3; ++c)
                 output.spread(span, step.b[from + c], to.columns()[c]);
         };
-        spread(at_tire_friction, tire_friction), spread(at_joint_impulse, joints);
+        if (pushes.tire_friction) spread(at_tire_friction, tire_friction);
+        if (pushes.joints) spread(at_joint_impulse, joints);
         for (std::size_t w = 0; w < tire.size(); ++w)
             output.spread(span, step.b[at_tire_impulses + w], tire[w].data());
     }
-    void add(const Impulses& by, std::size_t n) {
-        barrier.add(by.barrier, n), ground.add(by.ground, n);
-        tire_friction.add(by.tire_friction, n), joints.add(by.joints, n);
+    void add(const Impulses& by, std::size_t n, const Pushes& pushes) {
+        barrier.add(by.barrier, n);
+        if (pushes.ground) ground.add(by.ground, n);
+        if (pushes.tire_friction) tire_friction.add(by.tire_friction, n);
+        if (pushes.joints) joints.add(by.joints, n);
         for (std::size_t w = 0; w < tire.size(); ++w)
             for (std::size_t i = 0; i < n; ++i)
                 tire[w][i] += by.tire[w];

@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from ..base.complaints import Complaint
-from .metrics import relative_to_start
+from .run_values import share_of_start
 
 if TYPE_CHECKING:
     from .. import _core
@@ -51,16 +51,17 @@ def open_accounts(scene: Scene, balances: _core.Balances) -> Iterator[Complaint]
             BalanceWarning, quantity, value, partial(_text, scene, quantity, limit, value, worst)
         )
 
-    residual = relative_to_start(scene, balances.energy.size, balances.at_disposal)
+    energy, change, fall_of_any, at_disposal, largest_momentum = balances.sizes
+    residual = share_of_start(scene, energy, at_disposal)
     if residual > ENERGY_LIMIT:
         yield complaint("energy_residual", ENERGY_LIMIT, residual, balances.energy)
-    momentum = balances.momentum.size / max(balances.largest_momentum, scene.vehicle.mass)
+    momentum = change / max(largest_momentum, scene.vehicle.mass)
     if momentum > MOMENTUM_LIMIT:
         yield complaint("momentum_residual", MOMENTUM_LIMIT, momentum, balances.momentum)
-    if not relative_to_start(scene, balances.largest_fall, balances.at_disposal) > FALL_LIMIT:
+    if not share_of_start(scene, fall_of_any, at_disposal) > FALL_LIMIT:
         return
     for name, fall in balances.falls.items():
-        share = relative_to_start(scene, fall.size, balances.at_disposal)
+        share = share_of_start(scene, fall.size, at_disposal)
         if share > FALL_LIMIT:
             yield complaint(f"the fall of {name}", FALL_LIMIT, share, fall)
 

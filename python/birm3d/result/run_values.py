@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Any
 
 from .. import _core
 from ..base.arguments import checked
@@ -12,7 +11,15 @@ from ..scene.scene import Scene
 from .record import RunRecord
 from .stored import Stored
 
-__all__ = ["ALONG_LINE", "ResultOutcome", "RunValues", "Vector", "energy_residual", "relative_to_start"]
+__all__ = [
+    "ALONG_LINE",
+    "ResultOutcome",
+    "RunValues",
+    "Vector",
+    "energy_residual",
+    "relative_to_start",
+    "share_of_start",
+]
 
 Vector = tuple[float, float, float]
 
@@ -47,7 +54,7 @@ class ResultOutcome:
 
 
 class RunValues:
-    """What several metrics of a run share. What the core has found is taken from it once, when asked for."""
+    """What several metrics of a run share. What the core has found is taken from it at once."""
 
     normal_force: _core.ExtremeNormalForce
     motion: _core.ExtremeMotion
@@ -63,11 +70,7 @@ class RunValues:
         self.event = outcome.event
         self.statistics = outcome.statistics
         self.barrier = scene.barrier
-
-    def __getattr__(self, group: str) -> Any:
-        found = getattr(self.extremes, group)
-        setattr(self, group, found)
-        return found
+        vars(self).update(self.extremes.groups)
 
     @property
     def joined(self) -> bool:
@@ -89,7 +92,7 @@ class RunValues:
         """Greatest deflection of any truss [m]."""
         return self.outcome.peak_deflection
 
-    @property
+    @cached_property
     def reversal_time(self) -> float | None:
         """When the motion towards the barrier ends [s], if it began and anything was crushed."""
         began = self.dynamic_crush > 0.0 and self.motion.approach_speed > 0.0
@@ -104,13 +107,18 @@ class RunValues:
 
 def energy_residual(scene: Scene, energy: _core.ExtremeEnergy) -> float:
     """Greatest residual of the energy balance, relative to the initial kinetic energy."""
-    return relative_to_start(scene, energy.residual, energy.start)
+    return share_of_start(scene, energy.residual, energy.start)
+
+
+def share_of_start(scene: Scene, energy: float, start: float) -> float:
+    """Return what :func:`relative_to_start` does, of arguments that are not checked."""
+    return energy / max(start, 0.5 * scene.vehicle.mass * _STANDSTILL**2)
 
 
 @checked
 def relative_to_start(scene: Scene, energy: float, start: float) -> float:
     """Return an energy relative to that at the start, which counts as no less than that of a standstill."""
-    return energy / max(start, 0.5 * scene.vehicle.mass * _STANDSTILL**2)
+    return share_of_start(scene, energy, start)
 
 
 def greatest_deflection(result: RunRecord, name: str) -> float:

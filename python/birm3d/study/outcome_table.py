@@ -38,18 +38,25 @@ class OutcomeTable(Mapping[int, Outcome]):
 
     def update(self, outcomes: Mapping[int, Outcome] | Iterable[tuple[int, Outcome]]) -> None:
         """Take finished runs."""
-        for run, outcome in dict(outcomes).items():
-            if run >= len(self._finished):
-                self._grow(run + 1)
-            self._count += not self._finished[run]
-            self._finished[run] = True
-            self._values[:, run] = outcome.metrics
-            self._state_hash[run] = outcome.state_hash
-            self._reason[run] = self._words.setdefault(outcome.end_reason, len(self._words))
-            self._outcome[run] = self._words.setdefault(outcome.outcome, len(self._words))
+        new = dict(outcomes)
+        if not new:
+            return
+        if max(new) >= len(self._finished):
+            self._grow(max(new) + 1)
+        runs = np.fromiter(new, np.int64, len(new))
+        self._count += int(np.count_nonzero(~self._finished[runs]))
+        self._finished[runs] = True
+        self._values[:, runs] = np.array([outcome.metrics for outcome in new.values()]).T
+        self._state_hash[runs] = [outcome.state_hash for outcome in new.values()]
+        self._reason[runs] = [self._place(outcome.end_reason) for outcome in new.values()]
+        self._outcome[runs] = [self._place(outcome.outcome) for outcome in new.values()]
+        for run, outcome in new.items():
             self._error.pop(run, None)
             if outcome.error:
                 self._error[run] = outcome.error
+
+    def _place(self, word: str) -> int:
+        return self._words.setdefault(word, len(self._words))
 
     def _grow(self, least: int) -> None:
         more = max(least, 2 * len(self._finished)) - len(self._finished)

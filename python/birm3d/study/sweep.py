@@ -104,7 +104,7 @@ def _values(name: str, values: Iterable[Any]) -> list[Any]:
         raise ValueError(f"{name} must be a list of values, got {values!r}")
     wanted = list(itertools.islice(values, MOST_RUNS + 1))  # an endless one ends too
     warn_if_any_unusual(name, wanted)
-    listed = [in_si(name, value) for value in wanted]
+    listed = [value if type(value) is float else in_si(name, value) for value in wanted]
     if not listed:
         raise ValueError(f"{name} must have at least one value, got an empty list")
     return listed
