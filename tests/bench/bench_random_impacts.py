@@ -15,7 +15,8 @@ with skins that posts do not dent. Watched step by step (birm3d.study.watched):
 - balances: energy within 0.5 %, momentum within 1e-9.
 
 With --any-pose the scenes are those of random_scenes.py, on two processes: a row each in the table, and
-faults with the seeds that replay them. A table that is there already is gone on with.
+faults with the seeds that replay them. A table that is there already is gone on with. --save writes counts,
+percentiles and worst values at each kind of barrier.
 
 Ends with 1 if anything was found. The case of a seed is the same on every machine.
 """
@@ -38,9 +39,10 @@ import numpy.typing as npt
 from birm3d import Barrier, CoarseSkinWarning, Settings, Simulation, Vehicle, scenes
 from birm3d.base.progress import progress_bar
 from birm3d.study.verification.watched import Watched, text, watch
-from random_scenes import run_many
+from random_scenes import run_many, write_summary
 
 ANY_POSE = Path(__file__).parent / "results/robustness/random_scenes.csv"
+ANY_POSE_SUMMARY = ANY_POSE.with_name("random_scenes_summary.csv")
 RESULTS = Path(__file__).parent / "results/robustness/random_impacts.csv"
 Floats = npt.NDArray[np.float64]
 GHOST = 1e-9
@@ -307,7 +309,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     asked = parser.parse_args(arguments)
     if asked.any_pose:
         table = asked.csv or ANY_POSE
-        return run_many(table, 48 if asked.quick else asked.count, asked.first, asked.threads, asked.limit)
+        count = 48 if asked.quick else asked.count
+        status = run_many(table, count, asked.first, asked.threads, asked.limit)
+        if asked.save:
+            write_summary(table, ANY_POSE_SUMMARY)
+        return status
     # Coarse skins are what is tried here: what passes between nodes must still meet the rigid body.
     warnings.simplefilter("ignore", CoarseSkinWarning)
     seeds = range(asked.first, asked.first + (48 if asked.quick else asked.count))

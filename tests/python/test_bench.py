@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
+import importlib
 import json
 import math
 import os
@@ -120,3 +122,23 @@ def test_a_dent_draws_no_node_into_a_post_that_came_past_its_edge() -> None:
 def test_quick_simd() -> None:
     """The program runs; its full choice builds for each instruction set."""
     assert "1.00 times installed" in output_of("bench_simd.py", "--quick")
+
+
+def test_random_scenes_are_summarised_by_kind(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.syspath_prepend(str(PROGRAM.parent))
+    scenes = importlib.import_module("random_scenes")
+    table, summary = tmp_path / "scenes.csv", tmp_path / "summary.csv"
+    names = [field.name for field in dataclasses.fields(scenes.Row)]
+    with table.open("w", newline="") as file:
+        writer = csv.DictWriter(file, names)
+        writer.writeheader()
+        for seed, (energy, warned) in enumerate([(1e-5, False), (4e-3, False), (9e-3, True)]):
+            row = dict.fromkeys(names, "0.0") | {"seed": seed, "kind": "pole", "energy": energy, "fault": ""}
+            writer.writerow(row | {"warned": warned, "finished": seed != 1, "steps": 10 * seed})
+    scenes.write_summary(table, summary)
+    with summary.open(newline="") as file:
+        (row,) = csv.DictReader(file)
+    counts = {name: row[name] for name in ("kind", "scenes", "warned", "unfinished", "faults")}
+    assert counts == {"kind": "pole", "scenes": "3", "warned": "1", "unfinished": "1", "faults": "0"}
+    assert (float(row["energy_50"]), float(row["energy_worst_silent"])) == (4e-3, 4e-3)
+    assert (float(row["energy_worst"]), row["steps_50"]) == (9e-3, "10")
