@@ -15,6 +15,7 @@ import pytest
 import trimesh
 from birm3d import Barrier, FileFormatError, Simulation, Vehicle, units
 from birm3d.cli import main
+from birm3d.result.crush_profile import crush_map
 from birm3d.vehicle.mesh_import.mass_solid import solid_of
 from birm3d.vehicle.mesh_import.surface_file import read_mesh
 from birm3d.vehicle.mesh_import.wrap import sampled
@@ -537,6 +538,14 @@ def test_figure_shows_zones_core_wheels_and_front(from_deck: Vehicle) -> None:
     low = side.get_xlim()[0]
     assert low < -from_deck._file.extent.front - 0.5  # room for the arrow
     assert "4.90 x 1.84 x 1.4" in figure.get_suptitle()
+
+
+def test_crush_of_a_mesh_is_drawn(from_deck: Vehicle) -> None:
+    """Triangles without area would keep the contours of a crush map from ending."""
+    run = Simulation(from_deck, Barrier.bollards(), 10.0).run()
+    triangles = crush_map(run, "front").triangles
+    assert (np.diff(np.sort(triangles, axis=1), axis=1) > 0).all()
+    assert len(run.plot_crush().axes) >= 2
 
 
 def test_missing_library_is_named(car_stl: Path, monkeypatch: pytest.MonkeyPatch) -> None:

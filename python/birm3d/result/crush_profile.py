@@ -209,7 +209,8 @@ def _facing(shape: UnitShape, axis: int, sign: float, lateral: int) -> Ints:
         normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
         lengths = np.linalg.norm(normals, axis=1)
         quads = shape.quads[sign * normals[:, axis] > _FACING * lengths]
-        return np.vstack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+        second = quads[quads[:, 2] != quads[:, 3]]  # skins of meshes are triangles, their last corner twice
+        return np.vstack([quads[:, [0, 1, 2]], second[:, [0, 2, 3]]])
     # Without a skin: nodes whose trusses point to the side, joined to their neighbours.
     trusses = shape.nodes - shape.anchors
     mine = np.flatnonzero(sign * trusses[:, axis] > _FACING * np.linalg.norm(trusses, axis=1))
