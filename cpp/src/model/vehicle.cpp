@@ -37,6 +37,8 @@ RigidBody::RigidBody(double mass_, const Mat3& inertia_)
       inertia(checked_inertia(inertia_)),
       inverse_inertia(inertia.inverse()) {}
 
+// The list of wheels is a parameter by value for both constructors, so that callers may move theirs.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
 Unit::Unit(const RigidBody& body_, const TrussInput& trusses_, std::vector<Wheel> wheels_,
            double mass_center_height_, const Vec3& offset_, std::vector<Box> core_)
     : Unit(body_, TrussMesh(trusses_, wheels_), wheels_, mass_center_height_, offset_, std::move(core_)) {}
