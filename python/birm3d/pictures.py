@@ -270,7 +270,7 @@ def plot_runs(
         Names of :data:`birm3d.result.history_channels.HISTORY_CHANNELS`: ``"deceleration"``,
         ``"barrier_force"``, ``"velocity"``, ``"travel"``, ``"roll"``, ``"pitch"``, ``"yaw"``.
     labels
-        One for each run in place of that in which the scenes differ.
+        One text for each run, shown in the legend instead of the inputs that differ.
 
     Raises
     ------

@@ -53,7 +53,7 @@ def plot_runs(
     channels
         Names of :data:`birm3d.result.history_channels.HISTORY_CHANNELS`.
     labels
-        One for each run in place of that in which the scenes differ.
+        One text for each run, shown in the legend instead of the inputs that differ.
 
     Raises
     ------

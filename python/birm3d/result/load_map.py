@@ -170,12 +170,12 @@ def load_map(
         Side of the square cells [m], at least 0.01; they begin at the wall's foot and at its origin.
         ``None``: 0.25 m, doubled where the map of a long run would have more than 30 million numbers.
     lateral, height
-        Edges of the cells in place of those, increasing [m]: those of a load-cell wall.
+        Increasing edges of the cells [m], instead of square ones: those of a load-cell wall.
 
     Raises
     ------
     ValueError
-        If the barrier is no rigid wall that is fixed, the cells are too small or their edges do not increase,
+        If the barrier is no rigid wall, the cells are too small or their edges do not increase,
         or the scene does not run the same way again.
     """
     wall = result.scene.barrier

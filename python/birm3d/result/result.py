@@ -141,7 +141,8 @@ class Result(RunAnalysis):
         cell
             Side of the square cells [m]; ``None``: 0.25 m, more in long runs.
         lateral, height
-            Edges of the cells in place of those, along the wall's line and above its foot [m].
+            Increasing edges of the cells, instead of square ones, along the wall's line and above
+            its foot [m].
 
         Raises
         ------

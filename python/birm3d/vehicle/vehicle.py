@@ -239,7 +239,7 @@ class Vehicle(VehicleVariants):
         mass_center_height
             Above the ground [m].
         center_of_mass
-            Shape (3,), behind which the first axle is at x = 0: x forward, y left, z above ground [m].
+            Shape (3,) [m]: x forward from the first axle, so mostly negative; y left; z above the ground.
         inertia
             About the mass centre, shape (3,) or (3, 3) [kg m^2].
         zones, core
