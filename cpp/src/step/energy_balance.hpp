@@ -11,7 +11,7 @@ void sum_truss_energies(State& now);
 // Kinetic energy of all units and free-standing segments.
 void sum_kinetic_energy(const Scene& scene, State& now);
 
-// Enters the greatest departures from both balances into `ledger`. `state`: before the trial is accepted.
+// Enters the greatest departures from both balances into `balances`. `state`: before the trial is accepted.
 void check_balances(const Scene& scene, const State& state, const Trial& trial, Balances& balances);
 
 }  // namespace birm3d

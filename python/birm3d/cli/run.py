@@ -76,28 +76,17 @@ def run(
         click.echo(f"figures: {plot}", err=True)
     if load_map is not None:
         _write_load_map(result, load_map)
-    if save is not None:
-        result.save(save)
-        click.echo(f"result: {save}", err=True)
-    if capsule is not None:
-        result.capsule(capsule)
-        click.echo(f"capsule: {capsule}", err=True)
-    if html is not None:
-        result.write_html(html)
-        click.echo(f"page: {html}", err=True)
-    if movie is not None:
-        result.animate(movie)
-        click.echo(f"movie: {movie}", err=True)
-    _export(result, gltf, vtk)
-
-
-def _export(result: Result, gltf: Path | None, vtk: Path | None) -> None:
-    if gltf is not None:
-        result.write_gltf(gltf)
-        click.echo(f"animation: {gltf}", err=True)
-    if vtk is not None:
-        result.write_vtk(vtk)
-        click.echo(f"series: {vtk}", err=True)
+    for name, path, write in (
+        ("result", save, result.save),
+        ("capsule", capsule, result.capsule),
+        ("page", html, result.write_html),
+        ("movie", movie, result.animate),
+        ("animation", gltf, result.write_gltf),
+        ("series", vtk, result.write_vtk),
+    ):
+        if path is not None:
+            write(path)
+            click.echo(f"{name}: {path}", err=True)
 
 
 def _write_load_map(result: Result, path: Path) -> None:

@@ -49,7 +49,7 @@ def write_gltf(result: Result, path: str | Path, *, frames: int = 41) -> None:
     path
         Ends in ``.glb`` (binary) or ``.gltf`` (text with all data in it).
     frames
-        Number of instants, >= 2, at most the result's rows; players are linear between them.
+        Number of instants, >= 2; no more than the result's rows are written. Players are linear between them.
 
     Raises
     ------

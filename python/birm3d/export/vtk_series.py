@@ -41,7 +41,7 @@ def write_vtk(result: Result, path: str | Path, *, frames: int = 101) -> None:
     path
         Ends in ``.pvd``; in a folder that exists. Files of an earlier series of this name are replaced.
     frames
-        Number of instants, >= 2, at most the result's rows.
+        Number of instants, >= 2; no more than the result's rows are written.
 
     Raises
     ------

@@ -37,29 +37,8 @@ _PARTS: Mapping[str, Callable[[Scene], str]] = {
 _ALWAYS = ("vehicle", "speed", "angle", "barrier")
 
 
-def plot_runs(
-    results: Sequence[Result],
-    channels: Sequence[str] = ("barrier_force", "deceleration", "velocity", "travel"),
-    labels: Sequence[str] | None = None,
-) -> Figure:
-    """Return histories of several runs, laid over each other, a panel for each channel.
-
-    The title says what the scenes have in common, the legend in what they differ.
-
-    Parameters
-    ----------
-    results
-        1 to 8 of them.
-    channels
-        Names of :data:`birm3d.result.history_channels.HISTORY_CHANNELS`.
-    labels
-        One text for each run, shown in the legend instead of the inputs that differ.
-
-    Raises
-    ------
-    ValueError
-        If there are no or too many results, a channel is unknown, or the labels are not as many as the runs.
-    """
+def plot_runs(results: Sequence[Result], channels: Sequence[str], labels: Sequence[str] | None) -> Figure:
+    """Return the figure that :func:`birm3d.plot_runs` describes."""
     names = checked_channels(channels)
     if not 1 <= len(results) <= _MOST_RUNS:
         raise ValueError(f"results must be 1 to {_MOST_RUNS} runs, got {len(results)}")
