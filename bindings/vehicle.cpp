@@ -52,15 +52,13 @@ void register_vehicle(py::module_& m) {
              py::kw_only(), py::arg("nodes"), py::arg("anchors"), py::arg("curves"), py::arg("curve_of"),
              py::arg("scale"), py::arg("wheels"), py::arg("rate_sensitivity"), py::arg("indentation_length"),
              py::arg("wheel_of"), py::arg("along_of"),
-             "nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,); wheels (w, "
-             "4): "
-             "centre and radius, m;\n"
-             "rate_sensitivity s/m; indentation_length: how far an indentation reaches beyond its post (m), "
-             "0: not at all; wheel_of (n,): "
-             "number of "
-             "the wheel whose tread the node is on, -1 for the skin; empty: all skin; along_of (n,): number "
-             "of "
-             "the node of the skin whose second truss this is, -1 for others; empty: none.");
+             "nodes, anchors: shape (n, 3), m. curves: laws of the trusses, of which truss i has number "
+             "curve_of[i] times scale[i].\n"
+             "wheels: shape (w, 4), centre and radius, m. rate_sensitivity: s/m.\n"
+             "indentation_length: how far an indentation reaches beyond its post, m; 0: no indentation.\n"
+             "wheel_of: number of the wheel whose tread the node is on, -1 for the skin; empty: all skin.\n"
+             "along_of: number of the node of the skin whose second truss this is, -1 for others; empty: "
+             "none.");
     py::class_<Unit>(
         m, "Unit",
         "A rigid body with its crushable skin and wheels; body axes r, s, t, origin at the mass centre.")
@@ -78,13 +76,13 @@ void register_vehicle(py::module_& m) {
              }),
              py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("trusses"), py::arg("origin"),
              py::arg("wheels"), py::arg("mass_center_height"), py::arg("offset"), py::arg("core"),
-             "mass kg; inertia (3, 3) kg m^2; origin (3,) m: of the body axes in those of the trusses, of "
-             "which "
-             "copies share what does not move;\n"
-             "wheels (w, 4): centre and radius, m; mass_center_height m above the ground; offset (3,) m of "
-             "the "
-             "mass centre from the vehicle's reference point along the ground;\n"
-             "core (k, 6): middles and half edges of the boxes that the rigid body fills, body axes, m.")
+             "mass: kg. inertia: shape (3, 3), kg m^2. wheels: shape (w, 4), centre and radius, m.\n"
+             "origin: shape (3,), m, of the body axes in those of the trusses; copies share what does not "
+             "move.\n"
+             "mass_center_height: m above the ground. offset: shape (3,), m, of the mass centre from the "
+             "vehicle's reference point along the ground.\n"
+             "core: shape (k, 6), middles and half edges of the boxes that the rigid body fills, body axes, "
+             "m.")
         .def_property_readonly("n_trusses", [](const Unit& unit) { return unit.trusses.count; })
         .def_property_readonly(
             "input_index",

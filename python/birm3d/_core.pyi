@@ -1087,8 +1087,11 @@ class TrussMesh:
     """
     def __init__(self, *, nodes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], anchors: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], curves: collections.abc.Sequence[TrussCurve], curve_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64], scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], rate_sensitivity: typing.SupportsFloat | typing.SupportsIndex, indentation_length: typing.SupportsFloat | typing.SupportsIndex, wheel_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64], along_of: typing.Annotated[numpy.typing.ArrayLike, numpy.int64]) -> None:
         """
-        nodes, anchors (n, 3) m; curves for the trusses with curve_of (n,) and scale (n,); wheels (w, 4): centre and radius, m;
-        rate_sensitivity s/m; indentation_length: how far an indentation reaches beyond its post (m), 0: not at all; wheel_of (n,): number of the wheel whose tread the node is on, -1 for the skin; empty: all skin; along_of (n,): number of the node of the skin whose second truss this is, -1 for others; empty: none.
+        nodes, anchors: shape (n, 3), m. curves: laws of the trusses, of which truss i has number curve_of[i] times scale[i].
+        wheels: shape (w, 4), centre and radius, m. rate_sensitivity: s/m.
+        indentation_length: how far an indentation reaches beyond its post, m; 0: no indentation.
+        wheel_of: number of the wheel whose tread the node is on, -1 for the skin; empty: all skin.
+        along_of: number of the node of the skin whose second truss this is, -1 for others; empty: none.
         """
 class Unit:
     """
@@ -1096,9 +1099,10 @@ class Unit:
     """
     def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], trusses: TrussMesh, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, offset: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], core: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
         """
-        mass kg; inertia (3, 3) kg m^2; origin (3,) m: of the body axes in those of the trusses, of which copies share what does not move;
-        wheels (w, 4): centre and radius, m; mass_center_height m above the ground; offset (3,) m of the mass centre from the vehicle's reference point along the ground;
-        core (k, 6): middles and half edges of the boxes that the rigid body fills, body axes, m.
+        mass: kg. inertia: shape (3, 3), kg m^2. wheels: shape (w, 4), centre and radius, m.
+        origin: shape (3,), m, of the body axes in those of the trusses; copies share what does not move.
+        mass_center_height: m above the ground. offset: shape (3,), m, of the mass centre from the vehicle's reference point along the ground.
+        core: shape (k, 6), middles and half edges of the boxes that the rigid body fills, body axes, m.
         """
     @property
     def input_index(self) -> list[int]:

@@ -4,8 +4,8 @@ Each unit is a number, its size in SI, that can also be called: ``units.mph(50)`
 50 mph in m/s, and ``speed / units.mph`` goes back.
 
 Wherever the package takes a number that has a dimension it also takes text with a unit, as ``"50 mph"``,
-``"4500 lb"`` or ``"0.5 m"``: type :data:`Quantity`, read by :func:`parse`, the command line's parser. A plain
-number is SI, angles are in degrees.
+``"4500 lb"`` or ``"0.5 m"``. The type is :data:`Quantity`, and :func:`parse` reads it, also for the command
+line. A plain number is SI, angles are in degrees.
 """
 
 from __future__ import annotations

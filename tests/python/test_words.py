@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import importlib.util
+import inspect
 import os
 import re
 import subprocess
@@ -73,6 +75,47 @@ def test_length_of_sentences_is_counted() -> None:
     assert words("See code, 0.5 m, and 3 more.") == 5
 
 
+def sentences_of_docstring(docstring: str) -> list[str]:
+    """Sentences of a docstring in NumPy's style; a semicolon and the name of a field end one, too."""
+    text = re.sub(r"^=+( +=+)+$.*^=+( +=+)+$", "", docstring, flags=re.DOTALL | re.MULTILINE)
+    text = re.sub(r"^.*\n *-{3,}$", "", text, flags=re.MULTILINE)
+    text = re.sub(r"^(?=\S).*\n(?= )", "\n", text, flags=re.MULTILINE)
+    text = re.sub(r":(?:\w+:)?``?[^`]*``?|``[^`]*``", "code", text)
+    return [
+        part for sentence in sentences(text) for part in re.split(r"; (?=\w)|(?<=\.) (?=\w+: )", sentence)
+    ]
+
+
+def docstrings(tree: ast.Module) -> list[str]:
+    """All texts that stand alone: docstrings of modules, classes, functions and attributes."""
+    return [
+        inspect.cleandoc(node.value.value)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Constant)
+        and isinstance(node.value.value, str)
+    ]
+
+
+def test_no_sentence_of_a_docstring_is_too_long() -> None:
+    long = [
+        f"{path.relative_to(ROOT)}: {words(sentence)} words: {sentence}"
+        for path in sorted((ROOT / "python/birm3d").rglob("*.py"))
+        for docstring in docstrings(ast.parse(path.read_text(encoding="utf-8")))
+        for sentence in sentences_of_docstring(docstring)
+        if words(sentence) > MOST_WORDS
+    ]
+    assert not long, "\n".join(long)
+
+
+def test_sentences_of_docstrings_are_found() -> None:
+    head = "Return it.\n\nParameters\n----------\n"
+    text = head + f"x : str\n    {'word ' * 36}; and\n    more.\ny\n    Two words."
+    module = ast.parse(f'def f():\n    """{text}"""\n')
+    found = [words(s) for d in docstrings(module) for s in sentences_of_docstring(d)]
+    assert found == [2, 36, 2, 2]
+
+
 def phrases_in(text: str) -> list[str]:
     """Banned phrases of a text, whatever the line breaks and comment signs between their words."""
     plain = " ".join(re.sub(r"^\s*(//+|#)", " ", text, flags=re.MULTILINE).lower().split())
@@ -123,6 +166,13 @@ def test_links_of_other_pages(page: Path) -> None:
     targets = re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
     assert targets
     assert [t for t in targets if "://" not in t and not (page.parent / t).exists()] == []
+
+
+def test_the_whole_check_runs_the_command_of_the_readme() -> None:
+    readme, check = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", ".ci/run"))
+    commands = re.findall(r"^python3 -m venv .*$", readme, flags=re.MULTILINE)
+    assert len(commands) == 2
+    assert re.findall(r"^test_command='(.*)'$", check, flags=re.MULTILINE) == commands[1:]
 
 
 def test_a_wrong_link_is_found(source_links: ModuleType) -> None:

@@ -108,8 +108,8 @@ def head_impact(pulse: Pulse, head_x: float) -> HeadImpact:
 def occupant_load(pulse: Pulse) -> float:
     """Return the occupant load criterion [g].
 
-    The occupant flies freely over 65 mm within the vehicle, then it is held at the one deceleration with
-    which it has the vehicle's speed after another 235 mm. 0 where the vehicle does not lose so much speed.
+    The occupant flies freely over 65 mm within the vehicle. Then one deceleration holds it, with which it has
+    the vehicle's speed after another 235 mm. It is 0 where the vehicle does not lose so much speed.
     """
     pulse.require_axes("OLC", "x")
     time, velocity = pulse.since_zero()

@@ -94,8 +94,8 @@ def test_matrix(
     vehicles
         What the standard calls a vehicle, as ``"2270P"`` -> vehicle to take for it. Others are presets,
         brought to the nominal mass: cars, vans and pickups as similar vehicles
-        (:meth:`birm3d.Vehicle.scaled_to`), trucks and buses by their load (:meth:`birm3d.Vehicle.with_gvw`),
-        those of MASH with its middle as high as MASH asks for.
+        (:meth:`birm3d.Vehicle.scaled_to`), trucks and buses by their load (:meth:`birm3d.Vehicle.with_gvw`).
+        The middle of the load of MASH's trucks is as high as MASH asks for.
     impact_offset, duration, settings
         See :class:`birm3d.Simulation`.
     mesh_density

@@ -240,8 +240,8 @@ def occupant_risk(
     Raises
     ------
     ValueError
-        If there is neither a result nor channels, or both; a channel is missing, measures something else or
-        does not hold time zero; nothing is hit; or the record ends while the vehicle is still pushed.
+        If there is neither a result nor channels, or both. If a channel is missing, measures something else
+        or does not hold time zero. If nothing is hit, or the record ends while the vehicle is still pushed.
     """
     channels = {"x": x, "y": y, "z": z, "yaw_rate": yaw_rate}
     if edition not in (1998, 2010):

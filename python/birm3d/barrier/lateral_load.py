@@ -34,9 +34,10 @@ def olson_mean_force(
 ) -> float:
     """Return the mean lateral force until the vehicle is parallel to the barrier [N].
 
-    Olson, Post and McFarland, NCHRP Report 86 (1970): the mass centre moves by s = front sin a -
-    half_width (1 - cos a) + deflection while its lateral velocity v sin a is taken by a constant force,
-    F = m (v sin a)^2 / (2 s). The vehicle's corner is taken as rigid apart from that: a lower bound.
+    Olson, Post and McFarland, NCHRP Report 86 (1970). A constant force F = m (v sin a)^2 / (2 s) takes the
+    lateral velocity v sin a. Meanwhile the mass centre moves by
+    s = front sin a - half_width (1 - cos a) + deflection.
+    The vehicle's corner is taken as rigid apart from that: a lower bound.
 
     Parameters
     ----------

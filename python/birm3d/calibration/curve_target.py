@@ -37,17 +37,18 @@ _OPPOSITE = -0.5
 class CurveTarget:
     r"""A measured curve.
 
-    Residuals are :math:`r_i = \sqrt{w\,m/n}\;(f_i - y_i)/\sigma_i` for n points of which m are independent:
-    with all of them independent (m = n, w = 1) half their sum of squares is the negative logarithm of the
-    likelihood. Neighbouring points of a filtered curve carry the same news: counting them as independent
-    makes every interval too narrow by sqrt(n/m). m is the smaller of
+    Residuals are :math:`r_i = \sqrt{w\,m/n}\;(f_i - y_i)/\sigma_i` for n points of which m are independent.
+    If all of them are (m = n, w = 1), half their sum of squares is the negative logarithm of the likelihood.
+    Neighbouring points of a filtered curve carry the same news: counting them as independent makes every
+    interval too narrow by sqrt(n/m). m is the smaller of
 
-    * the filter's: white noise through a filter of noise bandwidth B has m = 2 B T in a record of length T
-      (its integrated correlation time is 1/(2 B)); a CFC, two-pole Butterworth run twice with the corner
-      fc = 2.0775 CFC Hz, has B = 3 pi fc / (8 sqrt 2) = 1.73 CFC Hz;
+    * the filter's: white noise through a filter of noise bandwidth B has m = 2 B T in a record of length T.
+      Its integrated correlation time is 1/(2 B). A CFC is a two-pole Butterworth filter, run twice, with the
+      corner fc = 2.0775 CFC Hz. It has B = 3 pi fc / (8 sqrt 2) = 1.73 CFC Hz;
     * the residuals' own: m = n / (1 + 2 sum rho_k), with the autocorrelation rho_k of what the fitted model
-      leaves, summed up to a window of five correlation times (Sokal) and corrected for what the parameters
-      took away. A model that can not follow the curve leaves slow residuals, and this widens the intervals.
+      leaves. The sum ends at a window of five correlation times (Sokal) and is corrected for what the
+      parameters took away. A model that can not follow the curve leaves slow residuals, and this widens the
+      intervals.
 
     The second needs a fit, so that the fit is repeated until m settles.
 

@@ -31,8 +31,8 @@ def write_vtk(result: Result, path: str | Path, *, frames: int = 101) -> None:
 
     ``crash.pvd`` lists the instants [s]; the folder ``crash`` beside it has a ``.vtp`` for each part and
     instant. World axes, SI. The skin has data at its nodes: ``crush`` (distance from the uncrushed place
-    [m]), ``displacement`` (the same as a vector, world axes [m]), ``truss_force`` [N], ``contact`` (1 where
-    the truss carries a force: something holds its node), and ``zone`` of its elements.
+    [m]), ``displacement`` (the same as a vector, world axes [m]), ``truss_force`` [N] and ``contact``. That
+    is 1 where the truss carries a force: something holds its node. Elements have their ``zone``.
 
     Parameters
     ----------

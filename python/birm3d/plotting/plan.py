@@ -64,7 +64,8 @@ def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box:
         it came, so that these would lie on each other: start, greatest travel and end.
     exit_box
         Whether the exit box of EN 1317-2 and MASH is drawn where a vehicle leaves a wall that it met at less
-        than 45 degrees: from the last contact over its length, wheel tracks should stay inside its depth.
+        than 45 degrees. The box begins at the last contact; wheel tracks should stay inside its depth over
+        its length.
 
     Raises
     ------

@@ -39,12 +39,12 @@ def dossier(
 ) -> Path:
     """Write a folder whose ``index.html`` is the dossier of a run; return the path of the page.
 
-    The page opens without a network and prints to PDF: verdict first, then scene, vehicle and its sources,
-    loads on each element, occupant risk, replay and histories, uncertainty, the given tests nearest to the
-    scene, energy and momentum balance (in the form of NCHRP W179 and EN 16303), what was left out, warnings,
-    versions and state hash. Beside it are the capsule (``run.birm3d``, see :meth:`birm3d.Result.capsule`),
-    the loads and the metrics as CSV, and with the extra ``html`` the interactive page of
-    :meth:`birm3d.Result.write_html`. Ratings are always indicative.
+    The page opens without a network and prints to PDF. The verdict comes first, then scene, vehicle and its
+    sources, loads on each element, occupant risk, replay and histories. Uncertainty and the given tests
+    nearest to the scene follow. Energy and momentum balance have the form of NCHRP W179 and EN 16303. The end
+    is what was left out, warnings, versions and state hash. Beside it are the capsule (``run.birm3d``, see
+    :meth:`birm3d.Result.capsule`), the loads and the metrics as CSV, and with the extra ``html`` the
+    interactive page of :meth:`birm3d.Result.write_html`. Ratings are always indicative.
 
     Parameters
     ----------
@@ -65,9 +65,9 @@ def dossier(
     Raises
     ------
     ValueError
-        If the folder is a file, has other files or can not be written to; the run is too short or does not
-        run again to the same bits; a study has no scene; or a standard that was asked for does not know the
-        vehicle.
+        If the folder is a file, has other files or can not be written to. If the run is too short or does not
+        run again to the same bits. If a study has no scene, or a standard that was asked for does not know
+        the vehicle.
     """
     path = check_folder(folder)
     run, beside = _run_and_study(result, study)

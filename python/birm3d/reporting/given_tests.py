@@ -301,8 +301,8 @@ def nearest(scene: Scene, count: int = 10) -> list[Compared]:
     """Return the given tests nearest to a scene, computed anew, the nearest first.
 
     Distance: 1 for another kind of barrier (wall, posts, concrete profile), 1 for another group of vehicles
-    (0.3 within a group), 1 for another side of the vehicle ahead, logarithm of the ratio of speeds over 0.4
-    and of masses over 0.8, angle over 30 degrees. Values of one test count as one.
+    (0.3 within a group), 1 for another side of the vehicle ahead. Numbers add the logarithm of the ratio of
+    speeds over 0.4, that of masses over 0.8, and the angle over 30 degrees. Values of one test count as one.
 
     Parameters
     ----------

@@ -35,10 +35,11 @@ class ElementLoad:
     """What one element of a barrier feels, n rows; interval means.
 
     Forces are those of the vehicle on the element, in world axes (z up): the sum over all elements is
-    ``-result.barrier_force``. Moments are about the element's foot: the foot of a post's axis, of a wall's
-    segment the middle of its face's foot, of a Jersey segment the middle of its base, of a mesh the barrier's
-    origin. A free-standing segment takes its foot along; its line is that at the start.
-    A moment follows the right-hand rule: a force along +x at a height has a moment about +y.
+    ``-result.barrier_force``. Moments are about the element's foot. That is the foot of a post's axis, the
+    middle of the face's foot of a wall's segment, or the middle of a Jersey segment's base. A mesh has its
+    moments about the barrier's origin.
+    A free-standing segment takes its foot along; its line is that at the start. A moment follows the
+    right-hand rule: a force along +x at a height has a moment about +y.
 
     Peaks are magnitudes of resultants: of the sum of the force vectors of all nodes on the element, and for
     50-ms values of the mean of that vector.
@@ -134,9 +135,9 @@ def resultant_height(force: Floats, moment: Floats, line: Floats | None = None) 
     """Return the height at which the horizontal force alone makes its overturning moment, shape (n,) [m].
 
     With F_h the horizontal force and z up: height = M . (z x F_h) / |F_h|^2. It is the height of the point of
-    application where the force has no vertical part, or meets the vertical through the foot; else the moment
-    of the vertical force is in it, as it is in the overturning moment. 0 in rows where the size of F_h is
-    below ``LEAST_SHARE`` of its greatest value, and where there is none.
+    application where the force has no vertical part, or meets the vertical through the foot. Else the moment
+    of the vertical force is in it, as it is in the overturning moment. It is 0 in rows where the size of F_h
+    is below ``LEAST_SHARE`` of its greatest value, and where there is none.
 
     Parameters
     ----------

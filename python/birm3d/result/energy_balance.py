@@ -33,7 +33,7 @@ def warn_if_open(scene: Scene, balances: _core.Balances) -> None:
     """Warn with :class:`BalanceWarning` of each account that is out of bounds, with its size, time and place.
 
     - energy: the sum of all terms departs from that at the start by more than :data:`ENERGY_LIMIT` of the
-      energy at disposal, which is the initial kinetic energy and what the weight has done;
+      energy at disposal. That is the initial kinetic energy and what the weight has done;
     - momentum: a unit's change in a step departs from its impulses by more than :data:`MOMENTUM_LIMIT` of
       the largest momentum;
     - crush, friction or impacts fall from their highest value by more than :data:`FALL_LIMIT` of the energy

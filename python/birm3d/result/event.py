@@ -1,9 +1,9 @@
 """What became of the vehicle at the barrier: one of six words, and a sentence that says how.
 
-The core finds it while the run goes on (:class:`birm3d._core.Event`), so it depends neither on the duration,
+The core finds it while the run goes on (:class:`birm3d._core.Event`). So it depends neither on the duration,
 once that is long enough, nor on histories. The vehicle *has left for good* when it moves away from every
-element of the barrier so that no rotation brings it back; a vehicle that goes on past the barrier must be
-out of reach of it. What it does then decides, except for rolling over, which counts over the whole run:
+element of the barrier so that no rotation brings it back. A vehicle that goes on past the barrier must also
+be out of its reach. What it does then decides, except for rolling over, which counts over the whole run:
 
 ``overridden``
     It left past the barrier's line, or rests there, and while its mass centre was past the line the top of an
@@ -15,8 +15,8 @@ out of reach of it. What it does then decides, except for rolling over, which co
     more than 45 degrees from upright are not judged.
 ``redirected``
     Contained, and it leaves along the barrier: within 45 degrees of the line, in the direction in which it
-    came, with more than a tenth of its impact speed; or it slides on along a straight barrier, at rest
-    sideways, or still slides along any barrier when a run without a duration ends after 5 s.
+    came, with more than a tenth of its impact speed. Or it slides on along a straight barrier, at rest
+    sideways. Or it still slides along any barrier when a run without a duration ends after 5 s.
 ``stopped``
     Contained, and its motion into the barrier ended: it rebounds or rests.
 ``undecided``

@@ -142,8 +142,8 @@ class RunRecord:
 
         F_n = -F . n with n the horizontal unit vector square to the barrier's line, away from the traffic; on
         paths along the line (angles 0 and 180) n is the path's direction. Compression is positive. It is the
-        load in this direction: forces of two posts, or of two faces of one post, that oppose each other
-        across n do not add to it; friction with a component along n, as on a slope, is in it.
+        load in this direction. Forces of two posts, or of two faces of one post, that oppose each other
+        across n do not add to it. Friction with a component along n, as on a slope, is in it.
         """
         return self._sum("barrier_normal_force")
 
@@ -265,13 +265,12 @@ class RunRecord:
 
         ``kinetic`` and ``potential`` of the body, ``stored`` (elastic) and ``crushed`` (plastic) in trusses,
         ``barrier_friction``, ``tire_friction``, ``ground_friction`` (of the body on the ground) and
-        ``impacts`` (lost in rigid contacts); their ``total``; and ``residual``, total now less total at the
-        start: no work enters from outside.
-        ``kinetic`` is that of all bodies. Where the barrier is free-standing also
-        ``barrier_ground_friction``, what its segments lost to friction on the ground.
+        ``impacts`` (lost in rigid contacts). Then their ``total``, and ``residual``: total now less total at
+        the start, as no work enters from outside. ``kinetic`` is that of all bodies. Where the barrier is
+        free-standing also ``barrier_ground_friction``, what its segments lost to friction on the ground.
         Where units or segments are joined also ``joints``: what the held directions took, zero but for the
-        error of the steps; it has a term of its own so that this error shows and is not mistaken for a loss.
-        What the stops of a fifth wheel take is in ``impacts``.
+        error of the steps. It has a term of its own so that this error is not mistaken for a loss. What the
+        stops of a fifth wheel take is in ``impacts``.
         """
         terms = {name: getattr(self._history, name) for name in _ENERGIES}
         if self._segments:
@@ -285,8 +284,8 @@ class RunRecord:
     def momentum_residual(self) -> float:
         """Greatest |m a - sum of forces| over the greatest force, of all rows.
 
-        The greatest force is at least the weight, and that which stops the vehicle from its speed at the
-        start (at least 0.1 m/s) within 1 s: where nothing pushes, rounding is not measured by itself.
+        The greatest force is at least the weight, and at least what stops the vehicle from its speed at the
+        start (at least 0.1 m/s) within 1 s. So rounding is not measured by itself where nothing pushes.
         """
         return self._history.momentum_residual
 

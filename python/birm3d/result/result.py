@@ -34,9 +34,9 @@ __all__ = ["Result", "load", "write_capsule"]
 class Result(RunAnalysis):
     """Histories of n rows at the output interval, and what follows from them.
 
-    Arrays are read-only views, SI, angles in degrees. Positions and velocities hold at the row's instant;
-    accelerations, forces and reactions are means over the interval that ends there (the first row: that
-    begins there), so that they add up to the change of velocity exactly.
+    Arrays are read-only views, SI, angles in degrees. Positions and velocities hold at the row's instant.
+    Accelerations, forces and reactions are means over the interval that ends there (the first row: that
+    begins there). So they add up to the change of velocity exactly.
 
     Attributes
     ----------
@@ -113,9 +113,9 @@ class Result(RunAnalysis):
         Parameters
         ----------
         point
-            Name of a point (:attr:`birm3d.Vehicle.points`), as ``"load_bed_leading_edge"``, or its place
-            (x, y, z) in the axes of the vehicle's file: forward, left, up, origin on the ground below the
-            front axle [m].
+            Name of a point (:attr:`birm3d.Vehicle.points`), as ``"load_bed_leading_edge"``, or its place (x,
+            y, z) [m]. The axes are those of the vehicle's file: forward, left, up, origin on the ground below
+            the front axle.
         part
             Of a vehicle of two units: the name of one of them, or its number. ``None``: the unit that has
             a point of this name, else the leading one.

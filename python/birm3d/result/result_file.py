@@ -1,10 +1,10 @@
 """Results as files: NumPy's npz with a JSON header, readable without this package.
 
-``numpy.load(path)`` has every array by name: ``history/...`` (rows at the output interval; angles in rad),
-``history/0/...`` (of unit 0), ``history/joint/0/...``, ``history/element/2/...`` (of element 2 of the
-barrier, if it was touched), ``final/0/...`` (unit 0 at the end), ``scene/...`` and ``frames/...``; and a text
-``header``: JSON with format and versions, the scene (see :mod:`birm3d.scene.codec`), scalars, metrics and
-report.
+``numpy.load(path)`` has every array by name. ``history/...`` has rows at the output interval, angles in rad.
+Of them ``history/0/...`` are those of unit 0, ``history/element/2/...`` those of element 2 of the barrier, if
+it was touched; there is ``history/joint/0/...``, too. ``final/0/...`` is unit 0 at the end; ``scene/...`` and
+``frames/...`` are the rest. The text ``header`` is JSON with format and versions, the scene (see
+:mod:`birm3d.scene.codec`), scalars, metrics and report.
 """
 
 from __future__ import annotations

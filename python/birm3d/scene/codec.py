@@ -1,8 +1,8 @@
 """Scenes as JSON and arrays: everything by value, so that a file holds all that a run needs.
 
-Plain values stand as they are. The rest is a mapping with one key that says what it is: ``$array`` (name of
-an array beside the JSON), ``$float`` (a number that JSON does not have), ``$tuple``, ``$mapping``, or ``$``
-and the name of a class with its fields. Only the classes listed here are ever made.
+Plain values stand as they are. The rest is a mapping with one key that says what it is. ``$array`` names an
+array beside the JSON, ``$float`` is a number that JSON does not have. The others are ``$tuple``,
+``$mapping``, and ``$`` with the name of a class and its fields. Only the classes listed here are ever made.
 """
 
 from __future__ import annotations

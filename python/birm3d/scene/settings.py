@@ -46,10 +46,10 @@ class Settings:
         Friction coefficient of the vehicle's body sliding on the ground.
     mu_tire_barrier
         Friction coefficient of tyres on a barrier, apart from that of the vehicle's body, which is the
-        barrier's own ``friction``. ``None``: 0.6, which is what rubber that slides on dry concrete has at
-        some speed (tests at walking pace give up to 0.8; no vehicle was tested for it); and 0 at a barrier
-        whose ``friction`` is 0, which is frictionless for all that meets it. A number holds at every barrier.
-        See :attr:`birm3d.simulation.Scene.mu_tire_barrier`.
+        barrier's own ``friction``. ``None``: 0.6, and 0 at a barrier whose ``friction`` is 0, which is
+        frictionless for all that meets it. Rubber that slides on dry concrete has 0.6 at some speed; tests at
+        walking pace give up to 0.8. No vehicle was tested for it. A number holds at every barrier. See
+        :attr:`birm3d.simulation.Scene.mu_tire_barrier`.
     braking
         Share of the tyre-pavement friction that brakes, 0 to 1: 0 wheels roll, 1 they are locked and slide.
     cornering_stiffness

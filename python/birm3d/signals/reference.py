@@ -116,8 +116,8 @@ def nhtsa_10146() -> dict[str, Floats]:
 
     The motion is that of the momentum centre: the wall force, integrated over the mass. This is the signal
     that a vehicle of one rigid body owns. The accelerometers in the compartment show another one, as engine
-    and cabin do not move as one body: the engine stops after 38 ms and 0.46 m while the cabin goes on to
-    0.74 m, and wall force against that way makes 15 % more work than there was energy.
+    and cabin do not move as one body. The engine stops after 38 ms and 0.46 m while the cabin goes on to 0.74
+    m. The wall force over that distance makes 15 % more work than there was energy.
 
     Returns
     -------

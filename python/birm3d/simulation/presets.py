@@ -124,9 +124,9 @@ def nhtsa_10146(settings: Settings | None = None, mesh_density: float = 1.0) -> 
 def preset_for(test: NhtsaTest) -> str:
     """Name of the preset that stands for the vehicle of a test.
 
-    The one of its class; for a class that has none, of those whose front was fitted to the same kind of
-    structure (a unit body), the one whose test vehicle is nearest in mass: a sport utility vehicle below
-    1,996 kg is a passenger car, above it a minivan.
+    The one of its class. A class that has none takes a front that was fitted to the same kind of structure (a
+    unit body), that of the test vehicle nearest in mass. So a sport utility vehicle below 1,996 kg is a
+    passenger car, above it a minivan.
     """
     if test.vehicle_class.startswith("pickup"):
         return "pickup"

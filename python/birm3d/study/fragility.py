@@ -128,7 +128,7 @@ def fragility(
         Parameter -> frozen distribution of :mod:`scipy.stats`; not ``impact_speed``.
     n
         Runs for each speed, >= 1. Run i of every speed has the same draw (common random numbers), so that
-        differences between speeds are the speeds', not those of the draws; the errors of the fit count draws
+        differences between speeds are the speeds', not those of the draws. The errors of the fit count draws
         as independent, not runs. A greater n keeps the earlier runs.
     seed
         Integer >= 0.

@@ -124,8 +124,8 @@ def history_bands(
     Raises
     ------
     ValueError
-        If a channel is unknown, the share is out of range, no run is left, the runs have other output
-        intervals, or the study was read from a file and so does not know its scenes.
+        If a channel is unknown or the share is out of range. If no run is left, or the runs have other output
+        intervals. If the study was read from a file and so does not know its scenes.
     """
     names = checked_channels(channels)
     if not 0.0 < share < 1.0:

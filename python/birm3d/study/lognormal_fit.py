@@ -33,9 +33,9 @@ class LognormalFit:
         Of Phi(a + b ln v): from the expected information; where runs share draws, with the scatter between
         the draws (Liang and Zeger 1986).
     lack_of_fit : float or None
-        Probability of counts as far from the curve as these if it is right (chi squared of the deviance;
-        where runs share draws, Hotelling's test of the residuals); ``None`` for two speeds, which any curve
-        meets.
+        Probability of counts as far from the curve as these if it is right. It follows from chi squared of
+        the deviance or, where runs share draws, from Hotelling's test of the residuals. ``None`` for two
+        speeds, which any curve meets.
     """
 
     coefficients: Floats
@@ -92,8 +92,8 @@ def fit_lognormal(
 ) -> tuple[LognormalFit | None, str]:
     """Fit Phi(a + b ln v) to counts, or say why there is no curve.
 
-    Without overlap of the two outcomes the likelihood has no maximum: in one variable there is one if and
-    only if the ranges of the speeds with and without it overlap in more than a point (Silvapulle 1981).
+    Without overlap of the two outcomes the likelihood has no maximum. In one variable it has one if and only
+    if the ranges of the speeds with and without the event overlap in more than a point (Silvapulle 1981).
     With a slope b that may as well be zero the speed of one in two is anywhere: there is no curve either.
 
     Parameters

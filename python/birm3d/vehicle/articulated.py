@@ -30,10 +30,10 @@ Floats = npt.NDArray[np.float64]
 class ArticulatedVehicle(Vehicle):
     """A vehicle of two units; make one with :meth:`Vehicle.articulated`. Immutable.
 
-    It has all that a :class:`Vehicle` has, of the whole in the position of rest: mass, mass centre (in the
-    leading unit's axes), inertia about it, nodes, anchors, quads, wheels and zones of both units, the leading
-    one's first. ``units`` are the two, each with its own in its own axes; zones keep their names, which
-    differ between the units.
+    It has all that a :class:`Vehicle` has, of the whole in the position of rest. Mass, mass centre (in the
+    leading unit's axes) and inertia about it are those of both units. So are nodes, anchors, quads, wheels
+    and zones, the leading unit's first. ``units`` are the two, each with its own in its own axes; zones keep
+    their names, which differ between the units.
 
     ``with_zone``, ``with_rate_sensitivity``, ``with_dent_reach``, ``with_mesh_density`` and
     ``without_tire_contact`` go to the units that they concern. ``with_gvw`` and ``with_payload`` load or

@@ -154,7 +154,7 @@ class Solid(Block):
     Corners in m, file axes: 0-3 counter-clockwise seen from above, 4-7 above them. Faces are plane.
 
     payload: what is loaded; a change of weight goes there first. fills_to_m: the payload is a box of goods on
-    a floor, which keeps its density and grows upwards with its mass, to this height at most.
+    a floor. It keeps its density and grows upwards with its mass, to this height at most.
     """
 
     name: Name
@@ -390,9 +390,9 @@ class Scaled(Block):
     The numbers are those of :meth:`birm3d.Vehicle.scaled_to`. In place of length_m and wheelbase_m, x_m may
     have rows [place of the vehicle extended, place here], and so may z_m in place of height_m: places between
     go in proportion. Zones hold at mass_kg; solids weigh solids_kg where that is given. element_size_m: of
-    the shell, see Exterior. without: what of the vehicle extended has no place here, names of solids, wheels,
-    points and core boxes, and of zones as "zone.hood". Solids, wheels, points and core boxes of the file take
-    the place of those of the same name, others are added.
+    the shell, see Exterior. without: what of the vehicle extended has no place here. It has names of solids,
+    wheels, points and core boxes, and of zones as "zone.hood". Solids, wheels, points and core boxes of the
+    file take the place of those of the same name, others are added.
     """
 
     mass_kg: Positive
@@ -481,8 +481,8 @@ class AlongLaw(Block, ZoneLaw):
 class Zone(Block, ZoneLaw):
     """Stiffness of the exterior per unit of area, and the part of the exterior it holds for.
 
-    The part: panels, and optionally blocks ("body" or the name of an upper block), ranges of x and z of the
-    element's middle (m, file axes), and a range of its distance y from the vehicle's middle plane. Zones are
+    The part: panels, and optionally blocks ("body" or the name of an upper block). Ranges of x and z bound
+    the element's middle (m, file axes), a range of y its distance from the vehicle's middle plane. Zones are
     tried in the order of the file; the first match wins. Trusses start from the nearest point of the named
     core boxes, or of all.
 

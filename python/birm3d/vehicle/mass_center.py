@@ -14,8 +14,8 @@ def stretched_inertia(inertia: Floats, factor: float) -> Floats:
     """Return the inertia of a body whose mass stands higher above the ground by a factor.
 
     Every part of the mass goes from height z to ``factor * z`` above the ground and keeps its place in plan.
-    So does the mass centre. With the second moments J = integral of r r^T dm about the mass centre, which
-    the inertia I gives as J = trace(I) / 2 - I, the new ones are S J S with S = diag(1, 1, factor). As the
+    So does the mass centre. The second moments about the mass centre are J = integral of r r^T dm; the
+    inertia I gives them as J = trace(I) / 2 - I. The new ones are S J S with S = diag(1, 1, factor). As the
     moments of a mass that could be built, they keep every inequality that an inertia has to.
 
     Parameters

@@ -1,11 +1,11 @@
 """Mesh of a vehicle's exterior shell: four-node elements and one truss per node (paper §4.1).
 
 A lattice i (front to rear), j (right to left), k (up) is laid through the body and through each upper block
-on it; the outer faces of the lattices are the shell. Body and upper blocks share the nodes where they meet,
+on it. The outer faces of the lattices are the shell. Body and upper blocks share the nodes where they meet,
 so the shell is closed.
 
 Every element belongs to one zone. A node on the border of two zones is repeated, once for each, with the area
-of that zone's elements: a truss has one law, and the stiffness of a zone does not depend on the mesh.
+of that zone's elements. So a truss has one law, and the stiffness of a zone does not depend on the mesh.
 """
 
 # Longer than 300 lines: one mesher, from sections to elements.

@@ -26,8 +26,8 @@ _BEYOND = 100.0  # m
 class SkinMesh(Strict):
     """A closed skin of triangles, as two tables in text.
 
-    points_m: a line a point, x y z in m, file axes. triangles: a line a triangle, the numbers of its points
-    (from 0, counter-clockwise seen from outside), its panel and its block, which zones go by.
+    points_m: a line a point, x y z in m, file axes. triangles: a line a triangle. It has the numbers of the
+    points (from 0, counter-clockwise seen from outside), then panel and block, which zones go by.
     """
 
     points_m: Annotated[str, Field(min_length=1)]

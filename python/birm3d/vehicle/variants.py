@@ -92,9 +92,9 @@ class VehicleVariants(VehicleData):
     ) -> Self:
         """Return the vehicle with its structure as it is and another payload [kg], 0 for none.
 
-        Goods in a load space (of a cargo truck) cover its floor and stand as high as mass and density say, so
-        that the mass centre rises as the load grows; in a full space they are packed denser. Other payload,
-        as people on seats, gets heavier where it is.
+        Goods in a load space (of a cargo truck) cover its floor and stand as high as mass and density say. So
+        the mass centre rises as the load grows; in a full space they are packed denser. Other payload, as
+        people on seats, gets heavier where it is.
 
         Parameters
         ----------
@@ -225,11 +225,11 @@ class VehicleVariants(VehicleData):
     def with_zone(self, name: str, **changes: Any) -> Self:
         """Return the vehicle with other stiffness numbers in one zone (see :class:`Zone`).
 
-        Text with a unit is taken too, as ``knee="20 cm"`` or ``f_max="1.1 MPa"`` (``k_initial`` in MPa/m).
-        A zone with an envelope becomes one with a knee when ``k_initial``, ``knee`` and ``k_hardening`` are
+        Text with a unit is taken too, as ``knee="20 cm"`` or ``f_max="1.1 MPa"`` (``k_initial`` in MPa/m). A
+        zone with an envelope becomes one with a knee when ``k_initial``, ``knee`` and ``k_hardening`` are
         given, and the other way round when ``envelope`` is. Such a law is a new one, and so is one of which
-        all of Fig. 3 but ``f_max`` is given: ``elastic_recovery`` and the tail of the old one do not go on,
-        unless they are given too.
+        all of Fig. 3 but ``f_max`` is given. The ``elastic_recovery`` and the tail of the old one do not go
+        on, unless they are given too.
         """
         if name not in self.zones:
             known = ", ".join(self.zones) or "none: the vehicle was made from arrays"

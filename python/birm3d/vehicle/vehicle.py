@@ -47,9 +47,10 @@ class Vehicle(VehicleVariants):
     inertia : ndarray, shape (3, 3)
         About the mass centre [kg m^2].
     nodes, anchors : ndarray, shape (n, 3)
-        Uncrushed nodes of the shell, then those of second trusses (:mod:`birm3d.vehicle.along_panel`), then
-        of the treads by which tyres meet barriers (:mod:`birm3d.vehicle.tire_nodes`), and the points that
-        their trusses start from [m]; the first of these, of the shell, are points of the rigid body.
+        Uncrushed nodes, and the points that their trusses start from [m]. First come those of the shell,
+        whose anchors are points of the rigid body. Then those of second trusses
+        (:mod:`birm3d.vehicle.along_panel`), then of the treads by which tyres meet barriers
+        (:mod:`birm3d.vehicle.tire_nodes`).
     area : ndarray, shape (n,)
         Tributary area of each node [m^2]; 1 for vehicles made from arrays.
     wheel_of_node : ndarray of int, shape (n,)
@@ -145,7 +146,7 @@ class Vehicle(VehicleVariants):
         """Make a vehicle of which few facts are known: a preset of its class, scaled to them.
 
         Taken is the preset of the kind whose mass is nearest (:meth:`scaled_to` says what goes with what).
-        What is not known is assumed, with a band: dimensions go with the mass as those of NHTSA's test
+        What is not known is assumed, with a band. Dimensions go with the mass as those of NHTSA's test
         vehicles; those of trucks and buses stay, as their mass is the load's. :attr:`assumptions` says so in
         words and numbers, and so do the report of a run and the vehicle's file. :attr:`scatter` has the bands
         that :func:`birm3d.predict` draws from.
@@ -281,9 +282,9 @@ class Vehicle(VehicleVariants):
     def save(self, path: str | Path) -> None:
         """Write the vehicle to a file (TOML) that :meth:`from_file` reads back as the same vehicle.
 
-        The file has all blocks of the one that the vehicle comes from, with their sources, and a block
-        ``[changes]`` with what the methods ``with_...`` have changed since: mass, payload, zones, height of
-        the mass centre, mesh density, rate sensitivity, dents, tyres.
+        The file has all blocks of the one that the vehicle comes from, with their sources. A block
+        ``[changes]`` has what the methods ``with_...`` have changed since: mass, payload, zones, height of
+        the mass centre, mesh density, rate sensitivity, indentations, tyres.
 
         Parameters
         ----------

@@ -48,8 +48,8 @@ class Changes(Strict):
 
     gvw_kg: see :meth:`birm3d.Vehicle.with_gvw`; load_density_kg_per_m3: of its goods. mesh_density: number of
     elements relative to element_size_m. mass_center_height_m: in place of that of the solids, see
-    :meth:`birm3d.Vehicle.with_mass_center_height`. tire_contact: whether
-    tyres meet barriers. zone: laws in place of those of the file.
+    :meth:`birm3d.Vehicle.with_mass_center_height`. tire_contact: whether tyres meet barriers. zone: laws in
+    place of those of the file.
     """
 
     name: Annotated[str, Field(min_length=1)] | None = None

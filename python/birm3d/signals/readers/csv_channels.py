@@ -52,9 +52,9 @@ def read_csv_channels(
     Raises
     ------
     FileFormatError
-        With file and line, if a name is missing or there twice, a unit is missing or unknown, there is no
-        time column or no way to choose, a row has too few or too many cells or one that is no finite number,
-        or time does not increase.
+        With file and line. If a name is missing or there twice, or a unit is missing or unknown. If there is
+        no time column or no way to choose one, or time does not increase. If a row has too few or too many
+        cells, or one that is no finite number.
     """
     file = Path(path)
     lines = [

@@ -1,13 +1,13 @@
 """Channels of a test in the ISO MME format (ISO/TS 13499).
 
-A test is a folder with a header ``name.mme`` and a folder ``Channel`` with an index ``name.chn`` and a file
-for each channel, ``name.001`` and so on: lines ``key :value`` and then one value a line. Either the time
+A test is a folder with a header ``name.mme`` and a folder ``Channel``. That has an index ``name.chn`` and a
+file for each channel, ``name.001`` and so on: lines ``key :value`` and then one value a line. Either the time
 follows from the keys "Time of first sample" and "Sampling interval", or the reference channel is explicit,
 and another channel holds it.
 
 This is a reader of our own. The library of the field, pyisomme 1.1 (MIT licence, maintained), holds numpy
-below 2, matplotlib at 3.7 and scipy at 1.12, and brings a report generator; it cannot share an environment
-with current releases of what BIRM3D uses. The letters of the channel code follow the standard's RED B, 1.6.
+below 2, matplotlib at 3.7 and scipy at 1.12. It cannot share an environment with current releases of what
+BIRM3D uses. The letters of the channel code follow the standard's RED B, 1.6.
 """
 
 from __future__ import annotations
@@ -113,9 +113,9 @@ class IsoMmeTest:
         Raises
         ------
         FileFormatError
-            With file and line, if there is no such channel or file, a key is missing, the file's code is
-            another one, the unit is unknown or not one of the code's dimension, the number of values is not
-            the one given, or a value is no finite number.
+            With file and line. If there is no such channel or file, a key is missing, or the file's code is
+            another one. If the unit is unknown or not one of the code's dimension. If the number of values is
+            not the one given, or a value is no finite number.
         """
         if code not in self.codes:
             raise FileFormatError.at(
@@ -200,8 +200,8 @@ def read_iso_mme(path: str | Path) -> IsoMmeTest:
     Raises
     ------
     FileFormatError
-        With file and line, if there is not one header and one index, a line has no key, or the channels are
-        not as many as the index says, or not in files of their own.
+        With file and line. If there is not one header and one index, or a line has no key. If the channels
+        are not as many as the index says, or not in files of their own.
     """
     given = Path(path)
     file = _only(given, ".mme") if given.is_dir() else given

@@ -4,8 +4,8 @@ A test is a header such as ``v10146.EV5``, in sections of lines with fields betw
 a file of two columns, time in s and value: ``v10146.001``, or ``v10146_001.tsv``. Fields are in the order of
 the headers of tests 7292 and 10146, version 5 of the format of the NHTSA Test Reference Guide, volume 1.
 
-The curves are as NHTSA has them: axes of SAE J211, x forward, y to the right, z down, so a frontal impact is
-an acceleration along -x; loads signed as the laboratory did it.
+The curves are as NHTSA has them. Axes are those of SAE J211, x forward, y to the right, z down, so a frontal
+impact is an acceleration along -x. Loads are signed as the laboratory did it.
 """
 
 from __future__ import annotations
@@ -125,8 +125,8 @@ class NhtsaTest:
         Raises
         ------
         FileFormatError
-            With file and line, if there is no such curve or file, its status is another one, its unit is not
-            known, or the file is not what its header line says: rows, first instant, interval.
+            With file and line. If there is no such curve or file, its status is another one, or its unit is
+            not known. If the file is not what its header line says: rows, first instant, interval.
         """
         line = curve if isinstance(curve, NhtsaCurve) else self._curve(curve)
         with reading(self.path, "must be the header of a test of NHTSA (EV5)"):

@@ -1,7 +1,8 @@
 """What a sequence of finer and finer answers converges to, and how well that is known.
 
-Answers f(h) = f* + c h^p at h falling to 0: the order p is the slope of their changes over h on logarithmic
-scales, and the limit is Richardson's extrapolation f* = f_n + (f_n - f_n-1) / (r^p - 1), r = h_n-1 / h_n.
+Answers are f(h) = f* + c h^p at h falling to 0. The order p is the slope of their changes over h on
+logarithmic scales. The limit is Richardson's extrapolation f* = f_n + (f_n - f_n-1) / (r^p - 1) with
+r = h_n-1 / h_n.
 """
 
 from __future__ import annotations
@@ -63,12 +64,12 @@ def richardson(coarse: float, fine: float, ratio: float, order: float) -> float:
 def limit_of(h: Sequence[float], values: Sequence[float], scale: float) -> Limit:
     """Return what answers converge to, with its uncertainty.
 
-    Where the last three changes (two, if there are no more) have one sign and each is at most 0.8 of the one
-    before, the limit is extrapolated, uncertain by the whole correction, the last change or a quarter of the
-    one before, the greatest of them: noise may make the last change small. Where they have one sign but do
-    not fall so, it is the last answer, uncertain by four times the range of the last three, which covers
-    falls to 0.89. Where signs differ, noise is what is left, such as where an event falls in a step: it is
-    the last answer, uncertain by twice that range.
+    The limit is extrapolated where the last three changes (two, if there are no more) have one sign and each
+    is at most 0.8 of the one before. Its uncertainty is the greatest of the whole correction, the last change
+    and a quarter of the one before, as noise may make the last change small. Where they have one sign but do
+    not fall so, the limit is the last answer. It is uncertain by four times the range of the last three,
+    which covers falls to 0.89. Where signs differ, noise is what is left, such as where an event falls in a
+    step. The limit then is the last answer, uncertain by twice that range.
 
     Parameters
     ----------

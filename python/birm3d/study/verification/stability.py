@@ -42,12 +42,13 @@ def stability(
     and down to full elasticity; posts of 10 mm; a minute at rest; contact at t = 0; vehicles of one node and
     of 100,000; ten rollovers; a barrier whose segments move.
 
-    A run **held** if the energy and momentum balances close, every number is finite, no node or rigid body
-    ended a step inside the barrier, and it did what the scene makes it do: met a barrier in its way, stayed
-    in front of a post at its middle, stayed at rest. It was **refused** if an error said why not, **warned**
-    of if a run of a fixed step tells that its energy balance is open (:class:`birm3d.BalanceWarning`), or
-    if the vehicle missed what the scene told it could pass between nodes (:class:`birm3d.CoarseSkinWarning`).
-    All else is a **FAULT**: an answer that its balances contradict.
+    A run **held** if the energy and momentum balances close, every number is finite, and no node or rigid
+    body ended a step inside the barrier. It also did what the scene makes it do: met a barrier in its way,
+    stayed in front of a post at its middle, stayed at rest. It was **refused** if an error said why not. It
+    was **warned** of if a run of a fixed step tells that its energy balance is open
+    (:class:`birm3d.BalanceWarning`). The same word is for a vehicle that missed what the scene told it
+    could pass between nodes (:class:`birm3d.CoarseSkinWarning`). All else is a **FAULT**: an answer that
+    its balances contradict.
 
     Parameters
     ----------

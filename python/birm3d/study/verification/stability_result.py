@@ -37,8 +37,8 @@ class StabilityRow:
     axis, scene, value
         What is taken to which extreme in which scene.
     verdict
-        ``"held"``: every balance is within its limit; ``"refused"``: an error said why not; ``"warned"``: the
-        program gave an answer with a :class:`birm3d.BalanceWarning` or a :class:`birm3d.CoarseSkinWarning`;
+        ``"held"``: every balance is within its limit. ``"refused"``: an error said why not. ``"warned"``: the
+        program gave an answer with a :class:`birm3d.BalanceWarning` or a :class:`birm3d.CoarseSkinWarning`.
         ``"FAULT"``: it gave one that is wrong without a word, or failed without a reason.
     reason
         Of all but ``"held"``.

@@ -54,12 +54,12 @@ def work_precision(
     """Find the error of every metric of a scene, and what it costs.
 
     The scene runs at several tolerances and fixed steps. Errors are against its own converged values: what
-    the answers at ``references`` tend to, with the uncertainty of that (:func:`.convergence.limit_of`),
-    relative to the magnitude of the converged value or a least scale of the
-    metric, the greater of both (see :mod:`birm3d.study.verification.errors`).
-    Other contact models and representations of the barrier are other models of the same crash: each has its
-    own converged values, and :meth:`.WorkPrecision.departures` tells how far they are from the scene's.
-    Meshes are compared with what finer ones tend to.
+    the answers at ``references`` tend to, with the uncertainty of that (:func:`.convergence.limit_of`). They
+    are relative to the magnitude of the converged value or to a least scale of the metric, the greater of
+    both (see :mod:`birm3d.study.verification.errors`). Other contact models and representations of the
+    barrier are other models of the same crash: each has its own converged values, and
+    :meth:`.WorkPrecision.departures` tells how far they are from the scene's. Meshes are compared with what
+    finer ones tend to.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
 A finite-element vehicle is thousands of sheets with gaps between them, engine and seats within. All sheets
 are drawn into a grid of cubes. A cube is inside if a sheet is in it, or if sheets enclose it on both sides
-along two of the three axes: so openings below the engine and missing windows do no harm. The skin is where
+along two of the three axes. So openings below the engine and missing windows do no harm. The skin is where
 inside ends; its nodes are then moved onto the sheets that they are next to.
 """
 
