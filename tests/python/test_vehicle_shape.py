@@ -5,10 +5,14 @@ from __future__ import annotations
 import copy
 import dataclasses
 import pickle
+import shutil
+from importlib import resources
+from pathlib import Path
 
 import numpy as np
 import pytest
 from birm3d import Barrier, Simulation, Vehicle
+from birm3d.vehicle import vehicle_file
 from birm3d.vehicle.vehicle_shape import VehicleShape
 
 
@@ -99,3 +103,21 @@ def test_arrays_of_a_shape_can_not_be_written(truck: Vehicle) -> None:
     for array in (shape.nodes, shape.anchors, shape.area, shape.zone_of_node, shape.quads, shape.wheels):
         assert not array.flags.writeable
     assert np.array_equal(truck.nodes, shape.nodes - truck.center_of_mass)
+
+
+def test_a_preset_is_read_once_and_again_when_a_file_has_changed(monkeypatch: pytest.MonkeyPatch) -> None:
+    first = Vehicle.preset("semi_truck").units[0]
+    assert Vehicle.preset("semi_truck", mesh_density=0.5).units[0]._file is first._file
+    monkeypatch.setattr(vehicle_file, "data_state", lambda: (("semi_tractor.toml", 1, 1),))
+    again = Vehicle.preset("semi_truck").units[0]
+    assert again._file is not first._file
+    assert again == first
+
+
+def test_the_state_of_the_presets_tells_a_change(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    shutil.copytree(vehicle_file.preset_path("pickup").parent, tmp_path / "data")
+    monkeypatch.setattr(resources, "files", lambda _: tmp_path)
+    before = vehicle_file.data_state()
+    assert len(before) == len(list(tmp_path.rglob("*.toml")))
+    (tmp_path / "data/units/semi_tractor.toml").write_text("name = 'other'\n", encoding="utf-8")
+    assert vehicle_file.data_state() != before

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar, cast
 
@@ -17,9 +19,10 @@ from .zone import positive
 if TYPE_CHECKING:
     from .combination_file import Combination
     from .variants import VehicleVariants
+    from .vehicle_file import VehicleFile
     from .vehicle_shape import VehicleShape
 
-__all__ = ["build", "read", "rebuilt"]
+__all__ = ["build", "read", "read_preset", "rebuilt"]
 
 Kind = TypeVar("Kind", bound="VehicleVariants")
 
@@ -139,17 +142,42 @@ def _of_arrays(recipe: VehicleRecipe) -> Vehicle:
 
 def read(path: str | Path, gvw: Quantity | None, mesh_density: float) -> Vehicle:
     """Return the vehicle of a file of one unit or of two; see :meth:`birm3d.Vehicle.from_file`."""
+    return _made(partial(_parsed, Path(path)), gvw, mesh_density)
+
+
+def read_preset(name: str, gvw: Quantity | None, mesh_density: float) -> Vehicle:
+    """Return a preset; see :meth:`birm3d.Vehicle.preset`. A file is read anew only after a change."""
+    from .vehicle_file import data_state, preset_path
+
+    return _made(partial(_parsed_once, preset_path(name), data_state()), gvw, mesh_density)
+
+
+def _parsed(path: Path) -> Combination | VehicleFile:
     from .combination_file import read_combination
-    from .file_recipe import recipe_of
     from .vehicle_file import read_vehicle_file
 
+    return read_combination(path) or read_vehicle_file(path)
+
+
+@lru_cache(maxsize=64)
+def _parsed_once(path: Path, state: object) -> Combination | VehicleFile:
+    """Return what a file holds, immutable; `state` is that of all files which it may extend."""
+    return _parsed(path)
+
+
+def _made(
+    parsed: Callable[[], Combination | VehicleFile], gvw: Quantity | None, mesh_density: float
+) -> Vehicle:
+    from .combination_file import Combination
+    from .file_recipe import recipe_of
+
     mass = None if gvw is None else positive("gvw", si("gvw", gvw, "mass"))
-    combination = read_combination(path)
-    if combination is None:
-        vehicle = build(recipe_of(read_vehicle_file(path), mass, mesh_density))
-    else:
-        recipe = _recipe_of_two(combination, mesh_density)
+    file = parsed()
+    if isinstance(file, Combination):
+        recipe = _recipe_of_two(file, mesh_density)
         vehicle = build(recipe if mass is None else recipe.with_mass(mass))
+    else:
+        vehicle = build(recipe_of(file, mass, mesh_density))
     if gvw is not None:
         vehicle._mass_given("gvw", gvw)
     return vehicle

@@ -99,10 +99,9 @@ class Vehicle(VehicleVariants):
         mesh_density
             Number of shell elements relative to the file's choice (about 6,000).
         """
-        from .builder import read
-        from .vehicle_file import preset_path
+        from .builder import read_preset
 
-        return read(preset_path(name), gvw, mesh_density)
+        return read_preset(name, gvw, mesh_density)
 
     @staticmethod
     def from_file(path: str | Path, *, gvw: Quantity | None = None, mesh_density: float = 1.0) -> Vehicle:

@@ -11,6 +11,7 @@ silently: unknown keys, NaN and text where a number belongs are errors.
 # Longer than 300 lines: one file format: its schema as a whole, its reader, and what files extend.
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from importlib import resources
@@ -66,6 +67,7 @@ __all__ = [
     "Wheel",
     "Zone",
     "ZonesInOrder",
+    "data_state",
     "preset_names",
     "preset_path",
     "read_vehicle_file",
@@ -394,6 +396,14 @@ def preset_path(name: str) -> Path:
     if name not in preset_names():
         raise ValueError(f"preset must be one of {', '.join(preset_names())}; got {name!r}")
     return Path(str(resources.files("birm3d") / "data" / f"{name}.toml"))
+
+
+def data_state() -> tuple[tuple[str, int, int], ...]:
+    """Names, instants of change and sizes of all vehicle files that come with the package."""
+    folder = str(resources.files("birm3d") / "data")
+    files = [file for place in (folder, f"{folder}/units") for file in os.scandir(place)]
+    states = ((file.path, file.stat()) for file in files if file.name.endswith(".toml"))
+    return tuple(sorted((path, state.st_mtime_ns, state.st_size) for path, state in states))
 
 
 def unit_paths() -> dict[str, Path]:
