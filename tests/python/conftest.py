@@ -167,9 +167,10 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the functions of ``slow_tests.txt``: those whose cases take the most time together."""
+    """Mark the functions of ``slow_tests.txt``, and those that use a fixture of it."""
     names = set((Path(__file__).parent / "slow_tests.txt").read_text(encoding="utf-8").split())
     for item in items:
         function = item.nodeid.partition("[")[0].rpartition("/")[2]
-        if function in names:
+        fixtures = {f"{item.path.name}::{name}" for name in getattr(item, "fixturenames", ())}
+        if function in names or not fixtures.isdisjoint(names):
             item.add_marker(pytest.mark.slow)
