@@ -44,16 +44,17 @@ void register_barrier(py::module_& m) {
             "A flat face without end; at heading 0 it looks to -x.")
         .def_static(
             "post",
-            [](double radius, double height, const InputArray& position, double heading, bool continues) {
-                Element post = element(Post(radius, height), position, heading);
+            [](double radius, double height, const InputArray& position, double heading, bool continues,
+               std::optional<double> opens) {
+                Element post = element(Post(radius, height, opens), position, heading);
                 post.continues = continues;
                 return post;
             },
             py::kw_only(), py::arg("radius"), py::arg("height"), py::arg("position"), py::arg("heading"),
-            py::arg("continues") = false,
-            "Upright and round, foot of the axis at position; m. continues: part of the element before it, "
-            "which its "
-            "loads are told of.")
+            py::arg("continues") = false, py::arg("opens") = std::nullopt,
+            "Upright and round, foot of the axis at position; m. continues: its loads are part of those of "
+            "the "
+            "element before it. opens: of the edge of a wall, direction of the open space about it (rad).")
         .def_static(
             "prism",
             [](const InputArray& profile, double y_low, double y_high, bool covered_low_end,
@@ -69,11 +70,14 @@ void register_barrier(py::module_& m) {
         .def_static(
             "mesh",
             [](const InputArray& vertices, const std::vector<TriangleMesh::Face>& faces,
-               const InputArray& position, double heading) {
-                return element(TriangleMesh(points(vertices, "vertices"), faces), position, heading);
+               const InputArray& position, double heading, bool continues) {
+                Element mesh = element(TriangleMesh(points(vertices, "vertices"), faces), position, heading);
+                mesh.continues = continues;
+                return mesh;
             },
             py::kw_only(), py::arg("vertices"), py::arg("faces"), py::arg("position"), py::arg("heading"),
-            "vertices (n, 3) m, faces (m, 3), counter-clockwise seen from outside.");
+            py::arg("continues") = false,
+            "vertices (n, 3) m, faces (m, 3), counter-clockwise seen from outside. continues: as of a post.");
 
     py::enum_<SegmentJoint>(m, "SegmentJoint")
         .value("pinned", SegmentJoint::pinned)

@@ -19,6 +19,14 @@ envelope_m_Pa = [[0.0, 0.0], [0.15, 0.05e6], [0.42, 0.6e6], [0.55, 0.6e6], [0.75
 k_unloading_Pa_per_m = 1e7
 source = ["order-of-magnitude"]
 status = "estimated"
+[zone.wheel_house]
+panels = ["side"]
+blocks = ["body"]
+x_m = [-0.9, -0.3]
+envelope_m_Pa = [[0.0, 0.0], [0.15, 0.05e6]]
+k_unloading_Pa_per_m = 1e7
+source = ["order-of-magnitude"]
+status = "estimated"
 """
 ALONG = """
 [zone.fender.along]

@@ -133,7 +133,7 @@ def furthest_anchor(result: Result) -> float:
     past, origin = -np.asarray(barrier.core.normal), np.asarray(barrier.origin)
     for u, unit in enumerate(result.scene.vehicle.units):
         centers, turns = result.pose(result.time, u)
-        anchors = unit.anchors[unit.wheel_of_node < 0]
+        anchors = unit.anchors[(unit.wheel_of_node < 0) & (unit.along_of_node < 0)]
         reach = (np.einsum("kji,j->ki", turns, past) @ anchors.T).max(axis=1)
         greatest = max(greatest, ((centers - origin) @ past + reach).max())
     return greatest

@@ -34,31 +34,32 @@ def test_left_and_right_are_mirror_images(car: Vehicle) -> None:
     left, right = (crash(car, wall, side) for side in ("left", "right"))
     assert change(left) == pytest.approx(change(right) * [1.0, -1.0, 1.0], rel=1e-3, abs=5e-3)
     assert left.yaw[-1] == pytest.approx(-right.yaw[-1], rel=2e-3)
-    assert left.velocity[-1, 1] < -0.3, "pushed off to the right"
-    assert left.yaw[-1] > 5.0, "turned to the left"
+    at = int(np.searchsorted(left.time, 0.08))
+    assert left.velocity[at, 1] < -2.5, "pushed off to the right; half of 150 tests have -3.2 to -4.5 m/s"
+    assert left.yaw[-1] > 2.0, "turned to the left"
 
 
 def test_impulse_does_not_hang_on_a_small_radius(car: Vehicle) -> None:
     """Rounded edges draw in the skin beside them, however small they are; a sharp edge (0 m) cuts it."""
-    found = [change(crash(car, Barrier.rigid_wall(width=4.0, edge_radius=r))) for r in (0.001, 0.005, 0.02)]
-    thin, nearly, small = found
+    thin, nearly, small = (
+        change(crash(car, Barrier.rigid_wall(width=4.0, edge_radius=radius)))
+        for radius in (0.001, 0.005, 0.02)
+    )
     assert nearly == pytest.approx(thin, rel=0.02, abs=0.1)
     assert np.linalg.norm(small - thin) < 1.0
 
 
-def test_small_overlap_keeps_its_momentum_change_and_meets_no_core() -> None:
-    """150 tests of IIHS, 64 km/h: the median change of velocity along at 60 to 120 ms, within 20 %.
-
-    The quartiles are 8 to 14 % from it; masses are not recorded.
-    """
+@pytest.mark.parametrize("name", ["passenger_car", "minivan", "pickup"])
+def test_small_overlap_is_within_the_quartiles_and_meets_no_core(name: str) -> None:
+    """150 tests of IIHS, 64 km/h: quartiles of the change of velocity along; masses are not recorded."""
     wall = Barrier.rigid_wall(edge_radius=0.15, height=1.524)
-    vehicle = Vehicle.preset("passenger_car", mesh_density=0.5)
+    vehicle = Vehicle.preset(name, mesh_density=0.5)
     result = Simulation(vehicle, wall, SPEED, overlap=0.25, duration=0.15).run()
     assert result.statistics.body_steps == 0
     along = np.cumsum(result.acceleration[1:, 0]) * result.scene.settings.output_interval
-    medians = {0.06: -5.654, 0.08: -8.633, 0.1: -11.407, 0.12: -13.296}
-    for time, median in medians.items():
-        assert np.interp(time, result.time[1:], along) == pytest.approx(median, rel=0.2), time
+    quartiles = {0.06: (-6.18, -4.84), 0.08: (-9.54, -7.62), 0.1: (-12.95, -10.28), 0.12: (-15.11, -11.88)}
+    for time, (low, high) in quartiles.items():
+        assert low < np.interp(time, result.time[1:], along) < high, time
 
 
 def test_load_of_the_wall_has_that_of_its_edges(car: Vehicle) -> None:
@@ -211,3 +212,16 @@ def test_command_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFix
         main()
     assert ended.value.code
     assert "overlap must be None" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["passenger_car", "pickup"])
+@pytest.mark.parametrize("overlap", [0.05, 0.15, 0.25, 0.5])
+def test_energy_closes_at_every_overlap(name: str, overlap: float) -> None:
+    """Skin before the wall's face is held by that and not by the edge: else the edge releases it in rebound.
+
+    The tolerance is a tenth of what a warning is given for. Before, half of the width opened 0.26 %.
+    """
+    car = Vehicle.preset(name, mesh_density=0.3)
+    wall = Barrier.rigid_wall(width=4.0, height=1.5, edge_radius=0.15)
+    result = Simulation(car, wall, units.km_h(64.4), overlap=overlap, overlap_side="left", duration=0.2).run()
+    assert result.metrics["energy_residual"] < 5e-4

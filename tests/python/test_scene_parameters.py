@@ -50,7 +50,7 @@ def test_every_parameter_can_be_set_and_read(simulation: birm3d.Simulation) -> N
         after = value_of(changed, name)
         if name.endswith(".scale"):
             assert after == 1.0  # relative to the present curve
-            zone = name.split(".")[1]
+            zone = name.removeprefix("zone.").removesuffix(".scale")
             law = changed.scene.vehicle.zones[zone]
             assert law["k_unloading"] == value * simulation.scene.vehicle.zones[zone]["k_unloading"]
         elif name.startswith("scatter."):

@@ -17,12 +17,13 @@ change of velocity of the mass centre, integrated along the vehicle's own axes a
 across as a magnitude. Marks: the quartiles of 150 tests. `core contact`: steps in which the rigid core met
 the barrier.
 
-The wall's edge draws in the skin beside it, as a post does.
-Of the minivan and the pickup the rigid core meets the edge near 100 ms.
+The wall's edge draws in the skin beside it, as a post does. Two numbers were chosen by hand with
+regard to these medians, for all three vehicles together: the factor on the flank of the edge (1.55), and the
+resistance of the wheel house along the vehicle (100 Pa for each kilogram). So the rows count as fitted.
 
-What the model can not do here: the front wheel is pushed back into the sill, or torn off, and rails glance
-off the edge. So the change of velocity across is a third of the tests', the vehicle is not pushed off the
-barrier, and loses too much speed after 100 ms."""
+What the model can not do here: the front wheel is not torn off, and skin that slides on the wall's face does
+so with the whole friction of the barrier. The vehicle is pushed off as in the tests until 100 ms, by two
+thirds of it after 120 ms, and goes on losing speed along the wall."""
 
 SPEED = units.km_h(64.4)
 VEHICLES = ("passenger_car", "minivan", "pickup")
@@ -60,6 +61,7 @@ def rows(task: str) -> list[Row]:
                 float(fact["lower_quartile_m_s"]),
                 float(fact["upper_quartile_m_s"]),
                 float(own) if along else abs(float(own)),
+                role="fitted",
             )
         )
     core = float(result.statistics.body_steps)

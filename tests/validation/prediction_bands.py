@@ -216,10 +216,10 @@ tyres included; those tests had no part in it.
 | --- | --- | --- | --- | --- | --- |
 """
 NOTES = """
-The small overlap is covered along the vehicle from 60 to 100 ms, and not otherwise. Across the vehicle the
-model itself is wrong: its corner pushes a car aside by a third of what tests show. Late in the crash all
-presets are held by one rigid core of one width, where vehicles differ. Such bands should be read as those of
-the quantities drawn, not as those of the class.
+The small overlap is covered along the vehicle from 60 ms on. Before, tests scatter more than what is drawn:
+where bumpers end is no drawn quantity. Across the vehicle it is covered until 80 ms. After that the presets
+are not pushed off far enough, and such bands should be read as those of the quantities drawn, not as those of
+the class.
 
 ## Factors that meet the tests
 

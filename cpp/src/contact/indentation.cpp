@@ -46,7 +46,7 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
         const Panel& panel = mesh.panel[p];
         const auto bit = static_cast<std::uint8_t>(1U << p);
         const bool indents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
-        if (!panel.any || !stands_across(near.now, panel, indents)) continue;
+        if (!panel.any || !can_indent(post, near.now, panel, indents)) continue;
         const Indentation indentation(post, near.now, panel, mesh.indentation_length);
         if (!indents && !(indentation.beside(panel) < 0.0)) continue;
         if (!indents && indentation.is_beyond(panel)) {

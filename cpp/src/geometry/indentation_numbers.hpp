@@ -17,6 +17,8 @@ struct IndentationNumbers {
     double per_reach, per_stretch;
     double
         grip;  // fraction of the post's displacement that the skin follows, at the deepest point of the post in the panel
+    double flank_low, flank_high;  // factors of the flanks on either side, by w
+    double wall_e, wall_w;         // of an edge: unit direction along its wall, by e and w; of a post zero
     double steep_arc, rise_there;  // across and deep, of the place from where the flank is steepest
 };
 

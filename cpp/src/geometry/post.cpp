@@ -1,12 +1,16 @@
 #include "birm3d/geometry/post.hpp"
 
+#include <cmath>
+
 #include "birm3d/base/error.hpp"
 #include "geometry/post_nearest.hpp"
 
 namespace birm3d {
 
-Post::Post(double radius_, double height_) : radius(require_positive("radius", radius_)), height(height_) {
+Post::Post(double radius_, double height_, std::optional<double> opens_)
+    : radius(require_positive("radius", radius_)), height(height_), opens(opens_) {
     if (!(height > 0.0)) refuse("height", "> 0", height);
+    if (opens && !std::isfinite(*opens)) refuse("opens", "finite", *opens);
 }
 
 Nearest nearest(const Post& post, const Vec3& p) {

@@ -11,16 +11,14 @@ namespace {
 // Gap of released nodes: larger than that to any other surface (m).
 constexpr double away = 10.0;
 
-// Fraction of the displacement across the flank of a post that the skin follows. It was chosen between 0.1 and 0.4.
-// With less, a pole 0.35 m off the middle has a smaller sideways force than in finite-element runs. With more, posts
-// at the end of a bumper act as a wedge.
-constexpr double lean = 0.35;
-
 // Least value that marks a node as following an indentation.
 constexpr double least_drawn = 1e-9;
 
 // A node nearer than this to another surface is in contact with it (m).
 constexpr double touching = tolerance::touching_gap;
+
+// The face of a wall holds a node that pushes beside its edge if it is no further away: more than a step's motion (m).
+constexpr double in_reach = 0.01;
 
 // Depth of the post's surface beyond its axis at `a` across, and its derivative.
 struct Rise {
@@ -58,6 +56,13 @@ BIRM3D_INLINE Packet no_less_than(const IndentationNumbers& d, const Standing& s
     const Packet slope = lesser(greater(by_depth, least_slope), steepest);
     const Packet beside = greater(where_above(s.w, zero, s.w, -1.0 * s.w) - d.radius, zero);
     return s.e - (s.deepest - slope * (beside + (s.l - s.up)));
+}
+
+// `yes` for nodes that are further along the wall than the axis of its edge, else `no`.
+BIRM3D_INLINE Packet where_beside_face(const IndentationNumbers& d, const Standing& s, const Packet& yes,
+                                       const Packet& no) {
+    const Packet zero = 0.0, along = d.wall_e * (s.e - d.tilt * s.up) + d.wall_w * s.w;
+    return where_above(along, zero, yes, no);
 }
 
 // The point of the post that each node of a packet follows.
@@ -104,9 +109,11 @@ struct Drawn {
     Packet in, across;
 };
 BIRM3D_INLINE Drawn drawn(const IndentationNumbers& d, const FollowedPlace& h) {
+    const Packet zero = 0.0, low = d.flank_low * d.grip, high = d.flank_high * d.grip;
     const Packet slope = h.slope.slope, flank = lesser(greater(h.rise.across, -1.0 * slope), slope);
+    const Packet factor = where_above(h.a, zero, high, low);
     return {greater(d.grip * (1.0 - h.slope.grows * h.beyond), least_drawn),
-            (lean * d.grip) * flank / square_root(1.0 + flank * flank)};
+            factor * flank / square_root(1.0 + flank * flank)};
 }
 
 // Outward displacement of the nodes within the step.
@@ -141,9 +148,10 @@ BIRM3D_INLINE Asked ask(const IndentationNumbers& d, const PanelNodes& nodes, co
     // A node on another surface follows the indentation only once that has reached it.
     const Packet other = where_above(far, gap_of_holding_surface(d, known, i), far, outward);
     const Packet goes = where_above(zero, h.gap, outward, other);
-    const Packet reaches = where_above(s.e - h.gap, surface, held, zero);
+    const Packet reaches = where_above(s.e - h.gap, surface, where_beside_face(d, s, zero, held), zero);
     const Packet off = where_above(pushes, zero, where_above(reaches, zero, zero, one), zero);
-    const Packet gap = where_above(pushes, zero, where_above(reaches, zero, goes, away), comes);
+    const Packet gap = where_above(pushes, zero, where_above(reaches, zero, goes, away),
+                                   where_beside_face(d, s, far, comes));
     return {gap, off, where_above(off, zero, away, where_above(far, gap, h.gap, far))};
 }
 
@@ -151,7 +159,7 @@ BIRM3D_INLINE Asked ask(const IndentationNumbers& d, const PanelNodes& nodes, co
 // several indentations the deepest one at the node governs. A choice by displacements would alternate from step to
 // step.
 BIRM3D_INLINE Packet find_state(const IndentationNumbers& d, const PanelNodes& nodes, const KnownFaces& known,
-                                const Asked& asked, std::size_t i) {
+                                const Standing& s, const Asked& asked, std::size_t i) {
     const Packet zero = 0.0, one = 1.0, so_far = Packet::load(known.gap + i), gap = asked.gap;
     const Packet against = d.ex * Packet::load(known.nx + i) + d.ey * Packet::load(known.ny + i) +
                            d.ez * Packet::load(known.nz + i);
@@ -161,7 +169,8 @@ BIRM3D_INLINE Packet find_state(const IndentationNumbers& d, const PanelNodes& n
     const Packet pushes = Packet::load(nodes.force + i), by_surface = gap_of_holding_surface(d, known, i);
     const Packet by_indentation =
         where_above(Packet::load(known.per_force + i), zero, Packet::load(known.rank + i), by_surface);
-    const Packet last = where_above(pushes, zero, by_indentation, so_far);
+    const Packet near = in_reach, far = infinitely_far, by_face = where_above(so_far, near, far, so_far);
+    const Packet last = where_above(pushes, zero, where_beside_face(d, s, by_face, by_indentation), so_far);
     const Packet now = where_above(pushes, zero, asked.rank, gap);
     return where_on(nodes, where_above(last, now, nearer, zero), zero, i);
 }
@@ -183,7 +192,7 @@ void find_indentation(const IndentationNumbers& d, const IndentationNumbers& the
         const Drawn by = drawn(d, h);
         const Packet outward = outward_displacement(n, was, by, drawn(then, find_followed(then, was)));
         const Asked asked = ask(d, nodes, known, n, h, outward, i);
-        const Packet state = find_state(d, nodes, known, asked, i);
+        const Packet state = find_state(d, nodes, known, n, asked, i);
         if (!any_above(state, zero)) continue;
         state.store(known.follows + i);
         const auto put = [&](double* column, const Packet& found) {

@@ -187,23 +187,20 @@ void TrussMesh::find_tread(const TrussInput& input, const std::vector<Wheel>& wh
 void TrussMesh::find_panels(const TrussInput& input) {
     std::array<std::vector<Vec3>, panels> nodes, anchors_of;
     panels_of.fill().assign(blocks, 0);
-    for (std::size_t b = 0; b < shell_blocks; ++b) {
+    for (std::size_t b = 0; b < skin_blocks; ++b) {
         BlockColumn& panel_of_node = block.fill()[b].panel;
         for (std::size_t i = 0; i < nodes_in(b); ++i) {
             const std::size_t source = input_index[first[b] + i];
-            const bool second = b >= skin_blocks;
-            const std::size_t of = second ? static_cast<std::size_t>(input.along_of[source]) : source;
-            const std::size_t p = panel_of(input.anchor[of] - input.node[of]);
+            const std::size_t p = panel_of(input.anchor[source] - input.node[source]);
             panel_of_node[i] = static_cast<double>(p);
             panels_of.fill()[b] |= static_cast<std::uint8_t>(1U << p);
-            if (second) continue;
             nodes[p].push_back(input.node[source]);
             anchors_of[p].push_back(input.anchor[source]);
         }
         std::fill(panel_of_node.begin() + static_cast<std::ptrdiff_t>(nodes_in(b)), panel_of_node.end(),
                   panel_of_node[nodes_in(b) - 1]);
     }
-    for (std::size_t b = shell_blocks; b < blocks; ++b)
+    for (std::size_t b = skin_blocks; b < blocks; ++b)
         block.fill()[b].panel.fill(static_cast<double>(panels)),
             panels_of.fill()[b] = 1U << panels;  // of none of these
     panels_of_group.fill().assign((blocks + group_size - 1) / group_size, 0);

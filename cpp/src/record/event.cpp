@@ -17,8 +17,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // A vehicle that moves at a smaller angle to the line neither leaves nor passes it: sine of one degree.
 constexpr double parallel = 0.017452406;
-// A vehicle that is slower than this fraction of its approach speed is stopped rather than redirected.
-constexpr double slow = 0.1;
+constexpr double still_along = 0.1;  // the same in contact when the longest run ends: tangent of 6 degrees
+constexpr double slow = 0.1;         // of the approach speed: below it a vehicle is stopped, not redirected
 // Cosine of the up axis to the vertical beyond which a vehicle does not stand upright at the start: about 45 degrees.
 constexpr double upright = 0.7;
 
@@ -291,8 +291,8 @@ void judge_at_longest(const Scene& scene, const State& state, Event& event) {
     const Vec3& velocity = state.units.front().body.velocity;
     const double along = velocity.dot(line_direction(event)), across = velocity.dot(event.towards);
     const bool goes_on = along * scene.heading().dot(line_direction(event)) > 0.0;
-    if (!goes_on || std::abs(across) > parallel * std::abs(along)) return;
-    if (!(std::abs(along) > slow * scene.approach.speed)) return;
+    if (!(velocity.norm() > slow * scene.approach.speed)) return judge_rest(scene, state, event);
+    if (!goes_on || std::abs(across) > still_along * std::abs(along)) return;
     if (distance_past(scene, state, event) < 0.0)
         event.verdict = Verdict::redirected, event.manner = Manner::slides_on;
 }

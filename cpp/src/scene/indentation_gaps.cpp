@@ -78,7 +78,7 @@ void for_each_indentation(const Scene& scene, const UnitState& unit, const Truss
             placement({obstacle.rotation, obstacle.position}, unit.body);  // posts are fixed
         for (std::size_t p = 0; p < panels; ++p) {
             const Panel& panel = mesh.panel[p];
-            if (!panel.any || !stands_across(in_shape, panel, false)) continue;
+            if (!panel.any || !can_indent(*post, in_shape, panel, false)) continue;
             Indentation indentation(*post, in_shape, panel, mesh.indentation_length);
             if (!(indentation.beside(panel) < distance) || indentation.is_beyond(panel)) continue;
             if (distance > 0.0) {

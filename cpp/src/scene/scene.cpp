@@ -20,6 +20,7 @@ void add_to(Hash& hash, const HalfSpace& plane) {
 void add_to(Hash& hash, const Post& post) {
     hash.add(post.radius);
     hash.add(post.height);
+    if (post.opens) hash.add(*post.opens);
 }
 void add_to(Hash& hash, const Prism& prism) {
     for (const auto* edges : {&prism.edges(), &prism.covered_edges()})

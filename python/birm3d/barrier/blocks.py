@@ -30,6 +30,9 @@ FOOT = 1.0
 
 # Of the polygon that an arc of 90 degrees is made of.
 _SIDES_OF_QUARTER = 15
+# The mesh behind a rounded face begins this share of the radius behind it: skin that follows an edge does
+# not meet it.
+_BEHIND_FACE = 0.03
 
 
 def positive(name: str, value: float) -> None:
@@ -89,18 +92,25 @@ def rounded_outline(depth: float, length: float, radius: float) -> Floats:
 def rounded_block(
     barrier: Barrier, depth: float, length: float, top: float, radius: float
 ) -> list[_core.Element]:
-    """Return a block along the line with rounded upright edges: one element in three parts.
+    """Return a block along the line with rounded upright edges: one element in four parts.
 
-    The edges on the traffic's side are posts, which draw in the skin beside them. Between them is a mesh
-    with chords in place of the arcs that the posts fill.
+    The edges on the traffic's side are posts, which draw in the skin beside them. Between them stands the
+    face, whose ends are no surface. Behind both is a mesh, with chords in place of the arcs that posts fill.
     """
     heading = math.radians(barrier.heading)
-    ring = rounded_outline(depth, length, radius)
     beside = 0.5 * length - radius
+    ring = rounded_outline(depth, length, radius)
     filled = (ring[:, 0] > 1e-9) & (ring[:, 0] < radius - 1e-9) & (np.abs(ring[:, 1]) > beside + 1e-9)
-    vertices, faces = drawn_up(ring[~filled], -FOOT, top)
-    between = _core.Element.mesh(
-        vertices=vertices, faces=faces.tolist(), position=barrier.from_origin(0.0, 0.0), heading=heading
+    plan = ring[~filled]
+    plan[:, 0] = np.maximum(plan[:, 0], _BEHIND_FACE * radius)
+    vertices, faces = drawn_up(plan, -FOOT, top)
+    wide = beside > 1e-9
+    behind = _core.Element.mesh(
+        vertices=vertices,
+        faces=faces.tolist(),
+        position=barrier.from_origin(0.0, 0.0),
+        heading=heading,
+        continues=wide,
     )
     edges = [
         _core.Element.post(
@@ -109,10 +119,23 @@ def rounded_block(
             position=barrier.from_origin(radius, along),
             heading=heading,
             continues=True,
+            opens=math.copysign(0.75 * math.pi, along),
         )
         for along in (-beside, beside)
     ]
-    return [between, *edges]
+    if not wide:
+        return [behind, *edges]
+    reach = depth - radius  # into the mesh
+    face = _core.Element.prism(
+        profile=np.array([(0.0, -FOOT), (reach, -FOOT), (reach, top), (0.0, top)]),
+        y_low=-beside,
+        y_high=beside,
+        covered_low_end=True,
+        covered_high_end=True,
+        position=barrier.from_origin(0.0, 0.0),
+        heading=heading,
+    )
+    return [face, *edges, behind]
 
 
 def numbered(whole: str, part: str, count: int) -> tuple[str, ...]:

@@ -18,7 +18,8 @@ be out of its reach. What it does then decides, except for rolling over, which c
     came, with more than a tenth of its impact speed. Or it slides on along a straight barrier, at rest
     sideways. Or it still slides along any barrier when a run without a duration ends after 5 s.
 ``stopped``
-    Contained, and its motion into the barrier ended: it rebounds or rests.
+    Contained, and its motion into the barrier ended: it rebounds or rests, or has less than a tenth of its
+    impact speed when a run without a duration ends after 5 s.
 ``undecided``
     The run ended before, or there is no barrier.
 

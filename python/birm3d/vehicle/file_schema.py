@@ -51,6 +51,7 @@ __all__ = [
 Point: TypeAlias = tuple[float, float, float]
 Range: TypeAlias = tuple[float, float]
 Name: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
+LawName: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*(\.along)?$")]
 Panel: TypeAlias = Literal["front", "rear", "side", "top", "bottom", "tire"]
 # Text that may be broken over several lines of the file.
 Text: TypeAlias = Annotated[str, Field(min_length=1), AfterValidator(lambda text: " ".join(text.split()))]
@@ -355,7 +356,7 @@ class Scatter(Block):
     name: Literal[
         "front", "side", "corner", "tires", "mass_center_height", "barrier_friction", "tire_friction"
     ]
-    zones: tuple[Name, ...] = ()
+    zones: tuple[LawName, ...] = ()
     median: Positive = 1.0
     log_sd: Annotated[float, Field(gt=0.0, le=2.0)]
 

@@ -13,13 +13,10 @@ from pydantic import AfterValidator, ConfigDict, Field, WrapSerializer, model_va
 
 from ..base.frozen_mapping import FrozenMapping
 from ..io.toml import Strict
-from .file_schema import Positive
+from .file_schema import LawName, Positive
 from .zone_law import ZoneLaw
 
 __all__ = ["ChangedLaw", "Changes"]
-
-
-LawName: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*(\.along)?$")]
 
 
 class ChangedLaw(ZoneLaw):

@@ -132,7 +132,7 @@ class VehicleFile(Strict):
             check_known(f"zone.{zone.name}.blocks", zone.blocks, blocks)
             check_known(f"zone.{zone.name}.core", zone.core, boxes)
         for i, one in enumerate(self.scatter):
-            check_known(f"scatter.{i}.zones", one.zones, set(self.zone_names))
+            check_known(f"scatter.{i}.zones", one.zones, set(self.laws))
         self._check_cores()
         for name in () if self.changes is None else self.changes.zone:
             check_known(f"changes.zone.{name}", (name,), set(self.laws))

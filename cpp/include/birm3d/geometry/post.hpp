@@ -3,17 +3,23 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "birm3d/geometry/nearest.hpp"
 
 namespace birm3d {
 
 struct Post {
-    // Refuses a radius that is not finite and > 0, and a height that is not > 0 (it may be infinite).
-    explicit Post(double radius, double height = std::numeric_limits<double>::infinity());
+    // Refuses a radius that is not finite and > 0, a height that is not > 0 (it may be infinite), and a direction that is not
+    // finite.
+    explicit Post(double radius, double height = std::numeric_limits<double>::infinity(),
+                  std::optional<double> opens = {});
 
     double radius;  // m
     double height;  // m
+    // Of a post that is the rounded upright edge of a wall: direction of the open space about it, from its own x axis (rad).
+    // The wall fills the opposite quadrant.
+    std::optional<double> opens;
 };
 
 Nearest nearest(const Post& post, const Vec3& p);

@@ -6,8 +6,9 @@
 // first. The last block is padded with trusses of no stiffness.
 //
 // A panel may also resist in its own plane. Each of its nodes then has a second truss along the vehicle, with a node
-// of its own at the same place. That node meets the same surfaces and indentations as the first one. The anchor of a
-// second truss is no part of the rigid body. The blocks of second trusses follow those of the skin.
+// of its own at the same place. That node meets the same surfaces as the first one, but belongs to no panel: posts press
+// it, and do not draw it in. The anchor of a second truss is no part of the rigid body. The blocks of second trusses
+// follow those of the skin.
 //
 // Tyres that meet a barrier have nodes too, on the tread's outer edge. The nodes of each wheel have padded blocks of
 // their own, after all others. Their anchors meet nothing, as they are no part of the rigid body. The wheels
