@@ -63,20 +63,31 @@ void register_vehicle(py::module_& m) {
         m, "Unit",
         "A rigid body with its crushable skin and wheels; body axes r, s, t, origin at the mass centre.")
         .def(py::init([](double mass, const InputArray& inertia, const TrussMesh& trusses,
-                         const InputArray& origin, const InputArray& wheels, double mass_center_height,
-                         const InputArray& offset, const InputArray& core) {
+                         const InputArray& origin, const InputArray& wheels, const InputArray& breakaway,
+                         double mass_center_height, const InputArray& offset, const InputArray& core) {
                  if (core.ndim() != 2 || core.shape(1) != 6) refuse("core shape", "(k, 6)", shape_text(core));
                  std::vector<Box> boxes;
                  for (py::ssize_t i = 0; i < core.shape(0); ++i)
                      boxes.push_back({{core.at(i, 0), core.at(i, 1), core.at(i, 2)},
                                       {core.at(i, 3), core.at(i, 4), core.at(i, 5)}});
                  const RigidBody body(mass, matrix(inertia, "inertia"));
-                 return Unit(body, trusses.moved(vector(origin, "origin")), discs(wheels), mass_center_height,
-                             vector(offset, "offset"), std::move(boxes));
+                 std::vector<Wheel> own = discs(wheels);
+                 if (breakaway.ndim() != 2 || breakaway.shape(1) != 2 ||
+                     breakaway.shape(0) != static_cast<py::ssize_t>(own.size()))
+                     refuse("breakaway shape", "(w, 2), a row for each wheel", shape_text(breakaway));
+                 for (std::size_t i = 0; i < own.size(); ++i) {
+                     own[i].breakaway = breakaway.at(static_cast<py::ssize_t>(i), 0);
+                     own[i].travel = breakaway.at(static_cast<py::ssize_t>(i), 1);
+                 }
+                 return Unit(body, trusses.moved(vector(origin, "origin")), std::move(own),
+                             mass_center_height, vector(offset, "offset"), std::move(boxes));
              }),
              py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("trusses"), py::arg("origin"),
-             py::arg("wheels"), py::arg("mass_center_height"), py::arg("offset"), py::arg("core"),
+             py::arg("wheels"), py::arg("breakaway"), py::arg("mass_center_height"), py::arg("offset"),
+             py::arg("core"),
              "mass: kg. inertia: shape (3, 3), kg m^2. wheels: shape (w, 4), centre and radius, m.\n"
+             "breakaway: shape (w, 2), load at which each wheel gives way, N, and how far it is then pushed "
+             "up, m.\n"
              "origin: shape (3,), m, of the body axes in those of the trusses; copies share what does not "
              "move.\n"
              "mass_center_height: m above the ground. offset: shape (3,), m, of the mass centre from the "

@@ -1000,6 +1000,11 @@ class StepStatistics:
         the same of tyres
         """
     @property
+    def wheels_given_way(self) -> int:
+        """
+        wheels that were loaded beyond what they carry, and carry nothing since
+        """
+    @property
     def wheels_on_ground(self) -> int:
         """
         wheels that carried load, summed over the steps
@@ -1072,6 +1077,11 @@ class TrussCurve:
         m, infinite where the slope is constant
         """
     @property
+    def friction_share(self) -> float:
+        """
+        of the barrier's friction
+        """
+    @property
     def k_unloading(self) -> float:
         """
         slope of unloading, or the least one
@@ -1097,7 +1107,7 @@ class Unit:
     """
     A rigid body with its crushable skin and wheels; body axes r, s, t, origin at the mass centre.
     """
-    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], trusses: TrussMesh, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, offset: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], core: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
+    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], trusses: TrussMesh, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], breakaway: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, offset: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], core: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
         """
         mass: kg. inertia: shape (3, 3), kg m^2. wheels: shape (w, 4), centre and radius, m.
         origin: shape (3,), m, of the body axes in those of the trusses; copies share what does not move.
@@ -1197,7 +1207,7 @@ def from_roll_pitch_yaw(roll: typing.SupportsFloat | typing.SupportsIndex, pitch
     """
     Quaternion (w, x, y, z) of ISO 8855 angles in rad.
     """
-def knee_curve(k_initial: typing.SupportsFloat | typing.SupportsIndex, knee: typing.SupportsFloat | typing.SupportsIndex, k_hardening: typing.SupportsFloat | typing.SupportsIndex, f_max: typing.SupportsFloat | typing.SupportsIndex, k_unloading: typing.SupportsFloat | typing.SupportsIndex, elastic_recovery: typing.SupportsFloat | typing.SupportsIndex = ..., tail_depth: typing.SupportsFloat | typing.SupportsIndex = ..., tail_slope: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> TrussCurve:
+def knee_curve(k_initial: typing.SupportsFloat | typing.SupportsIndex, knee: typing.SupportsFloat | typing.SupportsIndex, k_hardening: typing.SupportsFloat | typing.SupportsIndex, f_max: typing.SupportsFloat | typing.SupportsIndex, k_unloading: typing.SupportsFloat | typing.SupportsIndex, elastic_recovery: typing.SupportsFloat | typing.SupportsIndex = ..., tail_depth: typing.SupportsFloat | typing.SupportsIndex = ..., tail_slope: typing.SupportsFloat | typing.SupportsIndex = 0.0, friction_share: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> TrussCurve:
     """
     The paper's curve: k_initial to the knee, k_hardening to f_max, then the plateau; beyond tail_depth steeper by tail_slope.
     """
@@ -1205,7 +1215,7 @@ def mass_properties(solids: typing.Annotated[numpy.typing.ArrayLike, numpy.float
     """
     Mass properties of 8-node solids (n, 8, 3) in m with densities (n,) in kg/m^3.
     """
-def point_curve(deflection: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], force: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], k_unloading: typing.SupportsFloat | typing.SupportsIndex, elastic_recovery: typing.SupportsFloat | typing.SupportsIndex = ..., tail_depth: typing.SupportsFloat | typing.SupportsIndex = ..., tail_slope: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> TrussCurve:
+def point_curve(deflection: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], force: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], k_unloading: typing.SupportsFloat | typing.SupportsIndex, elastic_recovery: typing.SupportsFloat | typing.SupportsIndex = ..., tail_depth: typing.SupportsFloat | typing.SupportsIndex = ..., tail_slope: typing.SupportsFloat | typing.SupportsIndex = 0.0, friction_share: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> TrussCurve:
     """
     A curve through points, flat after the last; beyond tail_depth steeper by tail_slope.
     """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib
 from pathlib import Path
 from types import ModuleType
@@ -50,10 +51,11 @@ def test_impulses_of_the_runs_are_their_change_of_momentum(truck: ModuleType) ->
 @pytest.mark.parametrize(
     ("name", "marks"),
     [
-        ("wall00_30", ("travel", "force")),
-        ("wall00_50", ("force",)),
-        ("bollards3_50", ("travel", "sideways")),
-        ("bollards2_50_offset", ("travel", "force")),
+        ("wall00_30", ("travel", "force", "pitch")),
+        ("wall00_50", ("force", "pitch")),
+        ("wall25_50", ("travel", "force", "pitch")),
+        ("bollards3_50", ("travel", "sideways", "pitch")),
+        ("bollards2_50_offset", ("travel", "force", "pitch")),
     ],
 )
 def test_the_fitted_truck_meets_the_runs(
@@ -66,6 +68,18 @@ def test_the_fitted_truck_meets_the_runs(
     assert not row.own.core_contact
     (before,) = page.computed(birm3d.Vehicle.preset("cargo_truck"), [truck.runs()[name]])
     assert not before.met["force"]
+
+
+def test_either_front_wheels_or_friction_hold_the_nose_up(page: ModuleType, truck: ModuleType) -> None:
+    """What the two numbers of the file are for: without either one no pitch of the runs head-on is met."""
+    fitted = birm3d.Vehicle.from_file(truck.FITTED)
+    front = [name for name, zone in fitted.zones.items() if zone.friction_share is not None]
+    assert {fitted.zones[name].friction_share for name in front} == {0.15}
+    rough = fitted.with_zones({n: dataclasses.replace(fitted.zones[n], friction_share=1.0) for n in front})
+    held = fitted.with_zone("tire_front", breakaway=1e9)
+    head_on = [run for run in truck.runs().values() if run.impact_angle == 90.0]
+    for vehicle in (rough, held):
+        assert not any(row.met["pitch"] for row in page.computed(vehicle, head_on))
 
 
 def test_the_left_front_goes_ahead_at_the_slanted_wall(page: ModuleType, truck: ModuleType) -> None:

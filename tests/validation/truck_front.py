@@ -112,7 +112,15 @@ NUMBERS = (
     Number(
         "reach of dents", "m", ("vehicle.dent_reach",), 0.6, 0.15, 1.0, "half to three diameters of a post"
     ),
-    Number("tyres", "", ("zone.tire.scale",), 2.5, 0.5, 6.0, "rims and hangers of 75 kN beside the rubber"),
+    Number(
+        "tyres",
+        "",
+        ("zone.tire_front.scale", "zone.tire.scale"),
+        2.5,
+        0.5,
+        6.0,
+        "rims and hangers of 75 kN beside the rubber",
+    ),
 )
 
 

@@ -64,6 +64,12 @@ void add(const CrushSums& sums, SkinForces& skin) {
     skin.stiffness += sums.stiffness();
 }
 
+// The part of the pressures that rubs.
+void take_share(const BlockColumn& share, BlockColumn& pressure) {
+    for (std::size_t i = 0; i < block_size; ++i)
+        pressure[i] *= share[i];
+}
+
 // The load on the k-th near obstacle, world axes. Adds its stored energy and its resistance to `skin`. `R`: body to
 // world axes.
 ContactLoad load_on(const ContactPass& pass, std::size_t k, const ContactSums& all, const Mat3& R,
@@ -119,9 +125,13 @@ void apply_friction(const ContactPass& pass, std::size_t k, const Places& places
     if (!(mu > 0.0)) return;
     const Vec3* const normal = block.flat_normal ? &*block.flat_normal : nullptr;
     const Twist& motion = pass.relative_motion[k];
-    if (block.indentations.empty())
+    const bool shares = !pass.mesh.friction_share.empty();
+    if (block.indentations.empty() && !shares)
         return add_friction(mu, pass.full_friction_speed, motion, places, contact, normal, to.friction_load);
     BlockContact along = contact;
+    if (shares) take_share(pass.mesh.friction_share[block.index], along.pressure);
+    if (block.indentations.empty())
+        return add_friction(mu, pass.full_friction_speed, motion, places, along, normal, to.friction_load);
     slide_along_panel(block.faces, along);
     add_friction(mu, pass.full_friction_speed, motion, places, along, nullptr, to.friction_load);
 }

@@ -21,9 +21,10 @@ Mat6 inertia_of(const RigidBody& body, const Mat3& R) {
 // Inertia matrix of the ground under wheels that would otherwise sink into it in the second half of the step.
 // `motion` assumes equal tyre impulses in both halves: see settled().
 Mat6 ground_support(const Unit& unit, const BodyState& body, const Mat6& inertia, const Twist& motion,
-                    const std::vector<double>& tire_impulses, std::vector<RigidContact>& memory) {
+                    WheelSet given_way, const std::vector<double>& tire_impulses,
+                    std::vector<RigidContact>& memory) {
     memory.clear();
-    find_tire_contacts(unit, 0, body, memory);
+    find_tire_contacts(unit, 0, body, given_way, memory);
     const auto row_of = [](const RigidContact& contact) {
         Vec6 row;
         row << contact.normal, contact.arm.cross(contact.normal);
@@ -59,8 +60,8 @@ Twist predicted_motion(const Scene& scene, std::size_t u, const State& from, Tri
         const Mat6 inertia = inertia_of(unit.body, R);
         Mat6 support = Mat6::Zero();
         if (scene.settings.ground)
-            support =
-                ground_support(unit, body, inertia, motion, trial.impulses[u].tire, trial.memory.contacts);
+            support = ground_support(unit, body, inertia, motion, trial.state.units[u].given_way,
+                                     trial.impulses[u].tire, trial.memory.contacts);
         motion = settled(motion, before.friction_motion, before.resistance, trial.dt, inertia, support);
     }
     return {R.transpose() * motion.velocity, R.transpose() * motion.angular_velocity};

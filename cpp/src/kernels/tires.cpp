@@ -28,7 +28,7 @@ double brush(double normalised_slip) {
 
 }  // namespace
 
-void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& state,
+void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& state, WheelSet given_way,
                         std::vector<RigidContact>& contacts) {
     const Mat3 R = state.orientation.toRotationMatrix();
     for (std::size_t i = 0; i < unit.wheels.size(); ++i) {
@@ -37,11 +37,19 @@ void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& sta
         contact.index = i;
         contact.body = body;
         contact.arm = lowest_point(unit.wheels[i], R);
+        if (has_wheel(given_way, i)) contact.arm.z() += unit.wheels[i].travel;
         contact.normal = Vec3::UnitZ();
         contact.gap = state.position.z() + contact.arm.z();
         contact.compliance = tolerance::tire_compliance;
         contacts.push_back(contact);
     }
+}
+
+WheelSet overloaded(const Unit& unit, double dt, std::span<const double> normal_impulses) {
+    WheelSet found = 0;
+    for (std::size_t i = 0; i < normal_impulses.size(); ++i)
+        if (normal_impulses[i] > unit.wheels[i].breakaway * dt) found |= WheelSet{1} << i;
+    return found;
 }
 
 Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState& state,

@@ -23,9 +23,12 @@
 
 namespace birm3d {
 
-// One contact for each wheel, whether it touches or not (normal +z, gap signed).
-void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& state,
+// One contact for each wheel, whether it touches or not (normal +z, gap signed). Those that have given way are pushed up.
+void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& state, WheelSet given_way,
                         std::vector<RigidContact>& contacts);
+
+// The wheels that give way under normal impulses in a step of dt (s). Impacts have no load and are not among the impulses.
+WheelSet overloaded(const Unit& unit, double dt, std::span<const double> normal_impulses);
 
 // The vehicle's present motion, and that at the end of the step of this half kick. With the latter, friction follows
 // the trapezoid rule. For a nearly sticking wheel that would oscillate; then the present motion is used.

@@ -171,8 +171,26 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
     hinge.fill().resize(blocks * hinges);
     for (std::size_t b = 0; b < blocks; ++b)
         fill_block(input, b);
+    find_friction_shares(input);
     find_panels(input);
     find_tread(input, wheels);
+}
+
+void TrussMesh::find_friction_shares(const TrussInput& input) {
+    const auto share = [&](std::size_t truss) {
+        return input.curve[input.curve_of[input_index[truss]]].friction_share;
+    };
+    bool any = false;
+    for (std::size_t truss = 0; truss < count; ++truss)
+        any = any || share(truss) != 1.0;
+    if (!any) return;
+    friction_share.fill().resize(blocks);
+    for (std::size_t b = 0; b < blocks; ++b) {
+        BlockColumn& to = friction_share.fill()[b];
+        to.fill(1.0);
+        for (std::size_t i = 0; i < nodes_in(b); ++i)
+            to[i] = share(first[b] + i);
+    }
 }
 
 void TrussMesh::find_tread(const TrussInput& input, const std::vector<Wheel>& wheels) {

@@ -1,5 +1,7 @@
 #include "birm3d/model/vehicle.hpp"
 
+#include <cmath>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numbers>
@@ -60,6 +62,11 @@ Unit::Unit(const RigidBody& body_, TrussMesh trusses_, std::vector<Wheel> wheels
     for (std::size_t i = 0; i < wheels.size(); ++i) {
         const std::string name = "wheels[" + std::to_string(i) + "]";
         require_positive((name + " radius").c_str(), wheels[i].radius);
+        if (!(wheels[i].breakaway > 0.0)) refuse(name + " breakaway", "> 0 N", wheels[i].breakaway);
+        if (!(wheels[i].travel >= 0.0 && std::isfinite(wheels[i].travel)))
+            refuse(name + " travel", "finite and >= 0 m", wheels[i].travel);
+        if (i >= most_breakaway_wheels && std::isfinite(wheels[i].breakaway))
+            refuse(name + " breakaway", "inf beyond the first 64 wheels", wheels[i].breakaway);
         if (!wheels[i].center.allFinite()) refuse(name + " center", "finite", "a coordinate that is not");
         const double height = mass_center_height + wheels[i].center.z() - wheels[i].radius;
         if (height < -1e-3)

@@ -141,7 +141,9 @@ std::vector<Wheel> wheels_of(Reader& in, std::string_view name) {
     std::vector<Wheel> wheels;
     for (std::size_t left = in.count(name); left > 0; --left) {
         const Vec3 center = in.vector();
-        wheels.push_back({center, in.number()});
+        const double radius = in.number();
+        const double breakaway = in.number();
+        wheels.push_back({center, radius, breakaway, in.number()});
     }
     return wheels;
 }
@@ -151,6 +153,7 @@ TrussCurve curve_of(Reader& in) {
     std::size_t points = in.index();
     curve.k_unloading = in.number();
     curve.recovery = in.number();
+    curve.friction_share = in.number();
     for (; points > 0; --points) {
         curve.deflection.push_back(in.number());
         curve.slope.push_back(in.number());
@@ -216,8 +219,8 @@ Joint joint_of(Reader& in) {
 Vehicle vehicle_of_text(std::string_view text) {
     Reader in(text);
     in.expect("birm3d-vehicle");
-    if (const int version = in.whole(); version != 1)
-        in.wrong("version 1", "version " + std::to_string(version));
+    if (const int version = in.whole(); version != 2)
+        in.wrong("version 2", "version " + std::to_string(version));
     std::vector<Unit> units;
     for (std::size_t left = in.count("units"); left > 0; --left)
         units.push_back(unit_of(in));

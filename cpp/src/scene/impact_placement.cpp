@@ -50,7 +50,7 @@ void raise_to_ground(const Scene& scene, State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Unit& unit = scene.vehicle->units[u];
         std::vector<RigidContact> wheels;
-        find_tire_contacts(unit, u, state.units[u].body, wheels);
+        find_tire_contacts(unit, u, state.units[u].body, state.units[u].given_way, wheels);
         for (const RigidContact& wheel : wheels)
             lowest = std::min(lowest, wheel.gap);
         if (scene.skin_meets_ground[u])

@@ -115,6 +115,8 @@ std::uint64_t Scene::fingerprint() const {
         if (unit.trusses.recovers)
             for (const TrussBlock& b : unit.trusses.block)
                 hash.add(b.per_recovery);
+        for (const BlockColumn& share : unit.trusses.friction_share)
+            hash.add(share);
         for (const Hinge& hinge : unit.trusses.hinge) {
             hash.add(hinge.deflection);
             hash.add(hinge.slope_change);
@@ -129,6 +131,7 @@ std::uint64_t Scene::fingerprint() const {
         for (const Wheel& wheel : unit.wheels) {
             hash.add(wheel.center);
             hash.add(wheel.radius);
+            if (std::isfinite(wheel.breakaway)) hash.add(wheel.breakaway), hash.add(wheel.travel);
         }
     }
     for (const Joint& joint : vehicle->joints) {

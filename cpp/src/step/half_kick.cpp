@@ -34,7 +34,7 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Unit& unit = scene.vehicle->units[u];
         const BodyState& body = state.units[u].body;
-        if (scene.settings.ground) find_tire_contacts(unit, u, body, contacts);
+        if (scene.settings.ground) find_tire_contacts(unit, u, body, state.units[u].given_way, contacts);
         if (scene.obstacles.empty() || !options.hold_core) continue;
         const Mat3 R = body.orientation.toRotationMatrix();
         const Twist motion{R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};

@@ -4,6 +4,7 @@
 
 #include "contact/contact_forces.hpp"
 #include "kernels/integrate.hpp"
+#include "kernels/tires.hpp"
 #include "step/energy_balance.hpp"
 #include "step/error_estimates.hpp"
 #include "step/half_kick.hpp"
@@ -78,6 +79,7 @@ void accept(const Scene& scene, Trial& trial, State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         UnitState& unit = state.units[u];
         static_cast<UnitMotion&>(unit) = trial.state.units[u];
+        unit.given_way |= overloaded(scene.vehicle->units[u], trial.dt, trial.impulses[u].tire);
         trial.exchange_trusses(u, unit.trusses);
         const std::vector<std::size_t>& active = trial.active[u].blocks();
         if (!active.empty()) unit.trusses.group(scene.vehicle->units[u].trusses, active);

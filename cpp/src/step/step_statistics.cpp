@@ -1,6 +1,7 @@
 #include "step/step_statistics.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <iterator>
 
 namespace birm3d {
@@ -42,6 +43,9 @@ void count_step(const Scene& scene, const Trial& accepted, State& state) {
                                                        [w](const auto* sum) { return sum->tire[w] > 0.0; });
     }
     statistics.body_steps += accepted.body_held();
+    statistics.wheels_given_way = 0;
+    for (const UnitState& unit : state.units)
+        statistics.wheels_given_way += static_cast<std::uint64_t>(std::popcount(unit.given_way));
 }
 
 }  // namespace birm3d

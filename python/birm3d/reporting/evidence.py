@@ -103,7 +103,9 @@ def _phenomena(case: Case) -> Iterator[tuple[str, str, str]]:
     )
     yield "engine stops before the cabin; load bed slides on the frame", "no", "one rigid body a unit"
     yield "suspension, steering, brakes of single wheels", "no", "wheels roll or slide, see the settings"
-    yield "wheels and parts that come off", "no", "nothing leaves the vehicle"
+    gone = result.statistics.wheels_given_way
+    told = f"; {gone} wheels were loaded beyond what they carry, and gave way" if gone else ""
+    yield "wheels and parts that come off", "no", f"nothing leaves the vehicle{told}"
     yield "sheet metal that tears", "no", "the skin stays whole"
     if barrier is None:
         return

@@ -137,6 +137,9 @@ def _law(law: Any) -> str:
         "elastic_recovery": ("gives back", 1.0, "m"),
         "tail_depth": ("tail from", 1.0, "m"),
         "tail_slope": ("tail", 1e6, "MPa/m"),
+        "friction_share": ("share of friction", 1.0, ""),
+        "breakaway": ("wheels give way at", 1e3, "kN"),
+        "breakaway_travel": ("by", 1.0, "m"),
     }
     parts = []
     for name, value in law.items():

@@ -14,7 +14,9 @@ name                           value
 ``vehicle.rate_sensitivity``   [s/m], see :meth:`birm3d.Vehicle.with_rate_sensitivity`
 ``vehicle.dent_reach``         see :meth:`birm3d.Vehicle.with_dent_reach`
 ``zone.<zone>.<number>``       ``k_initial``, ``knee``, ``k_hardening``, ``f_max``, ``k_unloading``, or
-                               ``elastic_recovery``, ``tail_depth``, ``tail_slope`` where it has them, of
+                               ``elastic_recovery``, ``tail_depth``, ``tail_slope``,
+                               ``friction_share``, ``breakaway``, ``breakaway_travel``
+                               where it has them, of
                                :class:`birm3d.Zone`
 ``zone.<zone>.stress[i]``      stress of point i of the zone's envelope [N per m^2]
 ``zone.<zone>.deflection[i]``  its deflection [m]

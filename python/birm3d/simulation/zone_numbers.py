@@ -20,6 +20,9 @@ ZONE_UNITS = {
     "elastic_recovery": "m",
     "tail_depth": "m",
     "tail_slope": "N/m",
+    "friction_share": "",
+    "breakaway": "N",
+    "breakaway_travel": "m",
     "stress": "N",
     "deflection": "m",
 }

@@ -57,6 +57,7 @@ def _body_arguments(vehicle: VehicleFields, offset: Floats) -> dict[str, Any]:
         "mass": vehicle.mass,
         "inertia": vehicle.inertia,
         "wheels": vehicle.wheels,
+        "breakaway": _breakaway(vehicle),
         "mass_center_height": vehicle.mass_center_height,
         "offset": offset,
         "core": _core_boxes(vehicle),
@@ -89,6 +90,17 @@ def _truss_arguments(vehicle: VehicleFields) -> dict[str, Any]:
         "wheel_of": vehicle.wheel_of_node,
         "along_of": vehicle.along_of_node,
     }
+
+
+def _breakaway(vehicle: VehicleFields) -> Floats:
+    """Return load [N] and travel [m] of each wheel that gives way (w, 2), by the zone of its tread."""
+    rows = np.tile([np.inf, 0.0], (len(vehicle.wheels), 1))
+    zones = list(vehicle.zones.values())
+    if any(zone.breakaway is not None for zone in zones):
+        of_zone = np.array([(zone.breakaway or np.inf, zone.breakaway_travel or 0.0) for zone in zones])
+        on_tread = vehicle.wheel_of_node >= 0
+        rows[vehicle.wheel_of_node[on_tread]] = of_zone[vehicle.zone_of_node[on_tread]]
+    return rows
 
 
 def _core_boxes(vehicle: VehicleFields) -> Floats:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["export_core"]
 
-VERSION = 1
+VERSION = 2
 
 
 def export_core(vehicle: VehicleVariants, path: str | Path) -> None:
@@ -50,16 +50,18 @@ def _of_unit(unit: dict[str, Any]) -> Iterator[str]:
     yield f"inertia {_numbers(np.asarray(unit['inertia']).ravel())}"
     yield f"mass_center_height {_numbers([unit['mass_center_height']])}"
     yield f"offset {_numbers(unit['offset'])}"
-    yield from _rows("wheels", unit["wheels"])
+    yield from _rows("wheels", np.hstack([unit["wheels"], unit["breakaway"]]))
     yield from _rows("boxes", unit["core"])
     yield f"mesh_origin {_numbers(unit['origin'])}"
     mesh = unit["trusses"]
-    yield from _rows("mesh_wheels", mesh["wheels"])
+    endless = np.tile([np.inf, 0.0], (len(mesh["wheels"]), 1))
+    yield from _rows("mesh_wheels", np.hstack([mesh["wheels"], endless]))
     yield f"rate_sensitivity {_numbers([mesh['rate_sensitivity']])}"
     yield f"indentation_length {_numbers([mesh['indentation_length']])}"
     yield f"curves {len(mesh['curves'])}"
     for curve in mesh["curves"]:
-        yield f"{len(curve.deflection)} {_numbers((curve.k_unloading, curve.elastic_recovery))}"
+        numbers = (curve.k_unloading, curve.elastic_recovery, curve.friction_share)
+        yield f"{len(curve.deflection)} {_numbers(numbers)}"
         for point in zip(curve.deflection, curve.slope, strict=True):
             yield _numbers(point)
     yield f"trusses {len(mesh['nodes'])}"

@@ -511,6 +511,7 @@ class Zone(Block, ZoneLaw):
             for key, value in (("blocks", self.blocks), ("core", self.core), ("panels", self.panels[1:])):
                 if value:
                     reject(key, f"must not go with the panel 'tire', got {', '.join(value)}")
+        self._check_tire_numbers()
         if self.y_m is not None and self.y_m[0] < 0.0:
             reject("y_m", f"must be a range of distances >= 0 from the middle plane, got {list(self.y_m)}")
         for key, limits in (("x_m", self.x_m), ("y_m", self.y_m), ("z_m", self.z_m)):
@@ -519,6 +520,15 @@ class Zone(Block, ZoneLaw):
         self._check_law()
         self.require_law()
         return self
+
+    def _check_tire_numbers(self) -> None:
+        tires = "tire" in self.panels
+        for key in ("breakaway_N", "breakaway_travel_m"):
+            value = getattr(self, key)
+            if not tires and value is not None:
+                reject(key, f"must be in a zone of the panel 'tire', got {value:g}")
+        if tires and self.friction_share is not None:
+            reject("friction_share", f"must not go with the panel 'tire', got {self.friction_share:g}")
 
     def _check_law(self) -> None:
         segments = {

@@ -19,7 +19,14 @@ __all__ = ["KNEE", "LAW_QUANTITIES", "OPTIONAL", "TRUSS_LAW", "Zone", "positive"
 KNEE = ("k_initial", "knee", "k_hardening", "f_max")
 """The numbers of the paper's loading envelope (Fig. 3)."""
 
-OPTIONAL = ("elastic_recovery", "tail_depth", "tail_slope")
+OPTIONAL = (
+    "elastic_recovery",
+    "tail_depth",
+    "tail_slope",
+    "friction_share",
+    "breakaway",
+    "breakaway_travel",
+)
 """Numbers that a law may have in addition."""
 
 TRUSS_LAW = ("k_initial", "knee", "k_hardening", "f_max", "k_unloading")
@@ -34,6 +41,9 @@ LAW_QUANTITIES = {
     "elastic_recovery": "length",
     "tail_depth": "length",
     "tail_slope": "pressure per length",
+    "friction_share": "number",
+    "breakaway": "force",
+    "breakaway_travel": "length",
 }
 """Number of a zone's law -> its quantity, as :func:`birm3d.units.si` has it."""
 
@@ -64,6 +74,12 @@ class Zone(Mapping[str, Any]):
     tail_depth, tail_slope
         From this deflection on [m] the envelope is steeper by this [N/m per m^2], as what has been crushed is
         packed together. ``None``: no tail.
+    friction_share
+        Share in [0, 1] of the barrier's friction that reaches the vehicle. A front that folds leaves its
+        parts where they touch, and its folds carry little across. ``None``: all of it, as treads have.
+    breakaway, breakaway_travel
+        Of a zone of tyres: load on the ground [N] at which springs and hangers of a wheel give way. The body
+        then comes down by the travel [m] before the wheel carries it again. ``None``: they never give way.
     """
 
     k_initial: float | None = None
@@ -75,6 +91,9 @@ class Zone(Mapping[str, Any]):
     elastic_recovery: float | None = None
     tail_depth: float | None = None
     tail_slope: float | None = None
+    friction_share: float | None = None
+    breakaway: float | None = None
+    breakaway_travel: float | None = None
 
     def __post_init__(self) -> None:
         if self.envelope is None:
@@ -89,7 +108,16 @@ class Zone(Mapping[str, Any]):
         if (self.tail_depth is None) != (self.tail_slope is None):
             given, other = ("tail_slope", "depth") if self.tail_depth is None else ("tail_depth", "slope")
             raise ValueError(f"tail_{other} must be given beside {given}, got None")
+        self._check_breakaway()
         _ = self.curve
+
+    def _check_breakaway(self) -> None:
+        for name, other in (("breakaway", "breakaway_travel"), ("breakaway_travel", "breakaway")):
+            value = getattr(self, name)
+            if value is not None:
+                positive(name, value)
+                if getattr(self, other) is None:
+                    raise ValueError(f"{other} must be given beside {name}, got None")
 
     def __getitem__(self, name: str) -> Any:
         if name not in self._names:
@@ -112,6 +140,10 @@ class Zone(Mapping[str, Any]):
         given = {name: getattr(self, name) for name in OPTIONAL}
         return {name: value for name, value in given.items() if value is not None}
 
+    @property
+    def _of_curve(self) -> dict[str, float]:
+        return {name: value for name, value in self._optional.items() if not name.startswith("breakaway")}
+
     @cached_property
     def curve(self) -> _core.TrussCurve:
         """The law of 1 m^2 for the core."""
@@ -120,18 +152,18 @@ class Zone(Mapping[str, Any]):
             if points.ndim != 2 or points.shape[1] != 2:
                 raise ValueError(f"envelope must have shape (n, 2), got {points.shape}")
             return _core.point_curve(
-                points[:, 0].tolist(), points[:, 1].tolist(), self.k_unloading, **self._optional
+                points[:, 0].tolist(), points[:, 1].tolist(), self.k_unloading, **self._of_curve
             )
         numbers = {name: getattr(self, name) for name in KNEE}
         for name, value in numbers.items():
             if value is None:
                 raise ValueError(f"{name} must be given where there is no envelope, got None")
-        return _core.knee_curve(**numbers, k_unloading=self.k_unloading, **self._optional)
+        return _core.knee_curve(**numbers, k_unloading=self.k_unloading, **self._of_curve)
 
     def scaled(self, factor: float, stretch: float = 1.0) -> Zone:
         """Return the zone with its stresses times a factor > 0 and its deflections times a stretch > 0.
 
-        Slopes go with the factor over the stretch.
+        Slopes go with the factor over the stretch. Friction and breakaway loads stay as they are.
         """
         factor, stretch = positive("scale", factor), positive("stretch", stretch)
         slopes = ("k_initial", "k_hardening", "k_unloading", "tail_slope")

@@ -27,6 +27,9 @@ _KEYS = {
     "elastic_recovery_m": "elastic_recovery",
     "tail_depth_m": "tail_depth",
     "tail_slope_Pa_per_m": "tail_slope",
+    "friction_share": "friction_share",
+    "breakaway_N": "breakaway",
+    "breakaway_travel_m": "breakaway_travel",
 }
 
 
@@ -46,6 +49,9 @@ class ZoneLaw(Strict):
     elastic_recovery_m: Positive | None = None
     tail_depth_m: Positive | None = None
     tail_slope_Pa_per_m: NonNegative | None = None  # noqa: N815
+    friction_share: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
+    breakaway_N: Positive | None = None  # noqa: N815
+    breakaway_travel_m: Positive | None = None
 
     @property
     def law(self) -> Zone:

@@ -12,21 +12,21 @@ using namespace birm3d;
 namespace {
 
 const std::string block =
-    "birm3d-vehicle 1\n"
+    "birm3d-vehicle 2\n"
     "units 1\n"
     "mass 0x1.f4p+9\n"
     "inertia 0x1p+9 0x0p+0 0x0p+0 0x0p+0 0x1p+9 0x0p+0 0x0p+0 0x0p+0 0x1p+9\n"
     "mass_center_height 0x1p-1\n"
     "offset 0x0p+0 0x0p+0 0x0p+0\n"
     "wheels 1\n"
-    "0x1p+0 -0x1p-1 -0x1.999999999999ap-3 0x1.3333333333333p-2\n"
+    "0x1p+0 -0x1p-1 -0x1.999999999999ap-3 0x1.3333333333333p-2 0x1p+13 0x1p-1\n"
     "boxes 0\n"
     "mesh_origin 0x1p+0 0x0p+0 0x0p+0\n"
     "mesh_wheels 0\n"
     "rate_sensitivity 0x0p+0\n"
     "indentation_length 0x0p+0\n"
     "curves 1\n"
-    "2 0x1p+22 inf\n"
+    "2 0x1p+22 inf 0x1p-2\n"
     "0x0p+0 0x1p+20\n"
     "0x1p-3 0x1p+21\n"
     "trusses 2\n"
@@ -61,6 +61,8 @@ TEST("numbers are read to the bit") {
     const Unit& unit = vehicle.units[0];
     CHECK(unit.body.mass == 1000.0 && unit.body.inertia(1, 1) == 512.0);
     CHECK(unit.wheels[0].center == Vec3(1.0, -0.5, -0.2) && unit.wheels[0].radius == 0.3);
+    CHECK(unit.wheels[0].breakaway == 8192.0 && unit.wheels[0].travel == 0.5);
+    CHECK(unit.trusses.friction_share[0][1] == 0.25);
     CHECK(unit.mass_center_height == 0.5);
     CHECK(unit.trusses.count == 2);
     CHECK(unit.trusses.node(0).x() == 1.0);  // 2 m, seen from 1 m
@@ -82,7 +84,7 @@ TEST("what is wrong is named by its line") {
     CHECK(names(refusal(with("0x1.f4p+9", "0x1.8q+9")), "line 3"));
     CHECK(names(refusal(with("0x1.f4p+9", "0x1.123456789abcdefp+9")), "line 3"));
     CHECK(names(refusal(with("0x1.f4p+9", "nan")), "line 3"));
-    CHECK(names(refusal(with("birm3d-vehicle 1", "birm3d-vehicle 2")), "version 1"));
+    CHECK(names(refusal(with("birm3d-vehicle 2", "birm3d-vehicle 1")), "version 2"));
     CHECK(names(refusal(with("birm3d-vehicle", "vehicle")), "line 1"));
     CHECK(names(refusal(with("trusses 2", "trusses 3")), "line 21"));
     CHECK(names(refusal(with("trusses 2", "trusses -1")), ">= 0"));

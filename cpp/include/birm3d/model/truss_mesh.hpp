@@ -132,12 +132,13 @@ struct TrussMesh {
     SharedColumn<TrussBlock> block;   // (blocks)
     SharedColumn<Hinge> hinge;        // (blocks * hinges), a block's hinges together
 
-    SharedColumn<double> pushable;           // (blocks) trusses that have a stiffness
-    SharedColumn<StiffnessMoments> moments;  // (blocks) of all of them
-    SharedColumn<Box> node_box;              // (blocks) around the uncrushed nodes
-    SharedColumn<Box> anchor_box;            // (blocks)
-    SharedColumn<TireNode> tire_nodes;       // (count - shell)
-    Box anchors;                             // around those of the skin
+    SharedColumn<double> pushable;             // (blocks) trusses that have a stiffness
+    SharedColumn<StiffnessMoments> moments;    // (blocks) of all of them
+    SharedColumn<Box> node_box;                // (blocks) around the uncrushed nodes
+    SharedColumn<Box> anchor_box;              // (blocks)
+    SharedColumn<TireNode> tire_nodes;         // (count - shell)
+    SharedColumn<BlockColumn> friction_share;  // (blocks), see TrussCurve; empty where all have the whole
+    Box anchors;                               // around those of the skin
     std::array<Panel, panels> panel;
     // (blocks) bit by bit: which panels have nodes there? The bit after them: treads.
     SharedColumn<std::uint8_t> panels_of;
@@ -170,6 +171,7 @@ struct TrussMesh {
 
   private:
     void fill_block(const TrussInput& input, std::size_t b);
+    void find_friction_shares(const TrussInput& input);
     void find_panels(const TrussInput& input);
     void find_tread(const TrussInput& input, const std::vector<Wheel>& wheels);
     void pad(const TrussInput& input, std::size_t b);

@@ -4,19 +4,19 @@
 // the same bits as the one in Python. Words are separated by spaces or line ends. A number is hexadecimal as C's %a writes it
 // (0x1.8p+3), inf, or a whole number: no rounding and no locale come between. Lengths are in m; n rows follow each count.
 //
-//   birm3d-vehicle 1
+//   birm3d-vehicle 2
 //   units u
 //     mass m                      kg
 //     inertia                     nine numbers, about the mass centre, body axes (kg m^2)
 //     mass_center_height h        above the ground at rest
 //     offset x y z                of the mass centre from the vehicle's reference point; z is 0
-//     wheels n                    rows: centre (3), radius; body axes
+//     wheels n                    rows: centre (3), radius, breakaway load (N), travel; body axes
 //     boxes n                     rows: centre (3), half edges (3) of the rigid body's boxes; body axes
 //     mesh_origin x y z           of the body axes, in the axes of the mesh
 //     mesh_wheels n               rows as above, in the axes of the mesh
 //     rate_sensitivity c          s/m
 //     indentation_length l
-//     curves n                    each: points k_unloading recovery, then rows: deflection, slope from there on
+//     curves n                    each: points k_unloading recovery friction_share, then rows: deflection, slope from there on
 //     trusses n                   rows: node (3), anchor (3), curve, scale, wheel or -1, skin node or -1 (see TrussInput)
 //   joints j
 //     rows: fifth_wheel or welded, leading unit, trailing unit, place on each (3 + 3), roll limit (rad)

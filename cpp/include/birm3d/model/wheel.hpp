@@ -1,6 +1,9 @@
 // A wheel of a unit.
 #pragma once
 
+#include <cstdint>
+#include <limits>
+
 #include "birm3d/base/types.hpp"
 
 namespace birm3d {
@@ -9,6 +12,17 @@ namespace birm3d {
 struct Wheel {
     Vec3 center = Vec3::Zero();  // body axes (m)
     double radius = 0.0;         // m
+    // Load on the ground at which springs and hangers give way (N). The wheel then carries nothing until the body has
+    // come down by `travel` (m).
+    double breakaway = std::numeric_limits<double>::infinity();
+    double travel = 0.0;
 };
+
+// Wheels of a unit, one bit each: bit i is wheel i.
+using WheelSet = std::uint64_t;
+inline constexpr std::size_t most_breakaway_wheels = 64;
+inline bool has_wheel(WheelSet wheels, std::size_t i) {
+    return i < most_breakaway_wheels && ((wheels >> i) & 1U) != 0;
+}
 
 }  // namespace birm3d

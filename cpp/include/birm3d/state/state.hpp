@@ -20,6 +20,7 @@ struct UnitMotion {
     SkinForces skin;                         // at this instant
     std::vector<ContactLoad> contact_loads;  // in the order of the obstacles
     std::vector<IndentedPanels> indented;    // the same
+    WheelSet given_way = 0;                  // wheels that were loaded beyond what they carry
 };
 
 struct UnitState : UnitMotion {
@@ -31,6 +32,7 @@ struct UnitState : UnitMotion {
         skin = {};
         contact_loads.clear();
         indented.clear();
+        given_way = 0;
         trusses.reset(unit.trusses);
     }
 
@@ -82,6 +84,7 @@ struct StepStatistics {
     double free_time = 0.0;           // their sum (s)
     std::uint64_t body_steps = 0;     // steps in which the rigid body stood against the barrier or the ground
     std::uint64_t wheels_on_ground = 0;  // wheels that carried load, summed over the steps
+    std::uint64_t wheels_given_way = 0;  // wheels that were loaded beyond what they carry
 };
 
 // How far a run has come.
@@ -128,6 +131,7 @@ struct State : Progress {
         for (const UnitState& unit : units) {
             add_body(unit.body);
             unit.trusses.add_to(hash);
+            if (unit.given_way != 0) hash.add(static_cast<double>(unit.given_way));
             for (const IndentedPanels& indented : unit.indented)
                 hash.add(Vec3(static_cast<double>(indented.obstacle), indented.panels, indented.passed));
         }
