@@ -1110,6 +1110,7 @@ class Unit:
     def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], trusses: TrussMesh, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wheels: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], breakaway: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_center_height: typing.SupportsFloat | typing.SupportsIndex, offset: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], core: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
         """
         mass: kg. inertia: shape (3, 3), kg m^2. wheels: shape (w, 4), centre and radius, m.
+        breakaway: shape (w, 2), load at which each wheel gives way, N, and how far it is then pushed up, m.
         origin: shape (3,), m, of the body axes in those of the trusses; copies share what does not move.
         mass_center_height: m above the ground. offset: shape (3,), m, of the mass centre from the vehicle's reference point along the ground.
         core: shape (k, 6), middles and half edges of the boxes that the rigid body fills, body axes, m.

@@ -60,7 +60,7 @@ HASHES = {
     "free-standing": "e4326bbc232b07ad",
     "minivan on its side": "91132ed7894016f0",
     "finite-element car, wall": "a489be2e82d272ae",
-    "finite-element truck, wall": "04c20e9ccc07e2ac",
+    "finite-element truck, wall": "9ff13b851af5cf1d",
 }
 
 

@@ -250,7 +250,8 @@ OpenRadioss on a generic truck of 6,810 kg: a finite-element code's answer for a
 The preset has another mass, height and length than this truck, and is not meant to be it."""
 
 LEFT_OUT = """Fitted to the four others, from the same start. Only the wall at 25 deg tells of the tyres,
-and only posts of the dents. Starts, and depths of the envelopes, were chosen with all runs in view: these
+and only posts of the dents. The fits were made before front wheels gave way and the front passed on a part
+of the friction; travel and force hardly depend on these. Starts, and depths of the envelopes, were chosen with all runs in view: these
 rows are no blind predictions."""
 
 PARTS = """The vehicle is one rigid body. In the runs the engine stops in the barrier while the frame goes on,
@@ -266,7 +267,8 @@ READING = """- **Engine.** The momentum that it lacks is taken from it in 5 to 1
   springs and hangers give way, and folds of the front stay where they touch the wall. A rigid body on rigid
   wheels pitches by 1 to 4 degrees there: either of front wheels and friction holds its nose up. So the file
   is given what lets it down, the same in all rows of this page. A front wheel gives way at 60 kN, 5.5 times
-  its load at rest, until the frame lies on the ground: chosen by hand, 30 to 70 kN differ by 1 degree. The
+  its load at rest: chosen by hand, 30 to 70 kN differ by 1 degree. It is then pushed up until the frame lies
+  on the ground, further at its place by as much as the axle is pushed back in the runs. The
   front passes on 0.15 of the friction: the runs' impulse upwards is in the mean 3 % of the forward one,
   where the coefficient is 20 %.
 - **Posts at the end of a bumper.** The outer two of three posts overlap it by 85 mm, and bend it away in the
