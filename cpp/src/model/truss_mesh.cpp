@@ -169,28 +169,13 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
     anchors = Box::around(skin, [&](std::size_t i) { return input.anchor[input_index[i]]; });
     block.fill().resize(blocks);
     hinge.fill().resize(blocks * hinges);
+    if (std::any_of(input.curve.begin(), input.curve.end(),
+                    [](const TrussCurve& curve) { return curve.friction_share != 1.0; }))
+        friction_share.fill().resize(blocks);
     for (std::size_t b = 0; b < blocks; ++b)
         fill_block(input, b);
-    find_friction_shares(input);
     find_panels(input);
     find_tread(input, wheels);
-}
-
-void TrussMesh::find_friction_shares(const TrussInput& input) {
-    const auto share = [&](std::size_t truss) {
-        return input.curve[input.curve_of[input_index[truss]]].friction_share;
-    };
-    bool any = false;
-    for (std::size_t truss = 0; truss < count; ++truss)
-        any = any || share(truss) != 1.0;
-    if (!any) return;
-    friction_share.fill().resize(blocks);
-    for (std::size_t b = 0; b < blocks; ++b) {
-        BlockColumn& to = friction_share.fill()[b];
-        to.fill(1.0);
-        for (std::size_t i = 0; i < nodes_in(b); ++i)
-            to[i] = share(first[b] + i);
-    }
 }
 
 void TrussMesh::find_tread(const TrussInput& input, const std::vector<Wheel>& wheels) {
@@ -294,6 +279,7 @@ void TrussMesh::fill_slot(const TrussInput& input, std::size_t source, std::size
     to.k_unloading[i] = scale * curve.k_unloading;
     to.compliance[i] = to.k_unloading[i] > 0.0 ? 1.0 / to.k_unloading[i] : 0.0;
     to.per_recovery[i] = 1.0 / curve.recovery;
+    if (!friction_share.empty()) friction_share.fill()[b][i] = curve.friction_share;
     double slope = 0.0;
     for (std::size_t j = 0; j < hinges; ++j) {
         Hinge& h = hinge.fill()[b * hinges + j];

@@ -50,12 +50,12 @@ def _of_unit(unit: dict[str, Any]) -> Iterator[str]:
     yield f"inertia {_numbers(np.asarray(unit['inertia']).ravel())}"
     yield f"mass_center_height {_numbers([unit['mass_center_height']])}"
     yield f"offset {_numbers(unit['offset'])}"
-    yield from _rows("wheels", np.hstack([unit["wheels"], unit["breakaway"]]))
+    yield from _rows("wheels", np.hstack([unit["wheels"], unit["breakaway"]]).tolist())
     yield from _rows("boxes", unit["core"])
     yield f"mesh_origin {_numbers(unit['origin'])}"
     mesh = unit["trusses"]
     endless = np.tile([np.inf, 0.0], (len(mesh["wheels"]), 1))
-    yield from _rows("mesh_wheels", np.hstack([mesh["wheels"], endless]))
+    yield from _rows("mesh_wheels", np.hstack([mesh["wheels"], endless]).tolist())
     yield f"rate_sensitivity {_numbers([mesh['rate_sensitivity']])}"
     yield f"indentation_length {_numbers([mesh['indentation_length']])}"
     yield f"curves {len(mesh['curves'])}"

@@ -171,7 +171,6 @@ struct TrussMesh {
 
   private:
     void fill_block(const TrussInput& input, std::size_t b);
-    void find_friction_shares(const TrussInput& input);
     void find_panels(const TrussInput& input);
     void find_tread(const TrussInput& input, const std::vector<Wheel>& wheels);
     void pad(const TrussInput& input, std::size_t b);
