@@ -103,6 +103,7 @@ def _values(name: str, values: Iterable[Any]) -> list[Any]:
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise ValueError(f"{name} must be a list of values, got {values!r}")
     wanted = list(itertools.islice(values, MOST_RUNS + 1))  # an endless one ends too
+    check_runs(name, len(wanted))  # before each of them is read
     warn_if_any_unusual(name, wanted)
     listed = [value if type(value) is float else in_si(name, value) for value in wanted]
     if not listed:
