@@ -91,6 +91,11 @@ class Barrier(BarrierMakers):
         return self.has_posts
 
     @property
+    def cuts_skin(self) -> bool:
+        """Whether it has sharp upright edges that could be rounded."""
+        return False
+
+    @property
     def element_names(self) -> tuple[str, ...]:
         """What the elements are called in tables and plots, in their order."""
         return tuple(f"element {i + 1}" for i in range(len(self.elements())))

@@ -102,6 +102,11 @@ class RigidWall(Barrier):
         return self.edge_radius > 0.0
 
     @property
+    def cuts_skin(self) -> bool:
+        """Whether it ends, and its edges are sharp."""
+        return math.isfinite(self.width) and not self.draws_in_skin
+
+    @property
     def element_names(self) -> tuple[str, ...]:
         """``wall``, or its segments from low y to high y."""
         return numbered("wall", "segment", self.segments)

@@ -43,4 +43,9 @@ def core_lines(result: RunAnalysis) -> list[str]:
     ]
     behind = f" behind bottomed-out trusses ({', '.join(zones)})" if zones else " between trusses"
     steps = result.statistics.body_steps
-    return [f"  the rigid core was met{behind} in {steps:,} steps: loads then are those of rigid bodies"]
+    lines = [f"  the rigid core was met{behind} in {steps:,} steps: loads then are those of rigid bodies"]
+    if result.scene.barrier is not None and result.scene.barrier.cuts_skin:
+        lines.append(
+            "  sharp edges of a wall cut the skin; edge_radius, as 0.05 m, lets them draw it in instead"
+        )
+    return lines
