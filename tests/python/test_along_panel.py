@@ -11,6 +11,7 @@ from birm3d.vehicle.vehicle_file import VehicleFileError
 
 FILE = """
 extends = "passenger_car"
+scatter = []
 [zone.fender]
 panels = ["{panel}"]
 blocks = ["body"]
