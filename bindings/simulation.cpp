@@ -90,7 +90,7 @@ void register_simulation(py::module_& m) {
         .def_readonly("body_steps", &StepStatistics::body_steps,
                       "in which the rigid body stood against the barrier or the ground")
         .def_readonly("wheels_given_way", &StepStatistics::wheels_given_way,
-                      "wheels that were loaded beyond what they carry, and carry nothing since")
+                      "wheels that were loaded beyond what they carry, and have given way")
         .def_readonly("wheels_on_ground", &StepStatistics::wheels_on_ground,
                       "wheels that carried load, summed over the steps")
         .def_readonly("deepest_point", &StepStatistics::deepest_point,

@@ -1002,7 +1002,7 @@ class StepStatistics:
     @property
     def wheels_given_way(self) -> int:
         """
-        wheels that were loaded beyond what they carry, and carry nothing since
+        wheels that were loaded beyond what they carry, and have given way
         """
     @property
     def wheels_on_ground(self) -> int:

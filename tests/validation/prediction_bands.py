@@ -210,16 +210,16 @@ the tests (70 to 90 % of samples of this size), and is not wider than the tests'
 The peak is that of the compartment's deceleration, which one channel has measured to 10 %; the model has that
 of the mass centre. The mean ratio of the other tests stands between them. Shares of the small-overlap tests
 are those of a normal distribution by their quartiles, with the scatter of the presets' files, friction and
-tyres included; those tests had no part in it.
+tyres included. The scatter was not fitted to those tests, but two numbers of the model were: see
+[the page of all tests](README.md).
 
 | quantity | tests | inside the 80 % band | width of the band, ln(high / low) | of the tests | 70 to 90 % |
 | --- | --- | --- | --- | --- | --- |
 """
 NOTES = """
-The small overlap is covered along the vehicle from 60 ms on. Before, tests scatter more than what is drawn:
-where bumpers end is no drawn quantity. Across the vehicle it is covered until 80 ms. After that the presets
-are not pushed off far enough, and such bands should be read as those of the quantities drawn, not as those of
-the class.
+The small overlap is covered along the vehicle from 60 ms on. Before 60 ms the tests scatter more, as the width
+of bumpers is not varied. Across the vehicle only 60 ms is covered. From 80 ms on the presets are pushed aside
+too little.
 
 ## Factors that meet the tests
 

@@ -17,23 +17,22 @@ constexpr double rounded = 0.05;
 // Sine of the angle between a post's axis and a panel beyond which it does not begin to indent it, or ceases to.
 constexpr double most_tilted = 0.5, overturned = 0.95;
 
-// Cosine of the angle between a panel and the face of a wall from which on the wall's edge indents it, or below which it
-// ceases to. A panel that slides along the end of the wall meets the edge as it meets any surface.
+// An edge begins to indent a panel if the cosine of its angle to the wall's face exceeds the first, and stops below the second.
+// A panel that slides along the end of the wall meets the edge as it meets any surface.
 constexpr double least_facing = 0.7, turned_away = 0.3;
 
-// Force of the skin on a flank, relative to that on a frictionless wedge. Both are chosen by hand. Of a post, between 0.1 and
-// 0.4: with less, a pole 0.35 m off the middle gives less sideways than finite elements show; with more, posts at the end of
-// a bumper are a wedge. Of the open flank of a wall's edge, between 1.4 and 2: cars at 25 % overlap are pushed off as in 150
-// tests. What an edge has beside it on the wall's side is no flank but the wall's face.
+// Sideways force of the skin on a flank, relative to that on a frictionless wedge. Both are chosen by hand. For a post 0.1 to
+// 0.4 would do: with less, a pole 0.35 m off the middle gives less sideways than finite elements show. With more, posts at the
+// end of a bumper throw it aside. For the open side of an edge 1.4 to 2 would do: cars at 25 % overlap are pushed off as in
+// 150 tests. On the wall's side it is zero: the wall's face holds the skin there.
 constexpr double post_flank = 0.35, open_flank = 1.55;
 
-// `side`: 1 for an open flank of an edge, -1 for what is before its wall, 0 for the flank of a post.
+// `side`: 1 on the open side of an edge, -1 before its wall, 0 on the flank of a post.
 double flank_factor(double side) {
     return (1.0 - std::abs(side)) * post_flank + std::max(side, 0.0) * open_flank;
 }
 
-// Of an edge before a panel that looks at the wall's face: 1 where the edge opens to higher w, -1 where to lower. Edges are
-// square: head-on, `opens` makes 45 degrees with w.
+// 1 if the edge opens to higher w, -1 if to lower. The free quadrant's bisector makes 45 degrees with w head-on.
 double open_side(const Vec3& w, const Placement& stands, double opens) {
     const Vec3 open = stands.direction_from_own(Vec3(std::cos(opens), std::sin(opens), 0.0));
     return std::clamp(std::sqrt(2.0) * w.dot(open), -1.0, 1.0);
@@ -83,7 +82,7 @@ Indentation::Indentation(const Post& post, const Placement& stands, const Panel&
     surface = middle.dot(e) - panel.box.half.dot(e.cwiseAbs());
     tilt = stretch * leaning;
     radius = post.radius;
-    // Only the rounding of an edge touches a panel that ends before the edge's axis: a post.
+    // A panel that ends before the edge's axis meets only its rounding. Then the edge counts as a post.
     const double opens =
         post.opens ? std::max(0.0, 1.0 - 2.0 * off) * open_side(w, stands, *post.opens) : 0.0;
     flank_low = flank_factor(-opens);

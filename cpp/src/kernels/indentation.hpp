@@ -7,10 +7,10 @@
 // s = sqrt(s0^2 + (d / length)^2): beams and panels carry a deep indentation about as far to either side as a shallow one.
 //
 // The sheet beside a post is held by tension and shear. It goes in with the post, straight along e. It is not carried along
-// the panel, so that an indentation stays where it was made. On the post's flank it leans with a factor k. The factor is
-// below one on a post, as the sheet's tension on one flank balances that on the other. It is above one on the open flank of
-// a wall's edge. On the edge's other side the wall's face holds the skin, and the edge takes none of it. Once D has reached a
-// node, the node's depth u follows the velocity v of the post:
+// the panel, so that an indentation stays where it was made. The factor k scales the sideways displacement by the flank: 0.35
+// for a post, as the sheet's tension on one flank balances that on the other; 1.55 on the open side of a wall's edge, by tests.
+// On the edge's other side the wall's face holds the skin. Once D has reached a node, its depth u follows the velocity v of
+// the post:
 //   du = g (1 - ds/dd |w - w*|) dv_e + g k sin(flank) dv_w
 // v_e is that of the post's deepest place at the node's height; v_w is across the post, away from the node. A post whose
 // axis is `off` beyond the panel's edge touches that edge with its flank. What it pushes there goes in by the square of the
@@ -63,7 +63,7 @@ struct Indentation : IndentationNumbers {
     double fastest_growth(const Panel& panel) const;
 };
 
-// Is the post upright enough before the panel to indent it? Has the wall, if the post is its edge, its face to the panel?
+// Is the post upright enough before the panel to indent it? If it is a wall's edge, does the wall's face point at the panel?
 // `indents`: does it do so already?
 bool can_indent(const Post& post, const Placement& stands, const Panel& panel, bool indents);
 

@@ -30,8 +30,7 @@ FOOT = 1.0
 
 # Of the polygon that an arc of 90 degrees is made of.
 _SIDES_OF_QUARTER = 15
-# The mesh behind a rounded face begins this share of the radius behind it: skin that follows an edge does
-# not meet it.
+# The mesh behind the face is set back by this share of the radius. So skin that follows an edge misses it.
 _BEHIND_FACE = 0.03
 
 
@@ -92,10 +91,10 @@ def rounded_outline(depth: float, length: float, radius: float) -> Floats:
 def rounded_block(
     barrier: Barrier, depth: float, length: float, top: float, radius: float
 ) -> list[_core.Element]:
-    """Return a block along the line with rounded upright edges: one element in four parts.
+    """Return a block along the line with rounded upright edges: one element in several parts.
 
     The edges on the traffic's side are posts, which draw in the skin beside them. Between them stands the
-    face, whose ends are no surface. Behind both is a mesh, with chords in place of the arcs that posts fill.
+    face, its ends hidden in the posts. Behind both is a mesh, with chords for the arcs that posts fill.
     """
     heading = math.radians(barrier.heading)
     beside = 0.5 * length - radius

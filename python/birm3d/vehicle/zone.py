@@ -75,8 +75,8 @@ class Zone(Mapping[str, Any]):
         From this deflection on [m] the envelope is steeper by this [N/m per m^2], as what has been crushed is
         packed together. ``None``: no tail.
     friction_share
-        Share in [0, 1] of the barrier's friction that reaches the vehicle. A front that folds leaves its
-        parts where they touch, and its folds carry little across. ``None``: all of it, as treads have.
+        Share in [0, 1] of the barrier's friction that reaches the vehicle. Folded parts stick to the barrier
+        while the vehicle moves on. ``None``: all of it.
     breakaway, breakaway_travel
         Of a zone of tyres: load on the ground [N] at which springs and hangers of a wheel give way. The body
         then comes down by the travel [m] before the wheel carries it again. ``None``: they never give way.

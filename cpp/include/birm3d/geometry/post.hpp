@@ -17,8 +17,8 @@ struct Post {
 
     double radius;  // m
     double height;  // m
-    // Of a post that is the rounded upright edge of a wall: direction of the open space about it, from its own x axis (rad).
-    // The wall fills the opposite quadrant.
+    // For the rounded upright edge of a wall: angle of the free quadrant's bisector from the own x axis (rad, counter-clockwise
+    // seen from above). The wall fills the opposite quadrant.
     std::optional<double> opens;
 };
 

@@ -34,8 +34,8 @@ struct TrussCurve {
     std::vector<double> slope;       // slope from there on; the last one extends to infinity
     double k_unloading = 0.0;        // with a recovery: the least one
     double recovery = std::numeric_limits<double>::infinity();  // m
-    // Of the barrier's friction, in [0, 1]. A front that folds lets its nodes stay where they touch, which a node on a
-    // rigid body can not: less than 1 says how much of the friction reaches the body.
+    // Of the barrier's friction, in [0, 1]: folded parts stick to the barrier while the vehicle moves on, and only this
+    // share reaches the rigid body.
     double friction_share = 1.0;
 };
 
