@@ -251,8 +251,8 @@ The preset has another mass, height and length than this truck, and is not meant
 
 LEFT_OUT = """Fitted to the four others, from the same start. Only the wall at 25 deg tells of the tyres,
 and only posts of the dents. The fits were made before front wheels gave way and the front passed on a part
-of the friction; by these, travel changes by up to 8 % and force by up to 7 %. Starts, and depths of the envelopes, were chosen
-with all runs in view: these rows are no blind predictions."""
+of the friction; by these, travel changes by up to 8 % and force by up to 7 %. Starts, and depths of the
+envelopes, were chosen with all runs in view: these rows are no blind predictions."""
 
 PARTS = """The vehicle is one rigid body. In the runs the engine stops in the barrier while the frame goes on,
 the bed slides on the frame, and the front axle is pushed back under it. From the runs:"""
