@@ -108,9 +108,12 @@ std::size_t Corner::distribute(const Vec3& b) {
 }
 
 void Corner::release() {
+    const Vec3 moved = pushed_displacement();
     std::size_t kept = 0;
-    for (std::size_t k = 0; k < count; ++k)
-        if (face[k].weight > 0.0 || face[k].gap < -tolerance::touching_gap) face[kept++] = face[k];
+    for (std::size_t k = 0; k < count; ++k) {
+        const bool inside = face[k].gap + face[k].gradient.dot(moved) < -tolerance::touching_gap;
+        if (face[k].weight > 0.0 || inside) face[kept++] = face[k];
+    }
     count = kept;
 }
 

@@ -47,7 +47,7 @@ struct Corner {
     // Sets the weights for a truss with the direction b. Returns on how many faces it pushes.
     std::size_t distribute(const Vec3& b);
 
-    // Removes faces on which the truss does not push, unless the node is inside them.
+    // Removes faces on which the truss does not push, unless the node is inside them once it is moved onto the others.
     void release();
 
   private:
