@@ -6,6 +6,7 @@
 #include "contact/contact_loads.hpp"
 #include "contact/nearest_surface.hpp"
 #include "contact/released_nodes.hpp"
+#include "contact/stopping_face.hpp"
 
 namespace birm3d {
 
@@ -94,6 +95,7 @@ void add_friction_and_distribute(const ContactPass& pass, std::size_t at, Contac
 void crush_stopped(const ContactPass& pass, ContactState& state) {
     stop_nodes(pass, state.block, state.sums);
     find_nearest_surface(pass, state.block);
+    stand_on_stopping_faces(pass, state.block);
     crush_on(pass, several_obstacles, state.block, state.sums.several);
     add_friction_and_distribute(pass, several_obstacles, state.block, state.sums);
 }

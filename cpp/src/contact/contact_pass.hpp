@@ -46,12 +46,21 @@ struct ContactPass {
     }
 };
 
+// A face that a node met within the step, as a plane in body axes.
+struct MetFace {
+    std::size_t near = 0;        // index in ContactPass::near of its obstacle
+    Vec3 normal = Vec3::Zero();  // outward; zero: no face
+    double gap = 0.0;            // of the node's place at the start of the step (m)
+};
+
 // A released node that another surface stopped on its way.
 struct StoppedNode {
     std::size_t node_index;
     Vec3 place;
     double deflection, residual, peak_deflection, force;  // of its truss there
     double work;                                          // on its truss up to the release (J)
+    MetFace released_by = {}, stopped_by = {};            // not set where an indentation has vanished
+    bool stays = false;  // has it been on the second since the start of the step?
 };
 
 // The block of nodes that is being computed. One object serves all blocks; begin() resets it.

@@ -235,6 +235,15 @@ void resolve_corner_contacts(const ContactPass& pass, ContactBlock& block) {
         if (cornered[i] > 0.0) resolve_corner(pass, i, block);
 }
 
+void resolve_known_corner(const ContactPass& pass, Corner corner, ContactBlock& block) {
+    const TrussBlockState& nodes = *block.start;
+    const std::size_t i = corner.node_index;
+    const Vec3 to = Vec3(nodes.x[i], nodes.y[i], nodes.z[i]) + corner.displacement();
+    const Vec3 arm = anchor_of(pass.mesh.block[block.index], i) - to;
+    if (arm.norm() > tolerance::truss_length && corner.distribute(arm.normalized()) > 0)
+        place_in_corner(pass, corner, to, block);
+}
+
 void distribute_corner_forces(const ContactPass& pass, ContactBlock& block, ContactSums& sums) {
     std::vector<double> force;
     for (const Corner& corner : block.corners) {

@@ -39,7 +39,7 @@ At nearest_of_all(const Scene& scene, std::span<const NearObstacle> near,
 
 std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const NearObstacle> near,
                                         std::span<const std::size_t> reachable, const Vec3& place,
-                                        std::size_t nearest_now, const Vec3& normal_now) {
+                                        std::size_t nearest_now, const Vec3& normal_now, bool pushes) {
     const auto at_fraction = [&](double fraction) {
         return [&place, fraction](const NearObstacle& obstacle) -> Vec3 {
             return (1.0 - fraction) * obstacle.before.to_own(place) + fraction * obstacle.now.to_own(place);
@@ -86,6 +86,11 @@ std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const Near
             entry.reachable_index, {depth, at.now.direction_from_own(n)}, at.before.direction_from_own(n)};
     if (!(normal.dot(at.now.direction_from_own(n)) > same_surface)) return std::nullopt;
     const Vec3 surface = back - face.nearest.gap * normal;
+    // It has slid over an inner corner. The plane of either face is inside the other one.
+    if (!pushes && face.nearest.gap < -tolerance::touching_gap) {
+        const Vec3 out = (surface - place).normalized();
+        return EnteredFace{face.reachable_index, {-(surface - place).norm(), out}, out};
+    }
     return EnteredFace{face.reachable_index,
                        {normal.dot(place - surface), normal},
                        of.before.direction_from_own(face.nearest.normal)};

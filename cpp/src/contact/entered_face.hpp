@@ -20,9 +20,10 @@ struct EnteredFace {
 
 // Follows the node `place` (body axes, m) through the step to where it is now, inside one of the obstacles
 // `reachable` (indices in `near`). None if the nearest face is right: the node was inside before, or has slid past
-// the end of the face. `nearest_now`: which of the obstacles is nearest now; `normal_now`: its normal (body axes).
+// the end of the face. `nearest_now`: which of the obstacles is nearest now; `normal_now`: its normal (body axes);
+// `pushes`: does the node's truss push?
 std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const NearObstacle> near,
                                         std::span<const std::size_t> reachable, const Vec3& place,
-                                        std::size_t nearest_now, const Vec3& normal_now);
+                                        std::size_t nearest_now, const Vec3& normal_now, bool pushes);
 
 }  // namespace birm3d

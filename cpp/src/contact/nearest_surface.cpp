@@ -195,7 +195,7 @@ bool find_entered_faces(const ContactPass& pass, ContactBlock& block) {
         if (std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<TriangleMesh>(shape)) continue;
         const Vec3 node(block.start->x[i], block.start->y[i], block.start->z[i]);
         const auto entered = entered_face(pass.scene, pass.near, block.reachable, node, block.nearest[i],
-                                          block.contact.normal(i));
+                                          block.contact.normal(i), block.start->force[i] > 0.0);
         if (!entered) continue;
         changed = true;
         block.nearest[i] = entered->reachable_index;

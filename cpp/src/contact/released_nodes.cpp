@@ -5,6 +5,7 @@
 
 #include "base/block_loop.hpp"
 #include "birm3d/base/tolerances.hpp"
+#include "contact/stopping_face.hpp"
 
 namespace birm3d {
 
@@ -115,6 +116,16 @@ double unloading_force(const TrussBlockState& nodes, std::size_t i, double defle
     return std::max(0.0, nodes.unloading[i] * (deflection - nodes.residual[i]));
 }
 
+void set_truss(const StoppedNode& node, const TrussBlockState& end, TrussBlockState& nodes) {
+    const std::size_t i = node.node_index;
+    nodes.unloading[i] = end.unloading[i];
+    nodes.x[i] = node.place.x(), nodes.y[i] = node.place.y(), nodes.z[i] = node.place.z();
+    nodes.deflection[i] = node.deflection;
+    nodes.residual[i] = node.residual;
+    nodes.peak_deflection[i] = node.peak_deflection;
+    nodes.force[i] = node.force;
+}
+
 // Has a surface released the node? Then another one may stop it.
 void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i, ContactBlock& block,
                DistantObstacles& distant) {
@@ -142,6 +153,9 @@ void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i,
     block.stopped.push_back({i, *stop, deflection, next.residual[i], next.peak_deflection[i],
                              unloading_force(next, i, deflection),
                              0.5 * last.force[i] * (at_release - last.deflection[i])});
+    StoppedNode& node = block.stopped.back();
+    node.released_by = {block.reachable[plane != nullptr ? 0 : block.nearest[i]], n, n.dot(was - held)};
+    find_stopping_face(pass, block, (to - held).normalized(), node);
 }
 
 }  // namespace
@@ -204,14 +218,10 @@ void stop_nodes(const ContactPass& pass, ContactBlock& block, ContactSums& sums)
     TrussBlockState& nodes = block.alter();
     nodes.touching = true;
     for (const StoppedNode& node : block.stopped) {
-        const std::size_t i = node.node_index;
-        nodes.unloading[i] = block.end->unloading[i];
-        nodes.x[i] = node.place.x(), nodes.y[i] = node.place.y(), nodes.z[i] = node.place.z();
-        nodes.deflection[i] = node.deflection;
-        nodes.residual[i] = node.residual;
-        nodes.peak_deflection[i] = node.peak_deflection;
-        nodes.force[i] = node.force;
-        sums.several.released_work += node.work;
+        if (!node.stays) {
+            set_truss(node, *block.end, nodes);
+            sums.several.released_work += node.work;
+        }
         for (std::size_t k = 0; k < pass.near.size(); ++k) {
             const auto place = std::lower_bound(block.reachable.begin(), block.reachable.end(), k);
             if ((place == block.reachable.end() || *place != k) && pass.meets(block.index, k) &&
