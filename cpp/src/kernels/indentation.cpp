@@ -23,9 +23,9 @@ constexpr double least_facing = 0.7, turned_away = 0.3;
 
 // Sideways force of the skin on a flank, relative to that on a frictionless wedge. Both are chosen by hand. For a post 0.1 to
 // 0.4 would do: with less, a pole 0.35 m off the middle gives less sideways than finite elements show. With more, posts at the
-// end of a bumper throw it aside. For the open side of an edge 1.4 to 2 would do: cars at 25 % overlap are pushed off as in
+// end of a bumper throw it aside. For the open side of an edge 1.2 to 1.6 would do: cars at 25 % overlap are pushed off as in
 // 150 tests. On the wall's side it is zero: the wall's face holds the skin there.
-constexpr double post_flank = 0.35, open_flank = 1.55;
+constexpr double post_flank = 0.35, open_flank = 1.4;
 
 // `side`: 1 on the open side of an edge, -1 before its wall, 0 on the flank of a post.
 double flank_factor(double side) {

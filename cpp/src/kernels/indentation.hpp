@@ -8,7 +8,7 @@
 //
 // The sheet beside a post is held by tension and shear. It goes in with the post, straight along e. It is not carried along
 // the panel, so that an indentation stays where it was made. The factor k scales the sideways displacement by the flank: 0.35
-// for a post, as the sheet's tension on one flank balances that on the other; 1.55 on the open side of a wall's edge, by tests.
+// for a post, as the sheet's tension on one flank balances that on the other; 1.4 on the open side of a wall's edge, by tests.
 // On the edge's other side the wall's face holds the skin. Once D has reached a node, its depth u follows the velocity v of
 // the post:
 //   du = g (1 - ds/dd |w - w*|) dv_e + g k sin(flank) dv_w
