@@ -217,9 +217,9 @@ tyres included. The scatter was not fitted to those tests, but two numbers of th
 | --- | --- | --- | --- | --- | --- |
 """
 NOTES = """
-The small overlap is covered along the vehicle from 60 to 120 ms; at 150 ms the bands are too wide. Before 60 ms
-the tests scatter more, as the width of bumpers is not varied. Across the vehicle 60 and 80 ms are covered. From
-100 ms on the presets are pushed aside too little.
+The small overlap is covered along the vehicle from 60 to 120 ms; at 150 ms the bands are too wide.
+Before 60 ms the tests scatter more, as the width of bumpers is not varied. Across the vehicle 60 and 80 ms
+are covered. From 100 ms on the presets are pushed aside too little.
 
 ## Factors that meet the tests
 
