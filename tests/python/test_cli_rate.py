@@ -79,3 +79,13 @@ def test_options_beside_a_result_are_refused(command, capsys, tmp_path) -> None:
     point = ["--reference-point", "-1.7,1.2,1.0", "--standard", "ASTM F2656", "--json"]
     assert command("rate", str(result), *point) == 0
     assert json.loads(capsys.readouterr().out)["ratings"][0]["designation"] == "M50-P1"
+
+
+def test_vehicles_of_the_class(command, capsys) -> None:
+    """Probabilities, bands of occupant risk and of design loads from the command line."""
+    assert command("rate", *TRUCK, "--standard", "ASTM F2656", "--occupant-risk", "--draws", "8") == 0
+    out = capsys.readouterr().out
+    assert "ASTM F2656, indicative: probability of each class" in out
+    assert "occupant risk of 8 runs" in out
+    assert command("loads", *TRUCK, "--draws", "8") == 0
+    assert "80 % band over 8 vehicles of the class" in capsys.readouterr().out

@@ -73,7 +73,7 @@ def test_more_draws_change_little() -> None:
 def test_presets_say_how_their_class_scatters(name: str) -> None:
     vehicle = Vehicle.preset(name, mesh_density=0.1)
     scene = Simulation(vehicle, Barrier.jersey(), 20.0, 20.0)
-    found = birm3d.study.predict._columns(scene, 3)
+    found = birm3d.study.predict.drawn_parameters(scene, 3)
     assert {"scatter.front", "scatter.side", "scatter.tires"} <= set(found)
     assert {"vehicle.mass_center_height", "barrier.friction", "settings.mu_tire"} <= set(found)
     for parameter, values in found.items():

@@ -11,6 +11,7 @@ from .occupant import OccupantRisk, occupant_risk
 from .probability import RatingStudy
 from .rate import STANDARDS, rate
 from .rating import Rating
+from .risk_study import RiskStudy
 
 __all__ = [
     "STANDARDS",
@@ -23,6 +24,7 @@ __all__ = [
     "OccupantRisk",
     "Rating",
     "RatingStudy",
+    "RiskStudy",
     "design_load",
     "occupant_risk",
     "rate",

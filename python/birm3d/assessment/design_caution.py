@@ -13,7 +13,7 @@ from ..result.result import Result
 from ..signals.filters import cfc
 from .element_design import peak_filter
 
-__all__ = ["barrier_caution", "merged", "run_cautions"]
+__all__ = ["barrier_caution", "has_blow", "merged", "run_cautions"]
 
 _ONE_BODY = (
     "The vehicle is one rigid body with a crushable skin: engine, frame and cargo do not stop one after the "
@@ -31,6 +31,10 @@ _ALONG = "On {elements} the force along the line is greater than that across it,
 _BLOW = (
     "On {elements} a crush zone is used up and the rigid body strikes, a blow of a few milliseconds. "
     "The peak and the equivalent static force rest on it and are too high, most at short natural periods."
+)
+_TIPS = (
+    "On {elements} the overturning moment exceeds the restoring one: the segment would begin to tip, which "
+    "is not computed."
 )
 _UNDECIDED = "The outcome was not decided when a run ended: later loads on {elements} are missing."
 
@@ -60,9 +64,24 @@ def run_cautions(result: Result) -> dict[str, tuple[str, ...]]:
     loads = [load for load in loads if load.peak_force > least]
     kinds = ((_ACTS, _acts_at_end), (_ALONG, _is_along), (_BLOW, _has_blow))
     found = {text: tuple(load.name for load in loads if holds(load)) for text, holds in kinds}
+    found[_TIPS] = _tipping(result)
     if result.outcome == "undecided":
         found[_UNDECIDED] = ("the barrier",)
     return {text: names for text, names in found.items() if names}
+
+
+def _tipping(result: Result) -> tuple[str, ...]:
+    """Return the segments that would begin to tip."""
+    barrier = result.scene.barrier
+    if barrier is None or barrier.stands_free() is None or not result.scene.settings.gravity > 0.0:
+        return ()
+    names = np.array(barrier.element_names)
+    return tuple(names[result.overturning_ratio.max(axis=0) > 1.0].tolist())
+
+
+def has_blow(result: Result) -> bool:
+    """Return whether the rigid body strikes an element that carries much of the load."""
+    return _BLOW in run_cautions(result)
 
 
 def merged(runs: Iterable[Mapping[str, tuple[str, ...]]]) -> list[str]:

@@ -18,10 +18,12 @@ from ..base.checks import check_runs, number
 from ..result.result import Result
 from ..simulation.parameters import in_si, varied_scene
 from ..simulation.simulation import Simulation
+from ..study.predict import Prediction
 from ..study.table import Study
 from ..unit_check import warn_if_any_unusual
 from ..units import Quantity, si
-from .design_caution import barrier_caution, merged, run_cautions
+from .class_bands import class_draws, governing_scenes, with_bands
+from .design_caution import barrier_caution, has_blow, merged, run_cautions
 from .design_table import DesignLoad, LoadScene
 from .element_design import ElementDesign, System, check_system, element_design, envelope, peak_filter
 
@@ -59,7 +61,7 @@ class _Found(NamedTuple):
 
 @checked
 def design_load(
-    cases: Simulation | Result | Study | Sequence[Simulation | Result],
+    cases: Simulation | Result | Study | Prediction | Sequence[Simulation | Result],
     *,
     natural_period: Quantity | None = None,
     ductility: float = 1.0,
@@ -68,6 +70,7 @@ def design_load(
     impact_angles: Iterable[Quantity] | None = None,
     impact_speeds: Iterable[Quantity] | None = None,
     quantile: float = 1.0,
+    draws: int | None = None,
     executor: Any = None,
     progress: bool | None = None,
 ) -> DesignLoad:
@@ -86,7 +89,8 @@ def design_load(
     ----------
     cases
         A scene, or several at the same barrier, as of several vehicles; results are taken as they are. Of a
-        study, as one of :func:`birm3d.monte_carlo`, all runs that did not fail.
+        study, as one of :func:`birm3d.monte_carlo`, all runs that did not fail. Of a prediction its scene,
+        with as many draws as it has.
     natural_period
         Of an element on its foundation [s]; at least 4 output intervals. ``None``: 0.1 s is assumed, and the
         caution says so.
@@ -100,6 +104,10 @@ def design_load(
     quantile
         Which value of all scenes counts, > 0 and <= 1: 1 is the greatest, 0.9 the one that 90 % of the scenes
         do not exceed. It is that of a scene, which the table names.
+    draws
+        Vehicles of the class that give each value its 80 % band, a power of 2, or 0; each is run in the
+        scenes that govern. They are those of :func:`birm3d.predict`. ``None``: 16, where the vehicle's file
+        says how its class scatters; none of a study, whose runs differ already.
     executor
         Any :class:`concurrent.futures.Executor`, or a ``dask.distributed.Client``; ``None``: a thread for
         each core of the machine.
@@ -126,6 +134,8 @@ def design_load(
     from ..study.executors import ExecutorError
     from ..study.whole_runs import look_at_runs
 
+    if isinstance(cases, Prediction):
+        cases, draws = _predicted(cases, draws)
     listed = _listed(cases)
     if not 0.0 < quantile <= 1.0:
         raise ValueError(f"quantile must be > 0 and <= 1, got {quantile}")
@@ -139,6 +149,8 @@ def design_load(
         for case in listed
         for row in itertools.product(*varied.values())
     ]
+    refusal = "the runs of a study differ already" if isinstance(cases, Study) else ""
+    drawn = class_draws((scene for _, scene in plan), draws, refusal)
     sources = [case if isinstance(case, Result) else scene for case, scene in plan]
     look = partial(_look, normal=-np.asarray(barrier.core.normal), system=system)
     found: dict[int, _Found] = {}
@@ -174,6 +186,17 @@ def design_load(
         load.caution = " ".join(dict.fromkeys([*general, *cautions, *_at_ends(load, varied)]))
         return load
 
+    def banded(load: DesignLoad) -> DesignLoad:
+        if drawn.power is None:
+            load.caution += f" No band: {drawn.reason}."
+            return load
+        scenes = {number: plan[number][1] for number in governing_scenes(load)}
+        rows = partial(_rows_and_blow, normal=load.normal, system=system)
+        bands = with_bands(load.rows, scenes, drawn.power, rows, executor=executor, progress=progress)
+        load.rows, load.draws = bands.rows, drawn.vehicles
+        load.caution = " ".join([load.caution, *bands.cautions])
+        return load
+
     try:
         for run, result in enumerate(case for case, _ in plan):
             if isinstance(result, Result):
@@ -194,7 +217,15 @@ def design_load(
         raise RuntimeError(f"the executor died ({type(cause).__name__}: {cause})") from cause
     if not found:
         raise ValueError(f"cases must have a scene that can be run, got none: {failed[min(failed)]}")
-    return table()
+    return banded(table())
+
+
+def _predicted(prediction: Prediction, draws: int | None) -> tuple[Simulation, int]:
+    """Return the scene of a prediction and the number of its draws."""
+    study = prediction.study
+    if study._scene is None:
+        raise ValueError("cases must be a prediction that knows its scene, got one of a file")
+    return Simulation.from_scene(study._scene), len(study) if draws is None else draws
 
 
 def _listed(cases: Simulation | Result | Study | Sequence[Simulation | Result]) -> list[Simulation | Result]:
@@ -206,8 +237,15 @@ def _listed(cases: Simulation | Result | Study | Sequence[Simulation | Result]) 
 
 
 def _look(result: Result, normal: Floats, system: System) -> _Found:
-    rows = [element_design(load, normal, system) for load in result.element_loads]
-    return _Found(rows, run_cautions(result))
+    return _Found(_rows_of(result, normal, system), run_cautions(result))
+
+
+def _rows_of(result: Result, normal: Floats, system: System) -> list[ElementDesign]:
+    return [element_design(load, normal, system) for load in result.element_loads]
+
+
+def _rows_and_blow(result: Result, normal: Floats, system: System) -> tuple[list[ElementDesign], bool]:
+    return _rows_of(result, normal, system), has_blow(result)
 
 
 def _values(name: str, values: Iterable[Quantity]) -> list[float]:

@@ -88,6 +88,8 @@ class DesignLoad:
         What the numbers rest on, where it matters.
     quantile : float
         Which value of all scenes counts; 1 is the greatest.
+    draws : int
+        Vehicles of the class that the bands of the rows are made of; 0: there are none.
     finished : int
         Scenes that the envelope is made of; fewer than there are after Ctrl-C, or where some failed.
     """
@@ -116,6 +118,7 @@ class DesignLoad:
         self.caution = caution
         self.finished = finished
         self.quantile = quantile
+        self.draws = 0
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -197,12 +200,17 @@ class DesignLoad:
         """How the columns are made, in a few sentences."""
         kind = "elastic" if self.ductility == 1.0 else f"elastic-plastic, ductility {self.ductility:g}"
         damped = f", damping {self.damping:g}" if self.damping > 0.0 else ""
+        band = (
+            f" In square brackets: 80 % band over {self.draws} vehicles of the class in the governing scenes."
+            if self.draws
+            else ""
+        )
         return (
             f"Forces are horizontal, of walls across their line. Peak force: {self.peak_filter}. Force and "
             "moment: greatest 50-ms means; height is that of the 50-ms force above the element's foot, where "
             "the moment is taken; direction that from the barrier's normal. Equivalent static force, at this "
             f"height and in this direction: system with one degree of freedom, {kind}, natural period "
-            f"{self.natural_period:g} s{damped}, unfiltered load."
+            f"{self.natural_period:g} s{damped}, unfiltered load.{band}"
         )
 
     def _head(self) -> tuple[str, ...]:
@@ -225,7 +233,7 @@ class DesignLoad:
                 self._cell(row, "impulse"),
                 self._cell(row, "peak_force"),
                 self._cell(row, "force_50ms"),
-                f"{row.height:.2f}",
+                f"{row.height:.2f}{_band(row, 'height', 1.0)}",
                 f"{round(row.direction)}",
                 self._cell(row, "moment"),
                 self._cell(row, "equivalent_static_force"),
@@ -240,7 +248,7 @@ class DesignLoad:
         value = getattr(row, name) / 1e3
         if abs(value) < _SHOWN:
             return "0"
-        text = f"{value:,.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
+        text = _kilo(value) + _band(row, name, 1e3)
         return f"{text} ({row.scene[name]})" if len(self.scenes) > 1 and name in row.scene else text
 
     def _legend(self) -> list[str]:
@@ -313,6 +321,10 @@ class DesignLoad:
             record: dict[str, Any] = {"element": row.name}
             record.update((name, getattr(row, name)) for name in _NUMBERS)
             record["dynamic_load_factor"] = row.dynamic_load_factor
+            if self.draws:
+                for name in (*ENVELOPED, "height"):
+                    low, high = row.band.get(name, (0.0, 0.0))
+                    record.update({f"{name}_low": low, f"{name}_high": high})
             record.update(zip(_VECTOR, row.impulse_vector.tolist(), strict=True))
             if len(self.scenes) > 1:
                 for name in ENVELOPED:
@@ -330,6 +342,7 @@ class DesignLoad:
             "damping": self.damping,
             "peak_filter": self.peak_filter,
             "quantile": self.quantile,
+            "draws": self.draws,
             "scenes": [scene._asdict() for scene in self.scenes],
             "failed": {str(number): reason for number, reason in self.failed.items()},
             "elements": [row.to_dict() for row in self.rows],
@@ -373,6 +386,19 @@ _UNITS = {
     "direction": "deg",
     "moment": "N m",
 }
+_UNITS |= {f"{name}_{end}": _UNITS[name] for name in (*ENVELOPED, "height") for end in ("low", "high")}
+
+
+def _kilo(value: float) -> str:
+    return f"{value:,.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
+
+
+def _band(row: ElementDesign, name: str, size: float) -> str:
+    """Return the band of a value as text, " [low, high]"; "" where there is none."""
+    if name not in row.band:
+        return ""
+    low, high = (f"{end:.2f}" if name == "height" else _kilo(end / size) for end in row.band[name])
+    return f" [{low} to {high}]"
 
 
 def _pipes(cells: tuple[str, ...] | list[str]) -> str:

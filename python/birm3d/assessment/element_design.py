@@ -83,6 +83,9 @@ class ElementDesign:
         unfiltered load along ``direction`` [N]; it acts at ``height``.
     scene : mapping of str to int
         Each of the values above that are enveloped -> number of the scene that it comes from.
+    band : mapping of str to (float, float)
+        Each enveloped value and the height -> what 10 % of the vehicles of the class stay below, and what
+        10 % exceed. Empty where none were drawn.
     touched : bool
         Whether the scene of ``equivalent_static_force`` loads it.
     case : Result, Scene or None
@@ -100,6 +103,7 @@ class ElementDesign:
     moment: float = 0.0
     equivalent_static_force: float = 0.0
     scene: Mapping[str, int] = field(default_factory=dict)
+    band: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     touched: bool = False
     case: Result | Scene | None = None
 
@@ -129,6 +133,7 @@ class ElementDesign:
             **{name: getattr(self, name) for name in ("moment", "equivalent_static_force")},
             "dynamic_load_factor": self.dynamic_load_factor,
             "scene": dict(self.scene),
+            "band": {name: list(ends) for name, ends in self.band.items()},
         }
 
     def __repr__(self) -> str:

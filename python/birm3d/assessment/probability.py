@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from ..base.arguments import checked
 from ..base.frozen_mapping import FrozenMapping
+from ..study.whole_runs import look_at_study
 from .criteria import Criterion, criteria_html, criteria_text
 from .rating import Rating
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from ..result import Result
     from ..study import Study
 
-__all__ = ["RatingStudy", "rate_study"]
+__all__ = ["RatingStudy", "rate_study", "rating_study"]
 
 _Z = 1.959964  # of the normal distribution, 95 %, two sides
 
@@ -126,15 +127,18 @@ def rate_study(study: Study, rate: Callable[[Result], Rating]) -> RatingStudy:
     ValueError
         If no run can be rated; the message has the reason of the first.
     """
-    ratings: dict[int, Rating] = {}
-    failed: dict[int, str] = dict(study.failed)
-    for row, run in enumerate(study.run.tolist()):
-        if run in failed:
-            continue
-        try:
-            ratings[run] = rate(study.simulation(row).run())
-        except ValueError as error:
-            failed[run] = str(error)
+    ratings, failed = look_at_study(study, rate, title="ratings")
+    return rating_study(ratings, failed)
+
+
+def rating_study(ratings: Mapping[int, Rating], failed: Mapping[int, str]) -> RatingStudy:
+    """Return the ratings of runs as a study.
+
+    Raises
+    ------
+    ValueError
+        If there is none; the message has the reason of the first.
+    """
     if not ratings:
         reason = next(iter(failed.values()), "it has no runs")
         raise ValueError(f"result must be a study with a run that can be rated, got none: {reason}")

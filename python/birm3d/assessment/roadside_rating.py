@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import units
+from ..result.segment_motion import base_corners
 from .criteria import Criterion
 from .limits import FLAIL_LIMITS, THIV_LIMIT_KM_H, graded, severity_class
 from .measures import ExitBox, across_barrier, barrier_extent, check_side_on, exit_box, vehicle_intrusion
@@ -26,6 +27,10 @@ _STILL = 0.5  # m/s into the barrier, of a vehicle that slides along it
 _MOST_ROLL = 75.0  # deg; MASH criterion F
 _LIGHT_KG = 3500.0  # below it vehicles are cars and pickups
 _LEAST_SEVERITY = 0.92  # of the nominal impact severity, MASH
+_TIPS = (
+    "The overturning moment of a segment is {ratio:.1f} times its restoring one: it would begin to tip, "
+    "which is not computed. Containment, widths and occupant risk hold for segments that stay upright."
+)
 _WIDTHS = (0.6, 0.8, 1.0, 1.3, 1.7, 2.1, 2.5, 3.5)
 """Greatest working width, and vehicle intrusion, of the classes 1 to 8 of EN 1317-2 [m]."""
 
@@ -62,7 +67,7 @@ def rate_roadside(
         intrusion,
         judged[0].passed is True,
         (*rows, reported),
-        f"{standard.caution} {MODEL_CAUTION}",
+        " ".join([standard.caution, MODEL_CAUTION, *_tipping(result)]),
         test.vehicle.code,
     )
 
@@ -168,7 +173,18 @@ def _working_width(result: Result) -> float:
     barrier = result.scene.barrier
     assert barrier is not None  # check_side_on has refused None
     extent = barrier_extent(barrier)
-    return extent.rear - extent.front + _deflection(result)
+    rear = extent.rear
+    if barrier.stands_free() is not None:
+        across = np.asarray(barrier._past)[:2]
+        corners = (base_corners(result) - np.asarray(barrier.origin)[:2]) @ across
+        rear = max(rear, float(corners.max()))
+    return rear - extent.front
+
+
+def _tipping(result: Result) -> list[str]:
+    """Return what is to be said where a segment that stands free would begin to tip."""
+    ratio = float(result.metrics.get("max_overturning_ratio", 0.0))
+    return [_TIPS.format(ratio=ratio)] if ratio > 1.0 else []
 
 
 def _deflection(result: Result) -> float:
@@ -291,16 +307,36 @@ def level_rating(standard: RoadsideStandard, level: str, ratings: Sequence[Ratin
         )
     parts = [by_test[name] for name in standard.levels[level]]
     rows = tuple(
-        Criterion(f"test {name}", part.designation.partition(": ")[2], "", "pass", part.passed)
+        Criterion(f"test {name}", _outcome_of(part), "", "pass", part.passed)
         for name, part in zip(standard.levels[level], parts, strict=True)
     )
     good = all(part.passed for part in parts)
+    classes = _worst_classes(parts) if good else ""
     return Rating(
         standard.name,
-        f"{standard.name} {level}: {'pass' if good else 'fail'}",
+        f"{standard.name} {level}: {'pass' if good else 'fail'}{classes}",
         max(part.penetration for part in parts),
         all(part.contained for part in parts),
         rows,
-        parts[0].caution,
+        max((part.caution for part in parts), key=len),  # one with a segment that would tip, if any
         ", ".join(part.vehicle_class for part in parts),
     )
+
+
+def _outcome_of(part: Rating) -> str:
+    """Return what became of a test, and which criteria it failed."""
+    failed = [row.name for row in part.criteria if row.passed is False]
+    verdict = part.designation.partition(": ")[2]
+    return f"{verdict} by {', '.join(failed)}" if failed and verdict == "fail" else verdict
+
+
+def _worst_classes(parts: Sequence[Rating]) -> str:
+    """Return the worst class of each kind over the tests of a level, as the designation has it."""
+    kinds = ("ASI", "working width", "vehicle intrusion")
+    worst = []
+    for kind in kinds:
+        found = [row for part in parts for row in part.criteria if row.name == kind and row.grade]
+        if found:
+            most = max(found, key=lambda row: float(row.value))
+            worst.append(most.grade.replace("class", "severity"))
+    return f"; {', '.join(worst)}" if worst else ""

@@ -144,6 +144,7 @@ def rate_security(
         f"{vehicle.mass:g} +-{vehicle.tolerance:g} kg",
         vehicle.weighs(result.scene.vehicle),
     )
+    became = Criterion("outcome", result.outcome, "", "", None, result.outcome_detail)
     rate = {"levels": _astm, "K": _dos, "code": _code}[standard.style]
     designation, contained, rows = rate(result, standard, vehicle, found)
     failed = [row.name for row in (mass, *rows) if row.passed is False]
@@ -152,7 +153,7 @@ def rate_security(
         f"no rating: {', '.join(failed)}" if failed else designation,
         found.greatest,
         contained,
-        (mass, *rows[:-1], measured, rows[-1]),
+        (mass, *rows[:-1], measured, rows[-1], became),
         f"{standard.caution} {MODEL_CAUTION}",
         vehicle.code,
     )

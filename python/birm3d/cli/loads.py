@@ -35,6 +35,11 @@ __all__ = ["loads"]
 @click.option("--offsets", help="Impact offsets of the envelope: 0,0.3,0.6 or FIRST:LAST:STEP (m).")
 @click.option("--angles", help="Impact angles of the envelope: 60,75,90 or FIRST:LAST:STEP (deg).")
 @click.option("--speeds", help="Impact speeds of the envelope with their unit: 30mph,50mph.")
+@click.option(
+    "--draws",
+    type=int,
+    help="Vehicles of the class that the 80 % bands are made of, a power of 2; 0: no bands.  [default: 16]",
+)
 @click.option("--markdown", is_flag=True, help="The table as Markdown on stdout, to paste into a report.")
 @click.option("--json", "as_json", is_flag=True, help="As JSON on stdout, SI.")
 @click.option("--csv", "csv_path", type=CSV, help="Write the table to this file (.csv), SI.")
@@ -48,6 +53,7 @@ def loads(
     offsets: str | None,
     angles: str | None,
     speeds: str | None,
+    draws: int | None,
     markdown: bool,
     as_json: bool,
     csv_path: Path | None,
@@ -82,6 +88,7 @@ def loads(
             natural_period=period,
             ductility=ductility,
             damping=damping,
+            draws=draws,
             executor=executor,
             **lists,
         )

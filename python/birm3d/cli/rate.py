@@ -12,8 +12,12 @@ import click
 from .scene import scene_options, simulation_of
 
 if TYPE_CHECKING:
-    from ..assessment import OccupantRisk, Rating
+    from ..assessment import OccupantRisk, Rating, RatingStudy, RiskStudy
     from ..result.result import Result
+    from ..study.predict import Prediction
+
+    Ratings = Sequence[Rating | RatingStudy]
+    Risk = OccupantRisk | RiskStudy | None
 
 __all__ = ["STANDARD_HELP", "assessed", "assessments_as_json", "print_assessments", "rate", "result_of"]
 
@@ -32,6 +36,13 @@ STANDARD_HELP = (
     help="Point of the vehicle in place of the standard's: a name, or x,y,z in its file's axes (m).",
 )
 @click.option("--occupant-risk", "with_risk", is_flag=True, help="Also OIV, ridedown, ASI, THIV, PHD, OLC.")
+@click.option(
+    "--draws",
+    type=int,
+    default=0,
+    show_default=True,
+    help="Vehicles of the class, a power of 2 from 8: probabilities and 80 % bands in place of one run.",
+)
 @click.option("--json", "as_json", is_flag=True, help="As JSON on stdout.")
 def rate(
     scene: Path | None,
@@ -39,6 +50,7 @@ def rate(
     vehicle_class: str | None,
     reference_point: str | None,
     with_risk: bool,
+    draws: int,
     as_json: bool,
     **options: Any,
 ) -> None:
@@ -46,7 +58,13 @@ def rate(
 
     Always indicative: a rating needs a test.
     """
-    result = result_of(scene, options)
+    result: Result | Prediction
+    if draws:
+        from ..study.predict import predict
+
+        result = predict(simulation_of(scene, options), draws, progress=True)
+    else:
+        result = result_of(scene, options)
     ratings, risk = assessed(result, standards, with_risk, vehicle_class, reference_point)
     if as_json:
         click.echo(json.dumps(assessments_as_json(ratings, risk), indent=2))
@@ -81,12 +99,12 @@ def loaded(scene: Path, options: dict[str, Any]) -> Result:
 
 
 def assessed(
-    result: Result,
+    result: Result | Prediction,
     standards: Sequence[str],
     with_risk: bool,
     vehicle_class: str | None = None,
     reference_point: str | None = None,
-) -> tuple[list[Rating], OccupantRisk | None]:
+) -> tuple[Ratings, Risk]:
     """Return the ratings of a run by some standards, and its occupant risk where that is asked for."""
     if not standards and not with_risk:
         return [], None
@@ -111,13 +129,13 @@ def _point(text: str) -> str | list[float]:
         raise ValueError(f"--reference-point must be a name or x,y,z in m, got {text!r}") from error
 
 
-def assessments_as_json(ratings: Sequence[Rating], risk: OccupantRisk | None) -> dict[str, Any]:
+def assessments_as_json(ratings: Ratings, risk: Risk) -> dict[str, Any]:
     """Return ratings and occupant risk as plain values."""
     found: dict[str, Any] = {"ratings": [rating.to_dict() for rating in ratings]} if ratings else {}
     return found if risk is None else {**found, "occupant_risk": risk.to_dict()}
 
 
-def print_assessments(ratings: Sequence[Rating], risk: OccupantRisk | None) -> None:
+def print_assessments(ratings: Ratings, risk: Risk) -> None:
     """Print ratings and occupant risk as tables of text."""
     texts = [rating.summary() for rating in ratings]
     if risk is not None:

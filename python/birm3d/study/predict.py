@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy.typing as npt
 from ..base.arguments import checked
 from ..base.checks import shown
 from ..base.frozen_mapping import FrozenMapping
+from ..result.metric_table import METRICS
 from ..result.metrics import METRIC_UNITS
 from ..simulation.parameters import parameter_names, value_of
 from ..simulation.simulation import Simulation
@@ -19,12 +21,33 @@ from ..vehicle.class_scatter import QUANTITIES, joined
 from .runner import run_study
 from .table import Study
 
-__all__ = ["Prediction", "predict"]
+__all__ = ["SHARE", "Prediction", "check_draws", "drawn_parameters", "predict", "quantiles"]
 
 Floats = npt.NDArray[np.float64]
 
+SHARE = 0.8
+"""Of the draws within a band."""
 _MOST = 10
 """Power of two of the greatest number of draws."""
+_BLOW = 2.0
+"""Unfiltered over filtered peak of a force above which a rigid body has struck."""
+_SMALL_OVERLAP = 0.4
+"""Of the vehicle's width, as in the tests that the band was held beside."""
+_NO_ANSWERS = ("balance", "effort")
+"""Kinds of metrics that say how a run was computed."""
+_ROUNDING = 1e-9
+
+_CLASS = (
+    "The bands are those of vehicles of one class in this scene; errors of the model come on top of them."
+)
+_STRUCK = (
+    "In {n} of {all} draws nothing was left to crush at some place and the rigid body struck: unfiltered "
+    "peaks are blows of rigid bodies there. Take the 50-ms means."
+)
+_ACROSS = (
+    "The overlap is small: in tests at 25 % overlap the change of velocity across the vehicle was greater "
+    "than its band from 80 ms on."
+)
 
 # What a quantity of the class is called among the scene's parameters; a factor on it, where it is no law's.
 _PARAMETERS = {
@@ -73,11 +96,37 @@ class Prediction:
         rows = [f"{self.study.vehicle}: {self.share:.0%} bands of {len(self.study)} vehicles of the class"]
         rows += [f"  {share:4.0%} {outcome}" for outcome, share in self.outcomes.items()]
         rows.append(f"  {'metric':<28}{'low':>13}{'median':>13}{'high':>13}")
-        for name in self.median:
-            numbers = "".join(f"{band[name]:>13.5g}" for band in (self.low, self.median, self.high))
-            rows.append(f"  {name:<28}{numbers} {METRIC_UNITS.get(name, '')}".rstrip())
+        for name, *numbers in self._answers():
+            cells = "".join(f"{number:>13.5g}" for number in numbers)
+            rows.append(f"  {name:<28}{cells} {METRIC_UNITS.get(name, '')}".rstrip())
         rows.append(f"  drawn: {', '.join(self.drawn)}; mass, speed and barrier as given")
+        rows.append(f"  Caution: {self.caution}")
         return "\n".join(rows)
+
+    def _answers(self) -> Iterator[tuple[str, float, float, float]]:
+        """Yield the metrics that say what happens, with their bands; rounding errors are 0."""
+        for name in self.median:
+            if METRICS[name].error not in _NO_ANSWERS:
+                low, middle, high = (
+                    0.0 if abs(band[name]) < _ROUNDING else band[name]
+                    for band in (self.low, self.median, self.high)
+                )
+                yield name, low, middle, high
+
+    @property
+    def caution(self) -> str:
+        """What the bands rest on, where it matters in this scene."""
+        told = [_CLASS]
+        metrics = self.study.metrics
+        if {"peak_normal_force", "peak_normal_force_cfc60"} <= metrics.keys():
+            raw, filtered = metrics["peak_normal_force"], metrics["peak_normal_force_cfc60"]
+            struck = int(np.count_nonzero(raw > _BLOW * filtered))
+            if struck:
+                told.append(_STRUCK.format(n=struck, all=len(self.study)))
+        overlap = None if self.study._scene is None else self.study._scene.overlap
+        if overlap is not None and overlap <= _SMALL_OVERLAP:
+            told.append(_ACROSS)
+        return " ".join(told)
 
     __str__ = summary
 
@@ -88,17 +137,23 @@ class Prediction:
             for name in self.median
         }
         outcomes = dict(self.outcomes)
-        return {"share": self.share, "outcomes": outcomes, "metrics": bands, "drawn": list(self.drawn)}
+        return {
+            "share": self.share,
+            "outcomes": outcomes,
+            "metrics": bands,
+            "drawn": list(self.drawn),
+            "caution": self.caution,
+        }
 
     def _repr_html_(self) -> str:
         rows = "".join(
             f"<tr><td>{name}</td>"
-            + "".join(f"<td>{band[name]:.5g}</td>" for band in (self.low, self.median, self.high))
+            + "".join(f"<td>{number:.5g}</td>" for number in numbers)
             + f"<td>{METRIC_UNITS.get(name, '')}</td></tr>"
-            for name in self.median
+            for name, *numbers in self._answers()
         )
         head = "<tr><th>metric</th><th>low</th><th>median</th><th>high</th><th>unit</th></tr>"
-        return f"<table>{head}{rows}</table>"
+        return f"<table>{head}{rows}</table><div>{escape(self.caution)}</div>"
 
     def __repr__(self) -> str:
         return f"Prediction({len(self.study)} runs, {self.share:.0%} bands, {dict(self.outcomes)})"
@@ -109,7 +164,7 @@ def predict(
     simulation: Simulation,
     n: int = 32,
     *,
-    share: float = 0.8,
+    share: float = SHARE,
     metrics: Sequence[str] | None = None,
     executor: Any = None,
     progress: bool | None = None,
@@ -140,12 +195,10 @@ def predict(
     ValueError
         If a number is out of range, or the file of the vehicle says nothing of its class.
     """
-    power = int(n).bit_length() - 1
-    if isinstance(n, bool) or n != 2**power or not 3 <= power <= _MOST:
-        raise ValueError(f"n must be a power of 2 from 8 to {2**_MOST}, got {shown(n)}")
+    power = check_draws("n", n)
     if not 0.0 < share < 1.0:
         raise ValueError(f"share must be > 0 and < 1, got {share}")
-    columns = _columns(simulation, power)
+    columns = drawn_parameters(simulation, power)
     study = run_study(
         simulation,
         tuple(columns),
@@ -156,6 +209,20 @@ def predict(
         title="prediction",
     )
     return Prediction(study, share)
+
+
+def check_draws(name: str, n: int) -> int:
+    """Return the power of two that a number of draws is.
+
+    Raises
+    ------
+    ValueError
+        If it is none, or out of range.
+    """
+    power = int(n).bit_length() - 1
+    if isinstance(n, bool) or n != 2**power or not 3 <= power <= _MOST:
+        raise ValueError(f"{name} must be a power of 2 from 8 to {2**_MOST}, got {shown(n)}")
+    return power
 
 
 def quantiles(values: Floats, share: float) -> tuple[float, float, float]:
@@ -174,8 +241,14 @@ def draws(power: int) -> Mapping[str, Floats]:
     return dict(zip(QUANTITIES, ndtri(points).T, strict=True))
 
 
-def _columns(simulation: Simulation, power: int) -> dict[str, Floats]:
-    """Return the values of each parameter that is drawn."""
+def drawn_parameters(simulation: Simulation, power: int) -> dict[str, Floats]:
+    """Return the 2**power values of each parameter of the scene that is drawn.
+
+    Raises
+    ------
+    ValueError
+        If the file of the vehicle says nothing of its class.
+    """
     vehicle = simulation.scene.vehicle
     scatter = joined([unit.scatter for unit in vehicle.units], vehicle.zones_met)
     if not scatter:

@@ -15,8 +15,9 @@ from ..result.run_warnings import complaints_of_run
 from ..scene.mesh_check import coarse_skins
 from ..scene.scene import Scene
 from .executors import ExecutorError, pool_of, result_of, submit
+from .table import Study
 
-__all__ = ["Look", "look_at_runs"]
+__all__ = ["Look", "look_at_runs", "look_at_study"]
 
 Found = TypeVar("Found")
 
@@ -93,6 +94,36 @@ def look_at_runs(
         if own is not None:
             own.shutdown()
     complaints.warn(len(scenes))
+
+
+def look_at_study(
+    study: Study, look: Callable[[Result], Found], *, progress: bool | None = None, title: str = "runs"
+) -> tuple[dict[int, Found], dict[int, str]]:
+    """Run the scenes of a study once more, for their histories, and return what a function finds.
+
+    Returns
+    -------
+    found : dict of int to Found
+        Number of each run -> what was found in it, in order.
+    failed : dict of int to str
+        Number of each run that failed, now or in the study -> its reason.
+
+    Raises
+    ------
+    ValueError
+        If the study does not know its scenes.
+    """
+    failed = dict(study.failed)
+    rows = [row for row, run in enumerate(study.run.tolist()) if run not in failed]
+    runs = [int(study.run[row]) for row in rows]
+    scenes = [study.simulation(row).scene for row in rows]
+    found: dict[int, Found] = {}
+    for seen in look_at_runs(scenes, look, progress=progress, title=title):
+        if seen.found is None:
+            failed[runs[seen.run]] = seen.error.removeprefix("ValueError: ")
+        else:
+            found[runs[seen.run]] = seen.found
+    return {run: found[run] for run in runs if run in found}, failed
 
 
 def _look_at(look: Callable[[Result], Found], run: int, scene: Scene) -> Look[Found]:

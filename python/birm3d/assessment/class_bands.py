@@ -1,0 +1,159 @@
+"""Bands of design loads: what the other vehicles of a class ask of an element."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..base.frozen_mapping import FrozenMapping
+from ..result.result import Result
+from ..scene.scene import Scene
+from ..simulation.parameters import varied_scene
+from ..simulation.simulation import Simulation
+from ..study.predict import SHARE, check_draws, drawn_parameters, quantiles
+from .element_design import ENVELOPED, ElementDesign
+
+__all__ = ["Bands", "ClassDraws", "class_draws", "governing_scenes", "with_bands"]
+
+_DRAWS = 16
+BANDED = (*ENVELOPED, "height")
+"""Values that have a band."""
+
+_BLOWS = (
+    "With {n} of {all} vehicles of the class a crush zone is used up and the rigid body strikes: the upper "
+    "ends of the bands of peak and equivalent static force rest on that blow and are too high."
+)
+_OUTSIDE = (
+    "On {elements} a value lies outside its band: the vehicles of the class differ from this one in the "
+    "median."
+)
+_FAILED = "{n} of {all} vehicles of the class could not be run and are not in the bands."
+
+
+class Bands(NamedTuple):
+    """Rows with their bands, and what is to be said of these."""
+
+    rows: tuple[ElementDesign, ...]
+    cautions: list[str]
+
+
+class ClassDraws(NamedTuple):
+    """Vehicles that are drawn for each scene; none: why there is no band."""
+
+    power: int | None
+    reason: str
+
+    @property
+    def vehicles(self) -> int:
+        """Number of vehicles."""
+        return 0 if self.power is None else 2**self.power
+
+
+def class_draws(scenes: Iterable[Scene], draws: int | None, refusal: str) -> ClassDraws:
+    """Return how many vehicles are drawn.
+
+    Parameters
+    ----------
+    scenes
+        Of the envelope.
+    draws
+        As asked for; ``None``: 16 where every vehicle's file says how its class scatters.
+    refusal
+        Why these cases can not have a band; "" where they can.
+
+    Raises
+    ------
+    ValueError
+        If draws are asked for that are no power of 2, or that can not be made.
+    """
+    if draws == 0:
+        return ClassDraws(None, "no vehicles of its class were drawn (draws=0)")
+    if not refusal:
+        silent = [one.vehicle.name for one in scenes if not any(u.scatter for u in one.vehicle.units)]
+        refusal = f"the file of {silent[0]!r} says nothing of its class" if silent else ""
+    if refusal:
+        if draws is not None:
+            raise ValueError(f"draws must be 0 where {refusal}, got {draws}")
+        return ClassDraws(None, refusal)
+    return ClassDraws(check_draws("draws", _DRAWS if draws is None else draws), "")
+
+
+def governing_scenes(rows: Iterable[ElementDesign]) -> list[int]:
+    """Return the numbers of the scenes that some value of the envelope comes from."""
+    return sorted({number for row in rows for number in row.scene.values()})
+
+
+def with_bands(
+    rows: Sequence[ElementDesign],
+    scenes: Mapping[int, Scene],
+    power: int,
+    look: Callable[[Result], tuple[list[ElementDesign], bool]],
+    **how: Any,
+) -> Bands:
+    """Return rows of an envelope with the bands of their values over vehicles of the class.
+
+    Each vehicle is run in every scene; of each value its greatest over the scenes counts. Vehicles with
+    a run that fails are left out.
+
+    Parameters
+    ----------
+    rows
+        Of the envelope.
+    scenes
+        Those that govern.
+    power
+        Of two: the number of vehicles.
+    look
+        Returns what each element carries in a run, and whether the rigid body strikes one.
+    how
+        Executor and progress, see :func:`birm3d.study.whole_runs.look_at_runs`.
+    """
+    from ..study.whole_runs import look_at_runs
+
+    drawn: list[Scene] = []
+    for scene in scenes.values():
+        columns = drawn_parameters(Simulation.from_scene(scene), power)
+        for j in range(2**power):
+            drawn.append(varied_scene(scene, {name: float(values[j]) for name, values in columns.items()}))
+    found: dict[int, list[list[ElementDesign]]] = {}
+    failed: set[int] = set()
+    struck: set[int] = set()
+    for seen in look_at_runs(drawn, look, title="bands of design loads", **how):
+        vehicle = seen.run % 2**power
+        if seen.found is None:
+            failed.add(vehicle)
+            continue
+        designs, blow = seen.found
+        found.setdefault(vehicle, []).append(designs)
+        if blow:
+            struck.add(vehicle)
+    vehicles = [runs for vehicle, runs in found.items() if vehicle not in failed]
+    banded = tuple(
+        _banded(row, [[run[i] for run in runs] for runs in vehicles]) for i, row in enumerate(rows)
+    )
+    counts = ((_BLOWS, len(struck)), (_FAILED, len(failed)))
+    cautions = [text.format(n=n, all=2**power) for text, n in counts if n]
+    outside = [row.name for row in banded if _is_outside(row)]
+    return Bands(banded, cautions + ([_OUTSIDE.format(elements=", ".join(outside))] if outside else []))
+
+
+def _is_outside(row: ElementDesign) -> bool:
+    return any(not low <= getattr(row, name) <= high for name, (low, high) in row.band.items())
+
+
+def _banded(row: ElementDesign, vehicles: Sequence[Sequence[ElementDesign]]) -> ElementDesign:
+    """Return a row with bands over vehicles, of each of which there is what it carries in every scene."""
+    if not vehicles or not row.scene:
+        return row
+    bands = {}
+    for name in BANDED:
+        values = []
+        for runs in vehicles:
+            most = max(runs, key=lambda one: abs(getattr(one, "force_50ms" if name == "height" else name)))
+            values.append(getattr(most, name))
+        low, _, high = quantiles(np.array(values), SHARE)
+        bands[name] = (low, high)
+    return replace(row, band=FrozenMapping(bands))

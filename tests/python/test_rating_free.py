@@ -1,0 +1,98 @@
+"""Ratings of segments that stand free, and of a level: widths from corners, cautions, worst classes."""
+
+from __future__ import annotations
+
+import birm3d
+import numpy as np
+import pytest
+from birm3d import Barrier, Result, Simulation, Vehicle, units
+from birm3d.assessment import Rating
+
+PICKUP = Vehicle.preset("mash_2270p", mesh_density=0.1)
+
+
+def crash(speed: float, angle: float, heading: float = 0.0) -> Result:
+    barrier = Barrier.jersey(
+        length=30.0, segments=5, free_standing=True, heading=heading, origin=(3.0, -2.0, 0.0)
+    )
+    return Simulation(PICKUP, barrier, units.km_h(speed), angle, barrier.station() + 1.0).run()
+
+
+@pytest.fixture(scope="module")
+def light() -> Result:
+    return crash(100.0, 25.0, heading=30.0)
+
+
+def test_working_width_ends_at_the_rearmost_corner(light: Result) -> None:
+    """Corners of every base from the motion of its segment; a front corner that moves most is no end."""
+    barrier = light.scene.barrier
+    into = np.array([np.cos(np.radians(30.0)), np.sin(np.radians(30.0))])
+    half_length, half_base = 3.0, 0.305
+    rear = -np.inf
+    for segment in range(5):
+        yaw = np.radians(30.0 + light.segment_yaw[:, segment])
+        across = np.column_stack([np.cos(yaw), np.sin(yaw)])
+        along = np.column_stack([-np.sin(yaw), np.cos(yaw)])
+        for i in (-1.0, 1.0):
+            for j in (-1.0, 1.0):
+                corner = (
+                    light.segment_position[:, segment, :2] + i * half_base * across + j * half_length * along
+                )
+                rear = max(rear, float(((corner - barrier.origin[:2]) @ into).max()))
+    row = {one.name: one for one in birm3d.rate(light, "MASH").criteria}
+    assert row["working width"].value == pytest.approx(rear, abs=0.01)  # the face is at the origin
+    assert row["working width"].value < 0.61 + row["dynamic deflection"].value - 0.005
+
+
+def test_a_segment_that_would_tip_is_told(light: Result) -> None:
+    told, heavy = "it would begin to tip, which is not computed", crash(40.0, 2.0)
+    assert light.overturning_ratio.max() > 1.0 > heavy.overturning_ratio.max()
+    for result, tips in ((light, True), (heavy, False)):
+        assert (told in birm3d.rate(result, "MASH", vehicle_class="2270P").caution) is tips
+        assert ("would begin to tip" in birm3d.design_load(result, draws=0).caution) is tips
+    (loaded,) = np.flatnonzero(light.overturning_ratio.max(axis=0) == light.overturning_ratio.max())
+    assert light.scene.barrier.element_names[loaded] in birm3d.design_load(light, draws=0).caution
+
+
+def test_a_level_names_the_worst_class_of_its_tests_or_what_failed() -> None:
+    wall = Barrier.rigid_wall(friction=0.05)
+    cars = [
+        Simulation(Vehicle.preset(name, mesh_density=0.1), wall, units.km_h(speed), 20.0).run()
+        for name, speed in (("small_car", 101.0), ("sedan_1500", 111.0))
+    ]
+    level = birm3d.rate(cars, "EN 1317 N2")
+    parts = [birm3d.rate(car, "EN 1317 N2") for car in cars]
+    worst = max(float(row.value) for part in parts for row in part.criteria if row.name == "ASI")
+    word = "A" if worst <= 1.0 else "B" if worst <= 1.4 else "C" if worst <= 1.9 else "beyond"
+    if level.passed:
+        assert level.designation.startswith(f"EN 1317 N2: pass; severity {word}, W")
+    else:
+        failed = [row.name for part in parts for row in part.criteria if row.passed is False]
+        assert failed
+        assert all(any(name in str(row.value) for row in level.criteria) for name in failed)
+
+
+def test_a_level_that_passes_has_its_classes() -> None:
+    from birm3d.assessment.criteria import Criterion
+    from birm3d.assessment.roadside import EN_1317
+    from birm3d.assessment.roadside_rating import level_rating
+
+    def part(test: str, asi: float, grade: str, width: float, wide: str) -> Rating:
+        rows = (
+            Criterion("ASI", asi, "", "", True, f"class {grade}"),
+            Criterion("working width", width, "m", "", None, wide),
+        )
+        return Rating("EN 1317", f"EN 1317 {test}: pass; severity {grade}", 0.5, True, rows, "c", "car")
+
+    level = level_rating(
+        EN_1317, "N2", [part("TB11", 1.3, "B", 0.7, "W2"), part("TB32", 0.9, "A", 1.2, "W4")]
+    )
+    assert level.designation == "EN 1317 N2: pass; severity B, W4"
+
+
+def test_ratings_of_security_barriers_say_what_became_of_the_vehicle() -> None:
+    truck = Vehicle.preset("cargo_truck", mesh_density=0.15)
+    passed = Simulation(truck, Barrier.bollards(count=2, spacing=6.0), units.mph(50.0)).run()
+    row = birm3d.rate(passed, "ASTM F2656").criteria[-1]
+    assert (row.name, row.value, row.passed) == ("outcome", "passed", None)
+    assert "between two elements" in row.grade
