@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -428,3 +430,14 @@ def test_short_runs_have_no_nan(duration: float) -> None:
     assert all(math.isfinite(value) for value in result.metrics.values())
     assert np.isfinite(result.acceleration).all()
     assert result.report()
+
+
+def test_types_that_are_not_loaded_yet_are_checked() -> None:
+    """The first call of a process knows a type of the package that nothing has loaded so far."""
+    program = (
+        "from birm3d import Barrier\n"
+        "try:\n    Barrier.jersey(free_standing=[1.0, 2.0])\n"
+        "except ValueError as error:\n    print(error)\n"
+    )
+    told = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout
+    assert told.startswith("free_standing must be True or False or a birm3d.FreeStanding, got")
