@@ -150,19 +150,15 @@ def _resolved(annotation: Any, names: dict[str, Any]) -> Any:
     if not isinstance(annotation, str):
         return annotation
     try:
-        return eval(annotation, names, _NamesOfPackage())
-    except (NameError, AttributeError):
+        return eval(annotation, names)
+    except AttributeError:
         return Any
-
-
-class _NamesOfPackage(dict[str, Any]):
-    """Names that the package loads when they are asked for: an annotation asks for them, too."""
-
-    def __missing__(self, name: str) -> Any:
-        package = sys.modules[__name__.partition(".")[0]]
-        if name not in getattr(package, "__all__", ()) or name in vars(package):
-            raise KeyError(name)  # the globals have it, or nobody
-        return getattr(package, name)
+    except NameError as unknown:
+        package, name = sys.modules[__name__.partition(".")[0]], unknown.name
+        if name is None or name not in package.__all__:
+            return Any
+        # The package loads it when it is asked for.
+        return _resolved(annotation, {**names, name: getattr(package, name)})
 
 
 def _kind(annotation: Any) -> Kind | None:
