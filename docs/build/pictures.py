@@ -101,7 +101,7 @@ LAYERS = (
     ("step", ("half kick, drift, new forces, half kick",), "#e2ecdd"),
     ("contact", ("what a unit feels from a barrier",), "#e2ecdd"),
     ("scene", ("placement, obstacles, their map",), "#e2ecdd"),
-    ("kernels", ("detect", "crush, dent", "friction", "tyres", "impulses"), "#e2ecdd"),
+    ("kernels", ("detect", "crush, indentation", "friction", "tyres", "impulses"), "#e2ecdd"),
     ("state", ("bodies, trusses, contacts, energies: all that changes",), "#e2ecdd"),
     ("model", ("vehicle, truss law, barrier, settings: constant",), "#e2ecdd"),
     ("base, geometry", ("numbers, tolerances, shapes, distances",), "#e2ecdd"),

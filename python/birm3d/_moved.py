@@ -7,7 +7,6 @@ versions that were never documented go on working and warn: the warning says wha
 from __future__ import annotations
 
 import sys
-import warnings
 from collections.abc import Sequence
 from importlib import import_module
 from importlib.abc import Loader, MetaPathFinder
@@ -202,6 +201,6 @@ def old_name(name: str) -> object:
 
 
 def _warn(text: str) -> None:
-    from .base.arguments import caller_level  # not needed to load the package
+    from .base.deprecated import warn_deprecated  # not needed to load the package
 
-    warnings.warn(text, DeprecationWarning, stacklevel=caller_level())
+    warn_deprecated(text)

@@ -71,7 +71,7 @@ USUAL: Mapping[str, Usual] = MappingProxyType(
         "length": _LONG,
         "density": Usual(100.0, 20000.0, "kg/m^3", "t/m^3"),
         "payload": Usual(10.0, 100_000.0, "kg", "t", zero=True),
-        "dent_reach": Usual(0.0, 5.0, "m", "mm"),
+        "indentation_length": Usual(0.0, 5.0, "m", "mm"),
     }
 )
 """Argument -> range that is accepted without a :class:`UnitWarning`."""

@@ -5,7 +5,7 @@
 Vehicles N (4.8 t, soft) and S (1.2 t, stiff) are finite-element models, run for this project;
 finite_element.py says how far their runs can be believed. The front's envelope, five stresses at set depths,
 is fitted to the wall at 20 and 40 mph together; wall 30 and the wall at 25 degrees from head-on are
-predicted, and the pole with skins whose dents reach differently far, each also with
+predicted, and the pole with skins whose indentations are of different lengths, each also with
 4 times the elements. Then the same with the rate of deflection in the envelope. Rows that were fitted are
 marked. Errors are of the mass centre's travel along the barrier's normal, of the CFC60 peak force, and of the
 mean force up to the greatest travel.
@@ -109,7 +109,7 @@ def fit(vehicle: CheckVehicle, variant: Variant, options: argparse.Namespace) ->
 def predicted(
     vehicle: CheckVehicle, variant: Variant, fitted: birm3d.Vehicle, chosen: Sequence[Run]
 ) -> list[Row]:
-    """Rows of all runs; of the pole with several reaches of dents, each with FINER times the elements."""
+    """Rows of all runs; of the pole with several indentation lengths, each with FINER times the elements."""
     rows = []
     for run in chosen:
         name = run.name.split("_", 1)[1]
@@ -117,9 +117,9 @@ def predicted(
             rows.append(compared(vehicle, variant, fitted, run, name, name in variant.fitted))
             continue
         for reach in REACHES:
-            dented = fitted.with_dent_reach(reach)
-            finer = dented.with_mesh_density(FINER * fitted.mesh_density)
-            rows.append(compared(vehicle, variant, dented, run, f"{name}, reach {reach:g}", False))
+            indented = fitted.with_indentation_length(reach)
+            finer = indented.with_mesh_density(FINER * fitted.mesh_density)
+            rows.append(compared(vehicle, variant, indented, run, f"{name}, reach {reach:g}", False))
             rows.append(compared(vehicle, variant, finer, run, f"{name}, reach {reach:g}, fine", False))
     return rows
 

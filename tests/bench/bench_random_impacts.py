@@ -6,7 +6,7 @@
 
 Coarse presets and a laboratory block at 1 to 60 m/s and 5 to 90 deg against posts of 0.1 to 0.5 m, sloped
 profiles, walls without end, finite and in segments, and meshes of walls and posts; every fifth group
-with skins that posts do not dent. Watched step by step (birm3d.study.watched):
+with skins that posts do not indent. Watched step by step (birm3d.study.watched):
 
 - missed: the straight path of some node leads 5 cm or more into the barrier, and nothing touched;
 - ghost: the wall is flat and endless for the vehicle, friction is nil, and some force acts along it (relative
@@ -72,7 +72,7 @@ class Case:
     speed: float
     angle: float
     offset: float
-    dents: bool
+    indents: bool
 
 
 @dataclass(frozen=True)
@@ -84,14 +84,14 @@ class Found:
 
 
 @cache
-def vehicle(name: str, dents: bool) -> Vehicle:
+def vehicle(name: str, indents: bool) -> Vehicle:
     if name == "block":
         made = scenes.laboratory_block(
             96, k_initial=3e6, knee=0.4, k_hardening=6e6, k_unloading=60e6, stagger=0.05
         )
     else:
         made = Vehicle.preset(name, mesh_density=0.2)
-    return made.with_dent_reach(0.65 if dents else 0.0)
+    return made.with_indentation_length(0.65 if indents else 0.0)
 
 
 def prism_mesh(profile: Floats, length: float, pieces: int) -> tuple[Floats, npt.NDArray[np.int64]]:
@@ -164,9 +164,9 @@ def draw(seed: int) -> tuple[Case, Barrier]:
         size = 5.0
         corners = np.array([[0.0, -1.0], [0.5, -1.0], [0.5, size], [0.0, size]])
         barrier = Barrier.from_mesh(*prism_mesh(corners, WIDE, pieces), friction=0.0)
-    dents = seed // len(KINDS) % 5 != 0
+    indents = seed // len(KINDS) % 5 != 0
     name = VEHICLES[int(random.integers(len(VEHICLES)))]
-    return Case(seed, name, kind, size, speed, angle, offset, dents), barrier
+    return Case(seed, name, kind, size, speed, angle, offset, indents), barrier
 
 
 def must_hit(case: Case, barrier: Barrier, simulation: Simulation) -> bool:
@@ -204,7 +204,7 @@ def examine(seed: int) -> Found:
     duration = min(max(8.0 / case.speed, 0.15), 1.5)
     # The block has no wheels to stand on: it would fall past the foot of the barrier.
     settings = Settings(gravity=0.0, ground=False) if case.vehicle == "block" else None
-    made = vehicle(case.vehicle, case.dents)
+    made = vehicle(case.vehicle, case.indents)
     simulation = Simulation(
         made, barrier, case.speed, case.angle, case.offset, duration=duration, settings=settings
     )
@@ -318,8 +318,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     warnings.simplefilter("ignore", CoarseSkinWarning)
     seeds = range(asked.first, asked.first + (48 if asked.quick else asked.count))
     for name in VEHICLES:  # once, before threads ask for them
-        for dents in (False, True):
-            vehicle(name, dents)
+        for indents in (False, True):
+            vehicle(name, indents)
     found = []
     with progress_bar(None, "impacts", len(seeds)) as advance, ThreadPoolExecutor(asked.threads) as pool:
         try:

@@ -113,8 +113,8 @@ def test_quick_batch() -> None:
     assert "error" in output.splitlines()[1]
 
 
-def test_a_dent_draws_no_node_into_a_post_that_came_past_its_edge() -> None:
-    """Seed 3576: nodes of the front that one post dents hopped through another that stands behind them."""
+def test_an_indentation_draws_no_node_into_a_post_that_came_past_its_edge() -> None:
+    """Seed 3576: nodes of the front that one post indents hopped through another that stands behind them."""
     output = output_of("bench_random_impacts.py", "--first", "3576", "--count", "1")
     assert "1 impacts, 0 with a fault" in output
 

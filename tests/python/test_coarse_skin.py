@@ -90,13 +90,13 @@ def test_spacing_of_a_preset_is_about_the_size_of_its_elements(name: str) -> Non
 
 @pytest.mark.parametrize("diameter", [0.01, 0.9 * APART])
 @pytest.mark.parametrize("post", [Barrier.pole, Barrier.bollards])
-def test_a_thin_post_without_dents(post: Callable[..., Barrier], diameter: float) -> None:
+def test_a_thin_post_without_indentations(post: Callable[..., Barrier], diameter: float) -> None:
     (message,) = told(BLOCK, post(diameter=diameter))
     assert "seen along the path must be above the distance between neighbouring nodes" in message
     assert f"'laboratory_block' ({APART:.3g} m)" in message
     assert f"got {diameter:.3g} m" in message
-    assert "nodes that are nearer to each other; or with_dent_reach(0.65)" in message
-    assert told(BLOCK.with_dent_reach(0.65), post(diameter=diameter)) == []
+    assert "nodes that are nearer to each other; or with_indentation_length(0.65)" in message
+    assert told(BLOCK.with_indentation_length(0.65), post(diameter=diameter)) == []
 
 
 @pytest.mark.parametrize("post", [Barrier.pole, Barrier.bollards])
@@ -105,14 +105,14 @@ def test_a_post_that_is_wide_enough(post: Callable[..., Barrier]) -> None:
 
 
 def test_the_mesh_density_that_is_named_would_do() -> None:
-    vehicle = car(0.1).with_dent_reach(0.0)
+    vehicle = car(0.1).with_indentation_length(0.0)
     (message,) = told(vehicle, Barrier.pole(diameter=0.1))
     density = float(message.split("a mesh_density of ")[1].split(";")[0])
     assert told(vehicle.with_mesh_density(0.4 * density), Barrier.pole(diameter=0.1)) != []
     assert told(vehicle.with_mesh_density(density), Barrier.pole(diameter=0.1)) == []
 
 
-def test_a_post_of_triangles_makes_no_dents() -> None:
+def test_a_post_of_triangles_makes_no_indentation() -> None:
     vehicle = car(0.1)
     assert told(vehicle, Barrier.pole(diameter=0.1)) == []
     (message,) = told(vehicle, triangulated(Barrier.pole(diameter=0.1)))
@@ -146,7 +146,7 @@ def test_what_counts_is_the_width_along_the_path() -> None:
 
 
 def test_what_the_skin_can_not_reach_is_no_matter() -> None:
-    vehicle = car().with_dent_reach(0.0)
+    vehicle = car().with_indentation_length(0.0)
     assert len(told(vehicle, Barrier.bollards(diameter=0.1, height=0.5))) == 1
     assert told(vehicle, Barrier.bollards(diameter=0.1, height=0.1)) == []
     assert told(vehicle, mesh(box(0.1, 0.1, 5.0, 6.0), box(0.1, 8.0, at=0.0))) == []
@@ -173,7 +173,7 @@ def test_one_node_has_nothing_beside_it_and_one_column_has() -> None:
 def test_any_unit_of_a_combination_counts() -> None:
     semi = car(0.2, "semi_truck")
     assert told(semi, Barrier.pole()) == []
-    (message,) = told(semi.with_unit(1, semi.units[1].with_dent_reach(0.0)), Barrier.pole())
+    (message,) = told(semi.with_unit(1, semi.units[1].with_indentation_length(0.0)), Barrier.pole())
     assert "'semi_trailer'" in message
 
 

@@ -92,7 +92,7 @@ def test_zero_costs_and_changes_nothing() -> None:
 # ---- the pole ---------------------------------------------------------------------------------------------
 
 
-def test_a_pole_leaves_a_round_dent_and_nothing_passes() -> None:
+def test_a_pole_leaves_a_round_indentation_and_nothing_passes() -> None:
     car = Vehicle.preset("passenger_car")
     result = Simulation(car, Barrier.pole(diameter=0.3), 15.0).run()
     place = result.nodes + result.position[-1]
@@ -106,9 +106,9 @@ def test_a_pole_leaves_a_round_dent_and_nothing_passes() -> None:
     assert (np.abs(gap) < 0.01).sum() > 20
 
 
-@pytest.mark.parametrize("dent_reach", [0.0, 0.65])
-def test_offset_poles_turn_the_vehicle_and_mirror(dent_reach: float) -> None:
-    car = Vehicle.preset("passenger_car", mesh_density=0.5).with_dent_reach(dent_reach)
+@pytest.mark.parametrize("indentation_length", [0.0, 0.65])
+def test_offset_poles_turn_the_vehicle_and_mirror(indentation_length: float) -> None:
+    car = Vehicle.preset("passenger_car", mesh_density=0.5).with_indentation_length(indentation_length)
     left = Simulation(car, Barrier.pole(diameter=0.3), 12.0, 90.0, 0.5, duration=0.3).run()
     right = Simulation(car, Barrier.pole(diameter=0.3), 12.0, 90.0, -0.5, duration=0.3).run()
     assert abs(left.yaw[-1]) > 5.0

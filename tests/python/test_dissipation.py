@@ -87,8 +87,8 @@ def test_a_slow_slide_on_locked_wheels_keeps_its_energy(name: str, speed: float,
     assert max(greatest_fall(run).values()) < 1e-5
 
 
-# Beside thin posts: a post comes to lie across a panel that it dents, or past its edge, or lets a node of it
-# go towards the next post. What the trusses lose then has no other taker. Posts enter the body between its
+# Beside thin posts: a post comes to lie across a panel that it indents, or past its edge, or lets a node of
+# it go towards the next post. What the trusses lose then has no other taker. Posts enter the body between its
 # anchors: that is warned of, and not what is asked here.
 @pytest.mark.filterwarnings("ignore::birm3d.OverlapWarning")
 @pytest.mark.parametrize(
@@ -112,7 +112,7 @@ def test_a_slow_slide_on_locked_wheels_keeps_its_energy(name: str, speed: float,
         ("minivan", 0.3, 0.0, 8, 0.05846, 0.6055, 0.5271, 10.99, 28.93, -0.7721, 0.0, 40.5),
     ],
 )
-def test_nodes_that_a_dent_lets_go_do_no_work(
+def test_nodes_that_an_indentation_lets_go_do_no_work(
     name: str,
     density: float,
     load: float,

@@ -188,11 +188,15 @@ LOOSE = FreeStanding(joint="loose", ground_friction=0.0)
             (car(), Barrier.pole()),
         ),
         (
-            "dents beside posts (dent_reach is 0)",
-            (car().with_dent_reach(0.0), Barrier.bollards(diameter=0.6)),
+            "indentation beside posts (indentation_length is 0)",
+            (car().with_indentation_length(0.0), Barrier.bollards(diameter=0.6)),
             (car(), Barrier.bollards(diameter=0.6)),
         ),
-        ("dents beside posts (the barrier has no", (car(), Barrier.rigid_wall()), (car(), Barrier.pole())),
+        (
+            "indentation beside posts (the barrier has no",
+            (car(), Barrier.rigid_wall()),
+            (car(), Barrier.pole()),
+        ),
         (
             "growth of forces with the rate of crush (rate_sensitivity is 0)",
             (car(), Barrier.pole()),

@@ -239,7 +239,8 @@ def calls(folder: Path) -> dict[str, Call]:
     for vehicle in (car, semi):
         for method, given in {
             "scaled_to": {"mass": 2000.0}, "with_gvw": {"gvw": 1800.0}, "with_payload": {"payload": 10.0},
-            "with_dent_reach": {"dent_reach": 0.5}, "with_rate_sensitivity": {"rate_sensitivity": 0.01},
+            "with_indentation_length": {"indentation_length": 0.5},
+            "with_rate_sensitivity": {"rate_sensitivity": 0.01},
             "with_mass_center_height": {"height": 0.6}, "with_mesh_density": {"mesh_density": 0.05},
             "with_zones": {"zones": {}},
         }.items():  # fmt: skip

@@ -11,7 +11,7 @@ from birm3d.result.overlap import OVERLAP_LIMIT
 
 def test_a_pole_that_passes_between_nodes_is_warned_of() -> None:
     """Trusses hold the body at their anchors only; here a pole finds room between them."""
-    coarse = Vehicle.preset("cargo_truck", mesh_density=0.02).with_dent_reach(0.0)
+    coarse = Vehicle.preset("cargo_truck", mesh_density=0.02).with_indentation_length(0.0)
     with pytest.warns(CoarseSkinWarning, match="width of the pole"):
         simulation = Simulation(
             coarse,

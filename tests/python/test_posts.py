@@ -119,11 +119,11 @@ def test_impulses_converge_as_the_skin_is_refined() -> None:
     assert steps[-1] < steps[0]
 
 
-def test_loads_change_gently_with_the_reach_of_dents() -> None:
-    """Where a dent just reached a stiff part of the front, loads jumped."""
+def test_loads_change_gently_with_the_indentation_length() -> None:
+    """Where an indentation just reached a stiff part of the front, loads jumped."""
     forward = []
     for reach in np.linspace(0.3, 0.4, 6):
-        truck = vehicle("fitted_truck").with_dent_reach(float(reach))
+        truck = vehicle("fitted_truck").with_indentation_length(float(reach))
         posts = Barrier.bollards(
             count=2, diameter=0.32, height=1.0, spacing=1.2, origin=(0.0, -0.2, 0.0), friction=0.2
         )

@@ -30,7 +30,7 @@ OTHERS: dict[str, Callable[[VehicleRecipe], Any]] = {
     "mass_center_height": lambda r: 1.05,
     "tire_contact": lambda r: False,
     "rate_sensitivity": lambda r: 0.05,
-    "dent_reach": lambda r: 0.4,
+    "indentation_length": lambda r: 0.4,
 }
 
 
@@ -102,11 +102,11 @@ def test_several_changes_build_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
     simulation = Simulation(TRUCK, Barrier.bollards(), 12.0)
     monkeypatch.setattr(Vehicle, "__post_init__", counted)
-    numbers = {"gvw": 7000.0, "rate_sensitivity": 0.05, "dent_reach": 0.4, "mass_center_height": 1.05}
+    numbers = {"gvw": 7000.0, "rate_sensitivity": 0.05, "indentation_length": 0.4, "mass_center_height": 1.05}
     changes = {"zone.bumper.scale": 1.2} | {f"vehicle.{name}": value for name, value in numbers.items()}
     vehicle = varied(simulation, changes).scene.vehicle
     assert len(made) == 1
-    found = (vehicle.mass, vehicle.rate_sensitivity, vehicle.dent_reach, vehicle.mass_center_height)
+    found = (vehicle.mass, vehicle.rate_sensitivity, vehicle.indentation_length, vehicle.mass_center_height)
     assert found == tuple(numbers.values())
 
 

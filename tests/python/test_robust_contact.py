@@ -144,8 +144,8 @@ def test_a_wall_of_triangles_is_the_same_wall() -> None:
 def test_a_post_of_many_sides_comes_near_the_round_one(sides: int, limit: float) -> None:
     """What the post takes of the speed while it comes 0.3 m in: 6 % less with 16 sides, 1.2 % with 64.
 
-    Without dents, which meshes do not make: nodes slip round either post, one sooner than the other, so that
-    later the two have little in common.
+    Without indentation, which meshes do not make: nodes slip round either post, one sooner than the other, so
+    that later the two have little in common.
     """
     angle = 2.0 * np.pi * np.arange(sides) / sides
     ring = 0.2 * np.column_stack([np.cos(angle), np.sin(angle)])
@@ -155,7 +155,7 @@ def test_a_post_of_many_sides_comes_near_the_round_one(sides: int, limit: float)
     for i in range(sides):
         j = (i + 1) % sides
         faces += [(i, j, j + sides), (i, j + sides, i + sides)]
-    vehicle = Vehicle.preset("passenger_car", mesh_density=0.5).with_dent_reach(0.0)
+    vehicle = Vehicle.preset("passenger_car", mesh_density=0.5).with_indentation_length(0.0)
     post = Barrier.bollards(count=1, diameter=0.4, height=1.0)
     fine = Settings(tolerance=1e-5)  # less than 1 % of the speed is taken
     exact, mesh = (

@@ -120,9 +120,9 @@ def test_similar_vehicle_is_crushed_by_the_same_share_of_its_length(size: float)
     assert abs(runs[1]["energy_residual"]) < 1e-3
 
 
-def test_dents_and_goods_and_heights_go_with_the_size() -> None:
-    scaled = TRUCK.with_dent_reach(0.5).scaled_to(TRUCK.mass, length=2.0 * TRUCK.length)
-    assert scaled.dent_reach == pytest.approx(0.5 * 2.0**0.5)
+def test_indentation_and_goods_and_heights_go_with_the_size() -> None:
+    scaled = TRUCK.with_indentation_length(0.5).scaled_to(TRUCK.mass, length=2.0 * TRUCK.length)
+    assert scaled.indentation_length == pytest.approx(0.5 * 2.0**0.5)
     heap = TRUCK.with_payload(2000.0, height=1.0).scaled_to(TRUCK.mass, height=1.5 * TRUCK.height)
     low = TRUCK.with_payload(2000.0, height=1.0)
     load = heap.mass_center_height / 1.5 - low.scaled_to(TRUCK.mass).mass_center_height

@@ -90,8 +90,8 @@ def test_the_left_front_goes_ahead_at_the_slanted_wall(page: ModuleType, truck: 
 
 
 def test_a_post_passes_below_the_platform_beside_the_frame(truck: ModuleType) -> None:
-    """It is lower than the platform: without dents nothing but the bumper's end and sheet is in its way."""
-    fitted = birm3d.Vehicle.from_file(truck.FITTED).with_dent_reach(0.0)
+    """It is lower than the platform: without indentations only the bumper's end and sheet are in its way."""
+    fitted = birm3d.Vehicle.from_file(truck.FITTED).with_indentation_length(0.0)
     post = birm3d.Barrier.bollards(count=1, height=truck.POST_HEIGHT, origin=(0.0, 1.2, 0.0))
     result = birm3d.Simulation(fitted, post, "50 mph", duration=0.25).run()
     assert result.position[-1, 0] - result.position[0, 0] > 5.0

@@ -26,7 +26,7 @@ WITH: dict[str, Callable[[Vehicle], Vehicle]] = {
     "mesh": lambda v: v.with_mesh_density(0.15),
     "height": lambda v: v.with_mass_center_height(1.1 * v.mass_center_height),
     "rate": lambda v: v.with_rate_sensitivity(0.05),
-    "reach": lambda v: v.with_dent_reach(0.5),
+    "reach": lambda v: v.with_indentation_length(0.5),
     "tyres": lambda v: v.without_tire_contact(),
     "zone": lambda v: v.with_zones({"bumper": v.zones["bumper"].scaled(1.2)}),
 }
@@ -45,7 +45,7 @@ OTHERS: dict[str, Callable[[Vehicle], Any]] = {
     "mass_center_height": lambda v: v.mass_center_height + 0.1,
     "zones": lambda v: {**v.zones, "bumper": v.zones["bumper"].scaled(1.5)},
     "rate_sensitivity": lambda v: 0.07,
-    "dent_reach": lambda v: 0.31,
+    "indentation_length": lambda v: 0.31,
     "wheel_of_node": lambda v: np.where(v.wheel_of_node == 0, 1, v.wheel_of_node),
     "along_of_node": lambda v: np.where(np.arange(v.n_nodes) == 7, 0, v.along_of_node),
 }
@@ -79,7 +79,7 @@ def test_a_replaced_field_is_kept_or_the_next_change_is_refused(field: str, meth
         assert field in str(error)  # noqa: PT017
         assert "must be changed after what is made from its file" in str(error)  # noqa: PT017
         return
-    if (method, field) in (("rate", "rate_sensitivity"), ("reach", "dent_reach")):
+    if (method, field) in (("rate", "rate_sensitivity"), ("reach", "indentation_length")):
         return
     of_nodes = ("nodes", "anchors", "area", "zone_of_node", "wheel_of_node", "along_of_node")
     if method == "tyres" and field in of_nodes:
@@ -250,7 +250,7 @@ def test_vehicles_are_changed_in_any_units() -> None:
     assert TRUCK.with_payload("2t", density="300 kg/m^3") == TRUCK.with_payload(2000.0, density=300.0)
     assert CAR.scaled_to("2 t").mass == 2000.0
     assert CAR.with_mass_center_height("60 cm") == CAR.with_mass_center_height(0.6)
-    assert CAR.with_dent_reach("500 mm").dent_reach == 0.5
+    assert CAR.with_indentation_length("500 mm").indentation_length == 0.5
     assert CAR.with_rate_sensitivity("0.05 s/m").rate_sensitivity == 0.05
     law = {"k_hardening": 0.0, "k_unloading": "9 MPa/m", "f_max": "300 kPa"}
     zone = CAR.with_zone("hood", k_initial="3 MPa/m", knee="10 cm", **law).zones["hood"]

@@ -69,9 +69,9 @@ def test_vehicles_of_one_file_share_their_shape(truck: Vehicle) -> None:
         assert vehicle._is_shape()
     assert truck.without_tire_contact()._shape is shape.without_treads
     assert truck.without_tire_contact()._is_shape()
-    trusses = shape.trusses(truck.zones, truck.rate_sensitivity, truck.dent_reach)
-    assert shape.trusses(same[0].zones, same[0].rate_sensitivity, same[0].dent_reach) is trusses
-    assert shape.trusses(truck.zones, 0.06, truck.dent_reach) is not trusses
+    trusses = shape.trusses(truck.zones, truck.rate_sensitivity, truck.indentation_length)
+    assert shape.trusses(same[0].zones, same[0].rate_sensitivity, same[0].indentation_length) is trusses
+    assert shape.trusses(truck.zones, 0.06, truck.indentation_length) is not trusses
     assert Vehicle.preset("cargo_truck", mesh_density=0.06)._shape is not shape
 
 

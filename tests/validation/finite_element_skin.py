@@ -3,7 +3,7 @@
 A front has two zones: what stands beside the rails and sides (outer), and what is between (inner). Each has
 an envelope with few points, and a tail that begins where the parts behind it do. Side panels ahead of the
 passenger cell are a third zone. All give back the same short length. The rate of deflection and the reach of
-a post's dent are numbers of the whole vehicle.
+a post's indentation are numbers of the whole vehicle.
 """
 
 from __future__ import annotations
@@ -116,7 +116,7 @@ def _of_whole(tail_depths: tuple[float, float], depth: float, reach: float) -> t
         Unknown("inner tail slope", 3e5, 6e7, 5e6, "Pa/m"),
         Unknown("elastic recovery", 1e-3, 0.04, 4e-3, "m"),
         Unknown("rate sensitivity", 0.0, 0.09, 0.05, "s/m", log=False),
-        Unknown("dent reach", 0.1, 1.2, reach, "m", log=False),
+        Unknown("indentation length", 0.1, 1.2, reach, "m", log=False),
     )
 
 
@@ -198,7 +198,10 @@ def zones(skin: Skin, values: Mapping[str, float]) -> dict[str, birm3d.Zone]:
 def changed(vehicle: birm3d.Vehicle, skin: Skin, values: Mapping[str, float]) -> birm3d.Vehicle:
     """A vehicle of :func:`vehicle_with` with other numbers, without a look at its file."""
     recipe = vehicle.recipe.with_zones(zones(skin, values))
-    numbers = {"rate_sensitivity": values["rate sensitivity"], "dent_reach": values["dent reach"]}
+    numbers = {
+        "rate_sensitivity": values["rate sensitivity"],
+        "indentation_length": values["indentation length"],
+    }
     return build(recipe.each(**numbers))
 
 
@@ -221,7 +224,11 @@ def _document(skin: Skin, values: Mapping[str, float], fit: str) -> dict[str, An
     document["source"].append({"id": "structure", "text": skin.structure, "status": "published"})
     document["source"].append({"id": "fit", "text": fit, "status": "calibrated"})
     document["exterior"]["element_size_m"] = skin.element_size
-    document["dents"] = {"reach_m": values["dent reach"], "source": ["fit"], "status": "calibrated"}
+    document["indentation"] = {
+        "length_m": values["indentation length"],
+        "source": ["fit"],
+        "status": "calibrated",
+    }
     front = {"panels": ["front"], "blocks": ["body"]}
     places = {
         "front_outer": {**front, "y_m": [skin.split, 10.0]},

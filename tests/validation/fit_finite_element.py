@@ -8,12 +8,12 @@ Least squares over crush, CFC60 peak force, restitution (head-on), yaw at the en
 impulse of a post off the centre line, and, with half their weight, the CFC60 force over time. A residual of
 2 is an error as large as the mark (crush 10 %, force 15 % for N; 5 % and 10 % for S). What no run tells is
 held even: a factor of e between neighbouring stresses, or between zones, counts as half a mark. Fits of
-S start from stresses of the size of wall force over area, and from dents that reach half the width: those
-without a run know nothing of it. Fits of N end in poor minima from there; they start where an earlier fit to
-all runs ended.
+S start from stresses of the size of wall force over area, and from indentations as long as half the width:
+those without a run know nothing of it. Fits of N end in poor minima from there; they start where an
+earlier fit to all runs ended.
 
 "before" is the law of tests/bench/bench_finite_element.py: five stresses of one even front and the rate of
-deflection, fitted to walls at 20 and 40 mph, with a reach of dents of 0.5 m.
+deflection, fitted to walls at 20 and 40 mph, with an indentation length of 0.5 m.
 """
 
 from __future__ import annotations
@@ -173,7 +173,7 @@ def before(key: str) -> birm3d.Vehicle:
     """The vehicle with the law that tests/bench fits."""
     options = argparse.Namespace(mesh_density=0.36, skin=None, starts=2, tolerance=1e-4, jobs=1)
     rate = next(variant for variant in bench.VARIANTS if variant.name == "rate")
-    return bench.fit(VEHICLES[key], rate, options).vehicle.with_dent_reach(BEFORE_REACH)
+    return bench.fit(VEHICLES[key], rate, options).vehicle.with_indentation_length(BEFORE_REACH)
 
 
 def fit_text(skin: Skin, known: Sequence[Run], shares: Floats, without: Sequence[Floats]) -> str:

@@ -34,8 +34,8 @@ FITS = DATA / "truck_fits.csv"
 TRAVEL, FORCE, SIDEWAYS, FORWARD = 0.04, 0.05, 20e3, 15e3
 # Force curves count little: they have spikes of an engine that one rigid body can not follow. Of the peak.
 CURVE, POINTS = 0.25, 8.0
-# Where a dent just reaches a stiff part of the front, loads on a post jump. The place of the jump is not to
-# be believed: residuals at posts are means over these factors on the reach.
+# Where an indentation just reaches a stiff part of the front, loads on a post jump. The place of the jump is
+# not to be believed: residuals at posts are means over these factors on the reach.
 REACHES = (0.95, 1.05)
 # Of the differences that derivatives are made of, in the logarithm: wide enough to see over small jumps.
 STEP = 0.06
@@ -76,7 +76,7 @@ def smoothed(vehicle: birm3d.Vehicle, run: Run) -> Floats:
     if not run.posts:
         return residuals(vehicle, run)
     several = [
-        residuals(vehicle.with_dent_reach(vehicle.dent_reach * factor), same)
+        residuals(vehicle.with_indentation_length(vehicle.indentation_length * factor), same)
         for same in dict.fromkeys((run, with_loaded_posts(run)))
         for factor in REACHES
     ]

@@ -110,7 +110,13 @@ NUMBERS = (
         "vehicles N and S: 0.04 and 0.06",
     ),
     Number(
-        "reach of dents", "m", ("vehicle.dent_reach",), 0.6, 0.15, 1.0, "half to three diameters of a post"
+        "indentation length",
+        "m",
+        ("vehicle.indentation_length",),
+        0.6,
+        0.15,
+        1.0,
+        "half to three diameters of a post",
     ),
     Number(
         "tyres",

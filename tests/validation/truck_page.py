@@ -73,7 +73,7 @@ def diameters(vehicle: birm3d.Vehicle) -> list[list[str]]:
         row = dataclasses.replace(run, posts=(-outer, 0.0, outer))
         several = [
             figures(scene(own, row, diameter=diameter).run())
-            for own in (vehicle, vehicle.with_dent_reach(0.0))
+            for own in (vehicle, vehicle.with_indentation_length(0.0))
         ]
         left = [1e-3 * own.impulse[-1] for own in several]
         cells.append([f"{diameter:g}", *(f"{value:.1f}" for pair in left for value in pair)])
@@ -229,12 +229,12 @@ DIAMETER_HEAD = (
     "diameter of the posts [m]",
     "forward on an outer post [kN s]",
     "sideways",
-    "forward, without dents",
-    "sideways, without dents",
+    "forward, without indentations",
+    "sideways, without indentations",
 )
 
 POSTS = """The outer posts of the row of three, inner faces at 1.04 m, where the bumper ends at 1.125 m (run:
-0.4 forward, 1.2 sideways). Only dents push them. Of a thinner post more is before the bumper."""
+0.4 forward, 1.2 sideways). Only indentations push them. Of a thinner post more is before the bumper."""
 
 HEADINGS = {
     "before": "Before: the preset cargo_truck, as it is",
@@ -250,9 +250,9 @@ OpenRadioss on a generic truck of 6,810 kg: a finite-element code's answer for a
 The preset has another mass, height and length than this truck, and is not meant to be it."""
 
 LEFT_OUT = """Fitted to the four others, from the same start. Only the wall at 25 deg tells of the tyres,
-and only posts of the dents. The fits were made before front wheels gave way and the front passed on a part
-of the friction; by these, travel changes by up to 8 % and force by up to 7 %. Starts, and depths of the
-envelopes, were chosen with all runs in view: these rows are no blind predictions."""
+and only posts of the indentation length. The fits were made before front wheels gave way and the front
+passed on a part of the friction; by these, travel changes by up to 8 % and force by up to 7 %. Starts, and
+depths of the envelopes, were chosen with all runs in view: these rows are no blind predictions."""
 
 PARTS = """The vehicle is one rigid body. In the runs the engine stops in the barrier while the frame goes on,
 the bed slides on the frame, and the front axle is pushed back under it. From the runs:"""

@@ -45,7 +45,7 @@ namespace birm3d {
 struct Indentation : IndentationNumbers {
     Indentation(const Post& post, const Placement& stands, const Panel& panel, double length_);
 
-    double length;  // see with_dent_reach in Python (m)
+    double length;  // see with_indentation_length in Python (m)
 
     Vec3 into() const { return {ex, ey, ez}; }
     Vec3 across() const { return {wx, wy, wz}; }

@@ -62,7 +62,7 @@ class Barrier(BarrierMakers):
     """Whether its face is straight along the line: it redirects, and moments are about the line."""
     has_posts: ClassVar[bool] = False
     """Whether it is made of posts, which indent the skin beside them."""
-    why_no_dents: ClassVar[str] = "the barrier has no posts"
+    why_no_indentation: ClassVar[str] = "the barrier has no posts"
     """Why the skin beside it is not indented, for the report of what a run left out."""
 
     def __post_init__(self) -> None:

@@ -30,7 +30,7 @@ class MeshBarrier(Barrier):
     faces: npt.NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 3), np.int64))
 
     title: ClassVar = "mesh"
-    why_no_dents: ClassVar = "triangles make none"
+    why_no_indentation: ClassVar = "triangles make none"
 
     def __post_init__(self) -> None:
         if self.vertices.ndim != 2 or self.vertices.shape[1] != 3:

@@ -65,7 +65,7 @@ class Pole(Barrier):
 class Bollards(Barrier):
     """Rigid bollards in rows.
 
-    A bollard draws in the skin beside it, see :meth:`birm3d.Vehicle.with_dent_reach`.
+    A bollard draws in the skin beside it, see :meth:`birm3d.Vehicle.with_indentation_length`.
     """
 
     count: int = 5

@@ -120,17 +120,17 @@ def _skin(result: RunAnalysis) -> Iterator[str]:
             f"{statistics.free_time:.4g} s (no node within reach of anything)"
         )
     if barrier is not None:
-        yield from _dents(barrier, [unit.dent_reach for unit in vehicle.units])
+        yield from _indentation(barrier, [unit.indentation_length for unit in vehicle.units])
     if all(unit.rate_sensitivity == 0.0 for unit in vehicle.units):
         yield "growth of forces with the rate of crush (rate_sensitivity is 0)"
 
 
-def _dents(barrier: Barrier, reaches: list[float]) -> Iterator[str]:
+def _indentation(barrier: Barrier, lengths: list[float]) -> Iterator[str]:
     if not barrier.draws_in_skin:
-        yield f"dents beside posts ({barrier.why_no_dents})"
-    elif 0.0 in reaches:
-        units = "" if not any(reaches) else f" of {_of(reaches.count(0.0), len(reaches))} units"
-        yield f"dents beside posts{units} (dent_reach is 0)"
+        yield f"indentation beside posts ({barrier.why_no_indentation})"
+    elif 0.0 in lengths:
+        units = "" if not any(lengths) else f" of {_of(lengths.count(0.0), len(lengths))} units"
+        yield f"indentation beside posts{units} (indentation_length is 0)"
 
 
 def _ground(result: RunAnalysis) -> Iterator[str]:

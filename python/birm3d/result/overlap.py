@@ -42,5 +42,5 @@ def _text(scene: Scene, statistics: _core.StepStatistics) -> str:
     return (
         f"contact_overlap must be at most {OVERLAP_LIMIT:g} m, got {statistics.greatest_overlap:.2f} m: at "
         f"{statistics.greatest_overlap_time:.3f} s the rigid body of {scene.vehicle.name!r} was inside "
-        f"{element!r}; a finer mesh (with_mesh_density) or with_dent_reach holds it"
+        f"{element!r}; a finer mesh (with_mesh_density) or with_indentation_length holds it"
     )

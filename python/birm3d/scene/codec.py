@@ -105,6 +105,10 @@ def decode(plain: Any, arrays: Arrays) -> Any:
     kind = _classes().get(marker.removeprefix("$"))
     if kind is None:
         raise ValueError(f"kind must be one of {', '.join(_classes())}; got {marker!r}")
+    if kind.__name__ == "VehicleFile":
+        from ..vehicle.old_keys import with_todays_keys
+
+        fields, _ = with_todays_keys(fields)
     if hasattr(kind, "model_validate"):
         return kind.model_validate(fields)
     if kind.__name__ == "ArticulatedVehicle":
@@ -116,6 +120,9 @@ def decode(plain: Any, arrays: Arrays) -> Any:
         fields.pop("_draft", None)
         if fields.pop("_raised", 0.0) != 0.0:
             fields["_height"] = fields["mass_center_height"]
+        from ..vehicle.old_keys import OLD_FIELDS
+
+        fields = {OLD_FIELDS.get(key, key): value for key, value in fields.items()}
     known = {field.name for field in dataclasses.fields(kind)}
     for key in fields:
         if key not in known:

@@ -30,8 +30,8 @@ class CoarseSkinWarning(UserWarning):
       as it is long, but for a path along it: its thickness, and the joints between its segments, are no
       way through. Parts of a mesh that touch each other are one.
 
-    Posts (poles, bollards) are left out where the vehicle has ``dent_reach``: they press the skin between
-    nodes too. What triangles hold up in the air, clear of the ground, is judged by its width alone.
+    Posts (poles, bollards) are left out where the vehicle has ``indentation_length``: they press the skin
+    between nodes too. What triangles hold up in the air, clear of the ground, is judged by its width alone.
     """
 
 
@@ -47,7 +47,7 @@ def coarse_skins(scene: Scene) -> Iterator[Complaint]:
         return
     units = scene.vehicle.units
     if scene.barrier.has_posts:
-        units = tuple(unit for unit in units if unit.dent_reach == 0.0)
+        units = tuple(unit for unit in units if unit.indentation_length == 0.0)
     parts = [
         part for part in scene.barrier.seen_parts(math.radians(scene.impact_angle)) if part.width < math.inf
     ]
@@ -75,9 +75,9 @@ def _told(scene: Scene, unit: Vehicle, part: SeenPart) -> str:
     else:
         remedies.append("nodes that are nearer to each other")
     if part.name == "mesh":
-        remedies.append("where it is a post, Barrier.pole or bollards in its place, which dent the skin")
+        remedies.append("where it is a post, Barrier.pole or bollards in its place, which indent the skin")
     elif scene.barrier is not None and scene.barrier.has_posts:
-        remedies.append("with_dent_reach(0.65), by which posts dent the skin between nodes too")
+        remedies.append("with_indentation_length(0.65), by which posts indent the skin between nodes too")
     apart = "no neighbours beside them" if math.isinf(unit.node_spacing) else f"{unit.node_spacing:.3g} m"
     return (
         f"width of the {part.name} seen along the path must be above the distance between neighbouring nodes "

@@ -1,31 +1,31 @@
 """Names for everything a scene has, so that sweeps, studies and calibrations can vary it.
 
-=============================  ========================================================================
-name                           value
-=============================  ========================================================================
-``impact_speed`` ...           an argument of :class:`birm3d.Simulation` (``impact_angle``, ``impact_offset``,
-                               ``standoff``, ``duration``, ``overlap``, ``vehicle``, ``barrier``,
-                               ``settings``)
-``barrier.<field>``            a field of the barrier, as ``barrier.friction`` or ``barrier.spacing``
-``settings.<field>``           a field of :class:`birm3d.Settings`, as ``settings.tolerance``
-``vehicle.gvw``                mass [kg], see :meth:`birm3d.Vehicle.with_gvw`
-``vehicle.mass_center_height`` above the ground at rest [m]
-``vehicle.mesh_density``       relative number of shell elements
-``vehicle.rate_sensitivity``   [s/m], see :meth:`birm3d.Vehicle.with_rate_sensitivity`
-``vehicle.dent_reach``         see :meth:`birm3d.Vehicle.with_dent_reach`
-``zone.<zone>.<number>``       ``k_initial``, ``knee``, ``k_hardening``, ``f_max``, ``k_unloading``, or
-                               ``elastic_recovery``, ``tail_depth``, ``tail_slope``,
-                               ``friction_share``, ``breakaway``, ``breakaway_travel``
-                               where it has them, of
-                               :class:`birm3d.Zone`
-``zone.<zone>.stress[i]``      stress of point i of the zone's envelope [N per m^2]
-``zone.<zone>.deflection[i]``  its deflection [m]
-``zone.<zone>.scale``          factor on all stresses and slopes of the zone (now 1)
-``scatter.<quantity>``         factor on all stresses and slopes of the zones that ``[[scatter]]`` in the
-                               vehicle's file names: ``front``, ``side``, ``corner`` or ``tires`` (now 1)
-``truss.<number>``             the same five numbers of a vehicle made from arrays: sums over all trusses
-                               [N/m, N], shared as they are now
-=============================  ========================================================================
+==============================  =======================================================================
+name                            value
+==============================  =======================================================================
+``impact_speed`` ...            an argument of :class:`birm3d.Simulation` (``impact_angle``,
+                                ``impact_offset``, ``standoff``, ``duration``, ``overlap``,
+                                ``vehicle``, ``barrier``, ``settings``)
+``barrier.<field>``             a field of the barrier, as ``barrier.friction`` or ``barrier.spacing``
+``settings.<field>``            a field of :class:`birm3d.Settings`, as ``settings.tolerance``
+``vehicle.gvw``                 mass [kg], see :meth:`birm3d.Vehicle.with_gvw`
+``vehicle.mass_center_height``  above the ground at rest [m]
+``vehicle.mesh_density``        relative number of shell elements
+``vehicle.rate_sensitivity``    [s/m], see :meth:`birm3d.Vehicle.with_rate_sensitivity`
+``vehicle.indentation_length``  see :meth:`birm3d.Vehicle.with_indentation_length`
+``zone.<zone>.<number>``        ``k_initial``, ``knee``, ``k_hardening``, ``f_max``, ``k_unloading``, or
+                                ``elastic_recovery``, ``tail_depth``, ``tail_slope``,
+                                ``friction_share``, ``breakaway``, ``breakaway_travel``
+                                where it has them, of
+                                :class:`birm3d.Zone`
+``zone.<zone>.stress[i]``       stress of point i of the zone's envelope [N per m^2]
+``zone.<zone>.deflection[i]``   its deflection [m]
+``zone.<zone>.scale``           factor on all stresses and slopes of the zone (now 1)
+``scatter.<quantity>``          factor on all stresses and slopes of the zones that ``[[scatter]]`` in the
+                                vehicle's file names: ``front``, ``side``, ``corner`` or ``tires`` (now 1)
+``truss.<number>``              the same five numbers of a vehicle made from arrays: sums over all trusses
+                                [N/m, N], shared as they are now
+==============================  =======================================================================
 """
 
 # Longer than 300 lines: names, units and values of all numbers of a scene.
@@ -41,6 +41,7 @@ from typing import Any
 from ..barrier.kinds import KINDS
 from ..base import checks
 from ..base.arguments import checked
+from ..base.deprecated import warn_renamed
 from ..scene.scene import APPROACH, Scene
 from ..scene.settings import Settings
 from ..units import quantity_in, si
@@ -60,7 +61,7 @@ __all__ = [
     "varied_scene",
 ]
 
-_VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity", "dent_reach")
+_VEHICLE = ("gvw", "mass_center_height", "mesh_density", "rate_sensitivity", "indentation_length")
 _UNITS: dict[str, str] = {
     "impact_speed": "m/s",
     "impact_angle": "deg",
@@ -85,8 +86,19 @@ _UNITS: dict[str, str] = {
     "vehicle.gvw": "kg",
     "vehicle.mass_center_height": "m",
     "vehicle.rate_sensitivity": "s/m",
-    "vehicle.dent_reach": "m",
+    "vehicle.indentation_length": "m",
 }
+
+
+_OLD = {"vehicle.dent_reach": "vehicle.indentation_length"}
+"""Old name -> name of today."""
+
+
+def _todays(name: str) -> str:
+    """Return the name of today, and warn of an old one."""
+    if name in _OLD:
+        warn_renamed(name, _OLD[name])
+    return _OLD.get(name, name)
 
 
 @checked
@@ -103,7 +115,7 @@ def unit_of(name: str) -> str:
         number = name.rsplit(".", 1)[1].split("[")[0]
         unit = ZONE_UNITS.get(number, "")
         return unit if unit in ("m", "") else unit + per_area
-    return _UNITS.get(name, "")
+    return _UNITS.get(_OLD.get(name, name), "")
 
 
 @checked
@@ -172,6 +184,7 @@ def value_of(simulation: Simulation, name: str) -> Any:
         If the scene has no such parameter; the message names those it has.
     """
     scene = simulation.scene
+    name = _todays(name)
     group, _, rest = name.partition(".")
     if not rest and name in (field.name for field in dataclasses.fields(Scene)):
         return getattr(scene, name)
@@ -212,7 +225,7 @@ def varied_scene(base: Scene, changes: Mapping[str, Any]) -> Scene:
     ValueError
         If a name is unknown or a part can not be made; numbers of the scene itself are not checked yet.
     """
-    changes = {name: in_si(name, value) for name, value in changes.items()}
+    changes = {_todays(name): in_si(name, value) for name, value in changes.items()}
     given = {field.name: getattr(base, field.name) for field in dataclasses.fields(Scene)}
     whole = {name: value for name, value in changes.items() if name in given}
     given.update(whole)
@@ -282,8 +295,9 @@ def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -
         recipe = recipe.each(
             rate_sensitivity=si("rate_sensitivity", numbers["rate_sensitivity"], "time per length")
         )
-    if "dent_reach" in numbers:
-        recipe = recipe.each(dent_reach=si("dent_reach", numbers["dent_reach"], "length"))
+    if "indentation_length" in numbers:
+        length = si("indentation_length", numbers["indentation_length"], "length")
+        recipe = recipe.each(indentation_length=length)
     if "gvw" in numbers:
         recipe = recipe.with_mass(positive("gvw", si("gvw", numbers["gvw"], "mass")))
     if "mass_center_height" in numbers:

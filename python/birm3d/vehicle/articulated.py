@@ -35,7 +35,7 @@ class ArticulatedVehicle(Vehicle):
     and zones, the leading unit's first. ``units`` are the two, each with its own in its own axes; zones keep
     their names, which differ between the units.
 
-    ``with_zone``, ``with_rate_sensitivity``, ``with_dent_reach``, ``with_mesh_density`` and
+    ``with_zone``, ``with_rate_sensitivity``, ``with_indentation_length``, ``with_mesh_density`` and
     ``without_tire_contact`` go to the units that they concern. ``with_gvw`` and ``with_payload`` load or
     lighten the trailing unit; the mass must exceed that of the leading one. ``with_mass_center_height``
     raises the mass of both by one ratio, and a later mass keeps the height of the whole. ``scaled_to``
@@ -217,7 +217,7 @@ def articulate(units: Sequence[Vehicle], joint: Joint, name: str | None) -> Arti
         mass_center_height=float(center[2]),
         zones={**leading.zones, **trailing.zones},
         rate_sensitivity=leading.rate_sensitivity,
-        dent_reach=leading.dent_reach,
+        indentation_length=leading.indentation_length,
         _units=(leading, trailing),
         _joint=joint,
     )

@@ -63,7 +63,7 @@ def rebuilt(vehicle: Kind, recipe: VehicleRecipe | CombinationRecipe) -> Kind:
             name=recipe.name,
             zones=recipe.zones,
             rate_sensitivity=recipe.rate_sensitivity,
-            dent_reach=recipe.dent_reach,
+            indentation_length=recipe.indentation_length,
         )
     if recipe.file is None:
         return cast("Kind", _of_arrays(recipe))
@@ -104,7 +104,7 @@ def _of_file(recipe: VehicleRecipe, shape: VehicleShape | None) -> Vehicle:
         mass_center_height=float(center[2]),
         zones=recipe.zones,
         rate_sensitivity=recipe.rate_sensitivity,
-        dent_reach=recipe.dent_reach,
+        indentation_length=recipe.indentation_length,
         _file=file,
         _shape=shape,
         _mesh_density=recipe.mesh_density,
@@ -132,7 +132,7 @@ def _of_arrays(recipe: VehicleRecipe) -> Vehicle:
         mass_center_height=float(arrays.center_of_mass[2]),
         zones=recipe.zones,
         rate_sensitivity=recipe.rate_sensitivity,
-        dent_reach=recipe.dent_reach,
+        indentation_length=recipe.indentation_length,
         _truss_laws=arrays.truss_laws,
         _mesh_density=recipe.mesh_density,
         _height=recipe.mass_center_height,

@@ -22,7 +22,7 @@ def core_unit(vehicle: VehicleFields, offset: Floats) -> _core.Unit:
     """Return the rigid body for the core; offset of its mass centre along the ground (3,) [m]."""
     shape = vehicle._shape
     if shape is not None and is_shape(vehicle):
-        trusses = shape.trusses(vehicle.zones, vehicle.rate_sensitivity, vehicle.dent_reach)
+        trusses = shape.trusses(vehicle.zones, vehicle.rate_sensitivity, vehicle.indentation_length)
         origin = vehicle.center_of_mass
     else:
         trusses, origin = _core.TrussMesh(**_truss_arguments(vehicle)), np.zeros(3)
@@ -33,7 +33,7 @@ def unit_arguments(vehicle: VehicleFields, offset: Floats) -> dict[str, Any]:
     """Return what :func:`core_unit` gives the core, with the arguments of its TrussMesh as "trusses"."""
     shape = vehicle._shape
     if shape is not None and is_shape(vehicle):
-        laws = (vehicle.zones, vehicle.rate_sensitivity, vehicle.dent_reach)
+        laws = (vehicle.zones, vehicle.rate_sensitivity, vehicle.indentation_length)
         trusses, origin = shape.truss_arguments(*laws), vehicle.center_of_mass
     else:
         trusses, origin = _truss_arguments(vehicle), np.zeros(3)
@@ -86,7 +86,7 @@ def _truss_arguments(vehicle: VehicleFields) -> dict[str, Any]:
         "scale": vehicle.area,
         "wheels": vehicle.wheels,
         "rate_sensitivity": vehicle.rate_sensitivity,
-        "indentation_length": vehicle.dent_reach,
+        "indentation_length": vehicle.indentation_length,
         "wheel_of": vehicle.wheel_of_node,
         "along_of": vehicle.along_of_node,
     }

@@ -13,7 +13,7 @@ __all__ = ["changes_of", "recipe_of"]
 
 def changes_of(vehicle: VehicleFields, file: VehicleFile) -> Changes:
     """Return how a vehicle of one unit differs from its file."""
-    reach = 0.0 if file.dents is None else file.dents.reach_m
+    reach = 0.0 if file.indentation is None else file.indentation.length_m
     laws = file.laws
     treads = any("tire" in zone.panels for zone in file.zones)
     return Changes(
@@ -23,7 +23,7 @@ def changes_of(vehicle: VehicleFields, file: VehicleFile) -> Changes:
         mesh_density=vehicle.mesh_density,
         mass_center_height_m=vehicle._height,
         rate_sensitivity_s_per_m=vehicle.rate_sensitivity,
-        dent_reach_m=vehicle.dent_reach if vehicle.dent_reach != reach else None,
+        indentation_length_m=vehicle.indentation_length if vehicle.indentation_length != reach else None,
         tire_contact=not treads or bool((vehicle.wheel_of_node >= 0).any()),
         zone={
             name: ChangedLaw(**ZoneLaw.numbers_of(zone))
@@ -45,11 +45,13 @@ def recipe_of(file: VehicleFile, gvw: float | None, mesh_density: float) -> Vehi
     mesh_density
         Number of elements relative to the file's choice.
     """
-    reach = 0.0 if file.dents is None else file.dents.reach_m
+    reach = 0.0 if file.indentation is None else file.indentation.length_m
     changes = file.changes
     if changes is None:
         mass = file.gvw_kg if gvw is None else gvw
-        return VehicleRecipe(file.name, mass, file.laws, file, mesh_density=mesh_density, dent_reach=reach)
+        return VehicleRecipe(
+            file.name, mass, file.laws, file, mesh_density=mesh_density, indentation_length=reach
+        )
     bare = file.changed({"changes": None})
     if gvw is None:
         gvw = file.gvw_kg if changes.gvw_kg is None else changes.gvw_kg
@@ -63,5 +65,5 @@ def recipe_of(file: VehicleFile, gvw: float | None, mesh_density: float) -> Vehi
         mass_center_height=changes.mass_center_height_m,
         tire_contact=changes.tire_contact,
         rate_sensitivity=changes.rate_sensitivity_s_per_m,
-        dent_reach=reach if changes.dent_reach_m is None else changes.dent_reach_m,
+        indentation_length=reach if changes.indentation_length_m is None else changes.indentation_length_m,
     )

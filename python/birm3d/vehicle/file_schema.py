@@ -24,10 +24,10 @@ __all__ = [
     "Assumption",
     "Block",
     "CoreBox",
-    "Dents",
     "Dimensions",
     "End",
     "Exterior",
+    "Indentation",
     "Kind",
     "Name",
     "NamedPoint",
@@ -449,10 +449,10 @@ class NamedPoint(Block):
         return self
 
 
-class Dents(Block):
-    """How far a post's dent reaches beyond it, see :meth:`birm3d.Vehicle.with_dent_reach`."""
+class Indentation(Block):
+    """How far a post draws in the skin beside itself, see :meth:`birm3d.Vehicle.with_indentation_length`."""
 
-    reach_m: Positive
+    length_m: Positive
 
 
 class CoreBox(Block):

@@ -16,8 +16,10 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
+from ..base.deprecated import warn_renamed
 from ..base.frozen_mapping import FrozenMapping
 from .mass_center import stretched_inertia
+from .old_keys import OLD_FIELDS
 from .payload import check_load, solids_at, structure_mass
 from .scaling import scaling_between
 from .zone import TRUSS_LAW, Zone, positive
@@ -95,7 +97,7 @@ class VehicleRecipe:
         Above the ground, as it was asked for [m]; ``None``: that of the solids or arrays.
     tire_contact
         Whether tyres meet barriers.
-    rate_sensitivity, dent_reach
+    rate_sensitivity, indentation_length
         Optional physics [s/m], [m]; 0: left out.
     """
 
@@ -109,7 +111,7 @@ class VehicleRecipe:
     mass_center_height: float | None = None
     tire_contact: bool = True
     rate_sensitivity: float = 0.0
-    dent_reach: float = 0.0
+    indentation_length: float = 0.0
 
     def __post_init__(self) -> None:
         if (self.file is None) is (self.arrays is None):
@@ -148,6 +150,10 @@ class VehicleRecipe:
 
     def each(self, **changes: Any) -> VehicleRecipe:
         """Return the recipe with other numbers."""
+        for old, new in OLD_FIELDS.items():
+            if old in changes:
+                warn_renamed(old, new)
+                changes[new] = changes.pop(old)
         return dataclasses.replace(self, **changes)
 
     def with_mass(self, mass: float) -> VehicleRecipe:
@@ -237,7 +243,7 @@ class VehicleRecipe:
             if density is None
             else density * (mass / file.gvw_kg / scaling.volume(file.extent)),
             mass_center_height=None if height is None else scaling.z.stretch(0.0, file.extent.top) * height,
-            dent_reach=scaling.reach(file.extent) * self.dent_reach,
+            indentation_length=scaling.indentation(file.extent) * self.indentation_length,
         )
 
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from .file_schema import (
     CoreBox,
-    Dents,
     Dimensions,
     End,
     Exterior,
+    Indentation,
     NamedPoint,
     Point,
     Range,
@@ -106,11 +106,11 @@ class Resize:
         x, z = _both(self._to.x, box.x_m), _both(self._to.z, box.z_m)
         return box.changed({"x_m": x, "half_width_m": self._to.y * box.half_width_m, "z_m": z})
 
-    def dents(self, dents: Dents | None) -> Dents | None:
-        """Return the dents."""
-        if dents is None:
+    def indentation(self, indentation: Indentation | None) -> Indentation | None:
+        """Return the indentation."""
+        if indentation is None:
             return None
-        return dents.changed({"reach_m": self._to.reach(self._extent) * dents.reach_m})
+        return indentation.changed({"length_m": self._to.indentation(self._extent) * indentation.length_m})
 
     def dimensions(self, dimensions: Dimensions) -> Dimensions:
         """Return the stated dimensions."""

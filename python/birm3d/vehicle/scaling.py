@@ -69,8 +69,8 @@ class Scaling:
     y: float = 1.0
     z: PlaceMap = field(default_factory=PlaceMap)
 
-    def reach(self, extent: Extent) -> float:
-        """Return the factor of a dent's reach, which runs along sides and across ends."""
+    def indentation(self, extent: Extent) -> float:
+        """Return the factor of an indentation's length, which runs along sides and across ends."""
         return math.sqrt(self.length(extent) * self.y)
 
     def length(self, extent: Extent) -> float:

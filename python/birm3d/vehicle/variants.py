@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
-import warnings
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..base.arguments import caller_level, checked
+from ..base.arguments import checked
 from ..unit_check import Usual, given, warn_if_unusual
 from ..units import Quantity, Stated, si
 from .scaling import factors_of, sizes_given
@@ -178,16 +177,18 @@ class VehicleVariants(VehicleData):
         rate = si("rate_sensitivity", rate_sensitivity, "time per length")
         return self._changed(self._description.each(rate_sensitivity=rate))
 
-    def with_dent_reach(self, dent_reach: Quantity) -> Self:
+    def with_indentation_length(self, indentation_length: Quantity) -> Self:
         """Return the vehicle with a skin that a post draws in beside itself; at 0 that is left out.
 
         A post (bollard, pole) at the depth d in a front, side or rear draws in the skin beside and above it.
-        The slope of this indentation is about d / dent_reach, at first touch 0.25. So it extends about
-        dent_reach [m] beyond the post, as far as the beams and panels there carry; ``>= 0``. The paper's
-        trusses are independent of each other, so that a narrow post passes between them to the rigid core.
+        The slope of this indentation is about d / indentation_length, at first touch 0.25. So it extends
+        about indentation_length [m] beyond the post, as far as the beams and panels there carry; ``>= 0``.
+        The paper's trusses are independent of each other, so that a narrow post passes between them to the
+        rigid core.
         Walls and meshes make no indentation.
         """
-        return self._changed(self._description.each(dent_reach=given("dent_reach", dent_reach)))
+        length = given("indentation_length", indentation_length)
+        return self._changed(self._description.each(indentation_length=length))
 
     def without_tire_contact(self) -> Self:
         """Return the vehicle with tyres that meet the ground only; see :mod:`birm3d.vehicle.tire_nodes`."""
@@ -274,19 +275,3 @@ class VehicleVariants(VehicleData):
         knee [m] goes to every truss.
         """
         return self._changed(self._description.with_truss_law(**changes))
-
-    def draft(self) -> Self:
-        """Return the vehicle itself: the name of an earlier version."""
-        return self._needs_no_draft("draft")
-
-    def finished(self) -> Self:
-        """Return the vehicle itself: the name of an earlier version."""
-        return self._needs_no_draft("finished")
-
-    def _needs_no_draft(self, name: str) -> Self:
-        warnings.warn(
-            f"{name}() is not needed any more: every change of a vehicle is one of its recipe",
-            DeprecationWarning,
-            stacklevel=caller_level(),
-        )
-        return self

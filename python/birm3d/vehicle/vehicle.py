@@ -15,7 +15,7 @@ from .. import pictures
 from ..base.arguments import checked
 from ..base.checks import array
 from ..units import Quantity, si
-from .variants import VehicleVariants
+from .old_names import OldVehicleNames
 from .zone import TRUSS_LAW, Zone
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ FloatsLike = npt.ArrayLike
 
 
 @checked
-class Vehicle(VehicleVariants):
+class Vehicle(OldVehicleNames):
     """A vehicle; immutable. See :meth:`preset`, :meth:`from_file`, :meth:`from_facts`, :meth:`from_mesh`.
 
     Arrays are read-only, float64, SI, body axes r, s, t (forward, left, up) with the origin at the mass
@@ -68,8 +68,8 @@ class Vehicle(VehicleVariants):
     zones : mapping of str to Zone
     rate_sensitivity : float
         Optional physics, see :meth:`with_rate_sensitivity` [s/m].
-    dent_reach : float
-        Optional physics, see :meth:`with_dent_reach`.
+    indentation_length : float
+        Optional physics, see :meth:`with_indentation_length`.
     """
 
     @property

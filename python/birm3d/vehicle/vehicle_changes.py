@@ -55,6 +55,6 @@ class Changes(Strict):
     mesh_density: Positive = 1.0
     mass_center_height_m: Positive | None = None
     rate_sensitivity_s_per_m: Annotated[float, Field(ge=0.0)] = 0.0
-    dent_reach_m: Annotated[float, Field(ge=0.0)] | None = None
+    indentation_length_m: Annotated[float, Field(ge=0.0)] | None = None
     tire_contact: bool = True
     zone: LawsByName = FrozenMapping({})

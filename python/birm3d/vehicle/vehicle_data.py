@@ -67,7 +67,7 @@ class VehicleData(VehicleFields):
             mass_center_height=self._height,
             tire_contact=bool((self.wheel_of_node >= 0).any()),
             rate_sensitivity=self.rate_sensitivity,
-            dent_reach=self.dent_reach,
+            indentation_length=self.indentation_length,
         )
 
     # ---- what it is ---------------------------------------------------------------------------------------

@@ -46,7 +46,7 @@ class VehicleFields:
     mass_center_height: float
     zones: Mapping[str, Zone]
     rate_sensitivity: float = 0.0
-    dent_reach: float = 0.0
+    indentation_length: float = 0.0
     wheel_of_node: npt.NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.empty(0, np.int64))
     along_of_node: npt.NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.empty(0, np.int64))
     # What made the vehicle: laws per truss (m, N, N/m), or a file with its mesh density.

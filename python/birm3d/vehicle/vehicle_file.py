@@ -20,16 +20,17 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field, field_validator, model_validator
 
+from ..base.deprecated import warn_deprecated
 from ..io.file_format import reading
 from ..io.toml import Document, DocumentError, KeyPath, Strict, frozen, plain, received, reject
 from .file_schema import (
     Assumption,
     Block,
     CoreBox,
-    Dents,
     Dimensions,
     End,
     Exterior,
+    Indentation,
     Kind,
     Name,
     NamedPoint,
@@ -47,6 +48,7 @@ from .file_schema import (
     check_known,
     check_unique,
 )
+from .old_keys import OLD_KEYS, with_todays_keys
 from .resize import Resize, extent_of
 from .scaling import Extent, Factors, Scaling, panel_factors
 from .vehicle_changes import Changes
@@ -107,7 +109,7 @@ class VehicleFile(Strict):
     wheels: Annotated[tuple[Wheel, ...], Field(alias="wheel")] = ()
     points: Annotated[tuple[NamedPoint, ...], Field(alias="point")] = ()
     exterior: Exterior
-    dents: Dents | None = None
+    indentation: Indentation | None = None
     core: Annotated[tuple[CoreBox, ...], Field(min_length=1)]
     zones: Annotated[tuple[Zone, ...], Field(alias="zone", min_length=1)]
     scatter: tuple[Scatter, ...] = ()
@@ -157,8 +159,8 @@ class VehicleFile(Strict):
     def _blocks(self) -> Iterator[tuple[str, Block]]:
         yield "dimensions", self.dimensions
         yield "exterior", self.exterior
-        if self.dents is not None:
-            yield "dents", self.dents
+        if self.indentation is not None:
+            yield "indentation", self.indentation
         groups: Mapping[str, tuple[Block, ...]] = {
             "target": self.targets,
             "solid": self.solids,
@@ -224,7 +226,7 @@ class VehicleFile(Strict):
             ),
             "dimensions": to.dimensions(self.dimensions),
             "exterior": to.exterior(self.exterior),
-            "dents": to.dents(self.dents),
+            "indentation": to.indentation(self.indentation),
         }
         return self.changed(changes)
 
@@ -244,6 +246,29 @@ class ZonesInOrder(Document):
     """A file whose zones are a table, at its top or in each of its units; as a model they are a sequence."""
 
     error = VehicleFileError
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        self.data = self._renamed(self.data, ())
+        if isinstance(units := self.data.get("unit"), list):
+            self.data["unit"] = [
+                self._renamed(unit, ("unit", i)) if isinstance(unit, dict) else unit
+                for i, unit in enumerate(units)
+            ]
+
+    def _renamed(self, block: dict[str, Any], at: KeyPath) -> dict[str, Any]:
+        """Return a block with the keys of today, each at the place of the old one; warn of those."""
+        block, old = with_todays_keys(block)
+        write = []
+        for key in old:
+            path, line = self._written((*at, *key))
+            write.append(f"{'.'.join(OLD_KEYS[key])} for {'.'.join(key)} (line {line})")
+            for written, where in list(self._places.items()):
+                if written[: len(at) + len(key)] == (*at, *key):
+                    self._places[(*at, *OLD_KEYS[key], *written[len(at) + len(key) :])] = where
+        if write:
+            warn_deprecated(f"{path}: keys have new names: write {', '.join(write)}")
+        return block
 
     def zones_in_order(self, at: KeyPath = ()) -> Any:
         """Return the data of a block with the table of zones as a sequence, each with its name."""

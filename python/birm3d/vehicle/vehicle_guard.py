@@ -18,7 +18,7 @@ _DERIVED = (
     *("mass_center_height", "wheel_of_node", "along_of_node"),
 )
 # In a vehicle of two units, all fields but the name follow from the units.
-_OF_UNITS = (*_DERIVED, "zones", "rate_sensitivity", "dent_reach")
+_OF_UNITS = (*_DERIVED, "zones", "rate_sensitivity", "indentation_length")
 
 
 def as_built(vehicle: VehicleFields) -> Mapping[str, Any]:

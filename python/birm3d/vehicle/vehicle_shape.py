@@ -100,7 +100,7 @@ class VehicleShape:
         return seen
 
     def truss_arguments(
-        self, zones: Mapping[str, Zone], rate_sensitivity: float, dent_reach: float
+        self, zones: Mapping[str, Zone], rate_sensitivity: float, indentation_length: float
     ) -> dict[str, Any]:
         """Return the arguments of the core's TrussMesh, in file axes."""
         return {
@@ -111,19 +111,19 @@ class VehicleShape:
             "scale": self.area,
             "wheels": self.wheels,
             "rate_sensitivity": rate_sensitivity,
-            "indentation_length": dent_reach,
+            "indentation_length": indentation_length,
             "wheel_of": self.wheel_of_node,
             "along_of": self.along_of_node,
         }
 
     def trusses(
-        self, zones: Mapping[str, Zone], rate_sensitivity: float, dent_reach: float
+        self, zones: Mapping[str, Zone], rate_sensitivity: float, indentation_length: float
     ) -> _core.TrussMesh:
         """Return the trusses for the core, in file axes, with these laws; the last few are remembered."""
-        key = (*zones.items(), rate_sensitivity, dent_reach)
+        key = (*zones.items(), rate_sensitivity, indentation_length)
         known = self._trusses.get(key)
         if known is None:
-            known = _core.TrussMesh(**self.truss_arguments(zones, rate_sensitivity, dent_reach))
+            known = _core.TrussMesh(**self.truss_arguments(zones, rate_sensitivity, indentation_length))
             self._trusses[key] = known
             _forget_first(self._trusses, _LAWS)
         return known

@@ -19,8 +19,8 @@ def triangulated(barrier: Barrier | None) -> MeshBarrier | None:
     """Return the barrier as one mesh; ``None`` where there is none to make.
 
     That is without a barrier, of one that is a mesh already, and of one that stands free: meshes are fixed.
-    Cylinders get 48 sides with their corners on the cylinder. The copy is one element, and dents
-    (:meth:`birm3d.Vehicle.with_dent_reach`) are made by exact posts only.
+    Cylinders get 48 sides with their corners on the cylinder. The copy is one element, and indentations
+    (:meth:`birm3d.Vehicle.with_indentation_length`) are made by exact posts only.
     """
     if barrier is None or isinstance(barrier, MeshBarrier) or barrier.stands_free() is not None:
         return None
