@@ -203,6 +203,18 @@ def test_outlines_of_presets_end_where_the_skin_does(preset: str) -> None:
             assert 0.7 * ConvexHull(plan).volume < outline.area <= ConvexHull(plan).volume * (1.0 + 1e-9)
 
 
+def test_silhouette_is_the_union_of_the_crushed_skin() -> None:
+    """A car crushed at an angle, whose panels lie above each other: all triangles put together by shapely."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.2)
+    result = Simulation(car, Barrier.bollards(count=2, spacing=1.1), 17.0, 70.0).run()
+    (shape,) = unit_shapes(car)
+    ((skin,),) = skins_at(result, [result.time[-1]])
+    outline = silhouette(shape, skin.nodes, skin.center, skin.turn)
+    corners = skin.world[np.vstack([shape.quads[:, [0, 1, 2]], shape.quads[:, [0, 2, 3]]]), :2]
+    whole = shapely.union_all([one for one in map(shapely.Polygon, corners) if one.area > 1e-12])
+    assert shapely.area(shapely.symmetric_difference(outline, whole)) < 1e-8
+
+
 def test_silhouette_without_a_skin() -> None:
     result = scenes.w2(16).run()
     (skin,) = skins_at(result, 0.0)[0]

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from os import cpu_count
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -12,7 +15,7 @@ from ..plotting.energies import energy_look
 from ..plotting.plan_axes import PlanAxes
 from ..plotting.style import DASH_DOT, DASHED, DOTTED, LEAST_ANGLE, LEAST_RATE, SOLID, filtered
 from ..result.element_loads import touched_elements
-from ..result.skin import skins_at
+from ..result.skin import Skin, skins_at
 from ..signals.filters import moving_average
 from ..vehicle.silhouette import rings, silhouette
 from ..vehicle.unit_shapes import unit_shapes
@@ -131,16 +134,18 @@ def _plan(result: Result, frames: int) -> dict[str, Any]:
     axes = PlanAxes(result)
     shapes = unit_shapes(result.scene.vehicle)
     skins = skins_at(result, times)
-    outlines = [
-        [
+
+    def outlines_of(one: Sequence[Skin]) -> list[list[Floats]]:
+        return [
             [
                 axes.plan(ring)
                 for ring in rings(silhouette(shape, skin.nodes, skin.center, skin.turn).simplify(_ACCURACY))
             ]
             for shape, skin in zip(shapes, one, strict=True)
         ]
-        for one in skins
-    ]
+
+    with ThreadPoolExecutor(cpu_count()) as pool:  # shapely works without the interpreter's lock
+        outlines = list(pool.map(outlines_of, skins))
     paths = [axes.plan(result.pose(times, unit)[0]) for unit in range(len(shapes))]
     world = np.vstack([skin.world for one in (skins[0], skins[-1]) for skin in one])
     drawn = np.vstack([ring for one in outlines for unit in one for ring in unit])

@@ -13,11 +13,14 @@ from .unit_shapes import UnitShape
 __all__ = ["Outline", "rings", "silhouette"]
 
 Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
 Outline: TypeAlias = Any
 """A polygon of shapely, or several, world x and y [m]."""
 
 # Triangles whose plan is smaller stand upright and cover nothing [m^2].
 _LEAST_AREA = 1e-12
+# Points as near to each other are one [m].
+_PLACE = 1e-7
 
 
 def silhouette(shape: UnitShape, nodes: Floats, center: Floats, turn: Floats) -> Outline:
@@ -37,17 +40,11 @@ def silhouette(shape: UnitShape, nodes: Floats, center: Floats, turn: Floats) ->
     if len(shape.quads) == 0:
         points = (center + np.vstack([nodes, shape.anchors]) @ turn.T)[:, :2]
         return shapely.MultiPoint(points).convex_hull
-    plan = (center + nodes @ turn.T)[:, :2]
-    triangles = plan[np.vstack([shape.quads[:, [0, 1, 2]], shape.quads[:, [0, 2, 3]]])]
-    zone = np.tile(shape.zone_of_node[shape.quads[:, 0]], 2)
-    u, v = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
-    area = 0.5 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-    sheets = [
-        _sheet(triangles[(zone == one) & (side * area > _LEAST_AREA)])
-        for one in np.unique(zone)
-        for side in (1.0, -1.0)
-    ]
-    return shapely.union_all(sheets)
+    # Nodes at one place are one, so that panels that lie beside each other share their edges.
+    places, which = _at_one_place((center + nodes @ turn.T)[:, :2])
+    triangles = which[np.vstack([shape.quads[:, [0, 1, 2]], shape.quads[:, [0, 2, 3]]])]
+    area = _areas(places[triangles])
+    return shapely.union_all([_sheet(places, triangles[side * area > _LEAST_AREA]) for side in (1.0, -1.0)])
 
 
 def rings(outline: Outline) -> list[Floats]:
@@ -59,19 +56,42 @@ def rings(outline: Outline) -> list[Floats]:
     return [shapely.get_coordinates(part.exterior)[:-1] for part in parts]
 
 
-def _sheet(triangles: Floats) -> Outline:
-    """Return the union of triangles (k, 3, 2) of one part of the skin that all look up, or all down.
+def _at_one_place(plan: Floats) -> tuple[Floats, Ints]:
+    """Return the places of points (n, 2) and the row of each point's place, shape (n,)."""
+    cells = np.round(plan / _PLACE).astype(np.int64)
+    cells -= cells.min(axis=0)
+    key = cells[:, 0] * (int(cells[:, 1].max()) + 1) + cells[:, 1]
+    _, first, which = np.unique(key, return_index=True, return_inverse=True)
+    return plan[first], which.reshape(-1)
 
-    Mostly they lie side by side. Then dropping the edges that two of them share gives their union, 20 times
-    faster than the union of any triangles. They do so if the result is valid and has the sum of their areas:
-    all turn the same way, so that no overlap can cancel another.
+
+def _areas(triangles: Floats) -> Floats:
+    """Return the areas of triangles (k, 3, 2), positive counter-clockwise, shape (k,)."""
+    u, v = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    area: Floats = 0.5 * (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+    return area
+
+
+def _sheet(places: Floats, triangles: Ints) -> Outline:
+    """Return the union of triangles that all look up, or all down, and may lie above each other.
+
+    How many triangles cover a point changes only across an edge that two of them do not share in opposite
+    directions. These edges cut the plane into pieces, each of which is covered as a whole or not at all.
+    There are far fewer edges than triangles, which makes it faster than the union of the triangles.
     """
-    polygons = shapely.polygons(triangles)
-    total = float(shapely.area(polygons).sum())
-    try:
-        beside = shapely.coverage_union_all(polygons)
-    except shapely.GEOSException:  # its way to say that some overlap
-        return shapely.union_all(polygons)
-    if shapely.is_valid(beside) and abs(shapely.area(beside) - total) <= 1e-9 * total:
-        return beside
-    return shapely.union_all(polygons)
+    border = _unshared_edges(triangles, len(places))
+    noded = shapely.union_all(shapely.linestrings(places[border]))
+    pieces = shapely.get_parts(shapely.polygonize(shapely.get_parts(noded)))
+    tree = shapely.STRtree(shapely.polygons(places[triangles]))
+    covered = np.unique(tree.query(shapely.point_on_surface(pieces), predicate="intersects")[0])
+    return shapely.coverage_union_all(pieces[covered])
+
+
+def _unshared_edges(triangles: Ints, places: int) -> Ints:
+    """Return the edges that are passed more often in one direction than in the other, shape (k, 2)."""
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    low, high = edges.min(axis=1), edges.max(axis=1)
+    _, first, which = np.unique(low * places + high, return_index=True, return_inverse=True)
+    passed = np.bincount(which.reshape(-1), np.where(edges[:, 0] < edges[:, 1], 1.0, -1.0))
+    found: Ints = edges[first[passed != 0.0]]
+    return found
