@@ -39,6 +39,12 @@ class _Folder(click.ParamType):  # type: ignore[type-arg,unused-ignore]
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
     help="File of Study.save(): its percentiles beside this run.",
 )
+@click.option(
+    "--draws",
+    default=16,
+    show_default=True,
+    help="Vehicles of the class that the bands are made of, a power of 2 from 8; 0: no bands.",
+)
 @click.option("--title", help="Of the page.  [default: the scene]")
 @click.option("--project", default="", help="In the title block.")
 @click.option("--client", default="", help="In the title block: prepared for.")
@@ -49,6 +55,7 @@ def report(
     output: Path,
     standards: tuple[str, ...],
     study: Path | None,
+    draws: int,
     title: str | None,
     project: str,
     client: str,
@@ -69,6 +76,7 @@ def report(
         result_of(scene, options),
         output,
         study=beside,
+        draws=draws,
         standards=standards or None,
         title=title,
         project=project,

@@ -13,6 +13,7 @@ from ..assessment import DesignLoad
 from ..base.arguments import checked
 from ..result.result import Result
 from ..study import Study
+from ..study.predict import Prediction, check_draws
 from .folder import PAGE, check_folder, write_folder
 
 if TYPE_CHECKING:
@@ -25,10 +26,11 @@ _FRAMES = 21  # of the plan view beside the page, whose outlines take long; the 
 
 @checked
 def dossier(
-    result: Result | Study,
+    result: Result | Study | Prediction,
     folder: str | Path,
     *,
     study: Study | None = None,
+    draws: int = 16,
     standards: Sequence[str] | None = None,
     design_loads: DesignLoad | None = None,
     title: str | None = None,
@@ -49,11 +51,15 @@ def dossier(
     Parameters
     ----------
     result
-        A run, also one that was loaded; or a study: then the run is that of the scene that was varied.
+        A run, also one that was loaded; or a study: then the run is that of the scene that was varied. Of a
+        prediction the run is that of its scene, and the bands are its own.
     folder
         New, empty, or that of an earlier dossier, which is replaced.
     study
         Beside a run: its percentiles and probabilities show how far the inputs move the numbers.
+    draws
+        Vehicles of the class that are run in the same scene, for the bands beside the numbers and the
+        probabilities beside the ratings; a power of 2 from 8, or 0. See :func:`birm3d.predict`.
     standards
         To rate by, see :func:`birm3d.rate`. ``None``: those for security barriers where the path is within 45
         degrees of square to the barrier, else MASH and EN 1317; of them those that know the vehicle.
@@ -70,6 +76,9 @@ def dossier(
         the vehicle.
     """
     path = check_folder(folder)
+    if draws:
+        check_draws("draws", draws)
+    prediction = result if isinstance(result, Prediction) else None
     run, beside = _run_and_study(result, study)
     if len(run.time) < 2:
         raise ValueError(f"result must have at least 2 rows, got {len(run.time)}")
@@ -77,7 +86,8 @@ def dossier(
         raise ValueError(f"result must be of a vehicle that moves, got {run.scene.impact_speed} m/s")
     from .study_case import case_of
 
-    case = case_of(run, beside, None if standards is None else tuple(standards), design_loads)
+    asked = None if standards is None else tuple(standards)
+    case = case_of(run, beside, asked, design_loads, prediction, draws)
     facts = {
         "project": project,
         "prepared for": client,
@@ -88,9 +98,11 @@ def dossier(
     return path / PAGE
 
 
-def _run_and_study(result: Result | Study, study: Study | None) -> tuple[Result, Study | None]:
+def _run_and_study(result: Result | Study | Prediction, study: Study | None) -> tuple[Result, Study | None]:
     if isinstance(result, Result):
         return result, study
+    if isinstance(result, Prediction):
+        return _run_and_study(result.study, None)[0], study
     if study is not None:
         raise ValueError("study must be None where result is a study, got both")
     if result._scene is None:

@@ -18,6 +18,8 @@ from ..assessment import (
 from ..result.result import Result
 from ..simulation import Simulation
 from ..study import Study
+from ..study.predict import Prediction
+from .class_bands import ClassBands, class_bands
 from .given_tests import Compared, nearest
 
 __all__ = ["Case", "case_of", "is_oblique"]
@@ -51,6 +53,8 @@ class Case:
         Or why there is none.
     design_loads : DesignLoad or str
         Or why there are none.
+    bands : ClassBands or str
+        Of the vehicles of the class in the scene; or why there are none.
     tests : list of Compared
     finer : Result
         The same scene with a hundredth of the tolerance.
@@ -66,6 +70,7 @@ class Case:
     rating_study: RatingStudy | None
     risk: OccupantRisk | str
     design_loads: DesignLoad | str
+    bands: ClassBands | str
     tests: list[Compared]
     finer: Result
     warnings: list[str]
@@ -81,6 +86,8 @@ def case_of(
     study: Study | None,
     standards: tuple[str, ...] | None,
     design_loads: DesignLoad | None,
+    prediction: Prediction | None = None,
+    draws: int = 0,
 ) -> Case:
     """Return the case of a run.
 
@@ -99,6 +106,8 @@ def case_of(
         )
     framed = result if result.frames is not None else result.with_frames(min(_FRAMES, len(result.time)))
     ratings, reasons = _rated(framed, standards)
+    risk = _risk(framed)
+    names = [rating.standard for rating in ratings if "no rating" not in rating.designation]
     return Case(
         run=result,
         result=framed,
@@ -106,8 +115,9 @@ def case_of(
         ratings=ratings,
         not_rated=reasons,
         rating_study=None if study is None or not ratings else _rated_study(study, ratings[0].standard),
-        risk=_risk(framed),
-        design_loads=_loads(framed) if design_loads is None else design_loads,
+        risk=risk,
+        design_loads=_loads(framed, draws) if design_loads is None else design_loads,
+        bands=class_bands(result, prediction, draws, names, not isinstance(risk, str)),
         tests=[] if result.scene.barrier is None else nearest(result.scene),
         finer=_finer(result),
         warnings=list(dict.fromkeys(str(one.message) for one in told)),
@@ -149,11 +159,14 @@ def _risk(result: Result) -> OccupantRisk | str:
     return risk
 
 
-def _loads(result: Result) -> DesignLoad | str:
+def _loads(result: Result, draws: int) -> DesignLoad | str:
     if result.scene.barrier is None:
         return "there is no barrier"
     try:
-        return design_load(result)
+        drawn = any(unit.scatter for unit in result.scene.vehicle.units)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of other vehicles of the class
+            return design_load(result, draws=draws if drawn else 0, progress=False)
     except ValueError as reason:  # rows too far apart for the assumed period
         return str(reason)
 

@@ -12,6 +12,7 @@ from ..result.summary import HEADLINES
 from ..study import Study
 from ..study.history_bands import history_bands
 from .blocks import Block, Caution, Section, Table, Text
+from .class_bands import class_blocks
 from .figures import figure
 from .study_case import Case
 
@@ -61,12 +62,14 @@ def uncertainty_section(case: Case) -> Section:
             "displacements of tests at 56 km/h scatter by about 20 % either way. The table of given tests "
             "shows errors of this model in tests like this scene."
         ),
+        *class_blocks(case.result, case.bands),
     ]
     if case.study is None:
         blocks.append(
             Text(
-                "No study was given: the numbers of this dossier are those of one run. Spread of inputs "
-                "comes from birm3d.monte_carlo(), birm3d.sweep() and dossier(result, folder, study=study)."
+                "No study was given: speed, angle, mass and barrier are those of one run. Spread of these "
+                "inputs comes from birm3d.monte_carlo(), birm3d.sweep() and dossier(result, folder, "
+                "study=study)."
             )
         )
     else:

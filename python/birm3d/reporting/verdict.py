@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterator
 from statistics import median
 
-from ..assessment import DesignLoad
+from ..assessment import DesignLoad, ElementDesign, OccupantRisk
 from ..assessment.criteria import Criterion
 from ..assessment.rating import MODEL_CAUTION
 from ..result.element_loads import touched_elements
-from ..result.summary import headline_rows
 from .blocks import Block, Caution, Section, Table, Text
+from .class_bands import band_of, headline_table
 from .given_tests import errors
 from .study_case import Case, is_oblique
 from .uncertainty import computing_error
@@ -25,13 +26,10 @@ def verdict_section(case: Case) -> Section:
     result = case.result
     blocks: list[Block] = [
         Table("At a glance", ("question", "answer"), list(_glance(case))),
-        Table(
-            "Headline numbers",
-            ("quantity", "value", "unit"),
-            [row for row in headline_rows(result) if row[0]][1:],
-            numbers=True,
-        ),
+        headline_table(result, case.bands),
     ]
+    if not isinstance(case.bands, str):
+        blocks.append(Caution(case.bands.prediction.caution))
     if result.scene.barrier is None:
         blocks.append(Text(_NO_BARRIER))
     for rating in case.ratings:
@@ -59,7 +57,7 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         yield (
             f"Rating by {rating.standard}, indicative",
             f"{rating.designation} (vehicle {rating.vehicle_class}); {contained}, "
-            f"{_penetration(rating.penetration)}",
+            f"{_penetration(rating.penetration)}{_chances(case, rating.standard)}",
         )
     loads = touched_elements(result.element_loads)
     if loads:
@@ -67,14 +65,16 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         yield (
             "What does the barrier have to carry?",
             f"up to {most.peak_force_50ms / 1e3:,.0f} kN (50-ms mean) at {most.height_at_peak:.2f} m on "
-            f"{most.name}, with an overturning moment of {most.peak_overturning_moment_50ms / 1e3:,.0f} kN m",
+            f"{most.name}, with an overturning moment of {most.peak_overturning_moment_50ms / 1e3:,.0f} kN m"
+            f"{_load_band(case)}",
         )
     if isinstance(case.design_loads, DesignLoad) and loads:
         row, period = case.design_loads.governing, case.design_loads.natural_period
         yield (
             "What does its foundation have to carry?",
             f"{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
-            f"{row.height:.2f} m, natural period {period:g} s, ductility {case.design_loads.ductility:g}",
+            f"{row.height:.2f} m, natural period {period:g} s, ductility {case.design_loads.ductility:g}"
+            f"{_design_band(row)}",
         )
     yield "Would occupants be at risk?", _risk_line(case)
     yield "How well is it computed?", _computed_line(case)
@@ -95,14 +95,44 @@ def _penetration(distance: float) -> str:
     return f"penetration {distance:.2f} m"
 
 
+def _chances(case: Case, standard: str) -> str:
+    """Return what other vehicles of the class are rated, as the end of a line."""
+    if isinstance(case.bands, str) or standard not in case.bands.ratings:
+        return ""
+    rated = case.bands.ratings[standard]
+    shares = ", ".join(f"{name} {share:.0%}" for name, share in rated.probability.items())
+    return f". Of {len(rated.ratings)} vehicles of the class: {shares}"
+
+
+def _load_band(case: Case) -> str:
+    name = "peak_element_force_50ms"
+    if isinstance(case.bands, str) or name not in case.bands.prediction.low:
+        return ""
+    return f"; 80 % of the class: {band_of(case.bands, name, 1e3, ',.0f')} kN on the most loaded element"
+
+
+def _design_band(row: ElementDesign) -> str:
+    if "equivalent_static_force" not in row.band:
+        return ""
+    low, high = (end / 1e3 for end in row.band["equivalent_static_force"])
+    return f"; 80 % of the class: {low:,.0f} to {high:,.0f} kN"
+
+
 def _risk_line(case: Case) -> str:
     if isinstance(case.risk, str):
         return f"not computed: {case.risk}"
-    standard = "EN 1317" if is_oblique(case.result) and not case.risk.missing else "MASH"
+    asked = [one.standard for one in case.ratings if one.standard in ("MASH", "EN 1317")]
+    known = "EN 1317" if is_oblique(case.result) and not case.risk.missing else "MASH"
+    standard = asked[0] if asked else known
     failed = [one.name for one in case.risk.criteria if one.passed is False and f"({standard}" in one.name]
+    others = ""
+    if not isinstance(case.bands, str) and case.bands.risk is not None:
+        found = case.bands.risk
+        others = f"; met by {found.passed(standard):.0%} of {len(found.risks)} vehicles of the class"
     if not failed:
-        return f"the limits of {standard} are met; severity and every value are in the section on occupants"
-    return f"limits of {standard} are exceeded: {', '.join(failed)}"
+        met = f"the limits of {standard} are met; severity and every value are in the section on occupants"
+        return f"{met}{others}"
+    return f"limits of {standard} are exceeded: {', '.join(failed)}{others}"
 
 
 def _computed_line(case: Case) -> str:
@@ -117,7 +147,7 @@ def _computed_line(case: Case) -> str:
 
 def risk_section(case: Case) -> Section:
     """Return what the occupants undergo."""
-    from ..assessment.occupant import CAUTION
+    from ..assessment.risk_values import CAUTION
 
     if isinstance(case.risk, str):
         return Section("Occupant risk", "occupants", [Text(f"Not computed: {case.risk}")])
@@ -129,8 +159,20 @@ def risk_section(case: Case) -> Section:
     )
     blocks: list[Block] = [
         Text(when),
-        criteria_table("Occupant risk, each value beside its limit", case.risk.criteria),
+        _risk_table(case, case.risk),
         *(Text(text) for text in case.risk.missing),
         Caution(CAUTION),
     ]
     return Section("Occupant risk", "occupants", blocks)
+
+
+def _risk_table(case: Case, risk: OccupantRisk) -> Table:
+    """Return the values beside their limits, with the bands of the class where there are some."""
+    table = criteria_table("Occupant risk, each value beside its limit", risk.criteria)
+    if isinstance(case.bands, str) or case.bands.risk is None:
+        return table
+    bands = {name: (band, share) for name, _, band, _, share in case.bands.risk.rows}
+    rows = [(*row, *bands[row[0]]) for row in table.rows]
+    return dataclasses.replace(
+        table, head=(*table.head, "80 % of the class", "of it within the limit"), rows=rows
+    )

@@ -1,0 +1,161 @@
+"""How the vehicles of a class differ in the scene of a dossier: bands, and probabilities of ratings."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from ..assessment import OccupantRisk, Rating, RatingStudy, RiskStudy, occupant_risk, rate
+from ..assessment.probability import rating_study
+from ..assessment.risk_study import risk_of_study
+from ..plotting.style import shown_unit
+from ..result.metric_table import METRICS
+from ..result.metrics import METRIC_UNITS
+from ..result.result import Result
+from ..result.summary import HEADLINES
+from ..simulation import Simulation
+from ..study.predict import Prediction, predict
+from ..study.whole_runs import look_at_study
+from ..vehicle.class_scatter import joined
+from .blocks import Block, Caution, Table, Text
+
+__all__ = ["ClassBands", "band_of", "class_bands", "class_blocks", "headline_table"]
+
+_PARTS = {
+    "front": "forces of the front",
+    "side": "forces of the side",
+    "corner": "forces of the corners",
+    "tires": "forces of the tyres",
+    "mass_center_height": "height of the mass centre",
+    "barrier_friction": "friction of vehicle on barrier",
+    "tire_friction": "friction of tyres on the ground",
+}
+_Z = 1.2816  # of the normal distribution, 80 %, two sides
+
+
+@dataclass(frozen=True)
+class ClassBands:
+    """What the vehicles of a class do in one scene.
+
+    Attributes
+    ----------
+    prediction : Prediction
+    ratings : mapping of str to RatingStudy
+        Standard -> ratings of all vehicles.
+    risk : RiskStudy or None
+        ``None`` where the run itself has none.
+    """
+
+    prediction: Prediction
+    ratings: Mapping[str, RatingStudy]
+    risk: RiskStudy | None
+
+
+def class_bands(
+    result: Result, prediction: Prediction | None, draws: int, standards: Sequence[str], with_risk: bool
+) -> ClassBands | str:
+    """Return the bands of a run, or why there are none.
+
+    Parameters
+    ----------
+    prediction
+        Of the scene; ``None``: one is made.
+    draws
+        Number of vehicles; 0: none.
+    standards
+        That rate the run.
+    with_risk
+        Whether the run has occupant risk.
+    """
+    if prediction is None and draws == 0:
+        return "no vehicles of its class were drawn (draws=0)"
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of vehicles that are not this one; the caution counts them
+        if prediction is None:
+            try:
+                prediction = predict(Simulation.from_scene(result.scene), draws, progress=False)
+            except ValueError as reason:
+                if "[[scatter]]" not in str(reason):
+                    raise
+                return f"the file of {result.scene.vehicle.name!r} does not say how its class scatters"
+        look = partial(_look, standards=standards, with_risk=with_risk)
+        found, failed = look_at_study(prediction.study, look, progress=False)
+    ratings = {}
+    for standard in standards:
+        of = {run: one[0][standard] for run, one in found.items() if standard in one[0]}
+        if of:
+            missing = {run: "no rating" for run in found if run not in of}
+            ratings[standard] = rating_study(of, {**failed, **missing})
+    risks = {run: risk for run, (_, risk) in found.items() if risk is not None}
+    return ClassBands(prediction, ratings, risk_of_study(risks, failed) if risks else None)
+
+
+def _look(
+    run: Result, standards: Sequence[str], with_risk: bool
+) -> tuple[dict[str, Rating], OccupantRisk | None]:
+    """Return the ratings and the occupant risk of one vehicle of the class, as far as it has them."""
+    ratings = {}
+    for standard in standards:
+        try:
+            ratings[standard] = rate(run, standard)
+        except ValueError:  # its outcome is not decided; the share of the others is shown
+            continue
+    try:
+        return ratings, occupant_risk(run) if with_risk else None
+    except ValueError:  # it touches nothing
+        return ratings, None
+
+
+def band_of(bands: ClassBands | str, name: str, size: float = 1.0, form: str = ".4g") -> str:
+    """Return the 80 % band of a metric as text, in units of `size`; a dash where there is none."""
+    if isinstance(bands, str) or name not in bands.prediction.low:
+        return "–"
+    low, high = (format(end[name] / size, form) for end in (bands.prediction.low, bands.prediction.high))
+    return f"{low} to {high}"
+
+
+def class_blocks(result: Result, bands: ClassBands | str) -> Iterator[Block]:
+    """Yield what was drawn, and the bands of all metrics that say what happens."""
+    if isinstance(bands, str):
+        yield Text(f"There are no bands of the vehicle's class: {bands}.")
+        return
+    predicted = bands.prediction
+    yield Text(
+        f"Vehicles of one class differ. {len(predicted.study)} of them were run in this scene, with mass, "
+        "speed, angle and barrier as given. This was drawn, each lognormal, as the vehicle's file says with "
+        "its source:"
+    )
+    vehicle = result.scene.vehicle
+    rows = []
+    for name, one in joined([unit.scatter for unit in vehicle.units], vehicle.zones_met).items():
+        low, high = (one.median * math.exp(sign * _Z * one.log_sd) for sign in (-1.0, 1.0))
+        rows.append((_PARTS[name], f"{one.median:.2f}", f"{low:.2f} to {high:.2f}"))
+    head = ("quantity", "median factor on this vehicle's", "80 % of the class")
+    yield Table("What differs between vehicles of the class", head, rows, numbers=True)
+    cells = []
+    for name, *ends in predicted._answers():
+        size, unit = shown_unit(METRIC_UNITS.get(name, ""))
+        own = result.metrics.get(name) if name in result.metrics else None
+        numbers = ("–" if number is None else f"{number / size:.4g}" for number in (own, *ends))
+        cells.append((name.replace("_", " "), *numbers, unit))
+    yield Table(
+        f"This run beside {predicted.share:.0%} of the vehicles of its class",
+        ("quantity", "this run", "low", "median", "high", "unit"),
+        cells,
+        numbers=True,
+    )
+    yield Caution(predicted.caution)
+
+
+def headline_table(result: Result, bands: ClassBands | str) -> Table:
+    """Return the headline numbers with their bands."""
+    rows = []
+    for name in HEADLINES:
+        shown = METRICS[name].shown
+        if shown is not None and name in result.metrics:
+            value = format(result.metrics[name] / shown.size, shown.form)
+            rows.append((shown.label, value, band_of(bands, name, shown.size, shown.form), shown.unit))
+    return Table("Headline numbers", ("quantity", "value", "80 % of the class", "unit"), rows, numbers=True)
