@@ -37,6 +37,11 @@ _UNIT = 'With a unit, as "0.9 m".'
 @click.option("--wheel-radius", help=_UNIT)
 @click.option("--track", help=_UNIT)
 @click.option("--mass-center-height", help=_UNIT)
+@click.option(
+    "--use-densities",
+    is_flag=True,
+    help="Mass centre and inertia by the keyword file's densities, brought to --mass.",
+)
 @click.option("--plot", type=PICTURE, help="Write a figure of what was understood (.png, .pdf, .svg).")
 @click.option("-o", "--save", type=VEHICLE, required=True, help="Vehicle file (.toml); --vehicle takes it.")
 def from_mesh(mesh: Path, plot: Path | None, save: Path, **options: Any) -> None:

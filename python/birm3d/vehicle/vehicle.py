@@ -195,6 +195,7 @@ class Vehicle(OldVehicleNames):
         mass_center_height: Quantity | None = None,
         center_of_mass: FloatsLike | None = None,
         inertia: FloatsLike | None = None,
+        use_densities: bool = False,
         zones: Mapping[str, Mapping[str, Any]] | None = None,
         core: Mapping[str, Mapping[str, Any]] | None = None,
         name: str | None = None,
@@ -242,6 +243,9 @@ class Vehicle(OldVehicleNames):
             Shape (3,) [m]: x forward from the first axle, so mostly negative; y left; z above the ground.
         inertia
             About the mass centre, shape (3,) or (3, 3) [kg m^2].
+        use_densities
+            Of a keyword file: mass centre and inertia are those of its own densities, thicknesses and added
+            masses, brought to `mass`, in place of the class's.
         zones, core
             Blocks ``[zone.<name>]`` and ``[[core]]`` of a vehicle file by their names: a new one, or what
             differs from that of the class.
@@ -267,7 +271,7 @@ class Vehicle(OldVehicleNames):
             "without_parts": without_parts, "clearance": clearance, "element_size": element_size,
             "wheelbase": wheelbase, "front_overhang": front_overhang, "wheel_radius": wheel_radius,
             "track": track, "mass_center_height": mass_center_height, "center_of_mass": center_of_mass,
-            "inertia": inertia, "zones": zones, "core": core, "name": name,
+            "inertia": inertia, "use_densities": use_densities, "zones": zones, "core": core, "name": name,
         }  # fmt: skip
         return vehicle_of_mesh(MeshFacts.given(path, mass, like, others), mesh_density)
 

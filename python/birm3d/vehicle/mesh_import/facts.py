@@ -47,6 +47,7 @@ class MeshFacts:
     mass_center_height: float | None
     center_of_mass: npt.NDArray[np.float64] | None
     inertia: npt.NDArray[np.float64] | None
+    use_densities: bool
     zones: Mapping[str, Mapping[str, Any]]
     core: Mapping[str, Mapping[str, Any]]
     name: str | None
@@ -93,6 +94,16 @@ class MeshFacts:
                 raise ValueError(
                     "center_of_mass must not be given together with mass_center_height, got both"
                 )
+        inertia = _inertia(others.pop("inertia"))
+        said = {
+            "center_of_mass": center is not None,
+            "inertia": inertia is not None,
+            "mass_center_height": sizes["mass_center_height"] is not None,
+        }
+        if others["use_densities"] and (stated := [name for name, given in said.items() if given]):
+            raise ValueError(
+                f"use_densities must be False where {stated[0]} is given: both say where mass is; got True"
+            )
         base = Vehicle.preset(like) if isinstance(like, str) else like
         if base is not None and (len(base.units) != 1 or base._file is None):
             raise ValueError(f"like must be a vehicle of one unit that has a file, got {base.name!r}")
@@ -101,7 +112,7 @@ class MeshFacts:
             mass=positive("mass", si("mass", mass, "mass")),
             like=base,
             center_of_mass=center,
-            inertia=_inertia(others.pop("inertia")),
+            inertia=inertia,
             clearance=clearance,
             zones=others.pop("zones") or {},
             core=others.pop("core") or {},

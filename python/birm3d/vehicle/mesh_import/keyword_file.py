@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from ...io.file_format import read_bytes
+from .columns import columns, lines_of, real, whole
+from .deck_mass import MASS_BLOCKS, DeckMass
 from .raw_mesh import MeshFileError, RawMesh, triangulated
 
 __all__ = ["KEYWORD_ENDINGS", "read_keyword_file"]
@@ -28,7 +29,6 @@ KEYWORD_ENDINGS = (".k", ".key", ".dyn", ".dat", ".inc", ".asc")
 _MOST_BYTES = 2**31
 _MOST_FILES = 200
 _HEADER = re.compile(rb"^\*[^\r\n]*", re.MULTILINE)
-_SHORT_EXPONENT = re.compile(rb"(?<=[\d.])([+-]\d)")
 _SOLID_FACES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
 _CARDS = ("THICKNESS", "BETA", "MCID")  # options of which any brings one more line for each element
 _UNREADABLE = ("*INCLUDE_TRANSFORM", "*INCLUDE_BINARY", "*NODE_TRANSFORM")
@@ -43,6 +43,7 @@ class _Model:
         self.shells: list[tuple[Ints, Ints]] = []  # part, corners (m, 4)
         self.solids: list[tuple[Ints, Ints]] = []  # part, corners (m, 8)
         self.titles: dict[int, str] = {}
+        self.mass = DeckMass()
         self.files: set[Path] = set()
         self.folders: list[Path] = []
 
@@ -62,6 +63,8 @@ def read_keyword_file(path: Path) -> RawMesh:
     ids, points = np.concatenate(model.node_ids), np.concatenate(model.points)
     order = np.argsort(ids, kind="stable")
     ids, points = ids[order], points[order]
+    model.mass.node_ids, model.mass.points = ids, points
+    model.mass.shells, model.mass.solids = model.shells, model.solids
     corners = [*model.shells]
     for part, solid in model.solids:
         faces = np.concatenate([solid[:, face] for face in _SOLID_FACES])
@@ -82,6 +85,7 @@ def read_keyword_file(path: Path) -> RawMesh:
         np.concatenate([parts, parts[second]]),
         model.titles,
         is_deck=True,
+        mass=model.mass,
     )
 
 
@@ -131,25 +135,29 @@ def _block(name: str, body: bytes, path: Path, model: _Model, long: bool) -> Non
         raise MeshFileError.at(
             path, None, f"must be without {name}, which is not read: write one plain model"
         )
+    if name.startswith(MASS_BLOCKS):
+        model.mass.blocks.append((name, body, long))
     if name in ("*INCLUDE", "*INCLUDE_PATH", "*INCLUDE_PATH_RELATIVE"):
         _include(name, body, path, model, long)
     elif name == "*PART":
-        _titles(_lines(body), model, long)
+        _titles(lines_of(body), model, long)
     elif name == "*NODE":
-        ids, *axes = _columns(_lines(body), (8, 16, 16, 16), long)
-        model.node_ids.append(_whole(ids))
-        model.points.append(np.column_stack([_real(axis) for axis in axes]))
+        ids, *axes = columns(lines_of(body), (8, 16, 16, 16), long)
+        model.node_ids.append(whole(ids))
+        model.points.append(np.column_stack([real(axis) for axis in axes]))
     elif name == "*ELEMENT_SHELL" or name.startswith("*ELEMENT_SHELL_"):
         options = name.removeprefix("*ELEMENT_SHELL")
         more = any(option in options for option in _CARDS) + ("OFFSET" in options) + ("DOF" in options)
-        _shells(_lines(body)[:: 1 + more], model, long)
+        lines = lines_of(body)
+        _shells(lines[:: 1 + more], model, long)
+        model.mass.thickness.append(lines[1 :: 1 + more] if "THICKNESS" in options else None)
     elif name in ("*ELEMENT_SOLID", "*ELEMENT_SOLID_ORTHO"):
-        _solids(_lines(body), model, long, ortho=name.endswith("ORTHO"))
+        _solids(lines_of(body), model, long, ortho=name.endswith("ORTHO"))
 
 
 def _include(name: str, body: bytes, path: Path, model: _Model, long: bool) -> None:
     text = ""
-    for line in _lines(body):
+    for line in lines_of(body):
         part = line.decode("utf-8", "replace").strip()
         text += part.removesuffix(" +")
         if part.endswith(" +"):  # a name goes on in the next line
@@ -168,15 +176,15 @@ def _include(name: str, body: bytes, path: Path, model: _Model, long: bool) -> N
 
 def _titles(lines: list[bytes], model: _Model, long: bool) -> None:
     for title, numbers in zip(lines[::2], lines[1::2], strict=False):
-        (number,) = _columns([numbers], (10,), long)
-        model.titles[int(_whole(number)[0])] = title.decode("latin-1").strip()
+        (number,) = columns([numbers], (10,), long)
+        model.titles[int(whole(number)[0])] = title.decode("latin-1").strip()
 
 
 def _shells(lines: list[bytes], model: _Model, long: bool) -> None:
-    _, part, *corners = _columns(lines, (8,) * 6, long)
-    quads = np.column_stack([_whole(corner) for corner in corners])
+    _, part, *corners = columns(lines, (8,) * 6, long)
+    quads = np.column_stack([whole(corner) for corner in corners])
     quads[:, 3] = np.where(quads[:, 3] == 0, quads[:, 2], quads[:, 3])
-    model.shells.append((_whole(part), quads))
+    model.shells.append((whole(part), quads))
 
 
 def _solids(lines: list[bytes], model: _Model, long: bool, ortho: bool) -> None:
@@ -185,49 +193,11 @@ def _solids(lines: list[bytes], model: _Model, long: bool, ortho: bool) -> None:
     one_line = len(lines[0].rstrip().replace(b",", b" ").split()) > 2
     step = (1 if one_line else 2) + 2 * ortho
     if one_line:
-        _, part, *corners = _columns(lines[::step], (8,) * 10, long)
+        _, part, *corners = columns(lines[::step], (8,) * 10, long)
     else:
-        _, part = _columns(lines[::step], (8, 8), long)
-        corners = _columns(lines[1::step], (8,) * 8, long)
-    nodes = np.column_stack([_whole(corner) for corner in corners])
+        _, part = columns(lines[::step], (8, 8), long)
+        corners = columns(lines[1::step], (8,) * 8, long)
+    nodes = np.column_stack([whole(corner) for corner in corners])
     for column in range(4, 8):  # wedges and tetrahedra leave the last ones out
         nodes[:, column] = np.where(nodes[:, column] == 0, nodes[:, 3], nodes[:, column])
-    model.solids.append((_whole(part), nodes))
-
-
-def _lines(body: bytes) -> list[bytes]:
-    """Return the lines of a block that hold data."""
-    return [line for line in body.replace(b"\r", b"").split(b"\n") if line.strip() and line[:1] != b"$"]
-
-
-def _columns(lines: list[bytes], widths: tuple[int, ...], long: bool) -> list[npt.NDArray[np.bytes_]]:
-    """Return the first columns of all lines; empty ones are empty."""
-    if any(b"&" in line for line in lines[:1]):
-        raise ValueError(f"got the parameter in {lines[0].decode('latin-1').strip()!r}")
-    if any(b"," in line for line in lines[:3]):
-        rows = [[*(cell.strip() for cell in line.split(b",")), *([b""] * len(widths))] for line in lines]
-        return [np.array([row[i] for row in rows], dtype=np.bytes_) for i in range(len(widths))]
-    if long:
-        widths = (20,) * len(widths)
-    total = sum(widths)
-    table = np.array([line[:total] for line in lines], dtype=f"S{total}").view("S1").reshape(-1, total)
-    edges = np.cumsum((0, *widths))
-    return [np.ascontiguousarray(table[:, a:b]).view(f"S{b - a}")[:, 0] for a, b in pairwise(edges.tolist())]
-
-
-def _whole(column: npt.NDArray[np.bytes_]) -> Ints:
-    return _filled(column).astype(np.int64)
-
-
-def _real(column: npt.NDArray[np.bytes_]) -> Floats:
-    column = _filled(column)
-    try:
-        return column.astype(np.float64)
-    except ValueError:  # Fortran writes 1.5-3 for 1.5e-3
-        return np.array([float(_SHORT_EXPONENT.sub(rb"e\1", cell.strip())) for cell in column.tolist()])
-
-
-def _filled(column: npt.NDArray[np.bytes_]) -> npt.NDArray[np.bytes_]:
-    """Return a column with 0 where it is empty."""
-    stripped = np.strings.strip(column) if hasattr(np, "strings") else np.char.strip(column)
-    return np.where(stripped == b"", b"0", stripped)
+    model.solids.append((whole(part), nodes))

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from .raw_mesh import RawMesh
 
-__all__ = ["AXES", "UNITS", "Placed", "check_unit", "in_vehicle_axes"]
+__all__ = ["AXES", "UNITS", "Placed", "check_unit", "in_vehicle_axes", "rotation"]
 
 Floats = npt.NDArray[np.float64]
 

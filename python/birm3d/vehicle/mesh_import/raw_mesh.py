@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...io.file_format import FileFormatError
+from .deck_mass import DeckMass
 
 __all__ = ["MeshFileError", "RawMesh", "triangulated"]
 
@@ -39,6 +40,8 @@ class RawMesh:
         Number of a part -> what the file calls it.
     is_deck
         Whether it is a finite-element model: sheets with gaps between them, not one closed skin.
+    mass
+        What the file says of masses.
     """
 
     path: Path
@@ -47,6 +50,7 @@ class RawMesh:
     part: Ints
     titles: Mapping[int, str] = field(default_factory=dict)
     is_deck: bool = False
+    mass: DeckMass | None = None
 
     def fault(self, reason: str) -> MeshFileError:
         """Return an error that names the file."""
@@ -62,6 +66,7 @@ class RawMesh:
             self.part[keep],
             self.titles,
             self.is_deck,
+            self.mass,
         )
 
     def numbers_of(self, argument: str, parts: Sequence[int | str]) -> set[int]:

@@ -25,7 +25,7 @@ from .core_fit import core_inside
 from .facts import MeshFacts
 from .file_blocks import with_core, with_zones
 from .labels import labelled
-from .mass_solid import solid_of
+from .mass_solid import mass_of_deck, solid_of
 from .placing import in_vehicle_axes
 from .raw_mesh import RawMesh
 from .remesh import even_mesh, is_even
@@ -54,9 +54,12 @@ def vehicle_of_mesh(facts: MeshFacts, mesh_density: float) -> Vehicle:
     told: list[str] = []
     wrap = facts.holes == "wrap" or (facts.holes is None and mesh.is_deck)
     if wrap:
-        recipe, skin = _around(shape, facts, told)
+        recipe, skin, shift = _around(shape, facts, told)
     else:
-        recipe, skin = _as_given(shape, facts, told)
+        recipe, skin, shift = _as_given(shape, facts, told)
+    if facts.use_densities:
+        own = mass_of_deck(mesh, points + shift, facts, told)
+        facts = dataclasses.replace(facts, center_of_mass=own.center, inertia=own.inertia)
     return build(_finished(recipe, skin, facts, mesh, told, mesh_density))
 
 
@@ -72,10 +75,11 @@ def _selected(mesh: RawMesh, facts: MeshFacts) -> RawMesh:
 # ---- the two ways to a skin --------------------------------------------------------------------------------
 
 
-def _as_given(
-    shape: MeshShape, facts: MeshFacts, told: list[str]
-) -> tuple[VehicleRecipe, tuple[Floats, Ints]]:
-    """Return the recipe of the class, and the closed mesh itself with its front at the recipe's."""
+_Made = tuple[VehicleRecipe, tuple[Floats, Ints], Floats]
+
+
+def _as_given(shape: MeshShape, facts: MeshFacts, told: list[str]) -> _Made:
+    """Return the recipe of the class, the closed mesh with its front at the recipe's, and its shift."""
     mesh = shape.mesh
     points, faces = closed_skin(mesh, shape.points, mesh.triangles, facts.holes or "refuse")
     recipe = recipe_of_class(shape, facts, told)
@@ -86,15 +90,16 @@ def _as_given(
             "with wheels in it needs holes='wrap', which takes them out"
         )
     size = file.exterior.element_size_m if facts.element_size is None else facts.element_size
-    points = points + np.array([file.extent.front, 0.0, 0.0])
+    shift = np.array([file.extent.front, 0.0, 0.0])
+    points = points + shift
     if not is_even(points, faces, size):
         points, faces = even_mesh(points, faces, _count(points, faces, size))
         told.append(f"the skin of the mesh, with {len(points):,} nodes at about {size:.3g} m in its place")
-    return recipe, (points, faces)
+    return recipe, (points, faces), shift
 
 
-def _around(shape: MeshShape, facts: MeshFacts, told: list[str]) -> tuple[VehicleRecipe, tuple[Floats, Ints]]:
-    """Return the recipe of the class, and a closed skin around all parts but the wheels."""
+def _around(shape: MeshShape, facts: MeshFacts, told: list[str]) -> _Made:
+    """Return the recipe of the class, a closed skin around all parts but the wheels, and their shift."""
     expected = file_of(recipe_of(expected_vehicle(facts))).exterior.element_size_m
     size = facts.element_size or expected * (shape.length / expected_vehicle(facts).length) ** (2.0 / 3.0)
     mesh = shape.mesh
@@ -119,7 +124,7 @@ def _around(shape: MeshShape, facts: MeshFacts, told: list[str]) -> tuple[Vehicl
     points, faces = even_mesh(points, faces, _count(points, faces, size))
     points = fitted_to(points, faces, inside.samples, 2.0 * inside.size)
     told.append(f"a closed skin of {len(points):,} nodes around all parts, at about {size:.3g} m")
-    return recipe, (points + np.array([ahead, 0.0, 0.0]), faces)
+    return recipe, (points + np.array([ahead, 0.0, 0.0]), faces), np.array([ahead, -middle, 0.0])
 
 
 def _house(file: VehicleFile, index: int, ahead: float, width: float) -> WheelSpace:
