@@ -17,6 +17,7 @@ UNCERTAIN = {
     "vehicle.gvw": stats.uniform(units.lb(3500), units.lb(1000)),  # 3,500 to 4,500 lb, all equally likely
     "impact_angle": stats.truncnorm(-2.0, 2.0, 90.0, 5.0),  # deg
     "barrier.friction": stats.uniform(0.1, 0.2),
+    "zone.engine.scale": stats.lognorm(0.1),
     "zone.bumper.scale": stats.lognorm(0.1),
     "zone.engine_bay.scale": stats.lognorm(0.1),  # 10 % of deviation
 }

@@ -185,6 +185,28 @@ def finite_element() -> Figure:
     return figure
 
 
+def posts() -> Figure:
+    """Load of a single post against its diameter, and against its offset from the middle."""
+    figure = Figure(figsize=(7.6, 3.8), layout="constrained")
+    force, ratio = figure.subplots(1, 2)
+    rows = _rows(VALIDATION / "posts.csv")
+    for name in dict.fromkeys(row["vehicle"] for row in rows):
+        own = [row for row in rows if row["vehicle"] == name]
+        centered = [r for r in own if float(r["offset_share"]) == 0.0 and r["diameter"] != "0.354"]
+        points = [(float(r["diameter"]), 1e-3 * float(r["force_50ms"])) for r in centered]
+        force.plot(*zip(*points, strict=True), ".-", label=name.replace("_", " "))
+        beside = [r for r in own if r["diameter"] == "0.354" and float(r["forward"]) > 0.0]
+        shares = [(float(r["offset_share"]), abs(float(r["left"])) / float(r["forward"])) for r in beside]
+        ratio.plot(*zip(*shares, strict=True), ".-")
+    ratio.plot(0.5, 0.13, "k*", label="N, finite elements")
+    force.set(xlabel="diameter [m]", ylabel="greatest mean force over 50 ms [kN]", ylim=(0.0, None))
+    ratio.set(xlabel="offset / half width", ylabel="sideways / forward impulse", ylim=(0.0, 1.0))
+    force.set_ylim(top=1.35 * force.get_ylim()[1])  # room for the legend
+    force.legend(fontsize=7, ncols=2, loc="upper left", frameon=False)
+    ratio.legend(fontsize=7, frameon=False)
+    return figure
+
+
 def _one_to_one(axes: Any) -> None:
     top = max(*axes.get_xlim(), *axes.get_ylim())
     axes.plot((0.0, top), (0.0, top), color="0.6", linewidth=0.8)
@@ -226,6 +248,7 @@ MADE: dict[str, Callable[[], Figure]] = {
         work_precision,
         blind,
         finite_element,
+        posts,
     )
 }
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import sys
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -10,7 +12,12 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle
 
-FITTED = Path(__file__).resolve().parents[1] / "data/finite_element"
+TESTS = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TESTS / "validation"), str(TESTS / "bench")]
+
+import posts  # noqa: E402
+
+FITTED = TESTS / "data/finite_element"
 SPEED = {"fitted_n": 13.4, "fitted_truck": 22.35, "passenger_car": 15.6}
 DIAMETER = 0.35
 
@@ -132,3 +139,23 @@ def test_loads_change_gently_with_the_indentation_length() -> None:
         forward.append([load.force[1:, :2].sum(0) * interval for load in result.element_loads])
     change = np.abs(np.diff(np.array(forward), axis=0)).max()
     assert change < 0.05 * np.array(forward).max()
+
+
+@pytest.mark.parametrize(("name", "diameter", "share"), [("pickup", 0.05, 0.0), ("fitted_n", 0.354, 0.5)])
+def test_page_of_posts_is_what_is_computed(name: str, diameter: float, share: float) -> None:
+    with posts.RESULTS.open(encoding="utf-8") as file:
+        rows = {
+            (r["vehicle"], float(r["diameter"]), float(r["offset_share"])): r for r in csv.DictReader(file)
+        }
+    found, kept = posts.load(name, diameter, share), rows[name, diameter, share]
+    for what in ("travel", "peak_force", "force_50ms", "forward"):
+        assert getattr(found, what) == pytest.approx(float(kept[what]), rel=0.01)
+
+
+def test_a_thin_post_meets_no_core_at_56_km_h() -> None:
+    """A pickup met its core with 6 MN at 0.05 m: only what stands behind the engine stops a thin post."""
+    for name in ("passenger_car", "minivan", "pickup"):
+        post = Barrier.bollards(count=1, diameter=0.05, height=1.5)
+        result = Simulation(vehicle(name, 0.5), post, 15.6, duration=0.25).run()
+        assert result.statistics.body_steps == 0
+        assert result.metrics["max_displacement"] < 1.35

@@ -37,7 +37,7 @@ PEAKS = HERE / "measured" / "peak_decelerations.csv"
 Floats = npt.NDArray[np.float64]
 
 LN_FACTORS = np.linspace(-0.9, 0.9, 7)
-FRONT = ("bumper", "engine_bay")
+FRONT = ("engine", "bumper", "engine_bay")
 SHARE = 0.8
 NORMAL = NormalDist()
 Z = NORMAL.inv_cdf(0.5 + 0.5 * SHARE)

@@ -1,0 +1,159 @@
+"""Loads on single posts against diameter and offset: writes posts.md and results/posts.csv.
+
+    python tests/validation/posts.py    # some seconds
+
+Head-on, one rigid post, no friction. The site draws both tables. The finite-element figures are those of
+tests/data/finite_element: poles of 0.354 m at 30 mph.
+"""
+
+from __future__ import annotations
+
+import csv
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields
+from functools import cache
+from pathlib import Path
+
+FOLDER = Path(__file__).parent
+sys.path.insert(0, str(FOLDER.parent / "bench"))
+
+import birm3d  # noqa: E402
+from finite_element import DATA, POLE_DIAMETER  # noqa: E402
+
+RESULTS = FOLDER / "results/posts.csv"
+SPEED = {
+    "fitted_n": birm3d.units.mph(30),
+    "fitted_s": birm3d.units.mph(30),
+    "passenger_car": birm3d.units.km_h(56),
+    "pickup": birm3d.units.km_h(56),
+    "fitted_truck": birm3d.units.mph(50),
+}
+DIAMETERS = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6)  # m
+SHARES = (0.0, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0, 1.1, 1.3)  # of the half width
+
+INTRODUCTION = """# Loads on single posts
+
+Written by `python tests/validation/posts.py`. One rigid post of 1.5 m, head-on, without friction: vehicles N
+and S at 30 mph, presets at 56 km/h, the finite-element truck at 50 mph.
+"""
+BY_DIAMETER = """
+## Against the diameter
+
+The post stands before the middle. A thicker post meets more of the front at once.
+"""
+BY_OFFSET = """
+## Against the offset
+
+Post of 0.354 m. Ratio: sideways over forward impulse on the post. Offset: of the post's axis, as a share of
+the vehicle's half width. The post touches nothing beyond 1 + radius over half width.
+
+Finite elements: 0.13 for vehicle N at 0.50 of its half width.
+"""
+
+
+@dataclass(frozen=True)
+class Load:
+    """What one post takes in a crash; impulses on the post [N s], forward and to the vehicle's left."""
+
+    vehicle: str
+    diameter: float  # m
+    offset_share: float  # of the half width, post to the right
+    travel: float  # m
+    peak_force: float  # resultant, CFC60 [N]
+    force_50ms: float  # greatest mean of the resultant over 50 ms [N]
+    forward: float
+    left: float
+
+    @property
+    def ratio(self) -> float:
+        """Sideways over forward impulse; nought where nothing is touched."""
+        return abs(self.left) / self.forward if self.forward > 1.0 else 0.0
+
+
+@cache
+def vehicle(name: str) -> birm3d.Vehicle:
+    if name.startswith("fitted"):
+        return birm3d.Vehicle.from_file(DATA / f"{name}.toml")
+    return birm3d.Vehicle.preset(name)
+
+
+def load(name: str, diameter: float, share: float) -> Load:
+    """Run the crash of a vehicle at a post."""
+    who = vehicle(name)
+    offset = share * float(who.nodes[:, 1].max())
+    post = birm3d.Barrier.bollards(
+        count=1, diameter=diameter, height=1.5, origin=(0.0, -offset, 0.0), friction=0.0
+    )
+    settings = birm3d.Settings(mu_tire=0.0, mu_body=0.0, mu_tire_barrier=0.0)
+    result = birm3d.Simulation(who, post, SPEED[name], duration=0.25, settings=settings).run()
+    (on_post,) = result.element_loads
+    impulse = on_post.force[1:, :2].sum(0) * result.scene.settings.output_interval
+    return Load(
+        name,
+        diameter,
+        share,
+        float(result.position[:, 0].max() - result.position[0, 0]),
+        float(result.metrics["peak_normal_force_cfc60"]),
+        float(result.metrics["peak_force_50ms"]),
+        float(impulse[0]),
+        float(impulse[1]),
+    )
+
+
+def loads() -> Iterator[Load]:
+    """Every crash of the page."""
+    for name in SPEED:
+        for diameter in DIAMETERS:
+            yield load(name, diameter, 0.0)
+        for share in SHARES:
+            yield load(name, POLE_DIAMETER, share)
+        print(name, flush=True)
+
+
+def write(found: Sequence[Load]) -> None:
+    names = [field.name for field in fields(Load)]
+    with RESULTS.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(names)
+        for row in found:
+            values = [getattr(row, name) for name in names]
+            writer.writerow([value if isinstance(value, str) else f"{value:.5g}" for value in values])
+
+
+def _table(title: str, heads: Sequence[str], rows: Sequence[Load], text: Callable[[Load], str]) -> str:
+    lines = ["", f"**{title}**", "", f"| vehicle | {' | '.join(heads)} |", "|---" * (len(heads) + 1) + "|"]
+    for name in SPEED:
+        cells = [text(row) for row in rows if row.vehicle == name]
+        lines.append(f"| {name} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def page(found: Sequence[Load]) -> str:
+    """The tables, with a row for each vehicle."""
+    parts = [INTRODUCTION, BY_DIAMETER]
+    centered = [row for row in found if row.diameter in DIAMETERS and row.offset_share == 0.0]
+    for title, value in (
+        ("Peak force CFC60 [kN] by diameter [m]", lambda row: f"{1e-3 * row.peak_force:,.0f}"),
+        ("Greatest mean over 50 ms [kN] by diameter [m]", lambda row: f"{1e-3 * row.force_50ms:,.0f}"),
+    ):
+        parts.append(_table(title, [f"{d:g}" for d in DIAMETERS], centered, value))
+    beside = [row for row in found if row.diameter == POLE_DIAMETER]
+    parts.append(BY_OFFSET)
+    heads = [f"{share:g}" for share in SHARES]
+    parts.append(_table("Ratio by offset", heads, beside, lambda row: f"{row.ratio:.2f}"))
+    parts.append(
+        _table("Forward impulse [kN s] by offset", heads, beside, lambda row: f"{1e-3 * row.forward:.1f}")
+    )
+    return "\n".join(parts)
+
+
+def main() -> int:
+    found = list(loads())
+    write(found)
+    (FOLDER / "posts.md").write_text(page(found) + "\n", encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
