@@ -225,7 +225,7 @@ def test_trusses_are_long_enough_and_run_into_the_vehicle(preset_name):
     name = np.array(mesh.zone_names)[mesh.zone]
     truss = mesh.nodes - mesh.anchors
     length = np.linalg.norm(truss, axis=1)
-    front = np.isin(name, ["bumper", "engine_bay"])
+    front = np.isin(name, ["engine", "bumper", "engine_bay"])
     middle = front & (np.abs(mesh.nodes[:, 1]) < 0.3)
     # A 60-mph head-on crash of a car crushes about 1.2 m.
     assert length[middle].min() > 1.2

@@ -442,8 +442,9 @@ def test_six_points(head_on: Result) -> None:
     assert profile.points == pytest.approx(profile.points[::-1], abs=1e-6)
     c = profile.points
     assert profile.mean == pytest.approx((c[0] / 2 + c[1] + c[2] + c[3] + c[4] + c[5] / 2) / 5)
-    bumper = head_on.scene.vehicle.nodes[head_on.scene.vehicle.zone_of_node == 0, 2]
-    middle = 0.5 * (bumper.min() + bumper.max()) + head_on.scene.vehicle.mass_center_height
+    vehicle = head_on.scene.vehicle
+    bumper = vehicle.nodes[vehicle.zone_of_node == list(vehicle.zones).index("bumper"), 2]
+    middle = 0.5 * (bumper.min() + bumper.max()) + vehicle.mass_center_height
     assert profile.height == pytest.approx(middle, abs=0.05)
     assert profile.crush.max() <= head_on.metrics["residual_crush"] + 1e-9
 

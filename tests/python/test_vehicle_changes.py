@@ -28,7 +28,7 @@ WITH: dict[str, Callable[[Vehicle], Vehicle]] = {
     "rate": lambda v: v.with_rate_sensitivity(0.05),
     "reach": lambda v: v.with_indentation_length(0.5),
     "tyres": lambda v: v.without_tire_contact(),
-    "zone": lambda v: v.with_zones({"bumper": v.zones["bumper"].scaled(1.2)}),
+    "zone": lambda v: v.with_zones({"engine": v.zones["engine"].scaled(1.2)}),
 }
 # Others of every public field.
 OTHERS: dict[str, Callable[[Vehicle], Any]] = {
@@ -43,7 +43,7 @@ OTHERS: dict[str, Callable[[Vehicle], Any]] = {
     "quads": lambda v: v.quads[::-1].copy(),
     "wheels": lambda v: v.wheels * [1.01, 1.0, 1.0, 1.0],
     "mass_center_height": lambda v: v.mass_center_height + 0.1,
-    "zones": lambda v: {**v.zones, "bumper": v.zones["bumper"].scaled(1.5)},
+    "zones": lambda v: {name: zone.scaled(1.5) for name, zone in v.zones.items()},
     "rate_sensitivity": lambda v: 0.07,
     "indentation_length": lambda v: 0.31,
     "wheel_of_node": lambda v: np.where(v.wheel_of_node == 0, 1, v.wheel_of_node),
@@ -86,7 +86,7 @@ def test_a_replaced_field_is_kept_or_the_next_change_is_refused(field: str, meth
         shell = vehicle.wheel_of_node < 0
         assert same(getattr(result, field), getattr(vehicle, field)[shell])
     elif field == "zones":
-        ratio = result.zones["bumper"].k_unloading / CAR.zones["bumper"].k_unloading
+        ratio = result.zones["engine"].k_unloading / CAR.zones["engine"].k_unloading
         expected = {"scaled": 1.5 * result.mass / CAR._file.zones_mass, "zone": 1.5 * 1.2}.get(method, 1.5)
         assert ratio == pytest.approx(expected, rel=1e-9)
     else:

@@ -190,8 +190,8 @@ def test_the_paper_pickup_is_the_pickup_with_another_front():
     assert paper.gvw_kg == 3407.72
     for part in ("dimensions", "solids", "wheels", "exterior", "core"):
         assert getattr(paper, part) == getattr(pickup, part)
-    assert paper.zone_names == pickup.zone_names
-    other = {a.name for a, b in zip(paper.zones, pickup.zones, strict=True) if a != b}
+    assert pickup.zone_names == ("engine", *paper.zone_names)
+    other = {a.name for a, b in zip(paper.zones, pickup.zones[1:], strict=True) if a != b}
     assert {"bumper", "engine_bay"} <= other
 
 
@@ -331,8 +331,8 @@ def line_of(text: str, part: str) -> int:
         ("radius_m = 0.33", "radius_m = 0.44", "wheel.0.center_m", "radius_m = 0.44, got 0.33"),
         # keys
         ("payload = true", "payload = 1", "solid.24.payload", "valid boolean, got 1"),
-        ("panels = [", 'panels = ["inside", ', "zone.bumper.panels.0", "got 'inside'"),
-        ("panels = [", "panel = [", "zone.bumper.panel", "unknown key, got ('front',)"),
+        ("panels = [", 'panels = ["inside", ', "zone.engine.panels.0", "got 'inside'"),
+        ("panels = [", "panel = [", "zone.engine.panel", "unknown key, got ('front',)"),
         ("height_m = 1.4", "hight_m = 1.4", "dimensions.hight_m", "unknown key, got 1.445"),
         ("format_version = 1", "format_version = 2", "format_version", "must be 1, got 2"),
         ('name = "passenger_car"', 'name = "Passenger Car"', "name", "got 'Passenger Car'"),
@@ -340,8 +340,8 @@ def line_of(text: str, part: str) -> int:
         ('source = ["layout"]', 'source = ["hearsay"]', "solid.0.source", "got 'hearsay'"),
         ('source = ["layout"]', "source = []", "solid.0.source", "at least 1 item"),
         ('status = "measured"', 'status = "sure"', "source.0.status", "got 'sure'"),
-        ('core = ["bulkhead"]', 'core = ["keel"]', "zone.bumper.core", "fire_wall; got 'keel'"),
-        ('blocks = ["body"]', 'blocks = ["boot"]', "zone.engine_bay.blocks", "body, cabin; got 'boot'"),
+        ('core = ["bulkhead"]', 'core = ["keel"]', "zone.engine.core", "fire_wall; got 'keel'"),
+        ('blocks = ["body"]', 'blocks = ["boot"]', "zone.engine.blocks", "body, cabin; got 'boot'"),
     ],
 )  # fmt: skip
 def test_a_bad_value_is_named_with_its_line(tmp_path, old, new, key, says):
@@ -475,6 +475,19 @@ def test_a_file_may_say_only_what_differs(tmp_path):
     assert other.zones[1:] == car.zones
     assert other.sources[1:] == car.sources
     assert (other.name, other.gvw_kg) == ("other", car.gvw_kg)
+
+
+def test_a_file_may_leave_zones_out(tmp_path):
+    text = 'extends = "passenger_car"\nscatter = []\n'
+    (tmp_path / "even.toml").write_text(text + 'without = ["zone.engine"]\n')
+    car = read_vehicle_file(preset_path("passenger_car"))
+    assert read_vehicle_file(tmp_path / "even.toml").zones == car.zones[1:]
+    for value, said in (
+        ('"zone.engine"', "without: must be a list of zones, got 'zone.engine'"),
+        ('["zone.motor"]', "without: must be one of zone.boot_lid, zone.bumper"),
+    ):
+        (tmp_path / "bad.toml").write_text(f"{text}without = {value}\n")
+        assert said in message_of(tmp_path / "bad.toml")
 
 
 def test_errors_are_reported_in_the_file_they_are_in(tmp_path):

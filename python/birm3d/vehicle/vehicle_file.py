@@ -314,6 +314,8 @@ class _VehicleDocument(ZonesInOrder):
             raise self.fault(("extends",), reason)
         target = preset_path(name) if name in preset_names() else self.path.parent / name
         base = _VehicleDocument(target, (*parents, self.path.resolve()))
+        if "without" in self.data:
+            self._leave_out(base)
         if "scaled" in self.data:
             self._scale(base)
         own = self.data
@@ -337,6 +339,16 @@ class _VehicleDocument(ZonesInOrder):
             elif key and key[0] not in own:
                 self._places[key] = where
         self.data = merged
+
+    def _leave_out(self, base: _VehicleDocument) -> None:
+        """Leave out zones of the vehicle that the file extends, as the list "without" says."""
+        without = self.data.pop("without")
+        if not isinstance(without, list):
+            raise self.fault(("without",), f"without: must be a list of zones, got {received(without)}")
+        zones = base.data["zone"]
+        with self.placed(("without",)):
+            check_known("without", tuple(without), {f"zone.{name}" for name in zones})
+        base.data["zone"] = {name: zone for name, zone in zones.items() if f"zone.{name}" not in without}
 
     def _scale(self, base: _VehicleDocument) -> None:
         """Scale the vehicle that the file extends, as the block "scaled" says."""
@@ -388,6 +400,7 @@ def read_vehicle_file(path: str | Path) -> VehicleFile:
     path
         TOML file. With ``extends = "pickup"`` (a preset, or a file beside it) it states only what differs:
         whole top-level keys are replaced, zones one by one, sources are added; new zones are matched first.
+        ``without = ["zone.engine"]`` leaves zones of that vehicle out.
         With a block ``[scaled]`` the vehicle extended is scaled before that.
 
     Raises
