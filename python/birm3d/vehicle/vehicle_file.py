@@ -346,8 +346,11 @@ class _VehicleDocument(ZonesInOrder):
         if not isinstance(without, list):
             raise self.fault(("without",), f"without: must be a list of zones, got {received(without)}")
         zones = base.data["zone"]
-        with self.placed(("without",)):
-            check_known("without", tuple(without), {f"zone.{name}" for name in zones})
+        known = {f"zone.{name}" for name in zones}
+        for name in without:
+            if name not in known:
+                reason = f"without: must be one of {', '.join(sorted(known))}; got {received(name)}"
+                raise self.fault(("without",), reason)
         base.data["zone"] = {name: zone for name, zone in zones.items() if f"zone.{name}" not in without}
 
     def _scale(self, base: _VehicleDocument) -> None:
