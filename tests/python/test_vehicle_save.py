@@ -140,10 +140,10 @@ def test_what_a_file_can_not_hold_is_refused(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("[changes.zone.bumper]", "[changes.zone.bumpr]", r"changes\.zone\.bumpr: must be one of .* 'bumpr'"),
+        ("[changes.zone.engine]", "[changes.zone.motor]", r"changes\.zone\.motor: must be one of .* 'motor'"),
         ("mesh_density = 0.1", "mesh_densty = 0.1", r"changes\.mesh_densty: unknown key"),
         ("mesh_density = 0.1", "mesh_density = -0.1", r"changes\.mesh_density: must be greater than 0"),
-        ("k_initial_Pa_per_m = 1100000.0", "k_initial_Pa_per_m = -1.0", r"changes\.zone\.bumper\.k_initial"),
+        ("k_initial_Pa_per_m = 1100000.0", "k_initial_Pa_per_m = -1.0", r"changes\.zone\.engine\.k_initial"),
     ],
 )
 def test_wrong_changes_name_line_and_key(tmp_path, old, new, message):
