@@ -19,7 +19,7 @@ namespace {
 struct Stop {
     std::atomic<bool> set = false;
 };
-struct Stopped {};
+struct Stopped : std::exception {};
 
 // What a run came to, or what went wrong with it.
 struct Run {

@@ -20,6 +20,7 @@ template <class T>
 std::vector<T> integers(const Integers& array, const char* name) {
     if (array.ndim() != 1) refuse(std::string(name) + " shape", "(n,)", shape_text(array));
     std::vector<T> result;
+    result.reserve(static_cast<std::size_t>(array.shape(0)));
     for (py::ssize_t i = 0; i < array.shape(0); ++i)
         result.push_back(static_cast<T>(array.at(i)));
     return result;
@@ -28,6 +29,7 @@ std::vector<T> integers(const Integers& array, const char* name) {
 std::vector<Wheel> discs(const InputArray& wheels) {
     if (wheels.ndim() != 2 || wheels.shape(1) != 4) refuse("wheels shape", "(w, 4)", shape_text(wheels));
     std::vector<Wheel> result;
+    result.reserve(static_cast<std::size_t>(wheels.shape(0)));
     for (py::ssize_t i = 0; i < wheels.shape(0); ++i)
         result.push_back({{wheels.at(i, 0), wheels.at(i, 1), wheels.at(i, 2)}, wheels.at(i, 3)});
     return result;
@@ -67,6 +69,7 @@ void register_vehicle(py::module_& m) {
                          double mass_center_height, const InputArray& offset, const InputArray& core) {
                  if (core.ndim() != 2 || core.shape(1) != 6) refuse("core shape", "(k, 6)", shape_text(core));
                  std::vector<Box> boxes;
+                 boxes.reserve(static_cast<std::size_t>(core.shape(0)));
                  for (py::ssize_t i = 0; i < core.shape(0); ++i)
                      boxes.push_back({{core.at(i, 0), core.at(i, 1), core.at(i, 2)},
                                       {core.at(i, 3), core.at(i, 4), core.at(i, 5)}});
@@ -129,6 +132,7 @@ void register_vehicle(py::module_& m) {
             "stands_on_wheels",
             [](const Vehicle& vehicle) {
                 std::vector<bool> result;
+                result.reserve(vehicle.units.size());
                 for (const Unit& unit : vehicle.units)
                     result.push_back(stands_on_wheels(unit));
                 return result;

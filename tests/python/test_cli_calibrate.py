@@ -12,7 +12,6 @@ import pytest
 from birm3d import Result, calibrate, reference, scenes
 from birm3d.calibration import Parameter, load
 from birm3d.calibration.fit_file import Fit, read_fit_file
-from birm3d.cli import main
 from birm3d.scene_parameters import varied
 
 ROOT = Path(__file__).parents[2]
@@ -113,15 +112,13 @@ def test_json_and_figures(command, capsys, folder):
     assert all(path.stat().st_size > 5_000 for path in figures)
 
 
-def test_the_fitted_vehicle_runs_from_its_file(monkeypatch, command, capsys, folder):
+def test_the_fitted_vehicle_runs_from_its_file(command, capsys, folder):
     vehicle = folder / "fitted.toml"
     files = ["--save-vehicle", vehicle, "--save", folder / "out.json"]
     assert command("calibrate", folder / "fit.toml", "--quiet", *files) == 0
     assert f"vehicle: {vehicle}" in capsys.readouterr().err
     # Run from the file, and by hand with the fitted value.
-    arguments = ["run", "--vehicle", str(vehicle), "--speed", "57.09km/h", "--json"]
-    monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
-    main()
+    assert command("run", "--vehicle", vehicle, "--speed", "57.09km/h", "--json") == 0
     run = json.loads(capsys.readouterr().out)
     engine = load(folder / "out.json").values["engine"]
     by_hand = varied(read_fit_file(folder / "fit.toml").simulations[0], dict.fromkeys(ENGINE, engine)).run()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -13,7 +14,6 @@ import pytest
 import pyvista
 import trimesh
 from birm3d import Barrier, Result, Simulation, Vehicle
-from birm3d.cli import main
 from birm3d.result.skin import skins_at
 from scipy.spatial.transform import Rotation
 
@@ -261,13 +261,11 @@ def test_missing_library_is_named(
 
 
 def test_command_line_writes_both(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, command: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:
     files = [tmp_path / "crash.glb", tmp_path / "crash.pvd"]
     arguments = ["run", "--vehicle", "passenger_car", "--mesh-density", "0.05", "--speed", "20mph"]
-    options = ["--gltf", str(files[0]), "--vtk", str(files[1])]
-    monkeypatch.setattr("sys.argv", ["birm3d", *arguments, *options])
-    main()
+    assert command(*arguments, "--gltf", files[0], "--vtk", files[1]) == 0
     assert all(file.stat().st_size > 1000 for file in files)
     told = capsys.readouterr().err
     assert f"animation: {files[0]}" in told

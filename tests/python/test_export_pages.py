@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import shlex
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -14,32 +16,32 @@ PAGES = Path(__file__).resolve().parents[2] / "docs/pages/how-to"
 BLOCK = re.compile(r"^```(python|sh)\n(.*?)^```$", re.S | re.M)
 
 
-def run_page(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    from birm3d.cli import main
-
+def run_page(name: str, command: Callable[..., int]) -> None:
     names: dict[str, object] = {}
     for kind, block in BLOCK.findall((PAGES / name).read_text(encoding="utf-8")):
         if kind == "python":
             exec(compile(block, name, "exec"), names)
             continue
         for line in block.splitlines():
-            words = re.findall(r'"[^"]*"|\S+', line)
-            monkeypatch.setattr("sys.argv", [word.strip('"') for word in words])
-            main()
+            program, *words = shlex.split(line)
+            assert program == "birm3d"
+            assert command(*words) == 0
 
 
-def test_mesh_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_mesh_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Callable[..., int]) -> None:
     monkeypatch.chdir(tmp_path)
     write_deck(tmp_path / "car.k", car_parts())
     places, triangles = skin_of(Vehicle.preset("passenger_car"))
     trimesh.Trimesh(places / units.mm, triangles, process=False).export(tmp_path / "body.stl")
-    run_page("mesh.md", monkeypatch)
+    run_page("mesh.md", command)
     assert Vehicle.from_file(tmp_path / "car.toml").mass == 1719.0
     assert (tmp_path / "understood.png").stat().st_size > 20_000
 
 
-def test_export_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_export_page_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Callable[..., int]
+) -> None:
     monkeypatch.chdir(tmp_path)
-    run_page("export.md", monkeypatch)
+    run_page("export.md", command)
     assert (tmp_path / "crash.glb").stat().st_size > 10_000
     assert len(list((tmp_path / "crash").glob("vehicle_*.vtp"))) == 101  # of the command line, the last one

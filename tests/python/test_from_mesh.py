@@ -14,7 +14,6 @@ import numpy.typing as npt
 import pytest
 import trimesh
 from birm3d import Barrier, FileFormatError, Simulation, Vehicle, units
-from birm3d.cli import main
 from birm3d.result.crush_profile import crush_map
 from birm3d.vehicle.mesh_import.mass_solid import solid_of
 from birm3d.vehicle.mesh_import.surface_file import read_mesh
@@ -511,21 +510,16 @@ def test_files_that_are_none_are_refused(
 
 
 def test_command_line_makes_file_and_figure(
-    deck: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    deck: Path, tmp_path: Path, command: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:
     out, figure = tmp_path / "own.toml", tmp_path / "own.png"
     options = ["--mass", "1719 kg", "--kind", "car", "--unit", "mm", "--element-size", "15 cm"]
     leave = ["--without-part", "mirror", "--without-part", "4"]
-    arguments = ["birm3d", "from-mesh", str(deck), *options, *leave, "--plot", str(figure), "-o", str(out)]
-    monkeypatch.setattr("sys.argv", arguments)
-    main()
+    assert command("from-mesh", deck, *options, *leave, "--plot", figure, "-o", out) == 0
     assert "assumed: wheelbase 2.8" in capsys.readouterr().out
     assert Vehicle.from_file(out).mass == 1719.0
     assert figure.stat().st_size > 20_000
-    monkeypatch.setattr("sys.argv", ["birm3d", "from-mesh", str(deck), "--mass", "1.7 t", "-o", str(out)])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    assert stop.value.code == 2
+    assert command("from-mesh", deck, "--mass", "1.7 t", "-o", out) == 2
     assert "kind or like must be given" in capsys.readouterr().err
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Simulation, Study, Vehicle
-from birm3d.cli.commands import main
 from scipy import stats
 
 
@@ -107,11 +107,10 @@ def test_wrong_studies(drawn: Study, tmp_path: Path) -> None:
 
 
 def test_command_line(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path, runs: list[Result]
+    command: Callable[..., int], capsys: pytest.CaptureFixture[str], tmp_path: Path, runs: list[Result]
 ) -> None:
     def call(*arguments: str) -> tuple[str, str]:
-        monkeypatch.setattr("sys.argv", ["birm3d", *arguments])
-        main()
+        assert command(*arguments) == 0
         return capsys.readouterr()
 
     for name, result in zip(("slow", "fast"), runs, strict=True):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-import sys
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from statistics import NormalDist
@@ -140,13 +140,9 @@ def test_wrong_files(tmp_path: Path, block: str, message: str) -> None:
         Vehicle.from_file(path)
 
 
-def test_command_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    from birm3d.cli import main
-
+def test_command_line(command: Callable[..., int], capsys: pytest.CaptureFixture[str]) -> None:
     scene = ["--vehicle", "passenger_car", "--barrier", "rigid_wall", "--speed", "56 km/h"]
-    arguments = ["birm3d", "predict", *scene, "--draws", "8", "--json"]
-    monkeypatch.setattr(sys, "argv", arguments)
-    main()
+    assert command("predict", *scene, "--draws", "8", "--json") == 0
     told = json.loads(capsys.readouterr().out)
     assert told["share"] == 0.8
     assert told["metrics"]["max_displacement"]["low"] < told["metrics"]["max_displacement"]["high"]

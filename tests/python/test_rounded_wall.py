@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle, sweep, units
 from birm3d.barrier.text import barrier_text
-from birm3d.cli import main
 from birm3d.simulation.scene_file import read_scene_file
 
 SPEED = units.km_h(64.4)
@@ -195,7 +195,7 @@ def test_scene_file_and_page(tmp_path: Path) -> None:
     assert "30 % of the width, right side" in page.read_text(encoding="utf-8")
 
 
-def test_command_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command_line(command: Callable[..., int], capsys: pytest.CaptureFixture[str]) -> None:
     options = [
         "run",
         "--vehicle",
@@ -207,13 +207,9 @@ def test_command_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFix
         "--duration",
         "5ms",
     ]
-    monkeypatch.setattr("sys.argv", ["birm3d", *options, "--edge-radius", "0.15", "--overlap", "0.3"])
-    main()
+    assert command(*options, "--edge-radius", "0.15", "--overlap", "0.3") == 0
     assert "30 % overlap on the left" in " ".join(capsys.readouterr().out.split())
-    monkeypatch.setattr("sys.argv", ["birm3d", *options, "--overlap", "0.3"])
-    with pytest.raises(SystemExit) as ended:
-        main()
-    assert ended.value.code
+    assert command(*options, "--overlap", "0.3") == 2
     assert "overlap must be None" in capsys.readouterr().err
 
 

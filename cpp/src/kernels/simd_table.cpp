@@ -43,6 +43,15 @@ std::vector<SimdPath> simd_paths() {
     return paths;
 }
 
-const SimdPath simd = simd_paths().back();
+namespace {
+
+// Without memory for three rows nothing can run: then the program ends here.
+SimdPath fastest() noexcept {
+    return simd_paths().back();
+}
+
+}  // namespace
+
+const SimdPath simd = fastest();
 
 }  // namespace birm3d

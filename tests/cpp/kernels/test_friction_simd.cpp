@@ -1,8 +1,6 @@
-#include <cstring>
-#include <random>
-
 #include "birm3d/state/contacts.hpp"
 #include "check.hpp"
+#include "kernels/random_columns.hpp"
 #include "kernels/simd_table.hpp"
 #include "state/block_contact.hpp"
 
@@ -10,12 +8,7 @@ using namespace birm3d;
 
 namespace {
 
-template <class Sums>
-bool same_bits(const Sums& a, const Sums& b) {
-    return std::memcmp(&a, &b, sizeof a) == 0;
-}
-
-struct RunSummary {
+struct Found {
     FrictionSums friction{};
     ResistanceSums resistance{};
     Moments moments{};
@@ -25,31 +18,27 @@ struct RunSummary {
 }  // namespace
 
 TEST("every instruction set finds the same friction, and rows without pressure add nothing") {
-    std::mt19937 random(1);
-    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    const auto fill = [&](BlockColumn& to, double middle, double spread) {
-        for (double& value : to)
-            value = middle + spread * uniform(random);
-    };
+    laboratory::Random random(1);
     const std::vector<SimdPath> functions = simd_paths();
     for (int round = 0; round < 50; ++round) {
         alignas(64) BlockColumn x, y, z, pressure;
         BlockContact contact;
-        fill(x, 2.5, 0.5), fill(y, 0.0, 1.0), fill(z, 0.0, 0.7);
-        fill(pressure, 0.0, 1e4);
+        fill(random, x, 2.5, 0.5), fill(random, y, 0.0, 1.0), fill(random, z, 0.0, 0.7);
+        fill(random, pressure, 0.0, 1e4);
         for (std::size_t i = 0; i < block_size; ++i) {
             pressure[i] = i / 8 % 3 == 0 ? 0.0 : std::max(pressure[i], 0.0);
-            const Vec3 n = Vec3(-1.0, 0.4 * uniform(random), 0.4 * uniform(random)).normalized();
+            const Vec3 n =
+                Vec3(-1.0, 0.4 * random.within(-1.0, 1.0), 0.4 * random.within(-1.0, 1.0)).normalized();
             contact.nx[i] = n.x(), contact.ny[i] = n.y(), contact.nz[i] = n.z();
         }
         // Some nodes slide slowly, others fast.
-        const Vec3 v(0.0, 0.05, 0.02), w(0.3 * uniform(random), 0.05, 0.1);
+        const Vec3 v(0.0, 0.05, 0.02), w(0.3 * random.within(-1.0, 1.0), 0.05, 0.1);
         const double mu = 0.3, full_speed = 0.01;
         const SlidingNodes nodes{x.data(),          y.data(),          z.data(),       contact.nx.data(),
                                  contact.ny.data(), contact.nz.data(), pressure.data()};
-        RunSummary first;
+        Found first;
         for (std::size_t k = 0; k < functions.size(); ++k) {
-            RunSummary found;
+            Found found;
             found.friction = functions[k].find_friction(
                 {mu, full_speed, v.x(), v.y(), v.z(), w.x(), w.y(), w.z()}, nodes, found.q.data());
             found.resistance = functions[k].find_resistance(found.q.data(), nodes);
