@@ -170,4 +170,5 @@ def test_units_are_those_of_the_scene() -> None:
     assert units["zone.bumper.stress[1]"] == "N per m^2"
     assert units["zone.bumper.deflection[1]"] == "m"
     assert unit_of("truss.k_initial") == "N/m"
+    assert unit_of("zone.tires.breakaway") == "N"  # of a wheel, whatever its area
     assert set(SEDAN.run().metrics) <= set(METRIC_UNITS)

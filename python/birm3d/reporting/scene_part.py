@@ -9,6 +9,7 @@ from .. import units
 from ..barrier.text import barrier_text
 from ..result.report import END_REASONS
 from ..vehicle import Vehicle
+from ..vehicle.zone import LAW_NUMBERS
 from .blocks import Block, Caution, Section, Table, Text
 from .figures import figure
 from .study_case import Case
@@ -127,28 +128,26 @@ def _told(zone: Any, changed: bool) -> tuple[str, str]:
     return zone.status, ", ".join(zone.source)
 
 
+_SHOWN = {
+    "pressure per length": (1e6, "MPa/m"),
+    "pressure": (1e6, "MPa"),
+    "length": (1.0, "m"),
+    "force": (1e3, "kN"),
+    "number": (1.0, ""),
+}
+"""Quantity of a number of a law -> size in SI of the unit that the report shows, and that unit."""
+
+
 def _law(law: Any) -> str:
-    words = {
-        "k_initial": ("k", 1e6, "MPa/m"),
-        "knee": ("knee", 1.0, "m"),
-        "k_hardening": ("then", 1e6, "MPa/m"),
-        "f_max": ("plateau", 1e6, "MPa"),
-        "k_unloading": ("unloading", 1e6, "MPa/m"),
-        "elastic_recovery": ("gives back", 1.0, "m"),
-        "tail_depth": ("tail from", 1.0, "m"),
-        "tail_slope": ("tail", 1e6, "MPa/m"),
-        "friction_share": ("share of friction", 1.0, ""),
-        "breakaway": ("wheels give way at", 1e3, "kN"),
-        "breakaway_travel": ("by", 1.0, "m"),
-    }
     parts = []
     for name, value in law.items():
         if name == "envelope":
             points = ", ".join(f"{d:g} m: {stress / 1e6:.3g} MPa" for d, stress in value)
             parts.append(f"points {points}")
         elif value is not None:
-            word, size, unit = words[name]
-            parts.append(f"{word} {value / size:.4g} {unit}")
+            row = LAW_NUMBERS[name]
+            size, unit = _SHOWN[row.quantity]
+            parts.append(f"{row.words} {value / size:.4g} {unit}")
     return "; ".join(parts)
 
 

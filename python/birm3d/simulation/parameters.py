@@ -13,11 +13,7 @@ name                            value
 ``vehicle.mesh_density``        relative number of shell elements
 ``vehicle.rate_sensitivity``    [s/m], see :meth:`birm3d.Vehicle.with_rate_sensitivity`
 ``vehicle.indentation_length``  see :meth:`birm3d.Vehicle.with_indentation_length`
-``zone.<zone>.<number>``        ``k_initial``, ``knee``, ``k_hardening``, ``f_max``, ``k_unloading``, or
-                                ``elastic_recovery``, ``tail_depth``, ``tail_slope``,
-                                ``friction_share``, ``breakaway``, ``breakaway_travel``
-                                where it has them, of
-                                :class:`birm3d.Zone`
+``zone.<zone>.<number>``        a number of :class:`birm3d.Zone` that the zone has, as ``k_initial``
 ``zone.<zone>.stress[i]``       stress of point i of the zone's envelope [N per m^2]
 ``zone.<zone>.deflection[i]``   its deflection [m]
 ``zone.<zone>.scale``           factor on all stresses and slopes of the zone (now 1)
@@ -49,7 +45,7 @@ from ..vehicle.class_scatter import joined
 from ..vehicle.vehicle import TRUSS_LAW, Vehicle
 from ..vehicle.zone import positive
 from .simulation import Simulation
-from .zone_numbers import PER_AREA, ZONE_UNITS, changed_zone, zone_numbers, zone_value
+from .zone_numbers import PER_AREA, changed_zone, unit_of_number, zone_numbers, zone_value
 
 __all__ = [
     "in_si",
@@ -110,11 +106,9 @@ def parameter_names(simulation: Simulation) -> tuple[str, ...]:
 @checked
 def unit_of(name: str) -> str:
     """Return the unit of a parameter, ``""`` for one that is a pure number or none."""
-    if name.startswith("zone.") or name.startswith("truss."):
-        per_area = " per m^2" if name.startswith("zone.") else ""
-        number = name.rsplit(".", 1)[1].split("[")[0]
-        unit = ZONE_UNITS.get(number, "")
-        return unit if unit in ("m", "") else unit + per_area
+    group = name.partition(".")[0]
+    if group in ("zone", "truss"):
+        return unit_of_number(name.rpartition(".")[2], of_zone=group == "zone")
     return _UNITS.get(_OLD.get(name, name), "")
 
 

@@ -7,31 +7,31 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from ..vehicle.zone import Zone
+from ..vehicle.zone import LAW_NUMBERS, Zone
 
-__all__ = ["PER_AREA", "ZONE_UNITS", "changed_zone", "zone_numbers", "zone_value"]
+__all__ = ["PER_AREA", "changed_zone", "unit_of_number", "zone_numbers", "zone_value"]
 
-ZONE_UNITS = {
-    "k_initial": "N/m",
-    "knee": "m",
-    "k_hardening": "N/m",
-    "f_max": "N",
-    "k_unloading": "N/m",
-    "elastic_recovery": "m",
-    "tail_depth": "m",
-    "tail_slope": "N/m",
-    "friction_share": "",
-    "breakaway": "N",
-    "breakaway_travel": "m",
-    "stress": "N",
-    "deflection": "m",
+_UNITS = {
+    "pressure per length": ("N/m per m^2", "N/m"),
+    "pressure": ("N per m^2", "N"),
+    "length": ("m", "m"),
+    "force": ("N", "N"),
 }
-"""Unit of a number, of a zone per area of the skin; "" is a pure number."""
+"""Quantity -> unit of a zone's number, which is per area of the skin, and of the same number of a truss."""
+
+_OF_POINTS = {"stress": "pressure", "deflection": "length"}
 
 PER_AREA = {"N/m per m^2": "pressure per length", "N per m^2": "pressure"}
 """Unit per area of the skin -> its quantity."""
 
 POINT = re.compile(r"(stress|deflection)\[(\d+)\]")
+
+
+def unit_of_number(number: str, of_zone: bool) -> str:
+    """Return the unit of a number of a zone, or of a truss; "" of a pure number."""
+    row = LAW_NUMBERS.get(number)
+    quantity = _OF_POINTS.get(number.split("[")[0]) if row is None else row.quantity
+    return _UNITS.get(quantity or "", ("", ""))[0 if of_zone else 1]
 
 
 def zone_numbers(zone: Zone) -> tuple[str, ...]:

@@ -572,8 +572,9 @@ class Zone(Block, ZoneLaw):
     @property
     def envelope(self) -> tuple[tuple[float, float], ...]:
         """Loading envelope, rows (deflection in m, stress in Pa), starting at (0, 0)."""
-        if self.envelope_m_Pa is not None:
-            return self.envelope_m_Pa
+        points: tuple[tuple[float, float], ...] | None = self.envelope_m_Pa
+        if points is not None:
+            return points
         assert self.k_initial_Pa_per_m is not None
         assert self.knee_m is not None
         assert self.k_hardening_Pa_per_m is not None

@@ -7,44 +7,55 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from .. import _core
 from ..base.arguments import checked
 
-__all__ = ["KNEE", "LAW_QUANTITIES", "OPTIONAL", "TRUSS_LAW", "Zone", "positive"]
+__all__ = ["KNEE", "LAW_NUMBERS", "LAW_QUANTITIES", "OPTIONAL", "TRUSS_LAW", "LawNumber", "Zone", "positive"]
 
 KNEE = ("k_initial", "knee", "k_hardening", "f_max")
 """The numbers of the paper's loading envelope (Fig. 3)."""
 
-OPTIONAL = (
-    "elastic_recovery",
-    "tail_depth",
-    "tail_slope",
-    "friction_share",
-    "breakaway",
-    "breakaway_travel",
-)
-"""Numbers that a law may have in addition."""
-
 TRUSS_LAW = ("k_initial", "knee", "k_hardening", "f_max", "k_unloading")
 """The numbers of the paper's law (Fig. 3)."""
 
-LAW_QUANTITIES = {
-    "k_initial": "pressure per length",
-    "knee": "length",
-    "k_hardening": "pressure per length",
-    "f_max": "pressure",
-    "k_unloading": "pressure per length",
-    "elastic_recovery": "length",
-    "tail_depth": "length",
-    "tail_slope": "pressure per length",
-    "friction_share": "number",
-    "breakaway": "force",
-    "breakaway_travel": "length",
+
+class LawNumber(NamedTuple):
+    """A number of a zone's law: its quantity as in :func:`birm3d.units.si`, and its limit in files.
+
+    words: what reports call it. optional: a law may have it in addition. of_wheel: it is of the wheels of a
+    zone of tyres, not of the envelope.
+    """
+
+    quantity: str
+    limit: Literal["> 0", ">= 0", "in [0, 1]"]
+    words: str
+    optional: bool = True
+    of_wheel: bool = False
+
+
+LAW_NUMBERS: Mapping[str, LawNumber] = {
+    "k_initial": LawNumber("pressure per length", ">= 0", "k", optional=False),
+    "knee": LawNumber("length", "> 0", "knee", optional=False),
+    "k_hardening": LawNumber("pressure per length", ">= 0", "then", optional=False),
+    "f_max": LawNumber("pressure", "> 0", "plateau", optional=False),
+    "k_unloading": LawNumber("pressure per length", "> 0", "unloading", optional=False),
+    "elastic_recovery": LawNumber("length", "> 0", "gives back"),
+    "tail_depth": LawNumber("length", "> 0", "tail from"),
+    "tail_slope": LawNumber("pressure per length", ">= 0", "tail"),
+    "friction_share": LawNumber("number", "in [0, 1]", "share of friction"),
+    "breakaway": LawNumber("force", "> 0", "wheels give way at", of_wheel=True),
+    "breakaway_travel": LawNumber("length", "> 0", "by", of_wheel=True),
 }
+"""Numbers of a zone's law, in the order of files. Files, names of parameters and reports come from here."""
+
+OPTIONAL = tuple(name for name, row in LAW_NUMBERS.items() if row.optional)
+"""Numbers that a law may have in addition to Fig. 3."""
+
+LAW_QUANTITIES = {name: row.quantity for name, row in LAW_NUMBERS.items()}
 """Number of a zone's law -> its quantity, as :func:`birm3d.units.si` has it."""
 
 
@@ -142,7 +153,7 @@ class Zone(Mapping[str, Any]):
 
     @property
     def _of_curve(self) -> dict[str, float]:
-        return {name: value for name, value in self._optional.items() if not name.startswith("breakaway")}
+        return {name: value for name, value in self._optional.items() if not LAW_NUMBERS[name].of_wheel}
 
     @cached_property
     def curve(self) -> _core.TrussCurve:
@@ -166,13 +177,12 @@ class Zone(Mapping[str, Any]):
         Slopes go with the factor over the stretch. Friction and breakaway loads stay as they are.
         """
         factor, stretch = positive("scale", factor), positive("stretch", stretch)
-        slopes = ("k_initial", "k_hardening", "k_unloading", "tail_slope")
-        times = {**dict.fromkeys(slopes, factor / stretch), "f_max": factor}
-        times |= dict.fromkeys(("knee", "elastic_recovery", "tail_depth"), stretch)
-        given = {name: getattr(self, name) for name in times}
-        changes: dict[str, Any] = {
-            name: times[name] * value for name, value in given.items() if value is not None
-        }
+        times = {"pressure": factor, "pressure per length": factor / stretch, "length": stretch}
+        changes: dict[str, Any] = {}
+        for name, row in LAW_NUMBERS.items():
+            value = getattr(self, name)
+            if value is not None and row.quantity in times and not row.of_wheel:
+                changes[name] = times[row.quantity] * value
         if self.envelope is not None:
             changes["envelope"] = tuple((stretch * d, factor * stress) for d, stress in self.envelope)
         return dataclasses.replace(self, **changes)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Annotated, Any, TypeAlias
 
-from pydantic import Field
+from pydantic import Field, create_model
 
 from ..io.toml import Strict, reject
-from .zone import Zone
+from .zone import LAW_NUMBERS, Zone
 
 __all__ = ["NonNegative", "Positive", "ZoneLaw"]
 
@@ -16,42 +17,34 @@ Positive: TypeAlias = Annotated[float, Field(gt=0.0)]
 NonNegative: TypeAlias = Annotated[float, Field(ge=0.0)]
 EnvelopePoint: TypeAlias = tuple[NonNegative, NonNegative]
 
-# Key of the file: field of the zone.
-_KEYS = {
-    "k_initial_Pa_per_m": "k_initial",
-    "knee_m": "knee",
-    "k_hardening_Pa_per_m": "k_hardening",
-    "f_max_Pa": "f_max",
-    "envelope_m_Pa": "envelope",
-    "k_unloading_Pa_per_m": "k_unloading",
-    "elastic_recovery_m": "elastic_recovery",
-    "tail_depth_m": "tail_depth",
-    "tail_slope_Pa_per_m": "tail_slope",
-    "friction_share": "friction_share",
-    "breakaway_N": "breakaway",
-    "breakaway_travel_m": "breakaway_travel",
-}
+_SUFFIX = {"pressure per length": "_Pa_per_m", "pressure": "_Pa", "length": "_m", "force": "_N", "number": ""}
+_LIMITS = {"> 0": Field(gt=0.0), ">= 0": Field(ge=0.0), "in [0, 1]": Field(ge=0.0, le=1.0)}
 
 
-class ZoneLaw(Strict):
+def _fields() -> Iterator[tuple[str, str, Any]]:
+    """Yield key of the file, field of the zone, and what stands there, in the order of files."""
+    for name, row in LAW_NUMBERS.items():
+        kind = Annotated[float, _LIMITS[row.limit]]
+        key = name + _SUFFIX[row.quantity]
+        if name == "k_unloading":
+            points = Annotated[tuple[EnvelopePoint, ...], Field(min_length=2)]
+            yield "envelope_m_Pa", "envelope", (points | None, None)
+            yield key, name, (kind, ...)
+        else:
+            yield key, name, (kind | None, None)
+
+
+_KEYS = {key: name for key, name, _ in _fields()}
+_Numbers: Any = create_model("_Numbers", __base__=Strict, **{key: field for key, _, field in _fields()})
+
+
+class ZoneLaw(_Numbers):  # type: ignore[misc]
     """Stiffness per unit of area, see :class:`birm3d.Zone`; without ``f_max_Pa`` the plateau has no end.
 
     Either k_initial, knee, k_hardening and f_max (Fig. 3), or a general envelope with rows [deflection in m,
-    stress in Pa] from [0, 0].
+    stress in Pa] from [0, 0]. The keys are the numbers of :data:`birm3d.vehicle.zone.LAW_NUMBERS` with their
+    units.
     """
-
-    k_initial_Pa_per_m: NonNegative | None = None  # noqa: N815
-    knee_m: Positive | None = None
-    k_hardening_Pa_per_m: NonNegative | None = None  # noqa: N815
-    f_max_Pa: Positive | None = None  # noqa: N815
-    envelope_m_Pa: Annotated[tuple[EnvelopePoint, ...], Field(min_length=2)] | None = None  # noqa: N815
-    k_unloading_Pa_per_m: Positive  # noqa: N815
-    elastic_recovery_m: Positive | None = None
-    tail_depth_m: Positive | None = None
-    tail_slope_Pa_per_m: NonNegative | None = None  # noqa: N815
-    friction_share: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
-    breakaway_N: Positive | None = None  # noqa: N815
-    breakaway_travel_m: Positive | None = None
 
     @property
     def law(self) -> Zone:
