@@ -63,6 +63,7 @@ class Row(Drawn):
     depth: float = math.nan
     warned: bool = False
     finished: bool = False
+    refused: str = ""  # by a documented limit, which the message names
     fault: str = ""
 
 
@@ -169,20 +170,39 @@ def draw(seed: int) -> tuple[Drawn, Simulation]:
     return drawn, simulation
 
 
+class _OutOfTimeError(Exception):
+    """A scene has used the processor for as long as it may."""
+
+
+def _run(simulation: Simulation, latest: float) -> tuple[bool, str, str]:
+    """Run to the end or the processor time `latest` [s]; return `finished`, `refused`, `fault`."""
+
+    def check(_time: float, _steps: int) -> None:
+        if time.process_time() > latest:
+            raise _OutOfTimeError
+
+    try:
+        with simulation._core:
+            simulation._core.run(check)
+    except _OutOfTimeError:
+        return False, "", ""
+    except ValueError as error:
+        # The one limit that a valid scene can reach: more steps than a record holds.
+        if "that a record holds" in str(error):
+            return False, str(error), ""
+        return False, "", f"{type(error).__name__}: {error}"
+    except Exception as error:
+        return False, "", f"{type(error).__name__}: {error}"
+    return True, "", ""
+
+
 def examine(seed: int, limit: float = 60.0) -> Row:
     """Run the scene of a seed for `limit` seconds of processor time at the most, and judge it."""
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         drawn, simulation = draw(seed)
         start = time.process_time()  # other programs on the machine leave no scene unfinished
-        fault, finished = "", False
-        try:
-            while time.process_time() - start < limit:
-                if not simulation.step():
-                    finished = True
-                    break
-        except Exception as error:
-            fault = f"{type(error).__name__}: {error}"
+        finished, refused, fault = _run(simulation, start + limit)
         balances, scene = simulation._core.balances, simulation.scene
         warn_if_open(scene, balances)
     energy = relative_to_start(scene, balances.energy.size, balances.at_disposal)
@@ -213,6 +233,7 @@ def examine(seed: int, limit: float = 60.0) -> Row:
         depth=depth,
         warned=warned,
         finished=finished,
+        refused=refused,
         fault="; ".join(faults),
     )
 
@@ -278,7 +299,8 @@ def summarised(rows: Sequence[dict[str, str]]) -> list[dict[str, object]]:
                 "kind": kind,
                 "scenes": len(of),
                 "warned": int(np.count_nonzero(~silent)),
-                "unfinished": sum(row["finished"] == "False" for row in of),
+                "unfinished": sum(row["finished"] == "False" and not row["refused"] for row in of),
+                "refused": sum(bool(row["refused"]) for row in of),
                 "faults": sum(bool(row["fault"]) for row in of),
                 "energy_50": middle,
                 "energy_90": most,
@@ -305,13 +327,17 @@ def write_summary(table: Path, path: Path) -> None:
 
 
 def print_faults(rows: Sequence[dict[str, str]]) -> int:
-    print(f"{'kind':12s}{'scenes':>8s}{'warned':>8s}{'unfinished':>12s}{'faults':>8s}{'worst silent':>14s}")
+    print(
+        f"{'kind':12s}{'scenes':>8s}{'warned':>8s}{'unfinished':>12s}{'refused':>9s}{'faults':>8s}"
+        f"{'worst silent':>14s}"
+    )
     for kind in KINDS:
         of = [row for row in rows if row["kind"] == kind]
         silent = [float(row["energy"]) for row in of if row["warned"] == "False"]
         print(
             f"{kind:12s}{len(of):8d}{sum(r['warned'] == 'True' for r in of):8d}"
-            f"{sum(r['finished'] == 'False' for r in of):12d}{sum(bool(r['fault']) for r in of):8d}"
+            f"{sum(r['finished'] == 'False' and not r['refused'] for r in of):12d}"
+            f"{sum(bool(r['refused']) for r in of):9d}{sum(bool(r['fault']) for r in of):8d}"
             f"{max(silent, default=0.0):14.2g}"
         )
     bad = [row for row in rows if row["fault"]]

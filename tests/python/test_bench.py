@@ -133,12 +133,35 @@ def test_random_scenes_are_summarised_by_kind(monkeypatch: pytest.MonkeyPatch, t
         writer = csv.DictWriter(file, names)
         writer.writeheader()
         for seed, (energy, warned) in enumerate([(1e-5, False), (4e-3, False), (9e-3, True)]):
-            row = dict.fromkeys(names, "0.0") | {"seed": seed, "kind": "pole", "energy": energy, "fault": ""}
-            writer.writerow(row | {"warned": warned, "finished": seed != 1, "steps": 10 * seed})
+            told = {"fault": "", "refused": "duration must be at most" if seed == 2 else ""}
+            row = dict.fromkeys(names, "0.0") | {"seed": seed, "kind": "pole", "energy": energy} | told
+            writer.writerow(row | {"warned": warned, "finished": seed == 0, "steps": 10 * seed})
     scenes.write_summary(table, summary)
     with summary.open(newline="") as file:
         (row,) = csv.DictReader(file)
-    counts = {name: row[name] for name in ("kind", "scenes", "warned", "unfinished", "faults")}
-    assert counts == {"kind": "pole", "scenes": "3", "warned": "1", "unfinished": "1", "faults": "0"}
+    counts = {name: row[name] for name in ("scenes", "warned", "unfinished", "refused", "faults")}
+    assert counts == {"scenes": "3", "warned": "1", "unfinished": "1", "refused": "1", "faults": "0"}
     assert (float(row["energy_50"]), float(row["energy_worst_silent"])) == (4e-3, 4e-3)
     assert (float(row["energy_worst"]), row["steps_50"]) == (9e-3, "10")
+
+
+class Failing:
+    """Stands in for a simulation whose run ends with an error."""
+
+    def __init__(self, message: str) -> None:
+        self._core, self.message = self, message
+
+    def __enter__(self) -> None: ...
+
+    def __exit__(self, *_: object) -> None: ...
+
+    def run(self, _tick: object) -> None:
+        raise ValueError(self.message)
+
+
+def test_a_limit_refuses_a_random_scene_without_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(PROGRAM.parent))
+    run = importlib.import_module("random_scenes")._run
+    limit = "duration must be at most 0.66 s, where the 902080 steps end that a record holds, got 1"
+    assert run(Failing(limit), 1e9) == (False, limit, "")
+    assert run(Failing("gap must be finite"), 1e9) == (False, "", "ValueError: gap must be finite")
