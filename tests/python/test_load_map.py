@@ -122,11 +122,69 @@ def test_files_text_and_figures(oblique: Result, cells: LoadMap, tmp_path: Path)
     assert "Load on the wall by cell" in (tmp_path / "page.html").read_text(encoding="utf-8")
 
 
+FRONTS = {
+    "jersey": (Barrier.jersey(length=30.0, segments=3, heading=20.0, origin=(1.0, 2.0, 0.0)), 18.0, 25.0),
+    "planter": (Barrier.planter(heading=-40.0), 12.0, 90.0),
+    "bollards": (Barrier.bollards(count=4, spacing=1.1, heading=30.0, origin=(0.5, 0.0, 0.0)), 14.0, 70.0),
+    "pole": (Barrier.pole(), 9.0, 90.0),
+}
+
+
+@pytest.mark.parametrize("name", FRONTS)
+def test_other_fronts_add_up_and_have_the_height_of_the_moments(name: str) -> None:
+    """Sloped faces, blocks, posts: force of each post and of the whole; mean height by the moments alone."""
+    barrier, speed, angle = FRONTS[name]
+    car = Vehicle.preset("passenger_car", mesh_density=0.3)
+    result = Simulation(car, barrier, speed, angle, impact_offset=barrier.station()).run()
+    cells = result.load_map(0.1)
+    turn = np.radians(barrier.heading)
+    across, line = (np.array([np.cos(a), np.sin(a), 0.0]) for a in (turn, turn + 0.5 * np.pi))
+    loads = result.element_loads
+    own = np.sum([load.force @ across for load in loads], axis=0)
+    assert np.abs(cells.resultant - own).max() < 1e-9 * own.max()
+    if barrier.has_posts:
+        each = [load.force[1:].sum(axis=0) @ across * cells.interval for load in loads]
+        assert cells.impulse.sum(axis=0) == pytest.approx(each, rel=1e-9, abs=1e-6)
+    middles = 0.5 * (cells.height[1:] + cells.height[:-1])
+    # Of a face that leans back vertical forces have a lever, here that of its middle.
+    lever = -0.5 * 0.61 + 0.13 if name == "jersey" else -0.5 * getattr(barrier, "diameter", 0.0)
+    moment = sum(load.moment[1:].sum(axis=0) @ line + lever * load.force[1:, 2].sum() for load in loads)
+    height = moment / own[1:].sum()
+    assert cells.impulse.sum(axis=1) @ middles / cells.impulse.sum() == pytest.approx(height, abs=0.05)
+
+
+def test_the_load_on_a_slope_is_where_it_touches() -> None:
+    """A block of springs that meets only the upper face of a Jersey barrier loads only the upper cells."""
+    block = scenes.laboratory_block(100, k_initial=3e6, knee=5.0, k_unloading=3e6)
+    settings = Settings(gravity=0.0, ground=False)
+    result = Simulation(block, Barrier.jersey(friction=0.0), 4.0, settings=settings).run()
+    cells = result.load_map(0.1)
+    low = float((block.nodes[:, 2] + result.position[:, 2].min()).min())
+    assert cells.impulse[cells.height[1:] < low - 0.05].sum() <= 1e-9 * cells.impulse.sum()
+    assert cells.impulse.sum() == pytest.approx(block.mass * (4.0 - result.velocity[-1, 0]), rel=1e-3)
+
+
+def _cube() -> tuple[list[list[float]], list[list[int]]]:
+    corners = [[x, y, z] for x in (0.0, 0.5) for y in (-2.0, 2.0) for z in (0.0, 1.0)]
+    faces = [
+        *([0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5]),
+        *([0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [1, 5, 7], [1, 7, 3], [0, 2, 6], [0, 6, 4]),
+    ]
+    return corners, faces
+
+
 def test_wrong_input(oblique: Result, cells: LoadMap) -> None:
     car = Vehicle.preset("passenger_car", mesh_density=0.1)
     posts = Simulation(car, Barrier.bollards(count=1), 8.0).run()
-    with pytest.raises(ValueError, match="barrier must be a rigid wall to have a load map, got Bollards"):
-        posts.load_map()
+    with pytest.raises(ValueError, match="lateral must be None for posts, of which each has one column"):
+        posts.load_map(lateral=[-1.0, 1.0])
+    for barrier, message in (
+        (Barrier.bollards(count=2, rows=2), "must have one row of posts to have a load map, got 2 rows"),
+        (Barrier.jersey(length=6.0, free_standing=True), "barrier must be fixed to have a load map"),
+        (Barrier.from_mesh(*_cube()), "a Jersey barrier, a planter or posts to have a load map, got Mesh"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            Simulation(car, barrier, 8.0, impact_offset=barrier.station()).run().load_map()
     with pytest.raises(ValueError, match=r"cell must be >= 0.01 m, got 0.001"):
         oblique.load_map(0.001)
     with pytest.raises(ValueError, match="lateral must have at least 2 edges that increase"):

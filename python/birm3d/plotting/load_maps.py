@@ -1,4 +1,4 @@
-"""Pictures of the load on a wall, cell by cell."""
+"""Pictures of the load on a barrier, cell by cell."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _DARK = 0.55  # share of the greatest value from which on numbers are white
 def plot_load_map(map_: LoadMap, time: float | None = None) -> Figure:
     """Return impulse and peak force of each cell; of an instant, the force then.
 
-    The wall is seen as the vehicle sees it: the place along the line, which is y, runs from right to left.
+    The barrier is seen as the vehicle sees it: the place along the line, which is y, runs from right to left.
     """
     if time is None:
         panels = [
@@ -54,8 +54,10 @@ def _draw(figure: Figure, axes: Axes, map_: LoadMap, values: Floats, label: str)
     )
     figure.colorbar(cells, ax=axes, label=label)
     axes.set_aspect("equal")
+    # Ticks change with the room that is left: labels of one width leave room for them beforehand.
+    axes.yaxis.set_major_formatter("{x:.2f}")
     axes.invert_xaxis()
-    axes.set_xlabel("along the wall's line [m]")
+    axes.set_xlabel("along the barrier's line [m]")
     axes.set_ylabel("height [m]")
     if values.size > _MOST_TEXTS:
         return

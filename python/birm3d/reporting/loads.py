@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 
-from ..barrier.rigid_wall import RigidWall
+from ..result.barrier_fronts import front_of
 from ..result.element_loads import touched_elements
 from ..result.metrics import METRIC_UNITS
 from ..result.result import Result
@@ -40,10 +40,12 @@ def load_section(case: Case) -> Section:
 
 
 def _map_blocks(result: Result) -> list[Block]:
-    """Return the picture of the load by cell; of a barrier that is no rigid wall nothing."""
-    if not isinstance(result.scene.barrier, RigidWall):
+    """Return the picture of the load by cell; of a barrier that has none nothing."""
+    try:
+        front_of(result.scene.barrier)
+    except ValueError:  # a mesh, segments that move, or several rows of posts
         return []
-    note = "Load on the wall by cell, seen from the vehicle; the cells add up to the force across the wall"
+    note = "Load on the barrier by cell, seen from the vehicle; the cells add up to the force across its line"
     return [figure(result.load_map().plot(), note)]
 
 

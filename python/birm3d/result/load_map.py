@@ -1,4 +1,4 @@
-"""Where on a wall the load acts: force over time in the cells of a grid, as a wall of load cells reads it."""
+"""Where on a barrier the load acts: force over time in the cells of a grid, as load cells read it."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import pictures
-from ..barrier.rigid_wall import RigidWall
 from ..base.arguments import checked
 from ..io.atomic_write import whole_file
 from ..scene.text import scene_text
 from ..signals.filters import cfc, moving_average
 from ..units import Quantity, si
+from .barrier_fronts import Front, front_of
 from .element_loads import element_loads
 from .face_grid import USUAL_CELL, cells_of, face_grid, forces_of_cells
-from .face_loads import SPREAD, Face, FaceStep, face_steps
+from .face_loads import SPREAD, FaceStep, face_steps
 from .record import RunRecord
 from .unit_result import read_only
 
@@ -38,17 +38,17 @@ _CLASS = 60.0  # SAE J211-1, barrier forces
 
 
 class LoadMap:
-    """Force on the cells of a grid over a wall's face; made by :meth:`birm3d.Result.load_map`.
+    """Force on the cells of a grid over a barrier's front; made by :meth:`birm3d.Result.load_map`.
 
     Attributes
     ----------
     time : ndarray, shape (n,)
         Of the result's rows [s].
     lateral, height : ndarray, shape (columns + 1,), (rows + 1,)
-        Edges of the cells: along the wall's line from its origin, and above its foot [m]. Seen by the vehicle
-        the columns run from right to left, as y does.
+        Edges of the cells: along the line from the barrier's origin, and above its foot [m]. Seen by the
+        vehicle the columns run from right to left, as y does.
     force : ndarray, shape (n, rows, columns)
-        Across the wall's line, into the wall, means over the output interval [N]. Friction is not in it.
+        Across the line, into the barrier, means over the output interval [N]. Friction along it is not in it.
     outside : ndarray, shape (n,)
         Force that no cell has, where edges were given and the vehicle pushes beside them [N].
     title : str
@@ -157,12 +157,16 @@ def load_map(
     lateral: npt.ArrayLike | None = None,
     height: npt.ArrayLike | None = None,
 ) -> LoadMap:
-    """Return the force on the cells of a grid over the face of a rigid wall.
+    """Return the force on the cells of a grid over the front of a fixed barrier.
 
-    The scene is run once more, and at each step every node that presses on the face is in the cell in which
+    The scene is run once more, and at each step every node that presses on the front is in the cell in which
     it stands then. Between steps forces are linear in time. In each row the cells are scaled to the force
     that the result has across the line, so that they add up to it. What the rigid body or a tyre presses by
-    itself is in the cell where the moments of the wall's load put it.
+    itself is in the cell where the moments of the barrier's load put it.
+
+    Of a sloped face the force across the line counts, not that square to the face. Of posts in one row each
+    has a column of cells; a node's force is on the nearest post, at the node's height, and the column is
+    scaled to the post's own force.
 
     Parameters
     ----------
@@ -175,31 +179,34 @@ def load_map(
     Raises
     ------
     ValueError
-        If the barrier is no rigid wall, the cells are too small or their edges do not increase,
-        or the scene does not run the same way again.
+        If the barrier is a mesh, stands free or has several rows of posts. If the cells are too small, their
+        edges do not increase, or are given for posts. If the scene does not run the same way again.
     """
-    wall = result.scene.barrier
-    if not isinstance(wall, RigidWall):
-        kind = "none" if wall is None else type(wall).__name__
-        raise ValueError(f"barrier must be a rigid wall to have a load map, got {kind}")
+    front = front_of(result.scene.barrier)
     side = USUAL_CELL if cell is None else si("cell", cell, "length")
     if not side >= _LEAST_CELL:
         raise ValueError(f"cell must be >= {_LEAST_CELL} m, got {side:g}")
-    face = Face.of(wall)
-    steps = face_steps(result, face)
-    edges = face_grid(result, steps, lateral, height, side, wall.height, doubled=cell is None)
+    if front.columns is not None:
+        if lateral is not None:
+            raise ValueError("lateral must be None for posts, of which each has one column, got edges")
+        lateral = front.columns
+    steps = face_steps(result, front)
+    edges = face_grid(result, steps, lateral, height, side, front.top, doubled=cell is None)
     edges_y, edges_z = edges
     shape = (len(edges_z) - 1, len(edges_y) - 1)
-    cells = _in_time(result.time, steps, edges, wall.height)
-    force = _completed(result, wall, face, steps, cells, edges)
+    spread = SPREAD if front.columns is None else 0.0
+    cells = _in_time(result.time, steps, edges, front.top, spread)
+    force = (_completed if front.columns is None else _completed_posts)(result, front, steps, cells, edges)
     inner = force[:, :-1].reshape(-1, *shape)
     return LoadMap(result.time, edges_y, edges_z, inner, force[:, -1], scene_text(result.scene, "\n"))
 
 
-def _in_time(time: Floats, steps: list[FaceStep], edges: tuple[Floats, Floats], top: float) -> Floats:
+def _in_time(
+    time: Floats, steps: list[FaceStep], edges: tuple[Floats, Floats], top: float, spread: float
+) -> Floats:
     """Return the forces of cells, and outside them, in the middles of the result's rows, (n, cells + 1)."""
     count = (len(edges[0]) - 1) * (len(edges[1]) - 1) + 1
-    quarters = [(a, h) for a in (-SPREAD, SPREAD) for h in (-SPREAD, SPREAD)]
+    quarters = [(a, h) for a in (-spread, spread) for h in (-SPREAD, SPREAD)]
     at_ends = np.array([forces_of_cells(step, quarters, edges, top, count) for step in steps])
     ends = np.array([step.time for step in steps])
     middles = _middles(time)
@@ -221,8 +228,7 @@ def _middles(time: Floats) -> Floats:
 
 def _completed(
     result: RunRecord,
-    wall: RigidWall,
-    face: Face,
+    front: Front,
     steps: list[FaceStep],
     cells: Floats,
     edges: tuple[Floats, Floats],
@@ -231,11 +237,10 @@ def _completed(
     force = np.zeros(len(cells))
     moments = np.zeros((len(cells), 2))  # of the force across the line: along and height [N m]
     for i, load in enumerate(element_loads(result)):
-        across = load.force @ face.across
-        foot = 0.0 if wall.segments == 1 else wall.width * ((i + 0.5) / wall.segments - 0.5)
-        # The face goes through the foot, so that friction on it has no part in these.
-        moments[:, 0] += foot * across - load.moment[:, 2]
-        moments[:, 1] += load.moment @ face.line
+        across = load.force @ front.across
+        # Forces along the line and up have a lever where the face is not above the foot.
+        moments[:, 0] += front.feet[i] * across - load.moment[:, 2] + front.lever * (load.force @ front.line)
+        moments[:, 1] += load.moment @ front.line + front.lever * load.force[:, 2]
         force += across
     nodes = cells.sum(axis=1)
     rest = force - nodes
@@ -255,8 +260,27 @@ def _completed(
             for p, e in zip((all_y, all_z), edges, strict=True)
         ]
         along, height = (np.clip(turned[:, k], *limits[k]) for k in range(2))
-        height = np.minimum(height, np.nextafter(wall.height, 0.0))
+        height = np.minimum(height, np.nextafter(front.top, 0.0))
         np.add.at(cells, (alone, cells_of(along, height, edges)), rest[alone])
+    return cells
+
+
+def _completed_posts(
+    result: RunRecord, front: Front, steps: list[FaceStep], cells: Floats, edges: tuple[Floats, Floats]
+) -> Floats:
+    """Scale the column of each post in place to the post's force; without nodes its moment has the height."""
+    rows, columns = len(edges[1]) - 1, len(edges[0]) - 1
+    for i, load in enumerate(element_loads(result)):
+        column = np.arange(rows) * columns + i
+        force = load.force @ front.across
+        nodes = cells[:, column].sum(axis=1)
+        known = nodes > 0.0
+        cells[:, column] *= np.divide(force, nodes, out=np.zeros_like(force), where=known)[:, None]
+        alone = np.flatnonzero(~known & (force != 0.0))
+        turning = load.moment[alone] @ front.line + front.lever * load.force[alone, 2]
+        height = np.clip(turning / force[alone], edges[1][0], np.nextafter(edges[1][-1], 0.0))
+        places = cells_of(np.full(len(alone), front.feet[i]), height, edges)
+        np.add.at(cells, (alone, places), force[alone])
     return cells
 
 

@@ -134,7 +134,7 @@ class Result(RunAnalysis):
         lateral: npt.ArrayLike | None = None,
         height: npt.ArrayLike | None = None,
     ) -> LoadMap:
-        """Return the force on the cells of a grid over a rigid wall; see :func:`birm3d.result.load_map`.
+        """Return the force on the cells of a grid over a fixed barrier; see :func:`birm3d.result.load_map`.
 
         Parameters
         ----------
