@@ -412,7 +412,7 @@ def test_bands_of_a_drawn_study_and_load_on_a_wall(tmp_path: Path, monkeypatch: 
     drawn = birm3d.monte_carlo(wall, unknown, n=8, progress=False)
     text = birm3d.dossier(drawn, tmp_path / "drawn").read_text(encoding="utf-8")
     assert "Deceleration and travel over time: median and 80 % of 8 runs" in text
-    assert "Load on the wall by cell" in text
+    assert "Load on the barrier by cell" in text
     grid = birm3d.sweep(wall, impact_speed=np.linspace(9.0, 10.0, 8).tolist(), progress=False)
     assert list(_bands(grid)) == []
 
