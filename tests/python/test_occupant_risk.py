@@ -259,9 +259,15 @@ def test_of_a_run_from_its_raw_histories(car_on_jersey: Result) -> None:
     assert 0 < strike < len(a) - 100
     assert risk.oiv_x == pytest.approx(abs(v[strike, 0]), rel=2e-3)
     assert risk.oiv_y == pytest.approx(abs(v[strike, 1]), rel=2e-3)
-    # The pulse decays: ridedown counts from the end of the sample in which the strike lies.
-    means = np.array([a[i : i + 100].mean(axis=0) for i in range(strike + 1, len(a) - 100)]) / G
-    assert [risk.ridedown_x, risk.ridedown_y] == pytest.approx(np.abs(means).max(axis=0)[:2], rel=5e-3)
+    # The strike lies within a sample, and the pulse decays by 0.7 % in one: between windows from its two ends.
+    ends = []
+    for begin in (strike, strike + 1):
+        means = np.array([a[i : i + 100].mean(axis=0) for i in range(begin, len(a) - 100)]) / G
+        ends.append(np.abs(means).max(axis=0)[:2])
+    low, high = np.min(ends, axis=0), np.max(ends, axis=0)
+    found = np.array([risk.ridedown_x, risk.ridedown_y])
+    assert (found > low * (1.0 - 2e-3)).all()
+    assert (found < high * (1.0 + 2e-3)).all()
     wide = np.array([a[i : i + 500].mean(axis=0) for i in range(len(a) - 500)]) / G
     assert risk.asi_1998 == pytest.approx(np.linalg.norm(wide / [12, 9, 10], axis=1).max(), rel=1e-3)
     assert risk.passed("MASH")
