@@ -259,7 +259,7 @@ def test_of_a_run_from_its_raw_histories(car_on_jersey: Result) -> None:
     assert 0 < strike < len(a) - 100
     assert risk.oiv_x == pytest.approx(abs(v[strike, 0]), rel=2e-3)
     assert risk.oiv_y == pytest.approx(abs(v[strike, 1]), rel=2e-3)
-    # The strike lies within a sample, and the pulse decays by 0.7 % in one: between windows from its two ends.
+    # The strike lies within a sample, in which the pulse decays by 0.7 %: between windows from its two ends.
     ends = []
     for begin in (strike, strike + 1):
         means = np.array([a[i : i + 100].mean(axis=0) for i in range(begin, len(a) - 100)]) / G
