@@ -1,7 +1,8 @@
-"""The pages on meshes and on exports: their blocks run as they stand, one after the other."""
+"""The pages on meshes, exports and barriers: their blocks run as they stand, one after the other."""
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
 from collections.abc import Callable
@@ -45,3 +46,16 @@ def test_export_page_runs(
     run_page("export.md", command)
     assert (tmp_path / "crash.glb").stat().st_size > 10_000
     assert len(list((tmp_path / "crash").glob("vehicle_*.vtp"))) == 101  # of the command line, the last one
+
+
+def test_barrier_page_has_a_scene(
+    tmp_path: Path, command: Callable[..., int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    (block,) = re.findall(
+        r"^```toml\n(.*?)^```$", (PAGES / "barrier.md").read_text(encoding="utf-8"), re.S | re.M
+    )
+    vehicle = '[vehicle]\npreset = "passenger_car"\nmesh_density = 0.05\n'
+    impact = '[impact]\nspeed = "20 mph"\nduration = "1 ms"\n'
+    (tmp_path / "scene.toml").write_text(vehicle + impact + block, encoding="utf-8")
+    assert command("run", tmp_path / "scene.toml", "--json") == 0
+    assert len(json.loads(capsys.readouterr().out)["elements"]) == 5
