@@ -17,6 +17,7 @@ from ..base.checks import MOST_ELEMENTS, whole_number
 from ..unit_check import USUAL, given
 from ..units import Quantity, si
 from .description import SeenPart, Size
+from .fronts import Front
 from .makers import BarrierMakers, Point, point_of
 
 __all__ = ["Barrier", "Surface"]
@@ -120,6 +121,10 @@ class Barrier(BarrierMakers):
 
     def stands_free(self) -> _core.FreeStanding | None:
         """Return how its elements stand free, for the core; ``None`` where they are fixed."""
+        return None
+
+    def load_front(self) -> Front | None:
+        """Return the front on which a load map of the barrier stands; ``None`` where it has none."""
         return None
 
     # ---- how a kind describes itself ----------------------------------------------------------------------

@@ -16,6 +16,7 @@ from .base import Barrier, Surface
 from .blocks import FOOT, along_line, numbered, positive, seen_block
 from .description import SeenPart, Size, height_text, length_text, segments_text
 from .free_standing import FreeStanding
+from .fronts import SlopedFront, axes_of, feet_of
 from .surfaces import ends, extruded
 
 __all__ = ["PROFILES", "Jersey"]
@@ -133,6 +134,20 @@ class Jersey(Barrier):
         name = f"{kind or 'concrete barrier'}, {height_text(float(self.half_profile()[-1, 1]))}"
         free = "" if self.free_standing is None else ", free-standing"
         return f"{name}, {length_text(self.length)}{segments_text(self.segments)}{free}"
+
+    def load_front(self) -> SlopedFront:
+        """Return the profile; loads are at half of its height."""
+        half, level = self.half_profile().T
+        deep = half[0] - half
+        lever = float(np.interp(0.5 * level[-1], level, deep)) - float(half[0])
+        return SlopedFront(
+            *axes_of(self.origin, self.heading),
+            float(level[-1]),
+            feet_of(self.length, self.segments),
+            lever,
+            half_width=0.5 * self.length,
+            profile=np.column_stack([deep, level]),
+        )
 
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return closed segments."""

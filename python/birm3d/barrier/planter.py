@@ -12,6 +12,7 @@ from .. import _core
 from .base import Barrier, Surface
 from .blocks import FOOT, along_line, positive_and_finite, seen_block
 from .description import SeenPart, Size
+from .fronts import FlatFront, axes_of
 from .surfaces import ends, extruded
 
 __all__ = ["Planter"]
@@ -49,6 +50,11 @@ class Planter(Barrier):
     def text(self) -> str:
         """Sizes in a few words."""
         return f"planter, {self.length:g} m long, {self.width:g} m wide, {self.height:g} m high"
+
+    def load_front(self) -> FlatFront:
+        """Return the traffic face."""
+        axes = axes_of(self.origin, self.heading)
+        return FlatFront(*axes, self.height, np.zeros(1), half_width=0.5 * self.length)
 
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return the block."""

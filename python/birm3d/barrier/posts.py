@@ -14,6 +14,7 @@ from ..base.checks import MOST_ELEMENTS
 from .base import Barrier, Surface
 from .blocks import numbered, positive, positive_and_finite
 from .description import SeenPart, Size, height_text
+from .fronts import PostFront, axes_of
 from .surfaces import cylinder
 
 __all__ = ["Bollards", "Pole"]
@@ -51,6 +52,12 @@ class Pole(Barrier):
     def text(self) -> str:
         """Sizes in a few words."""
         return f"pole, Ø {self.diameter:g} m"
+
+    def load_front(self) -> PostFront:
+        """Return the post."""
+        edges = np.array([-0.5, 0.5]) * self.diameter
+        axes = axes_of(self.origin, self.heading)
+        return PostFront(*axes, math.inf, np.zeros(1), -0.5 * self.diameter, edges)
 
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return the pole, as high as is seen."""
@@ -145,6 +152,16 @@ class Bollards(Barrier):
         if self.count > 1:
             text += f", {self.spacing:g} m apart"
         return text + (f", rows {self.row_spacing:g} m apart" if self.rows > 1 else "")
+
+    def load_front(self) -> PostFront:
+        """Return the row of posts."""
+        if self.rows > 1:
+            raise ValueError(f"barrier must have one row of posts to have a load map, got {self.rows} rows")
+        feet = np.array([along for _, along in self.places()])
+        half = 0.5 * (self.spacing if self.count > 1 else self.diameter)
+        edges = np.append(feet - half, feet[-1] + half)
+        axes = axes_of(self.origin, self.heading)
+        return PostFront(*axes, self.height, feet, -0.5 * self.diameter, edges)
 
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return the bollards."""

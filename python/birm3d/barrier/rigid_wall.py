@@ -23,6 +23,7 @@ from .blocks import (
     seen_block,
 )
 from .description import SeenPart, Size, height_text, length_text, segments_text
+from .fronts import FlatFront, axes_of, feet_of
 from .surfaces import drawn_up, ends, extruded, placed
 
 __all__ = ["RigidWall"]
@@ -129,6 +130,11 @@ class RigidWall(Barrier):
         length = f"{length_text(self.width)}{segments_text(self.segments)}"
         edges = f", edges rounded by {self.edge_radius:g} m" if self.edge_radius > 0.0 else ""
         return f"rigid wall {length}, {height_text(self.height)}, {self.thickness:g} m thick{edges}"
+
+    def load_front(self) -> FlatFront:
+        """Return the traffic face with its rounded edges."""
+        axes, feet = axes_of(self.origin, self.heading), feet_of(self.width, self.segments)
+        return FlatFront(*axes, self.height, feet, half_width=0.5 * self.width, radius=self.edge_radius)
 
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return closed segments."""

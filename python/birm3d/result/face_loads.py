@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
+from ..barrier.fronts import Front
 from ..vehicle.unit_shapes import UnitShape, unit_shapes
-from .barrier_fronts import Front
 from .record import RunRecord
 
 __all__ = ["SPREAD", "FaceStep", "face_steps"]

@@ -12,12 +12,13 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import pictures
+from ..barrier.fronts import Front
 from ..base.arguments import checked
 from ..io.atomic_write import whole_file
 from ..scene.text import scene_text
 from ..signals.filters import cfc, moving_average
 from ..units import Quantity, si
-from .barrier_fronts import Front, front_of
+from .barrier_fronts import front_of
 from .element_loads import element_loads
 from .face_grid import USUAL_CELL, cells_of, face_grid, forces_of_cells
 from .face_loads import SPREAD, FaceStep, face_steps
