@@ -96,6 +96,41 @@ def test_what_a_limit_says(height: Limit) -> None:
     assert height.plot().axes[0].get_xlabel() == "height [m]"
 
 
+def test_a_limit_says_for_how_many_vehicles_of_the_class_it_holds() -> None:
+    """Each drawn vehicle is run anew at the limit and at safer values: all offsets have to hold."""
+    simulation = Simulation(
+        Vehicle.preset("passenger_car", mesh_density=0.1), Barrier.bollards(count=4), 20.0
+    )
+    shares = (0.0, 0.5)
+    found = birm3d.greatest_gap(
+        simulation, (0.6, 2.6), points=6, resolution=0.2, offset_shares=shares, draws=8
+    )
+    assert found.draws == 8
+    assert next(iter(found.class_shares)) == found.value
+    values = list(found.class_shares)
+    assert values == sorted(values, reverse=True)
+    assert all(share < 1.0 for share in list(found.class_shares.values())[:-1])
+    for value, share in list(found.class_shares.items())[:2]:
+        spacing = value + 0.32
+        held = np.ones(8, dtype=bool)
+        for offset in shares:
+            scene = varied(simulation, {"barrier.spacing": spacing, "impact_offset": offset * spacing})
+            outcomes = birm3d.predict(scene, 8).study.outcome
+            held &= [outcome in ("stopped", "redirected", "rolled_over") for outcome in outcomes]
+        assert share == held.mean()
+    assert f"Of 8 vehicles of the class it holds for {found.class_shares[found.value]:.0%}" in found.summary()
+    assert json.loads(json.dumps(found.to_dict()))["class_shares"][0][0] == found.value
+
+
+def test_a_limit_of_one_vehicle_says_so(height: Limit) -> None:
+    assert height.draws == 0
+    assert "No band: the answer is that of this one vehicle." in height.summary()
+    wall = Barrier.rigid_wall(width=6.0, height=1.0, friction=0.0)
+    simulation = Simulation(one_node(0.637), wall, 5.0, settings=FREE)
+    with pytest.raises(ValueError, match=r"how its class scatters \(\[\[scatter\]\]\)"):
+        birm3d.least_height(simulation, (0.2, 1.2), draws=8)
+
+
 def test_all_of_the_range_holds(height: Limit) -> None:
     wall = Barrier.rigid_wall(width=6.0, height=1.0, friction=0.0)
     simulation = Simulation(one_node(0.2), wall, 5.0, settings=FREE)

@@ -14,6 +14,10 @@ MODEL_CAUTION = (
     "slide on the frame, its engine can not stop before the cab, its wheels stay on; barriers that are "
     "modelled as rigid do not give way, so that tests read more penetration and deflection."
 )
+_NO_BAND = (
+    "No band: these are runs of one vehicle. rate(birm3d.predict(simulation), ...) says what others of its "
+    "class are rated."
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +59,7 @@ class Rating:
 
     def summary(self) -> str:
         """Return designation, criteria and caution as text."""
-        return "\n".join([self.title, criteria_text(self.criteria), f"Caution: {self.caution}"])
+        return "\n".join([self.title, criteria_text(self.criteria), f"Caution: {self.caution}", _NO_BAND])
 
     __str__ = summary
 
@@ -84,7 +88,7 @@ class Rating:
         }
 
     def _repr_html_(self) -> str:
-        return criteria_html(self.title, self.criteria, f"Caution: {self.caution}")
+        return criteria_html(self.title, self.criteria, f"Caution: {self.caution}\n{_NO_BAND}")
 
     def __repr__(self) -> str:
         return f"Rating({self.standard!r}, {self.designation!r}, penetration={self.penetration:.3f} m)"

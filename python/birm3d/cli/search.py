@@ -23,6 +23,11 @@ __all__ = ["search"]
 _JSON = click.option("--json", "as_json", is_flag=True, help="As JSON on stdout, SI.")
 _PLOT = click.option("--plot", type=PICTURE, help="Write the figure to this file (.png, .pdf, .svg).")
 _POINTS = click.option("--points", type=int, default=11, show_default=True, help="Of the first scan.")
+_DRAWS = click.option(
+    "--draws",
+    type=int,
+    help="Vehicles of the class for how many of which the limit holds, a power of 2; 0: none.  [default: 16]",
+)
 
 
 def _range(default: str, unit: str) -> Callable[[Any], Any]:
@@ -45,6 +50,7 @@ def search() -> None:
 @_range("0.5:3.0", "m")
 @click.option("--penetration", type=QuantityOption("length"), help="Greatest that is allowed as well.")
 @_POINTS
+@_DRAWS
 @_JSON
 @_PLOT
 def gap(
@@ -52,6 +58,7 @@ def gap(
     limits: str,
     penetration: float | None,
     points: int,
+    draws: int | None,
     as_json: bool,
     plot: Path | None,
     **options: Any,
@@ -60,7 +67,11 @@ def gap(
     from ..study.design_limits import greatest_gap
 
     found = greatest_gap(
-        simulation_of(scene, options), _limits(limits, "length"), penetration=penetration, points=points
+        simulation_of(scene, options),
+        _limits(limits, "length"),
+        penetration=penetration,
+        points=points,
+        draws=draws,
     )
     _show(found, as_json, plot)
 
@@ -72,6 +83,7 @@ def gap(
 )
 @click.option("--penetration", type=QuantityOption("length"), help="Greatest that is allowed as well.")
 @_POINTS
+@_DRAWS
 @_JSON
 @_PLOT
 def height(
@@ -79,6 +91,7 @@ def height(
     limits: str | None,
     penetration: float | None,
     points: int,
+    draws: int | None,
     as_json: bool,
     plot: Path | None,
     **options: Any,
@@ -87,7 +100,9 @@ def height(
     from ..study.design_limits import least_height
 
     wanted = None if limits is None else _limits(limits, "length")
-    found = least_height(simulation_of(scene, options), wanted, penetration=penetration, points=points)
+    found = least_height(
+        simulation_of(scene, options), wanted, penetration=penetration, points=points, draws=draws
+    )
     _show(found, as_json, plot)
 
 
@@ -98,6 +113,7 @@ def height(
     "--deflection", type=QuantityOption("length"), required=True, help="Greatest that is allowed (m)."
 )
 @_POINTS
+@_DRAWS
 @_JSON
 @_PLOT
 def segment_mass(
@@ -105,6 +121,7 @@ def segment_mass(
     limits: str,
     deflection: float,
     points: int,
+    draws: int | None,
     as_json: bool,
     plot: Path | None,
     **options: Any,
@@ -113,7 +130,11 @@ def segment_mass(
     from ..study.design_limits import least_segment_mass
 
     found = least_segment_mass(
-        simulation_of(scene, options), _limits(limits, "mass"), deflection=deflection, points=points
+        simulation_of(scene, options),
+        _limits(limits, "mass"),
+        deflection=deflection,
+        points=points,
+        draws=draws,
     )
     _show(found, as_json, plot)
 

@@ -46,6 +46,7 @@ def greatest_gap(
     offset_shares: Sequence[float] = OFFSET_SHARES,
     points: int = 11,
     resolution: Quantity | None = None,
+    draws: int | None = None,
     executor: Any = None,
     progress: bool | None = None,
 ) -> Limit:
@@ -70,6 +71,10 @@ def greatest_gap(
         Of the scan of the range, >= 2; a bisection follows.
     resolution
         Width at which the bisection stops [m]; ``None``: a hundredth of the range.
+    draws
+        Vehicles of the class that are run at the limit and at safer values, a power of 2 from 8, or 0: for
+        how many of them it holds, see :func:`birm3d.predict`. ``None``: 16, where the vehicle's file says how
+        its class scatters.
     executor, progress
         See :func:`birm3d.study.runner.run_study`.
 
@@ -107,6 +112,7 @@ def greatest_gap(
         limits,
         points=points,
         resolution=_resolution(resolution, "length"),
+        draws=draws,
         executor=executor,
         progress=progress,
     )
@@ -121,6 +127,7 @@ def least_height(
     offsets: Sequence[Quantity] | None = None,
     points: int = 11,
     resolution: Quantity | None = None,
+    draws: int | None = None,
     executor: Any = None,
     progress: bool | None = None,
 ) -> Limit:
@@ -140,7 +147,7 @@ def least_height(
     offsets
         ``impact_offset`` of the runs [m]. ``None``: in a row of posts those of :func:`greatest_gap`, else the
         scene's own.
-    points, resolution, executor, progress
+    points, resolution, draws, executor, progress
         See :func:`greatest_gap`.
 
     Raises
@@ -177,6 +184,7 @@ def least_height(
         _usual_heights(barrier) if heights is None else [si("heights", h, "length") for h in heights],
         points=points,
         resolution=_resolution(resolution, "length"),
+        draws=draws,
         executor=executor,
         progress=progress,
     )
@@ -191,6 +199,7 @@ def least_segment_mass(
     offsets: Sequence[Quantity] | None = None,
     points: int = 11,
     resolution: Quantity | None = None,
+    draws: int | None = None,
     executor: Any = None,
     progress: bool | None = None,
 ) -> Limit:
@@ -210,7 +219,7 @@ def least_segment_mass(
         Greatest ``barrier_deflection`` [m].
     offsets
         ``impact_offset`` of the runs [m]; ``None``: the scene's own.
-    points, resolution, executor, progress
+    points, resolution, draws, executor, progress
         See :func:`greatest_gap`; the resolution in kg.
 
     Raises
@@ -246,6 +255,7 @@ def least_segment_mass(
         [si("masses", mass, "mass") for mass in masses],
         points=points,
         resolution=_resolution(resolution, "mass"),
+        draws=draws,
         executor=executor,
         progress=progress,
     )

@@ -8,15 +8,17 @@ be monotonic, so the answer counts from the safe end of the range: up to it all 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from .. import pictures
 from ..base.checks import number
+from ..base.frozen_mapping import FrozenMapping
 from ..simulation.simulation import Simulation
 from .distributions import check_count
+from .limit_class import class_shares, drawn_vehicles
 from .runner import StudyInterrupted, run_study
 from .table import Study
 
@@ -77,6 +79,11 @@ class Question(NamedTuple):
             text += " but at its end"
         return text if self.most is None else f"{text}, {self.measure.replace('_', ' ')} <= {self.most:g} m"
 
+    def holds(self, outcome: str, measure: float) -> bool:
+        """Whether a run with this outcome and measure did what it should."""
+        within = self.most is None or measure <= self.most  # a NaN is not
+        return within and outcome in self.outcomes
+
 
 class NotInRangeError(ValueError):
     """No value of the range holds from its safe end on; ``runs`` has all runs, ``study`` their table."""
@@ -114,6 +121,11 @@ class Limit:
         When a value holds.
     caution : str
         What the model leaves out that bears on the answer.
+    class_shares : mapping of float to float
+        The limit, and values tried on its safe side -> share of the vehicles of the class for which it holds.
+        It ends at the first that holds for all, or after five. Empty where none were drawn.
+    draws : int
+        Number of those vehicles.
     greatest : bool
         Whether the greatest value was sought.
     runs : tuple of SearchRun
@@ -130,7 +142,10 @@ class Limit:
         resolution: float,
         runs: tuple[SearchRun, ...],
         study: Study,
+        class_shares: Mapping[float, float] | None = None,
+        draws: int = 0,
     ) -> None:
+        self.class_shares, self.draws = FrozenMapping(dict(class_shares or {})), draws
         self.name, self.unit = question.name, question.unit
         self.greatest, self.criterion = question.greatest, question.criterion
         self.measure, self.most, self.caution = question.measure, question.most, question.caution
@@ -162,10 +177,17 @@ class Limit:
     def to_dict(self) -> dict[str, Any]:
         """Return all of it as plain values, SI; what a run does not have is ``None``."""
         names = ("name", "unit", "value", "fails_at", "resolution", "monotonic", "exceptions", "criterion")
+        shares = [[value, share] for value, share in self.class_shares.items()]
         runs = [run._asdict() for run in self.runs]
         for run in runs:
             run["measure"] = None if math.isnan(run["measure"]) else run["measure"]
-        return {**{name: getattr(self, name) for name in names}, "caution": self.caution, "runs": runs}
+        return {
+            **{name: getattr(self, name) for name in names},
+            "class_shares": shares,
+            "draws": self.draws,
+            "caution": self.caution,
+            "runs": runs,
+        }
 
     def summary(self) -> str:
         """Return the answer, how sure it is, and the worst run of each value as text."""
@@ -234,7 +256,17 @@ class Limit:
             lines.append(
                 f"In {ends} of the runs that hold the vehicle passes the barrier's end: give it more length."
             )
-        return [*lines, f"Caution: {self.caution}"]
+        return [*lines, self._band, f"Caution: {self.caution}"]
+
+    @property
+    def _band(self) -> str:
+        """For how many vehicles of the class the limit holds, and from where on for all."""
+        if not self.class_shares:
+            return "No band: the answer is that of this one vehicle."
+        texts = [
+            f"{share:.0%} at {self._rounded(value)} {self.unit}" for value, share in self.class_shares.items()
+        ]
+        return f"Of {self.draws} vehicles of the class it holds for {', '.join(texts)}."
 
     def plot(self) -> Figure:
         """Return all runs over what was searched, and the limit."""
@@ -254,6 +286,7 @@ def search_limit(
     *,
     points: int,
     resolution: float | None,
+    draws: int | None,
     executor: Any,
     progress: bool | None,
 ) -> Limit:
@@ -273,6 +306,7 @@ def search_limit(
     resolution = (high - low) / 100.0 if resolution is None else number("resolution", resolution)
     if not 0.0 < resolution < math.inf:
         raise ValueError(f"resolution must be finite and > 0 {question.unit}, got {resolution}")
+    vehicles = drawn_vehicles(simulation, draws)
     studies: list[Study] = []
     runs: list[SearchRun] = []
 
@@ -312,7 +346,41 @@ def search_limit(
             value = middle
         else:
             fails_at = middle
-    return Limit(question, value, fails_at, resolution, tuple(sorted(runs)), Study.joined(studies))
+    return Limit(
+        question,
+        value,
+        fails_at,
+        resolution,
+        tuple(sorted(runs)),
+        Study.joined(studies),
+        _shares(simulation, question, vehicles, value, order, executor),
+        len(next(iter(vehicles.values()), ())),
+    )
+
+
+def _shares(
+    simulation: Simulation,
+    question: Question,
+    vehicles: Mapping[str, Sequence[float]],
+    value: float,
+    order: Sequence[float],
+    executor: Any,
+) -> dict[float, float]:
+    """Return for how many vehicles of the class the limit holds, and values of the scan on its safe side."""
+    safer = [one for one in reversed(order) if (one < value if question.greatest else one > value)]
+    try:
+        return class_shares(
+            simulation,
+            vehicles,
+            [value, *safer],
+            lambda one: [(question.of_value(one), offset) for offset in question.offsets(one)],
+            question.parameter,
+            question.measure,
+            question.holds,
+            executor,
+        )
+    except StudyInterrupted:
+        return {}  # the search itself is done
 
 
 def _judged(question: Question, row: tuple[float, float], study: Study, run: int) -> SearchRun:
@@ -323,10 +391,7 @@ def _judged(question: Question, row: tuple[float, float], study: Study, run: int
             f"{study.error[run]}"
         )
     measure = float(study[question.measure][run])
-    within = question.most is None or measure <= question.most  # a NaN is not
-    return SearchRun(
-        value, offset, study.outcome[run], measure, within and study.outcome[run] in question.outcomes
-    )
+    return SearchRun(value, offset, study.outcome[run], measure, question.holds(study.outcome[run], measure))
 
 
 def _by_value(runs: Sequence[SearchRun]) -> dict[float, list[SearchRun]]:
