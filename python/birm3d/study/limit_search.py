@@ -346,16 +346,10 @@ def search_limit(
             value = middle
         else:
             fails_at = middle
-    return Limit(
-        question,
-        value,
-        fails_at,
-        resolution,
-        tuple(sorted(runs)),
-        Study.joined(studies),
-        _shares(simulation, question, vehicles, value, order, executor),
-        len(next(iter(vehicles.values()), ())),
-    )
+    shares = _shares(simulation, question, vehicles, value, order, executor)
+    all_runs, joined = tuple(sorted(runs)), Study.joined(studies)
+    draws = len(next(iter(vehicles.values()), ()))
+    return Limit(question, value, fails_at, resolution, all_runs, joined, shares, draws)
 
 
 def _shares(
