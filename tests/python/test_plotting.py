@@ -82,6 +82,25 @@ def test_an_impulse_does_not_hide_the_rest(make_soft_scene: Callable[..., Simula
         assert smooth < figure.get_axes()[0].get_ylim()[1] < 1.7 * smooth
 
 
+def test_force_and_deceleration_have_one_zero_line() -> None:
+    """The deceleration of a truck at a slope has negative peaks; its axis was once a third higher."""
+    car = Vehicle.preset("cargo_truck", mesh_density=0.1)
+    figure = Simulation(car, Barrier.rigid_wall(), 20.0, 25.0).run().plot()
+    force = figure.get_axes()[0]
+    other = next(axes for axes in figure.get_axes() if axes.get_ylabel() == "deceleration [g]")
+    low, high = other.get_ylim()
+    assert low < 0.0 < high
+    assert other.transData.transform((0.0, 0.0)) == pytest.approx(force.transData.transform((0.0, 0.0)))
+
+
+def test_the_legend_of_a_plan_is_below_its_label() -> None:
+    truck = Vehicle.preset("cargo_truck", mesh_density=0.1)
+    figure = Simulation(truck, Barrier.bollards(), 20.0, 25.0).run().plot_plan()
+    figure.savefig(BytesIO())
+    label = figure.get_axes()[0].xaxis.label.get_window_extent()
+    assert figure.legends[0].get_window_extent().y1 < label.y0
+
+
 def test_rows_too_far_apart_are_said_to_be_unfiltered() -> None:
     block = scenes.laboratory_block(16, k_initial=3e6, k_unloading=3e6)
     settings = Settings(output_interval=2e-3, gravity=0.0, ground=False)

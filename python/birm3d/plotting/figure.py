@@ -6,6 +6,7 @@ import io
 from typing import Any
 
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 __all__ = ["ShownFigure", "new_figure"]
 
@@ -24,4 +25,5 @@ class ShownFigure(Figure):
 
 def new_figure(width: float, height: float, **options: Any) -> ShownFigure:
     """Return an empty figure of so many inches whose parts make room for each other."""
-    return ShownFigure(figsize=(width, height), layout="constrained", **options)
+    layout = ConstrainedLayoutEngine(h_pad=0.07)  # inches; less lets a legend below touch the axes' label
+    return ShownFigure(figsize=(width, height), layout=layout, **options)

@@ -20,6 +20,7 @@ from .style import (
     at_least,
     fit,
     legend,
+    level_zeros,
     plot_filtered,
     prepare,
     title,
@@ -54,6 +55,7 @@ def plot_result(result: Result) -> Figure:
     force.set_title("Barrier force, and deceleration of the mass centre")
     for axes in (force, right):
         fit(axes)
+    level_zeros(force, right)
     legend([force, right])
 
     speed = np.linalg.norm(result.velocity, axis=1)

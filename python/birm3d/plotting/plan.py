@@ -96,7 +96,7 @@ def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box:
     axes.set_ylabel(view.labels[1])
     fit_to(figure, axes, np.vstack(drawn), _WIDTH, _HEIGHTS, room=2.3)
     figure.suptitle(f"{title(result)}\n{_outcome(result)}", fontsize="medium")
-    figure.legend(loc="outside lower center", ncols=4, frameon=False, fontsize="small")
+    figure.legend(loc="outside lower center", ncols=4, frameon=False, fontsize="small", borderaxespad=0.0)
     return figure
 
 

@@ -35,6 +35,7 @@ __all__ = [
     "filtered",
     "fit",
     "legend",
+    "level_zeros",
     "plot_filtered",
     "prepare",
     "shown_unit",
@@ -125,6 +126,16 @@ def fit(axes: Axes) -> None:
     margin = 0.05 * (high - low)
     if margin > 0.0:
         axes.set_ylim(low - margin, high + margin)
+
+
+def level_zeros(*all_axes: Axes) -> None:
+    """Draw the zeros of axes that share a panel at one height: lower limits fall as far as that asks for."""
+    limits = [axes.get_ylim() for axes in all_axes]
+    if any(high <= 0.0 for _, high in limits):
+        return
+    below = max(max(-low, 0.0) / high for low, high in limits)
+    for axes, (_, high) in zip(all_axes, limits, strict=True):
+        axes.set_ylim(-below * high, high)
 
 
 def at_least(axes: Axes, span: float) -> None:
