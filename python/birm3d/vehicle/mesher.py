@@ -338,12 +338,17 @@ def winding_number(points: Floats, nodes: Floats, quads: Ints) -> Floats:
 
     Sum of the solid angles of the triangles (van Oosterom and Strackee 1983) over 4 pi.
     """
-    triangles = nodes[np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]])]
+    corners = np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]]).T
+    a, b, c = nodes[corners]
+    # With corners seen from a point p, as a - p: products of them are linear in p but for p . p.
+    products = [(np.einsum("ij,ij->i", u, v), u + v) for u, v in ((b, c), (c, a), (a, b))]
+    normal = np.cross(a, b) + np.cross(b, c) + np.cross(c, a)
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c))
     result = np.empty(len(points))
-    for row, point in enumerate(points):
-        a, b, c = np.moveaxis(triangles - point, 1, 0)
-        la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
-        ab, bc, ca = (np.einsum("ij,ij->i", u, v) for u, v in ((a, b), (b, c), (c, a)))
-        volume = np.einsum("ij,ij->i", a, np.cross(b, c))
-        result[row] = np.arctan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb).sum() / (2.0 * math.pi)
+    for row, p in enumerate(points):
+        distance = np.sqrt(((nodes - p) ** 2).sum(axis=1))
+        la, lb, lc = distance[corners]
+        bc, ca, ab = (product - both @ p + p @ p for product, both in products)
+        angle = np.arctan2(volume - normal @ p, la * lb * lc + ab * lc + bc * la + ca * lb)
+        result[row] = angle.sum() / (2.0 * math.pi)
     return result
