@@ -155,7 +155,7 @@ def test_vehicles(command, capsys):
     assert "mass [kg]" in out
     assert "wheelbase" in out
     assert "4.266" in out  # the pickup's
-    assert "zones of pickup: bumper" in out
+    assert "zones of pickup: engine" in out
 
 
 @pytest.mark.parametrize(

@@ -198,7 +198,7 @@ def test_vtk_has_nodes_crush_and_forces_of_the_result(run: Result, tmp_path: Pat
         np.testing.assert_array_equal(mesh.point_data["contact"], force > 0.0)
         touched = max(touched, int(mesh.point_data["contact"].sum()))
         assert mesh.n_cells == car.n_elements
-    assert touched > 20
+    assert touched > 5
     assert skins[0].point_data["contact"].sum() == 0
     walls = [mesh for _, name, mesh in parts if name == "barrier"]
     assert len(walls) == 9
