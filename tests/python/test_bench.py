@@ -165,3 +165,14 @@ def test_a_limit_refuses_a_random_scene_without_a_fault(monkeypatch: pytest.Monk
     limit = "duration must be at most 0.66 s, where the 902080 steps end that a record holds, got 1"
     assert run(Failing(limit), 1e9) == (False, limit, "")
     assert run(Failing("gap must be finite"), 1e9) == (False, "", "ValueError: gap must be finite")
+
+
+def test_what_holds_skin_between_post_and_ground_is_the_same_in_long_steps(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Once it hung on the length of the step, which then fell to 1e-6 s: 46,160 steps in place of 6,020."""
+    monkeypatch.syspath_prepend(str(PROGRAM.parent))
+    row = importlib.import_module("random_scenes").examine(4467)
+    assert row.finished
+    assert row.steps < 12_000
+    assert row.energy < 1e-4

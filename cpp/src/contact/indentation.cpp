@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "base/block_loop.hpp"
+#include "birm3d/base/tolerances.hpp"
 #include "scene/indentation_gaps.hpp"
 
 namespace birm3d {
@@ -153,6 +155,26 @@ BIRM3D_BLOCK_LOOP void note_released(const BlockColumn& follows, BlockColumn& re
         released[i] = follows[i] > 0.0 ? follows[i] - 1.0 : released[i];
 }
 
+// Did the node push on its nearest surface at the start of the step? Then it follows that surface through the step.
+bool pushed_on_surface(const ContactPass& pass, const ContactBlock& block, std::size_t i) {
+    const TrussBlockState& nodes = *block.start;
+    if (!(nodes.force[i] > 0.0)) return false;
+    const std::size_t k = block.reachable[block.nearest[i]];
+    const Vec3 node(nodes.x[i], nodes.y[i], nodes.z[i]);
+    return std::abs(nearest(pass.shape(k), pass.near[k].before.to_own(node)).gap) <= tolerance::touching_gap;
+}
+
+// Gaps to the nearest surface of the nodes that are in contact with it, else infinite. The gap alone does not tell: a
+// surface recedes from a node that pushes on it, by more in a longer step.
+void find_contact_gaps(const ContactPass& pass, const ContactBlock& block, BlockColumn& contact_gap) {
+    for (std::size_t i = 0; i < block_size; ++i) {
+        const double gap = block.faces.gap[i];
+        const bool touches =
+            gap <= tolerance::touching_gap || (gap <= pass.margin && pushed_on_surface(pass, block, i));
+        contact_gap[i] = touches ? gap : infinity;
+    }
+}
+
 }  // namespace
 
 void omit_indented(const ContactPass& pass, std::size_t b, std::size_t k, NearestOfBlock& found) {
@@ -162,8 +184,10 @@ void omit_indented(const ContactPass& pass, std::size_t b, std::size_t k, Neares
 }
 
 void follow_indentations(const ContactPass& pass, ContactBlock& block) {
-    alignas(64) BlockColumn follows, rank;
     block.released.fill(0.0);
+    if (block.indentations.empty()) return;
+    alignas(64) BlockColumn follows, rank, contact_gap;
+    find_contact_gaps(pass, block, contact_gap);
     rank.fill(infinity);
     const BlockColumn& panel_of = pass.mesh.block[block.index].panel;
     for (const BlockIndentation& reached : block.indentations) {
@@ -173,7 +197,7 @@ void follow_indentations(const ContactPass& pass, ContactBlock& block) {
             continue;
         alignas(64) const BlockColumn gap = block.faces.gap;
         follow_indentation(indented.indentation, indented.before, *block.start, panel_of, indented.panel,
-                           block.faces, block.contact, rank, follows);
+                           contact_gap, block.faces, block.contact, rank, follows);
         note_second(follows, gap, block.second_gap);
         note_released(follows, block.released);
         const auto reachable = std::find(block.reachable.begin(), block.reachable.end(), indented.near) -

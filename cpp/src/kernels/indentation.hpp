@@ -80,11 +80,12 @@ double gap_of(const Indentation& indentation, const TrussBlockState& nodes, cons
 // Finds the nodes of the panel that follow the indentation or that it releases, and sets their `faces` and `contact`.
 // A node that would be drawn into another surface does not follow: the post came past the panel's edge behind it.
 // `then`: the indentation at the start of the step. `follows`: 1 for nodes that follow, 2 for released ones, else 0.
+// `contact_gap`: to the surface in `faces`, of nodes that are in contact with it as the kernel is called; else infinite (m).
 // `rank`: of the indentation that each node follows so far, at first infinite. Free nodes outside may be left
 // unchanged.
 void follow_indentation(const Indentation& indentation, const Indentation& then, const TrussBlockState& nodes,
-                        const BlockColumn& panel_of, std::size_t panel, NodeFaces& faces,
-                        BlockContact& contact, BlockColumn& rank, BlockColumn& follows);
+                        const BlockColumn& panel_of, std::size_t panel, const BlockColumn& contact_gap,
+                        NodeFaces& faces, BlockContact& contact, BlockColumn& rank, BlockColumn& follows);
 
 // An indentation that is further than this from all nodes holds none of them (m). `gap`: to the nearest surface so
 // far.

@@ -2,7 +2,6 @@
 #include "kernels/indentation_simd.hpp"
 
 #include "base/packet.hpp"
-#include "birm3d/base/tolerances.hpp"
 
 namespace birm3d::BIRM3D_INSTRUCTION_SET {
 
@@ -13,9 +12,6 @@ constexpr double away = 10.0;
 
 // Least value that marks a node as following an indentation.
 constexpr double least_drawn = 1e-9;
-
-// A node nearer than this to another surface is in contact with it (m).
-constexpr double touching = tolerance::touching_gap;
 
 // The face of a wall holds a node that pushes beside its edge if it is no further away: more than a step's motion (m).
 constexpr double in_reach = 0.01;
@@ -127,11 +123,10 @@ BIRM3D_INLINE Packet outward_displacement(const Standing& now, const Standing& t
 // along which it slides, as the ground below a bumper, does not stop it.
 BIRM3D_INLINE Packet gap_of_holding_surface(const IndentationNumbers& d, const KnownFaces& known,
                                             std::size_t i) {
-    const Packet zero = 0.0, far = infinitely_far, faces = 0.5, near = touching;
-    const Packet gap = Packet::load(known.gap + i), along = d.ex * Packet::load(known.nx + i) +
-                                                            d.ey * Packet::load(known.ny + i) +
-                                                            d.ez * Packet::load(known.nz + i);
-    const Packet held = where_above(along, faces, where_above(gap, near, far, gap), far);
+    const Packet zero = 0.0, far = infinitely_far, faces = 0.5;
+    const Packet along = d.ex * Packet::load(known.nx + i) + d.ey * Packet::load(known.ny + i) +
+                         d.ez * Packet::load(known.nz + i);
+    const Packet held = where_above(along, faces, Packet::load(known.contact_gap + i), far);
     return where_above(Packet::load(known.per_force + i), zero, far, held);
 }
 

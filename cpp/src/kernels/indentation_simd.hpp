@@ -37,6 +37,7 @@ struct PanelNodes {
 // node. `follows`: 1 for nodes on this indentation, 2 for nodes that it releases, else 0.
 struct KnownFaces {
     double *gap, *per_force, *bx, *by, *bz, *nx, *ny, *nz, *px, *py, *pz, *tx, *ty, *tz, *rank, *follows;
+    const double* contact_gap;  // to the surface that a node is in contact with; infinite without one (m)
 };
 
 // See follow_indentation.

@@ -37,10 +37,11 @@ Followed indentation_by(const Post& post, const Placement& stands, const Placeme
     found.gap.fill(std::numeric_limits<double>::infinity());  // nothing seen so far
     found.per_force.fill(0.0);
     found.set_normal(Vec3::UnitX());
-    BlockColumn rank;
+    BlockColumn rank, contact_gap;
+    contact_gap.fill(std::numeric_limits<double>::infinity());
     rank.fill(std::numeric_limits<double>::infinity());
     follow_indentation(Indentation(post, stands, front, reach), Indentation(post, last, front, reach), nodes,
-                       mesh.block[0].panel, 1, found, found, rank, found.follows);
+                       mesh.block[0].panel, 1, contact_gap, found, found, rank, found.follows);
     return found;
 }
 
