@@ -9,6 +9,7 @@ import re
 import shlex
 import signal
 import sqlite3
+import subprocess
 import sys
 import threading
 from pathlib import Path
@@ -16,6 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from birm3d import Result, Simulation, Study, load, units
+from birm3d.cli.commands import COMMANDS
 
 SEDAN = [
     "run",
@@ -41,6 +43,21 @@ def test_run_prints_a_table(command, capsys):
     assert "dynamic crush" in out
     assert "1,719 kg" in out
     assert err == ""
+
+
+def test_python_m_birm3d_is_the_command() -> None:
+    def run(*words: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-m", "birm3d", *words], capture_output=True, text=True, check=False
+        )
+
+    told = run("--help")
+    assert told.returncode == 0
+    assert told.stdout.startswith("Usage: python -m birm3d [OPTIONS] COMMAND")
+    assert all(f"\n  {name} " in told.stdout for name in COMMANDS)
+    wrong = run("run", "--vehicle", "no_such_vehicle", "--speed", "10m/s")
+    assert (wrong.returncode, wrong.stdout) == (2, "")
+    assert "no_such_vehicle" in wrong.stderr
 
 
 def test_run_as_json_with_files(command, capsys, tmp_path):

@@ -14,6 +14,7 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, DesignLoad, DesignLoadInterrupted, Settings, Simulation, Vehicle
+from one_truss import one_truss
 from scipy.signal import butter, filtfilt
 
 NUMBERS = ("impulse", "peak_force", "force_50ms", "height", "moment", "equivalent_static_force")
@@ -93,23 +94,11 @@ def spring_force(load: np.ndarray, dt: float, period: float) -> float:
     return greatest * omega2
 
 
-def one_node(height: float) -> Vehicle:
-    return Vehicle.from_arrays(
-        mass=1000.0,
-        inertia=1000.0 * np.eye(3),
-        nodes=[[1.0, 0.0, 0.0]],
-        anchors=[[0.0, 0.0, 0.0]],
-        k_initial=1e6,
-        k_unloading=1e6,
-        mass_center_height=height,
-    )
-
-
 @pytest.mark.parametrize("period", [0.02, 0.3])
 def test_exact_half_sine(period: float) -> None:
     """A body on a spring: half a sine of sqrt(k m) v, for pi sqrt(m / k), whose response is known."""
     free = Settings(gravity=0.0, ground=False)
-    simulation = Simulation(one_node(0.6), Barrier.rigid_wall(friction=0.0), 5.0, settings=free)
+    simulation = Simulation(one_truss(0.6), Barrier.rigid_wall(friction=0.0), 5.0, settings=free)
     (row,) = birm3d.design_load(simulation, natural_period=period)
     peak, own, w = 5.0 * math.sqrt(1e9), math.sqrt(1e3), 2.0 * math.pi / period
     lasting = math.pi / own

@@ -23,6 +23,7 @@ from birm3d import (
 )
 from birm3d.simulation.parameters import varied
 from birm3d.study import limit_search
+from one_truss import one_truss
 
 FREE = Settings(gravity=0.0, ground=False)
 
@@ -31,23 +32,10 @@ def car() -> Vehicle:
     return Vehicle.preset("passenger_car", mesh_density=0.3)
 
 
-def one_node(height: float) -> Vehicle:
-    """One stiff truss ahead of the mass centre: it meets what is higher than its line, or nothing."""
-    return Vehicle.from_arrays(
-        mass=1000.0,
-        inertia=1000.0 * np.eye(3),
-        nodes=[[1.0, 0.0, 0.0]],
-        anchors=[[0.0, 0.0, 0.0]],
-        k_initial=1e6,
-        k_unloading=1e6,
-        mass_center_height=height,
-    )
-
-
 @pytest.fixture(scope="module")
 def height() -> Limit:
     wall = Barrier.rigid_wall(width=6.0, height=1.0, friction=0.0)
-    simulation = Simulation(one_node(0.637), wall, 5.0, settings=FREE)
+    simulation = Simulation(one_truss(0.637), wall, 5.0, settings=FREE)
     return birm3d.least_height(simulation, (0.2, 1.2), resolution=0.002)
 
 
@@ -65,14 +53,14 @@ def test_least_height_is_that_of_the_node(height: Limit) -> None:
 def test_least_height_of_other_barriers() -> None:
     """A planter and a row of posts of the same height stop the same body."""
     for barrier in (Barrier.planter(friction=0.0), Barrier.bollards(count=3, friction=0.0)):
-        simulation = Simulation(one_node(0.637), barrier, 5.0, settings=FREE)
+        simulation = Simulation(one_truss(0.637), barrier, 5.0, settings=FREE)
         found = birm3d.least_height(simulation, (0.2, 1.2), resolution=0.02, points=3, offsets=[0.0])
         assert found.fails_at is not None
         assert found.fails_at <= 0.637 <= found.value
 
 
 def test_usual_heights_are_those_that_the_barrier_can_have() -> None:
-    simulation = Simulation(one_node(1.0), Barrier.jersey(), 5.0, settings=FREE)
+    simulation = Simulation(one_truss(1.0), Barrier.jersey(), 5.0, settings=FREE)
     found = birm3d.least_height(simulation, points=2, resolution=0.5)
     assert found.runs[0].value == pytest.approx(13 * 0.0254 + 0.02)
     assert found.runs[-1].value == 1.3
@@ -126,14 +114,14 @@ def test_a_limit_of_one_vehicle_says_so(height: Limit) -> None:
     assert height.draws == 0
     assert "No band: the answer is that of this one vehicle." in height.summary()
     wall = Barrier.rigid_wall(width=6.0, height=1.0, friction=0.0)
-    simulation = Simulation(one_node(0.637), wall, 5.0, settings=FREE)
+    simulation = Simulation(one_truss(0.637), wall, 5.0, settings=FREE)
     with pytest.raises(ValueError, match=r"how its class scatters \(\[\[scatter\]\]\)"):
         birm3d.least_height(simulation, (0.2, 1.2), draws=8)
 
 
 def test_all_of_the_range_holds(height: Limit) -> None:
     wall = Barrier.rigid_wall(width=6.0, height=1.0, friction=0.0)
-    simulation = Simulation(one_node(0.2), wall, 5.0, settings=FREE)
+    simulation = Simulation(one_truss(0.2), wall, 5.0, settings=FREE)
     found = birm3d.least_height(simulation, (0.3, 1.0), points=3)
     assert (found.value, found.fails_at, found.at_bound) == (0.3, None, True)
     assert found.headline == "least height: at most 0.300 m, the end of the range"
@@ -142,7 +130,7 @@ def test_all_of_the_range_holds(height: Limit) -> None:
 
 def test_nothing_of_the_range_holds() -> None:
     wall = Barrier.rigid_wall(width=6.0, height=1.0, friction=0.0)
-    simulation = Simulation(one_node(1.4), wall, 5.0, settings=FREE)
+    simulation = Simulation(one_truss(1.4), wall, 5.0, settings=FREE)
     with pytest.raises(
         NotInRangeError, match=r"heights must have a greatest value that holds .* got 1 m: "
     ) as no:
@@ -341,7 +329,7 @@ def test_interrupted(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(limit_search, "run_study", run_study)
     wall = Barrier.rigid_wall(width=6.0, height=1.0, friction=0.0)
-    simulation = Simulation(one_node(0.637), wall, 5.0, settings=FREE)
+    simulation = Simulation(one_truss(0.637), wall, 5.0, settings=FREE)
     with pytest.raises(StudyInterrupted) as stopped:
         birm3d.least_height(simulation, (0.2, 1.2), points=5)
     assert len(stopped.value.study) == 6

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import birm3d
-import numpy as np
 import pytest
 from birm3d import Barrier, FreeStanding, Settings, Simulation, Vehicle
 from birm3d.calibration import CurveTarget, Parameter, ScalarTarget
+from one_truss import one_truss
 from scipy import stats
 
 COARSE = Settings(output_interval=1e-3)
@@ -42,15 +42,7 @@ def car() -> Vehicle:
 
 @cache
 def spring() -> Vehicle:
-    return Vehicle.from_arrays(
-        mass=1000.0,
-        inertia=1000.0 * np.eye(3),
-        nodes=[[1.0, 0.0, 0.0]],
-        anchors=[[0.0, 0.0, 0.0]],
-        k_initial=1e6,
-        k_unloading=4e6,
-        mass_center_height=0.5,
-    )
+    return one_truss(0.5, k_unloading=4e6)
 
 
 def lab(speed: float = 5.0) -> Simulation:

@@ -31,6 +31,7 @@ LAYERS = (
     ("rendering", "html_page", "export"),
     ("reporting",),
     ("cli",),
+    ("__main__",),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 WAY_UP = "pictures"

@@ -212,7 +212,7 @@ status = "measured"
         assert "driver_head" not in car.points
         assert car.mass == 1043.3  # 93.5 kg of 1,814.37 are luggage
         path.write_text(HEAD + SCALED.replace("[scaled]", '[scaled]\nwithout = ["sail"]'))
-        with pytest.raises(ValueError, match=r"must be one of .*got 'sail'"):
+        with pytest.raises(ValueError, match=r"scaled\.without: must be one of .*got 'sail'"):
             Vehicle.from_file(path)
 
     def test_places_one_by_one(self, tmp_path: Path) -> None:

@@ -485,6 +485,7 @@ def test_a_file_may_leave_zones_out(tmp_path):
     for value, said in (
         ('"zone.engine"', "without: must be a list of zones, got 'zone.engine'"),
         ('["zone.motor"]', "without: must be one of zone.boot_lid, zone.bumper"),
+        ('[["zone.engine"]]', "; got ['zone.engine']"),
     ):
         (tmp_path / "bad.toml").write_text(f"{text}without = {value}\n")
         assert said in message_of(tmp_path / "bad.toml")

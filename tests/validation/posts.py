@@ -19,6 +19,7 @@ FOLDER = Path(__file__).parent
 sys.path.insert(0, str(FOLDER.parent / "bench"))
 
 import birm3d  # noqa: E402
+import numpy as np  # noqa: E402
 from finite_element import DATA, POLE_DIAMETER  # noqa: E402
 
 RESULTS = FOLDER / "results/posts.csv"
@@ -78,17 +79,40 @@ def vehicle(name: str) -> birm3d.Vehicle:
     return birm3d.Vehicle.preset(name)
 
 
-def load(name: str, diameter: float, share: float) -> Load:
-    """Run the crash of a vehicle at a post."""
-    who = vehicle(name)
-    offset = share * float(who.nodes[:, 1].max())
+def half_width(who: birm3d.Vehicle) -> float:
+    """Greatest distance of a node from the plane of symmetry [m]."""
+    return float(who.nodes[:, 1].max())
+
+
+def crash(
+    who: birm3d.Vehicle,
+    speed: float,
+    offset: float,
+    *,
+    diameter: float,
+    height: float = 1.5,
+    friction: float = 0.0,
+    tolerance: float = 1e-3,
+) -> birm3d.Result:
+    """Run a vehicle head-on at one post, whose axis is `offset` to the right of the middle [m]."""
     post = birm3d.Barrier.bollards(
-        count=1, diameter=diameter, height=1.5, origin=(0.0, -offset, 0.0), friction=0.0
+        count=1, diameter=diameter, height=height, origin=(0.0, -offset, 0.0), friction=friction
     )
-    settings = birm3d.Settings(mu_tire=0.0, mu_body=0.0, mu_tire_barrier=0.0)
-    result = birm3d.Simulation(who, post, SPEED[name], duration=0.25, settings=settings).run()
+    settings = birm3d.Settings(mu_tire=0.0, mu_body=0.0, mu_tire_barrier=0.0, tolerance=tolerance)
+    return birm3d.Simulation(who, post, speed, duration=0.25, settings=settings).run()
+
+
+def impulse(result: birm3d.Result) -> np.ndarray:
+    """Impulse on the post, forward and to the vehicle's left [N s]."""
     (on_post,) = result.element_loads
-    impulse = on_post.force[1:, :2].sum(0) * result.scene.settings.output_interval
+    return np.asarray(on_post.force[1:, :2].sum(0) * result.scene.settings.output_interval)
+
+
+def load(name: str, diameter: float, share: float) -> Load:
+    """Run the crash of a vehicle at a post, which stands a share of its half width to the right."""
+    who = vehicle(name)
+    result = crash(who, SPEED[name], share * half_width(who), diameter=diameter)
+    forward, left = impulse(result)
     return Load(
         name,
         diameter,
@@ -96,8 +120,8 @@ def load(name: str, diameter: float, share: float) -> Load:
         float(result.position[:, 0].max() - result.position[0, 0]),
         float(result.metrics["peak_normal_force_cfc60"]),
         float(result.metrics["peak_force_50ms"]),
-        float(impulse[0]),
-        float(impulse[1]),
+        float(forward),
+        float(left),
     )
 
 

@@ -53,10 +53,6 @@ BIRM3D_BLOCK_LOOP void note_pushing(const BlockColumn& force, const BlockColumn&
         cornered[i] = force[i] > 0.0 && second[i] <= margin ? 1.0 : cornered[i];
 }
 
-Vec3 anchor_of(const TrussBlock& truss, std::size_t i) {
-    return {truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]};
-}
-
 // The face of the node's nearest obstacle.
 CornerFace own_face(const ContactBlock& block, std::size_t i) {
     const NodeFaces& faces = block.faces;

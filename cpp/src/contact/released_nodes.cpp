@@ -133,7 +133,7 @@ void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i,
     const TrussBlockState &last = *block.start, &next = *block.end;
     if (!(last.force[i] > 0.0 && next.force[i] == 0.0)) return;
     if (plane == nullptr && block.faces.per_force[i] > 0.0) return;  // an indentation holds it
-    const Vec3 anchor(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
+    const Vec3 anchor = anchor_of(truss, i);
     const Vec3 to(next.x[i], next.y[i], next.z[i]), was(last.x[i], last.y[i], last.z[i]);
     // The face held the node to the end of the step, unless it left by itself: see release() in crush_simd.cpp.
     const Vec3 held = plane != nullptr
@@ -167,7 +167,7 @@ void snap_back(const ContactPass& pass, ContactBlock& block) {
     bool slack = false;
     for (std::size_t i = 0; i < block_size; ++i) {
         if (!is_slack(start, i)) continue;
-        const Vec3 anchor(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
+        const Vec3 anchor = anchor_of(truss, i);
         const Vec3 place = anchor - (truss.length[i] - start.residual[i]) *
                                         (anchor - Vec3(start.x[i], start.y[i], start.z[i])).normalized();
         bool free = true;

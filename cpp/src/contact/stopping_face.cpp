@@ -20,10 +20,6 @@ constexpr double negligible_gap = 1e-30;
 // How far behind the place where a node was stopped the face is searched (m).
 constexpr double behind_stop[] = {1e-5, 1e-4, 1e-3};
 
-Vec3 anchor_of(const TrussBlock& truss, std::size_t i) {
-    return {truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]};
-}
-
 bool is_outside(const ContactPass& pass, std::size_t b, std::size_t i, const Vec3& place) {
     for (std::size_t k = 0; k < pass.near.size(); ++k)
         if (is_solid_to(pass, b, i, k) &&

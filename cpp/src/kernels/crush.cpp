@@ -132,7 +132,7 @@ Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const 
     for (std::size_t i = 0; i < block_size; ++i) {
         if (!(now.force[i] > 0.0)) continue;
         const Vec3 node(now.x[i], now.y[i], now.z[i]);
-        const Vec3 b = node - Vec3(truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]);
+        const Vec3 b = node - anchor_of(truss, i);
         const double length = b.norm();
         const Vec3 force =
             now.force[i] * (length > tolerance::truss_length ? Vec3(-b / length) : contact.normal(i));

@@ -60,8 +60,7 @@ void find_core_contacts(const TrussMesh& mesh, std::size_t body, const BodyState
         for (std::size_t i = 0; i < mesh.nodes_in(b); ++i) {
             if (at[i] == nullptr) continue;
             const std::size_t truss = mesh.first[b] + i;
-            const Vec3 anchor(block.anchor_x[i], block.anchor_y[i], block.anchor_z[i]),
-                normal(nearest.nx[i], nearest.ny[i], nearest.nz[i]);
+            const Vec3 anchor = anchor_of(block, i), normal(nearest.nx[i], nearest.ny[i], nearest.nz[i]);
             const double gap = nearest.gap[i];
             const Twist there = relative(*at[i]);
             const double approach = -normal.dot(there.velocity + there.angular_velocity.cross(anchor));

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from ..base.arguments import checked
 from ..base.frozen_mapping import FrozenMapping
-from ..study.whole_runs import look_at_study
+from ..study.whole_runs import look_at_study, require_found
 from .criteria import Criterion, criteria_html, criteria_text
 from .rating import Rating
 
@@ -139,7 +139,5 @@ def rating_study(ratings: Mapping[int, Rating], failed: Mapping[int, str]) -> Ra
     ValueError
         If there is none; the message has the reason of the first.
     """
-    if not ratings:
-        reason = next(iter(failed.values()), "it has no runs")
-        raise ValueError(f"result must be a study with a run that can be rated, got none: {reason}")
+    require_found(ratings, failed, "can be rated")
     return RatingStudy(ratings, failed)

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from ..base.arguments import checked
 from ..base.frozen_mapping import FrozenMapping
 from ..study.predict import SHARE, quantiles
+from ..study.whole_runs import require_found
 from .criteria import table_html, table_text
 from .limits import FLAIL_LIMITS
 from .risk_values import CAUTION, OccupantRisk
@@ -117,7 +118,5 @@ def risk_of_study(found: Mapping[int, OccupantRisk], failed: Mapping[int, str]) 
     ValueError
         If there is none; the message has the reason of the first.
     """
-    if not found:
-        reason = next(iter(failed.values()), "it has no runs")
-        raise ValueError(f"result must be a study with a run that has occupant risk, got none: {reason}")
+    require_found(found, failed, "has occupant risk")
     return RiskStudy(found, failed)

@@ -67,9 +67,7 @@ class BarrierMakers:
         radius = given("edge_radius", edge_radius)
         rounded = radius > 0.0
         return RigidWall(
-            float(friction),
-            point_of(origin),
-            given("heading", heading),
+            *_common(friction, origin, heading),
             width=(4.0 if rounded else math.inf) if width is None else given("width", width),
             height=math.inf if height is None else given("height", height),
             thickness=given("thickness", thickness),
@@ -102,9 +100,7 @@ class BarrierMakers:
         from .kinds import Pole
 
         return Pole(
-            float(friction),
-            point_of(origin),
-            given("heading", heading),
+            *_common(friction, origin, heading),
             diameter=given("diameter", diameter),
         )
 
@@ -147,9 +143,7 @@ class BarrierMakers:
         from .kinds import Bollards
 
         return Bollards(
-            float(friction),
-            point_of(origin),
-            given("heading", heading),
+            *_common(friction, origin, heading),
             count=count,
             diameter=given("diameter", diameter),
             height=given("height", height),
@@ -220,9 +214,7 @@ class BarrierMakers:
                 raise ValueError(f"profile must have shape (n, 2), got {np.shape(profile)}")
             points = tuple((float(x), float(z)) for x, z in profile)
         return Jersey(
-            float(friction),
-            point_of(origin),
-            given("heading", heading),
+            *_common(friction, origin, heading),
             profile=points,
             height=None if height is None else given("height", height),
             length=math.inf if length is None else given("length", length),
@@ -261,9 +253,7 @@ class BarrierMakers:
         from .kinds import Planter
 
         return Planter(
-            float(friction),
-            point_of(origin),
-            given("heading", heading),
+            *_common(friction, origin, heading),
             length=given("length", length),
             width=given("width", width),
             height=given("height", height),
@@ -302,14 +292,15 @@ class BarrierMakers:
         if points.ndim == 2 and points.shape[0] > 0 and points.shape[1] == 3:
             warn_if_mesh_unusual(float(np.ptp(points[:, 2])))
         return MeshBarrier(
-            float(friction),
-            point_of(origin),
-            given("heading", heading),
+            *_common(friction, origin, heading),
             vertices=points,
             faces=np.array(faces),
         )
 
-    # ---- for the core -------------------------------------------------------------------------------------
+
+def _common(friction: float, origin: Sequence[Quantity], heading: Quantity) -> tuple[float, Point, float]:
+    """Return the numbers that every kind of barrier has, SI and degrees."""
+    return float(friction), point_of(origin), given("heading", heading)
 
 
 def point_of(origin: Sequence[Quantity]) -> Point:

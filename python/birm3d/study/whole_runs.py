@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from functools import partial
 from os import cpu_count
@@ -17,7 +17,7 @@ from ..scene.scene import Scene
 from .executors import ExecutorError, pool_of, result_of, submit
 from .table import Study
 
-__all__ = ["Look", "look_at_runs", "look_at_study"]
+__all__ = ["Look", "look_at_runs", "look_at_study", "require_found"]
 
 Found = TypeVar("Found")
 
@@ -124,6 +124,28 @@ def look_at_study(
         else:
             found[runs[seen.run]] = seen.found
     return {run: found[run] for run in runs if run in found}, failed
+
+
+def require_found(found: Mapping[int, Any], failed: Mapping[int, str], what: str) -> None:
+    """Require a value of at least one run of a study.
+
+    Parameters
+    ----------
+    found
+        Number of each run -> its value.
+    failed
+        Number of each run without a value -> its reason.
+    what
+        What a run with a value does, as "can be rated".
+
+    Raises
+    ------
+    ValueError
+        If there is none; the message has the reason of the first.
+    """
+    if not found:
+        reason = next(iter(failed.values()), "it has no runs")
+        raise ValueError(f"result must be a study with a run that {what}, got none: {reason}")
 
 
 def _look_at(look: Callable[[Result], Found], run: int, scene: Scene) -> Look[Found]:

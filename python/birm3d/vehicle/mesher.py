@@ -340,7 +340,8 @@ def winding_number(points: Floats, nodes: Floats, quads: Ints) -> Floats:
     """
     corners = np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]]).T
     a, b, c = nodes[corners]
-    # With corners seen from a point p, as a - p: products of them are linear in p but for p . p.
+    # For corners u and v: (u - p) . (v - p) = u . v - (u + v) . p + p . p. Only p differs between points.
+    # Likewise (a - p) . ((b - p) x (c - p)) = a . (b x c) - (a x b + b x c + c x a) . p.
     products = [(np.einsum("ij,ij->i", u, v), u + v) for u, v in ((b, c), (c, a), (a, b))]
     normal = np.cross(a, b) + np.cross(b, c) + np.cross(c, a)
     volume = np.einsum("ij,ij->i", a, np.cross(b, c))

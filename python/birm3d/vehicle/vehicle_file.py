@@ -12,7 +12,7 @@ silently: unknown keys, NaN and text where a number belongs are errors.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from importlib import resources
 from pathlib import Path
@@ -345,13 +345,18 @@ class _VehicleDocument(ZonesInOrder):
         without = self.data.pop("without")
         if not isinstance(without, list):
             raise self.fault(("without",), f"without: must be a list of zones, got {received(without)}")
-        zones = base.data["zone"]
-        known = {f"zone.{name}" for name in zones}
+        base.data["zone"] = self._zones_left(("without",), without, base.data["zone"])
+
+    def _zones_left(
+        self, at: KeyPath, without: Sequence[Any], zones: dict[str, Any], others: Iterable[str] = ()
+    ) -> dict[str, Any]:
+        """Return the zones that a list leaves; it may name zones, as "zone.hood", and the others."""
+        known = sorted([*others, *(f"zone.{name}" for name in zones)])
         for name in without:
             if name not in known:
-                reason = f"without: must be one of {', '.join(sorted(known))}; got {received(name)}"
-                raise self.fault(("without",), reason)
-        base.data["zone"] = {name: zone for name, zone in zones.items() if f"zone.{name}" not in without}
+                reason = f"{'.'.join(map(str, at))}: must be one of {', '.join(known)}; got {received(name)}"
+                raise self.fault(at, reason)
+        return {name: zone for name, zone in zones.items() if f"zone.{name}" not in without}
 
     def _scale(self, base: _VehicleDocument) -> None:
         """Scale the vehicle that the file extends, as the block "scaled" says."""
@@ -366,9 +371,7 @@ class _VehicleDocument(ZonesInOrder):
         data = plain(file.scaled_to(scaled.mass_kg, scaling, scaled.solids_kg))
         names = {block["name"] for key in _NAMED for block in data.get(key, ())}
         zones = {zone.pop("name"): zone for zone in data["zone"]}
-        with self.placed(("scaled", "without")):
-            check_known("scaled.without", scaled.without, names | {f"zone.{name}" for name in zones})
-        data["zone"] = {name: zone for name, zone in zones.items() if f"zone.{name}" not in scaled.without}
+        data["zone"] = self._zones_left(("scaled", "without"), scaled.without, zones, names)
         for key in _NAMED:
             data[key] = [block for block in data.get(key, ()) if block["name"] not in scaled.without]
             if isinstance(self.data.get(key), list):

@@ -147,8 +147,7 @@ TEST("each wheel's tread has blocks of its own, padded by the skin's anchor next
         for (std::size_t truss = 0; truss < mesh.skin; ++truss)
             nearest = std::min(nearest, (mesh.anchor(truss) - mesh.node(mesh.first[b])).norm());
         for (std::size_t i = mesh.nodes_in(b); i < block_size; ++i) {
-            const Vec3 anchor(mesh.block[b].anchor_x[i], mesh.block[b].anchor_y[i],
-                              mesh.block[b].anchor_z[i]);
+            const Vec3 anchor = anchor_of(mesh.block[b], i);
             CHECK((anchor - mesh.node(mesh.first[b])).norm() == nearest);
             CHECK(mesh.block[b].k_unloading[i] == 0.0 && mesh.block[b].length[i] > 0.0);
         }

@@ -91,6 +91,11 @@ struct alignas(64) TrussBlock {
     BlockColumn panel;                         // number of its panel
 };
 
+// Anchor of the i-th truss of a block, body axes (m).
+inline Vec3 anchor_of(const TrussBlock& truss, std::size_t i) {
+    return {truss.anchor_x[i], truss.anchor_y[i], truss.anchor_z[i]};
+}
+
 // Of the trusses of a block.
 StiffnessMoments stiffness_of(const TrussBlock& trusses);
 
@@ -159,9 +164,7 @@ struct TrussMesh {
         return {b.node_x[i], b.node_y[i], b.node_z[i]};
     }
     Vec3 anchor(std::size_t truss) const {
-        const TrussBlock& b = block[slot(truss) / block_size];
-        const std::size_t i = slot(truss) % block_size;
-        return {b.anchor_x[i], b.anchor_y[i], b.anchor_z[i]};
+        return anchor_of(block[slot(truss) / block_size], slot(truss) % block_size);
     }
 
     double rate_sensitivity = 0.0;    // see TrussInput (s/m)
