@@ -58,7 +58,7 @@ HASHES = {
     "semi, wall": "018159d0597c9a30",
     "truck, pole of triangles": "aa8e3b242bda3bae",
     "free-standing": "485616a8cbd93c13",
-    "minivan on its side": "dde2c3b93377bd70",
+    "minivan on its side": "cec6d1fe57e20308",
     "finite-element car, wall": "a489be2e82d272ae",
     "finite-element truck, wall": "9ff13b851af5cf1d",
 }

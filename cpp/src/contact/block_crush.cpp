@@ -91,8 +91,16 @@ void add_friction_and_distribute(const ContactPass& pass, std::size_t at, Contac
         distribute_loads(pass, block, sums);
 }
 
+// Puts the nodes back to where they were at the start of the step. A corner has moved some of them already; an
+// indentation would move those by the post's motion a second time.
+void restart(const ContactPass& pass, ContactBlock& block) {
+    block.begin(block.index, pass.before.trusses.block[block.index], *block.end);
+    snap_back(pass, block);
+}
+
 // Crushes the block anew from where other surfaces have stopped the released nodes.
 void crush_stopped(const ContactPass& pass, ContactState& state) {
+    restart(pass, state.block);
     stop_nodes(pass, state.block, state.sums);
     find_nearest_surface(pass, state.block);
     stand_on_stopping_faces(pass, state.block);
