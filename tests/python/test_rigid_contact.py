@@ -135,3 +135,25 @@ def test_contacts_that_rounding_lets_join_and_leave_for_ever_are_let_be() -> Non
     ).run()
     assert result.metrics["energy_residual"] < 1e-3
     assert result.metrics["momentum_residual"] < 1e-9
+
+
+@pytest.mark.parametrize("tolerance", [1e-5, 1.7e-7])
+def test_steps_do_not_shrink_to_nothing_where_the_rigid_body_rebounds(tolerance: float) -> None:
+    """Its impact is no reversal that a shorter step would locate: once an UnstableError in the second case.
+
+    Vehicle, anchors and wall are symmetric. Anchors that stand at its face hold their trusses on both sides
+    alike, so that nothing turns the vehicle.
+    """
+    truck = Vehicle.preset("semi_truck", mesh_density=0.2)
+    result = Simulation(
+        truck.with_gvw(1.323 * truck.mass),
+        Barrier.rigid_wall(width=6.2473, height=1.5642, thickness=0.01166, friction=0.0),
+        28.569,
+        impact_offset=0.3282,
+        duration=0.1,
+        settings=Settings(tolerance=tolerance, restitution=0.911),
+    ).run()
+    assert result.statistics.body_steps > 0
+    assert result.velocity[-1][0] < 0.0
+    assert result.metrics["energy_residual"] < 1e-4
+    assert np.abs(result.yaw).max() < 1e-6

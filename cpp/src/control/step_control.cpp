@@ -25,21 +25,28 @@ double allowed_error(const Scene& scene) {
     return tolerance::step_error_per_tolerance * scene.settings.tolerance * scene.reference_speed();
 }
 
+// Body `b` at an end of a step: inside the step where there was an impact at that end, else as the state has it.
+const BodyState& body_within(const Impact& impact, const State& state, std::size_t b) {
+    if (!impact.happened) return body_state(state, b);
+    return b < impact.bodies.size() ? impact.bodies[b] : impact.segments[b - impact.bodies.size()];
+}
+
 // Mean velocity of the pushing nodes along their normals, weighted by their forces (m/s); negative =
-// approaching, zero where nothing pushes.
-double separation_speed(const Scene& scene, const State& state) {
+// approaching, zero where nothing pushes. `impact`: at that end of the step; its change of velocity does not count.
+double separation_speed(const Scene& scene, const State& state, const Impact& impact = {}) {
     double power = 0.0, force = 0.0;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const UnitState& unit = state.units[u];
-        const Twist motion = twist(scene.vehicle->units[u].body, unit.body);
+        const Twist motion = twist(scene.vehicle->units[u].body, body_within(impact, state, u));
         power += unit.skin.contact.force.dot(motion.velocity) +
                  unit.skin.contact.torque.dot(motion.angular_velocity);
         for (const ContactLoad& touch : unit.contact_loads) {
             const int other = body_of_obstacle(scene, touch.obstacle);
             if (other < 0) continue;
             const auto b = static_cast<std::size_t>(other);
-            const Twist of = twist(rigid_body(scene, b), body_state(state, b));
-            const Vec3 arm = unit.body.position - body_state(state, b).position;
+            const BodyState& segment = body_within(impact, state, b);
+            const Twist of = twist(rigid_body(scene, b), segment);
+            const Vec3 arm = unit.body.position - segment.position;
             power -= touch.contact.force.dot(of.velocity + of.angular_velocity.cross(arm)) +
                      touch.contact.torque.dot(of.angular_velocity);
         }
@@ -222,7 +229,9 @@ double shorter_step(const Scene& scene, const State& from, const Trial& tried, S
         if (landing < dt) return landing;
     }
     const double allowed = allowed_error(scene);
-    const double separation = separation_speed(scene, tried.state);
+    const double approach =
+        tried.at_start.happened ? separation_speed(scene, from, tried.at_start) : search.approach;
+    const double separation = separation_speed(scene, tried.state, tried.at_end);
     search.error = std::max(tried.error, error_of_reversals(scene, tried, separation));
     double wanted = dt;
     if (dt > tolerance::stable_fraction * tried.critical_step) wanted = longest_stable(tried);
@@ -230,7 +239,7 @@ double shorter_step(const Scene& scene, const State& from, const Trial& tried, S
         wanted = std::min(wanted, std::max(dt * std::max(0.2, 0.9 * std::sqrt(allowed / search.error)),
                                            tolerance::jump_resolution));
     double shorter = std::min(wanted < dt ? quantize_step(wanted) : infinity,
-                              located_reversal(scene, tried, search.approach, separation));
+                              located_reversal(scene, tried, approach, separation));
     const double resolution = release_resolution(scene);
     if (dt > resolution && touches(from) && !touches(tried.state))
         shorter = std::min(shorter, std::max(0.5 * dt, resolution));

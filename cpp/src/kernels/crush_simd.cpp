@@ -21,6 +21,9 @@ BIRM3D_INLINE Packet dot(const Vector& a, const Vector& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+// In place of the projection of a force that would push its node off the surface.
+constexpr double pushes_off = -1.0;
+
 // Direction in which a node moves onto the surface, for each unit of gap; and the vector `projector`, whose product
 // with the truss's unit vector turns the truss force into a normal force (see crush.hpp).
 struct Place {
@@ -193,7 +196,8 @@ template <bool flat, bool recovers, class Surface>
 BIRM3D_INLINE void hold(const PressColumns& truss, const Surface& surface,
                         const PressState<const double>& before, const PressState<double>& now, double* gaps,
                         double* projections, bool* pressed) {
-    const Packet zero = 0.0, one = 1.0, least = tolerance::truss_length;
+    const Packet zero = 0.0, one = 1.0, least = tolerance::truss_length,
+                 in_surface = -tolerance::touching_gap;
     for (std::size_t i = 0; i < block_size; i += packet_length) {
         const Vector from{Packet::load(before.x + i), Packet::load(before.y + i), Packet::load(before.z + i)};
         const Packet F0 = Packet::load(before.force + i);
@@ -211,12 +215,14 @@ BIRM3D_INLINE void hold(const PressColumns& truss, const Surface& surface,
         const Vector node{from.x - depth * place.direction.x, from.y - depth * place.direction.y,
                           from.z - depth * place.direction.z};
 
-        // From the node to its anchor. A bottomed-out truss has no direction; its force acts along n.
+        // From the node to its anchor. A bottomed-out truss has no direction; its force acts along n. A truss that
+        // lies in the surface, as where the rigid body stands at it, keeps its force, of which nothing acts along n.
         const Vector b{Packet::load(truss.anchor_x + i) - node.x, Packet::load(truss.anchor_y + i) - node.y,
                        Packet::load(truss.anchor_z + i) - node.z};
-        const Packet length = square_root(dot(b, b));
-        const Packet projection =
-            where_above(length, least, greater(dot(b, place.projector), zero) / length, one);
+        const Packet length = square_root(dot(b, b)), outside = dot(b, place.projector);
+        const Packet along_normal =
+            where_above(outside, in_surface, greater(outside, zero) / length, pushes_off);
+        const Packet projection = where_above(length, least, along_normal, one);
         node.x.store(now.x + i);
         node.y.store(now.y + i);
         node.z.store(now.z + i);
@@ -253,9 +259,9 @@ BIRM3D_INLINE PressedNodes press(const PressColumns& truss, const Surface& surfa
         Unloading unloading{Packet::load(slopes + i), Packet::load(before.residual + i)};
         const Packet line = unloading.line(d);
         // A truss that would push its node off the surface does not push at all.
-        const Packet law = where_above(projection, zero, where_above(line, envelope, envelope, line), zero);
+        const Packet law = where_above(zero, projection, zero, where_above(line, envelope, envelope, line));
         const Packet F = where_above(zero, gap, law, where_above(F0, zero, law, zero));
-        const Packet pressure = F * projection;
+        const Packet pressure = F * greater(projection, zero);
 
         F.store(now.force + i);
         greater(d, Packet::load(before.peak_deflection + i)).store(now.peak_deflection + i);

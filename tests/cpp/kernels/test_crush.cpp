@@ -184,6 +184,18 @@ TEST("a truss that would pull the surface towards it does not press") {
     CHECK_CLOSE(press.to(0.3).contact.force.norm(), 0.0, 0.0, "exact");
 }
 
+TEST("a truss that lies in the surface keeps its force, on whichever side of it rounding puts its anchor") {
+    const Vec3 n(-1.0, 0.0, 0.0);
+    for (const double depth : {0.3 - 1e-9, 0.3, 0.3 + 1e-9}) {
+        Press press({0.0, 0.0, 0.0}, {-0.3, 0.4, 0.0}, n);
+        CHECK_CLOSE(press.to(depth).contact.force.norm(), 0.0, 1e-3, "1 MN/m x 0.1 m times 1e-9 m / 0.4 m");
+        CHECK_CLOSE(press.now.block[0].force[0], 1e5, 1e-2, "a slope of 1 MN/m");
+        // The surface recedes by 0.01 m: the truss is 0.400125 m long and unloads by 10 MN/m.
+        const double length = std::hypot(0.01, 0.4), force = 1e5 - 10e6 * (length - 0.4);
+        CHECK_CLOSE(press.to(0.29).contact.force.norm(), force * 0.01 / length, 1e-1, "the same");
+    }
+}
+
 TEST("the block sums what its trusses do") {
     const TrussInput input = laboratory::front_face(laboratory::w2_curve(), 8, 8);
     const TrussMesh mesh(input);
