@@ -67,7 +67,7 @@ def test_vehicles_of_one_file_share_their_shape(truck: Vehicle) -> None:
         assert vehicle._shape is shape
         assert vehicle.area is shape.area
         assert vehicle._is_shape()
-    assert truck.without_tire_contact()._shape is shape.without_treads
+    assert truck.without_tire_contact()._shape is shape.without_tire_nodes
     assert truck.without_tire_contact()._is_shape()
     trusses = shape.trusses(truck.zones, truck.rate_sensitivity, truck.indentation_length)
     assert shape.trusses(same[0].zones, same[0].rate_sensitivity, same[0].indentation_length) is trusses

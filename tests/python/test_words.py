@@ -185,6 +185,159 @@ def test_a_wrong_link_is_found(source_links: ModuleType) -> None:
     assert source_links.line_of(text, "f") == 5
 
 
+IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
+CPP_FILES = sorted(p for top in ("cpp", "bindings") for p in (ROOT / top).rglob("*.?pp"))
+
+
+def comments_and_code(text: str) -> tuple[list[tuple[int, str]], str]:
+    """Comments of a C++ file with their lines, and what is left of the file."""
+    comments, code = [], []
+    for number, line in enumerate(text.splitlines(), 1):
+        head, _, comment = re.sub(r'"(?:[^"\\]|\\.)*"', '""', line).partition("//")
+        code.append(head if comment else line)
+        if comment:
+            comments.append((number, comment))
+    return comments, "\n".join(code)
+
+
+def code_beside(path: Path, text: str) -> str:
+    """Code of a C++ file, of its header or source, and of the project's headers that it includes."""
+    included = re.findall(r'^#include "(.+)"', text, flags=re.MULTILINE)
+    near = [p for p in CPP_FILES if p.stem == path.stem and p != path]
+    near += [p for p in CPP_FILES if any(p.as_posix().endswith(f"/{name}") for name in included)]
+    return "\n".join(comments_and_code(t)[1] for t in (text, *(p.read_text(encoding="utf-8") for p in near)))
+
+
+def unknown_names(path: Path, text: str, calls: set[str], files: list[str]) -> list[str]:
+    """What comments of a C++ file name that is not there: `names` in code beside them, calls() and files."""
+    known: set[str] | None = None
+    found = []
+    for number, comment in comments_and_code(text)[0]:
+        for quoted in re.findall(r"`([^`]+)`", comment):
+            known = known or set(IDENTIFIER.findall(code_beside(path, text)))
+            if not set(IDENTIFIER.findall(quoted)) <= known:
+                found.append(f"{path.name}:{number}: `{quoted}`")
+        for name in re.findall(r"\b([a-z]\w+)\(\)", comment):
+            if name not in calls:
+                found.append(f"{path.name}:{number}: {name}()")
+        for name in re.findall(r"(?<![\w*])(\w[\w/]*\.(?:hpp|cpp|py|csv|toml|md))\b", comment):
+            if not any(file.endswith(f"/{name}") for file in files):
+                found.append(f"{path.name}:{number}: {name}")
+    return found
+
+
+@pytest.fixture(scope="module")
+def callable_names() -> set[str]:
+    """Names that C++ or Python code of the project calls or defines as functions."""
+    code = [comments_and_code(p.read_text(encoding="utf-8"))[1] for p in CPP_FILES]
+    code += [p.read_text(encoding="utf-8") for p in (ROOT / "python/birm3d").rglob("*.py")]
+    return {name for text in code for name in re.findall(r"\b(\w+)\(", text)}
+
+
+def test_comments_name_what_exists(callable_names: set[str]) -> None:
+    """A renamed parameter, function or file must be mended in the comments that name it."""
+    folders = ("cpp", "bindings", "python", "tests", "docs", "examples")
+    files = [p.as_posix() for folder in folders for p in (ROOT / folder).rglob("*.*")]
+    wrong = [
+        name
+        for path in CPP_FILES
+        for name in unknown_names(path, path.read_text(encoding="utf-8"), callable_names, files)
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_names_in_comments_that_do_not_exist_are_found(callable_names: set[str]) -> None:
+    text = "// `gone` beside `x`: see kick() and gone().\n// As base/box.hpp and base/gone.hpp say.\nint x;\n"
+    path, files = ROOT / "cpp/src/kernels/nowhere.hpp", ["/cpp/base/box.hpp"]
+    assert unknown_names(path, text, callable_names, files) == [
+        "nowhere.hpp:1: `gone`",
+        "nowhere.hpp:1: gone()",
+        "nowhere.hpp:2: base/gone.hpp",
+    ]
+
+
+def equations_in(text: str) -> set[int]:
+    """Numbers of the paper's equations that a text names: "Eq. 1", "Eq. 4, 5", "Eq. 9 to 14" or "Eq. 2-5"."""
+    found: set[int] = set()
+    for listed in re.findall(r"Eq\. ((?:\d+(?:, | to |-)?)+)", text):
+        for first, last in re.findall(r"(\d+)(?:(?: to |-)(\d+))?", listed):
+            found.update(range(int(first), int(last or first) + 1))
+    return found
+
+
+def test_equations_of_the_paper_are_where_the_theory_says(source_links: ModuleType) -> None:
+    """Each row names files in which comments name its equations; together they have all of them, 1 to 16."""
+    page = DOCS / "theory.md"
+    table = page.read_text(encoding="utf-8").split("## Where each equation is")[1].split("\n## ")[0]
+    known: set[int] = set()
+    for row in (line for line in table.splitlines() if line.startswith("| Eq. ")):
+        equations, links = equations_in(row.split("|")[1]), source_links.LINK.findall(row.split("|")[3])
+        named: set[int] = set()
+        for stem in {Path(source_links.resolved(page, target, None)[0]).stem for _, target, _ in links}:
+            for path in (p for p in CPP_FILES if p.stem == stem):
+                text = " ".join(c for _, c in comments_and_code(path.read_text(encoding="utf-8"))[0])
+                named |= equations_in(text)
+        assert equations, row
+        assert equations <= named, row
+        known |= equations
+    assert known == set(range(1, 17))
+
+
+def test_numbers_of_equations_are_read() -> None:
+    assert equations_in("| Eq. 4, 5 | and Eq. 9 to 11, Fig. 5; Eq. 14-16, and 3") == {
+        4,
+        5,
+        9,
+        10,
+        11,
+        14,
+        15,
+        16,
+    }
+
+
+def names_of_module(tree: ast.Module) -> set[str]:
+    """Identifiers of a module's code, and words of its texts that are no docstrings."""
+    texts = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    found: set[str] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant):
+            if isinstance(node.value, str) and id(node) not in texts:
+                found.update(IDENTIFIER.findall(node.value))
+            continue
+        for field in ("id", "attr", "arg", "name", "asname"):
+            if isinstance(name := getattr(node, field, None), str):
+                found.update(IDENTIFIER.findall(name))
+    return found
+
+
+def unknown_names_of_module(source: str) -> list[str]:
+    """What docstrings and comments of a module quote as `name` that its code does not have."""
+    tree = ast.parse(source)
+    texts = [
+        re.sub(r":(?:\w+:)+`[^`]*`", "", text) for text in (*docstrings(tree), *re.findall(r"#.*", source))
+    ]
+    known = names_of_module(tree)
+    quoted = {name for text in texts for name in re.findall(r"(?<!`)`([^`]+)`(?!`)", text)}
+    commands = {name for name in quoted if name.startswith("birm3d ")}
+    return sorted(name for name in quoted - commands if not set(IDENTIFIER.findall(name)) <= known)
+
+
+def test_docstrings_name_what_exists() -> None:
+    """A renamed argument must be mended in the texts that name it."""
+    found = {
+        path.relative_to(ROOT).as_posix(): names
+        for path in sorted((ROOT / "python/birm3d").rglob("*.py"))
+        if (names := unknown_names_of_module(path.read_text(encoding="utf-8")))
+    }
+    assert not found, found
+
+
+def test_names_in_docstrings_that_do_not_exist_are_found() -> None:
+    source = 'def f(x):\n    """See `x`, `gone`, ``code`` and :func:`role`."""\n    return x  # `old` of f\n'
+    assert unknown_names_of_module(source) == ["gone", "old"]
+
+
 @pytest.mark.slow
 def test_site_builds_without_warnings(tmp_path: Path) -> None:
     """Every page, table, picture and docstring; a warning is an error."""

@@ -70,7 +70,7 @@ bool crush_on(const ContactPass& pass, std::size_t at, ContactBlock& block, Crus
                            });
 }
 
-// The one obstacle that all nodes which push or are inside meet, or several_obstacles.
+// The obstacle that all nodes in contact meet, or several_obstacles. A node is in contact if it pushes or is inside.
 std::size_t obstacle_met(const ContactBlock& block) {
     if (block.reachable.size() == 1) return block.reachable[0];
     std::optional<std::size_t> only;

@@ -5,12 +5,12 @@
 
 namespace birm3d {
 
-// The sums of the plane that is all that the block can meet; null where it can meet more.
+// Returns the sums of the plane if the block can meet nothing but one plane, else null.
 PlaneSums* only_plane(const ContactPass& pass, const ContactBlock& block, ContactSums& sums);
 
 void crush_on_plane(const ContactPass& pass, PlaneSums& plane, ContactState& state);
 
-// find_nearest_surface() has been called for the block.
+// Call find_nearest_surface() for the block first.
 void crush_on_surfaces(const ContactPass& pass, ContactState& state);
 
 }  // namespace birm3d

@@ -37,7 +37,7 @@ void add_touched(const Scene& scene, std::size_t u, const State& before, const S
     }
 }
 
-// Only friction and rate-sensitive trusses depend on the motion.
+// Does any force depend on the motion of the unit? Only friction and the forces of rate-sensitive trusses do.
 bool motion_matters(const Scene& scene, const TrussMesh& mesh, const std::vector<NearObstacle>& near) {
     const bool has_friction = std::any_of(near.begin(), near.end(), [&](const NearObstacle& obstacle) {
         return scene.obstacles[obstacle.index].friction > 0.0;
@@ -46,7 +46,8 @@ bool motion_matters(const Scene& scene, const TrussMesh& mesh, const std::vector
     return has_friction || tires_have || mesh.rate_sensitivity > 0.0;
 }
 
-// The unit's motion at the end of the step, seen from each near obstacle. Free-standing segments are moved on for it.
+// The unit's motion at the end of the step, seen from each near obstacle. Free-standing segments have their predicted
+// motions for this; their own are restored afterwards.
 void find_relative_motions(const Scene& scene, std::size_t u, const State& from, const Twist& motion,
                            Trial& trial) {
     std::vector<Twist>& relative = trial.skin.relative_motion;

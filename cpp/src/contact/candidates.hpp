@@ -11,7 +11,8 @@ enum class Reach {
     distant  // and those that a released node can get to
 };
 
-// Finds the near obstacles and what posts indent, and how the unit will move against them.
+// Finds the near obstacles, the panels that posts indent, and the predicted motion of the unit relative to each
+// obstacle.
 ContactPass prepare_pass(const Scene& scene, std::size_t unit, const State& from, Reach reach, Trial& trial);
 
 // Returns whether any block of the group can push, return to its free length, or meet anything.

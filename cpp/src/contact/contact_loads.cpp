@@ -47,7 +47,8 @@ BIRM3D_BLOCK_LOOP NodeLoads select_loads(const std::array<std::size_t, block_siz
             block_sum(tx),    block_sum(ty), block_sum(tz)};
 }
 
-// Skin that a post indents goes in with it and slides on it only along the panel: friction acts across that direction.
+// Replaces the normals of nodes that follow an indentation by its direction into the vehicle. Such nodes move in with
+// the post and slide on it only along the panel. So friction acts across that direction.
 BIRM3D_BLOCK_LOOP void slide_along_panel(const NodeFaces& faces, BlockContact& contact) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < block_size; ++i) {
@@ -64,7 +65,7 @@ void add(const CrushSums& sums, SkinForces& skin) {
     skin.stiffness += sums.stiffness();
 }
 
-// The part of the pressures that rubs.
+// Reduces normal forces to the part that causes friction on the rigid body (TrussCurve::friction_share).
 void take_share(const BlockColumn& share, BlockColumn& pressure) {
     for (std::size_t i = 0; i < block_size; ++i)
         pressure[i] *= share[i];
@@ -97,8 +98,8 @@ ContactLoad load_on(const ContactPass& pass, std::size_t k, const ContactSums& a
     return load;
 }
 
-// A contact that has ended keeps an empty load until its history is over: the divided differences of its structure
-// contain it for two more steps.
+// Keeps an entry of zero load for each contact that has ended. The divided differences of its structure contain its
+// last loads for two more steps.
 void keep_ended_loads(const std::vector<ContactLoad>& before, std::vector<ContactLoad>& loads) {
     for (const ContactLoad& last : before) {
         const Load &rate = last.history.rate, &second = last.history.second_difference;

@@ -11,7 +11,7 @@ namespace birm3d {
 void apply_friction(const ContactPass& pass, std::size_t k, const Places& places, const BlockContact& contact,
                     const ContactBlock& block, ContactSums& sums);
 
-// Gives each obstacle that the block's nodes push on the loads of its own nodes, with friction.
+// Adds to each obstacle the loads of those nodes of the block that push on it, with friction.
 void distribute_loads(const ContactPass& pass, ContactBlock& block, ContactSums& sums);
 
 // Stores the sums as the unit's loads, world axes.

@@ -23,14 +23,14 @@ struct PlaneSums {
 // Sums over the other blocks, for one obstacle.
 struct ObstacleSums {
     CrushSums sums;     // of blocks that met no other obstacle
-    Wrench by_trusses;  // of the paper's rule, in place of the projected force
+    Wrench by_trusses;  // forces along the trusses (the paper's rule), used in place of the projected force
     Wrench contact;     // of blocks that met several obstacles
     double normal_force = 0.0;
     FrictionLoad friction_load;
     bool reached = false;  // by any block
 };
 
-// What the blocks of a unit add up to.
+// Sums over all blocks of a unit.
 struct ContactSums {
     std::vector<ObstacleSums> obstacles;  // parallel to ContactMemory::near
     std::vector<PlaneSums> planes;

@@ -60,7 +60,7 @@ struct StoppedNode {
     double deflection, residual, peak_deflection, force;  // of its truss there
     double work;                                          // on its truss up to the release (J)
     MetFace released_by = {}, stopped_by = {};            // not set where an indentation has vanished
-    bool stays = false;  // has it been on the second since the start of the step?
+    bool stays = false;  // has the node been on `stopped_by` since the start of the step?
 };
 
 // The block of nodes that is being computed. One object serves all blocks; begin() resets it.

@@ -1,13 +1,17 @@
 // A node in contact with two or three surfaces at once. It stands on all of them. The force of its truss is
-// distributed over the surfaces so that their work equals the work on the truss, for any motion of the surfaces:
-//   place   u = sum of a_j h_j,             q_k . u = -g_k          for each face k
-//   force   F sum of lambda_k p_k n_k,      sum of lambda_k q_k . h_j = b . h_j  for each face j that the truss pushes on
-// with b the unit vector from the node to its anchor, g the gaps, q their gradients by the node's place, -p n those by
-// the obstacle's place and h the directions in which the node is displaced (q = p n = h = n at a face; at an indentation, which widens as the post goes
-// deeper, they differ, see kernels/indentation.hpp). For any motion of the faces
+// distributed over the surfaces. For any motion of the surfaces, their work equals the work on the truss.
+// For each face k:
+//   g_k  gap of the node
+//   q_k  gradient of the gap by the node's place; -p_k n_k: its gradient by the obstacle's place
+//   h_k  direction in which the face displaces the node
+// and b is the unit vector from the node to its anchor. At a face q = p n = h = n. At an indentation they differ,
+// because it widens as the post goes deeper (kernels/indentation.hpp). Displacement u of the node and force on it:
+//   u = sum of a_j h_j,             q_k . u = -g_k                for each face k
+//   F sum of lambda_k p_k n_k,      sum of lambda_k q_k . h_j = b . h_j  for each face j that the truss pushes on
+// Then for any motion of the faces
 //   F sum of lambda_k (-dg_k) = F b . du.
-// A truss pulls on no face: lambda >= 0. Where a face drives the node and the truss does not push on it, the node moves
-// freely there, and no work is done.
+// A truss pulls on no face: lambda >= 0. A face may drive the node although the truss does not push on that face. Then
+// the node moves freely along it, and no work is done.
 #pragma once
 
 #include <array>
@@ -19,7 +23,7 @@ namespace birm3d {
 
 struct CornerFace {
     std::size_t reachable_index = 0;  // index of the obstacle in ContactBlock::reachable
-    double gap = 0.0;                 // of the node where it was (m)
+    double gap = 0.0;                 // of the node before it is moved (m)
     Vec3 normal = Vec3::UnitX();      // of the surface there
     Vec3 gradient = Vec3::UnitX();    // q: of the gap, by the node's place
     double per_force = 1.0;           // p: size of the gap's gradient by the obstacle's place

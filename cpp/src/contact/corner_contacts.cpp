@@ -64,7 +64,8 @@ CornerFace own_face(const ContactBlock& block, std::size_t i) {
         face.indented = true;
         face.direction = {faces.bx[i], faces.by[i], faces.bz[i]};
         face.per_force = faces.per_force[i];
-        // The gap follows the node's own path in full, but the post's motion only in part: the indentation widens.
+        // A displacement of the node changes the gap in full. One of the post changes it only in part, as the
+        // indentation widens.
         face.gradient = face.per_force * face.normal;
         face.gradient += (1.0 - face.gradient.dot(face.direction)) * face.direction;
         face.place = {block.contact.px[i], block.contact.py[i], block.contact.pz[i]};
@@ -181,7 +182,7 @@ void resolve_corner(const ContactPass& pass, std::size_t i, ContactBlock& block)
     place_in_corner(pass, corner, to, block);
 }
 
-// Adds the forces of the `of`-th faces of all corners on the k-th reachable obstacle. `part`: memory.
+// Adds the forces of the `of`-th faces of all corners on the k-th reachable obstacle. `part`: working memory.
 void add_corner_forces(const ContactPass& pass, const std::vector<double>& force, std::size_t of,
                        std::size_t k, const ContactBlock& block, BlockContact& part, ContactSums& sums) {
     ObstacleSums& to = sums.obstacles[block.reachable[k]];

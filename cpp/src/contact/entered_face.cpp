@@ -73,7 +73,8 @@ std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const Near
     const double depth = n.dot(at.now.to_own(place) - entered);
     if (!(depth < 0.0)) return std::nullopt;
 
-    // Straight back through the plane of the face: is the face there?
+    // Project the node back onto the plane of the face. The plane reaches beyond the face: does the face reach that
+    // far?
     const Vec3 back = place - depth * at.now.direction_from_own(n);
     const At face = nearest_of_all(
         scene, near, reachable, [&back](const NearObstacle& obstacle) { return obstacle.now.to_own(back); });
@@ -86,7 +87,8 @@ std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const Near
             entry.reachable_index, {depth, at.now.direction_from_own(n)}, at.before.direction_from_own(n)};
     if (!(normal.dot(at.now.direction_from_own(n)) > same_surface)) return std::nullopt;
     const Vec3 surface = back - face.nearest.gap * normal;
-    // It has slid over an inner corner. The plane of either face is inside the other one.
+    // The node has slid over an inner corner, where the plane of each face lies inside the other one. Use the
+    // straight way out.
     if (!pushes && face.nearest.gap < -tolerance::touching_gap) {
         const Vec3 out = (surface - place).normalized();
         return EnteredFace{face.reachable_index, {-(surface - place).norm(), out}, out};

@@ -15,7 +15,7 @@ namespace birm3d {
 struct EnteredFace {
     std::size_t reachable_index;  // which of the `reachable` obstacles
     Nearest now;                  // gap and outward normal, body axes
-    Vec3 normal_before;           // of the same face an instant earlier, body axes
+    Vec3 normal_before;           // of the same face at the start of the step, body axes
 };
 
 // Follows the node `place` (body axes, m) through the step to where it is now, inside one of the obstacles

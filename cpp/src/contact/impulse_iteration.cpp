@@ -50,7 +50,8 @@ bool stayed(const std::vector<Wrench>& on_base, std::vector<Wrench>& last) {
         change = std::max(change, (on_base[i].force - last[i].force).norm());
         last[i] = on_base[i];
     }
-    // Friction at a base corner nearly at rest is decided by rounding: smaller changes count as converged.
+    // Relative change below which friction counts as converged. At a base corner nearly at rest, rounding decides its
+    // direction.
     constexpr double settled = 1e-6;
     return change <= settled * sum;
 }
@@ -237,7 +238,7 @@ void kick_towards_closed_joints(const Scene& scene, const KickedBy& by, KickMemo
     memory.kick.on_pins.clear();
     std::vector<BodyState> start;
     list_body_states(state, start);
-    // Each round reduces the gap to about omega dt of it.
+    // Each round multiplies the gap by about omega dt, with the angular velocity omega.
     constexpr int most_rounds = 20;
     double last = infinity;
     for (int round = 0; round < most_rounds; ++round) {

@@ -9,16 +9,17 @@ namespace birm3d {
 struct KickedBy {
     const Column& pressed;  // (segments) impulse of all other forces that presses them on the ground (N s)
     std::span<const Twist> at_end;  // (bodies) their motions at that end of the step (see TireMotion)
-    std::span<const Twist> from;    // (bodies) before anything acted
-    double drift = 0.0;             // that follows, after which joints are closed (s)
+    std::span<const Twist> from;    // (bodies) their motions before this kick
+    double drift = 0.0;             // length of the drift after which joints are to be closed (s)
     bool is_impact = false;
 };
 
 // Solves for the impulses of `memory.kick.contacts` and their friction on top of the bodies' motions, and kicks the bodies.
 void kick_by_contacts(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state);
 
-// The same before the drift, so that joints are closed after it (Ryckaert, Ciccotti and Berendsen, J. Comput.
-// Phys. 23, 1977, p. 327; with velocities that agree after it: Andersen, J. Comput. Phys. 52, 1983, p. 24).
+// The same before the drift. Adjusts the targets of joints until their gaps are closed after the drift (Ryckaert,
+// Ciccotti and Berendsen, J. Comput. Phys. 23, 1977, p. 327; with velocities that agree after it: Andersen, J.
+// Comput. Phys. 52, 1983, p. 24).
 void kick_towards_closed_joints(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state);
 
 }  // namespace birm3d

@@ -18,7 +18,7 @@ Mat6 inertia_of(const RigidBody& body, const Mat3& R) {
     return inertia;
 }
 
-// Inertia matrix of the ground under wheels that would otherwise sink into it in the second half of the step.
+// Inertia matrix of a large mass under each wheel that would sink into the ground in the second half of the step.
 // `motion` assumes equal tyre impulses in both halves: see settled().
 Mat6 ground_support(const Unit& unit, const BodyState& body, const Mat6& inertia, const Twist& motion,
                     WheelSet given_way, const std::vector<double>& tire_impulses,

@@ -6,8 +6,9 @@
 
 namespace birm3d {
 
-// Predicted motion of a unit after the drift, body axes. The second half of the step is taken to add what the first
-// half did. Only the friction on the skin is computed for the new motion (settled() in kernels/friction.hpp).
+// Predicted motion of a unit after the drift, body axes. The second half of the step is assumed to change the motion
+// as the first half did. Only the friction on the skin is computed for the new motion (settled() in
+// kernels/friction.hpp).
 Twist predicted_motion(const Scene& scene, std::size_t u, const State& from, Trial& trial);
 
 // Predicts the motions of the barrier's segments in `now`, from the extrapolated loads.

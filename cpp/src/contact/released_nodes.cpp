@@ -93,8 +93,8 @@ std::optional<Vec3> first_stop(const ContactPass& pass, const DistantObstacles& 
     return path.at(outside);
 }
 
-// Has an indentation released the node, or vanished within this step, as when its post tips across the panel? A
-// vanished one shows as an outward displacement that is larger than the motions of the step allow.
+// Has an indentation released the node, or vanished within this step, as when its post tips across the panel? If it
+// has vanished, the node moves outwards by more than the motions of the step allow.
 bool leaves_indentation(const ContactPass& pass, const ContactBlock& block, std::size_t i) {
     if (!block.indentations.empty() && block.released[i] > 0.0) return true;
     const TrussBlockState &last = *block.start, &next = *block.end;
@@ -104,7 +104,7 @@ bool leaves_indentation(const ContactPass& pass, const ContactBlock& block, std:
     return panel >= 0.0 && (pass.indented_before >> static_cast<unsigned>(panel) & 1U) != 0;
 }
 
-// Any node of the block?
+// The same for any node of the block.
 bool any_leaves_indentation(const ContactPass& pass, const ContactBlock& block) {
     if ((pass.mesh.panels_of[block.index] & pass.indented_before) == 0) return false;
     alignas(64) BlockColumn released = block.released;

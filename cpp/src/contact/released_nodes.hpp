@@ -1,5 +1,5 @@
-// Nodes that a surface releases. The truss of such a node extends and pushes it off the surface, until the truss has
-// its residual length or another surface stops the node. Nothing receives the work of this motion: the energy that
+// Nodes that a surface releases. The truss of such a node extends and pushes it off the surface. It stops at its
+// residual length, or where another surface stops the node. Nothing receives the work of this motion: the energy that
 // the truss releases is dissipated.
 #pragma once
 

@@ -37,7 +37,8 @@ void add_impulses(const Scene& scene, const State& state, const ContactKick& kic
 double loss_of(const RigidContact& contact, std::span<const Twist> before, std::span<const Twist> after);
 
 // Adds the contacts' work to the energy balance. The work uses the mean of the velocities before and after, so that
-// the change of kinetic energy is exact. Joints have a term of their own, which holds only the error of the steps.
+// the change of kinetic energy is exact. Joints have a term of their own. It contains only the error of the stepping
+// scheme.
 void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vector<Twist>& before,
                    const std::vector<Twist>& after, State& state);
 

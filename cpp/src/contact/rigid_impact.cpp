@@ -27,12 +27,12 @@ double hardest_impact(double reach, std::span<const ContactBody> bodies,
     return fastest;
 }
 
-// Keeps the contacts that take part. Points that arrive nearly at the same time share one impact, as rounding would
-// decide their order. The later a point arrives, the faster it may still approach afterwards. So the result is a
-// continuous function of the gaps.
+// Keeps the contacts that take part, and sets their targets. Points that arrive nearly together share one impact,
+// because rounding would decide their order. A point that arrives later may still approach afterwards, the faster the
+// later it is. So the result is a continuous function of the gaps.
 void set_impact_targets(double restitution, double reach, double fastest, std::span<const ContactBody> bodies,
                         std::vector<RigidContact>& contacts) {
-    // The gap of a contact at the end of `reach`.
+    // Gap that a contact still has after `reach` seconds (m).
     const auto late = [&](const RigidContact& contact) {
         return std::max(0.0, contact.gap + reach * std::min(0.0, separation_velocity(contact, bodies)));
     };

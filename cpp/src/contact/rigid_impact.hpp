@@ -1,12 +1,12 @@
-// Rigid impacts, Eq. 1 for all contacts that take part, at an instant of their own.
+// Rigid impacts: Eq. 1 for all contacts that take part, at one instant.
 //
-// Newton's restitution of several contacts at once, with friction, can increase the kinetic energy. Here neither friction
-// at a point nor all normal impulses together add any:
-// - where friction against the motion before the impact would accelerate a point, it acts against the mean of the motions
-//     before and after; if it drives one all the same, it is left out there;
-//   - then the restitution is the greatest, up to the one asked for, at which the normal impulses take no less than
-//     nothing. At none, and without friction, they never do: their targets are zero, j . (v + A j) = 0, so that they
-//     take j . A j / 2.
+// Newton's restitution of several contacts at once, with friction, can increase the kinetic energy. Here neither the
+// friction at a point nor all normal impulses together increase it:
+// - Friction acts against the motion before the impact. Where that would accelerate a point, it acts against the mean of
+//   the motions before and after the impact. A point that friction accelerates even then has no friction.
+// - The restitution is the greatest one, up to Settings::restitution, at which the normal impulses dissipate energy or
+//   leave it unchanged. Without restitution and friction they always dissipate: all targets are zero, so that
+//   j . (v + A j) = 0, and the loss is j . A j / 2 >= 0.
 #pragma once
 
 #include <span>

@@ -17,7 +17,7 @@ constexpr double on_surface = 1e-4;
 // Size of the gap of a node that stands on a face. Below zero the face drives the node.
 constexpr double negligible_gap = 1e-30;
 
-// How far behind the place where a node was stopped the face is searched (m).
+// Distances beyond the stop at which the face is searched, one after the other (m).
 constexpr double behind_stop[] = {1e-5, 1e-4, 1e-3};
 
 bool is_outside(const ContactPass& pass, std::size_t b, std::size_t i, const Vec3& place) {
@@ -53,7 +53,7 @@ CornerFace corner_face(const MetFace& met, const ContactBlock& block) {
     return face;
 }
 
-// Where the node is moved onto both faces.
+// The corner of the two faces: the one that stopped the node and the one that released it.
 Corner corner_of(const StoppedNode& node, const ContactBlock& block) {
     Corner corner;
     corner.node_index = node.node_index;

@@ -29,12 +29,12 @@ struct ContactImpulses {
     Column tire;                             // (wheels) normal impulse (N s)
     Vec3 tire_friction = Vec3::Zero();       // of all wheels, world axes (N s)
     std::vector<ObstacleImpulse> obstacles;  // of bottomed-out trusses
-    double barrier_normal = 0.0;             // their part along the normals, of the barrier's (N s)
+    double barrier_normal = 0.0;             // sum of the normal impulses on the barrier among them (N s)
     std::size_t core_contacts = 0;           // bottomed-out trusses that carried load
     Vec3 joints = Vec3::Zero();              // of all its joints, world axes (N s)
 };
 
-// A rigid impact at one end of a step: an instant of its own, not spread over the step.
+// A rigid impact at one end of a step. It has no duration: its impulses are not spread over the step.
 struct Impact {
     bool happened = false;
     std::vector<BodyState> bodies;          // (units) after an impact at the start, before one at the end
@@ -48,10 +48,10 @@ struct Impact {
 struct ContactKick {
     std::vector<RigidContact> contacts;
     std::vector<Wrench> on_ground;   // (units) friction impulses of tyres
-    std::vector<Wrench> on_cores;    // (bodies) of bottomed-out trusses
-    std::vector<Wrench> on_base;     // (segments) of the ground
+    std::vector<Wrench> on_cores;    // (bodies) friction impulses of bottomed-out trusses
+    std::vector<Wrench> on_base;     // (segments) friction impulses of the ground
     std::vector<Wrench> on_pins;     // (segments) of the pins to their neighbours
-    std::vector<char> rolls_freely;  // (units) is the friction of its tyres left out? May be empty: of none
+    std::vector<char> rolls_freely;  // (units) is the friction of its tyres left out? Empty: of no unit
 };
 
 // Work buffers of half kicks, so that a step allocates nothing. Their values hold within one half kick only.
@@ -119,8 +119,8 @@ struct Trial {
     std::vector<BlockSet> stale;            // (units) blocks that may differ from the state's
     std::vector<ContactImpulses> impulses;  // (units) of lasting contacts, even over the step
     std::vector<Wrench> joint_impulses;     // (joints) the same, on the leading unit, about the joint
-    std::vector<Twist> by_contacts;         // (bodies) by how much these changed motions before the drift
-    Column drift_velocity_z;                // (units) vertical velocity in the drift (m/s)
+    std::vector<Twist> by_contacts;  // (bodies) change of their motions by rigid contacts before the drift
+    Column drift_velocity_z;         // (units) vertical velocity in the drift (m/s)
     Impact at_start, at_end;
     std::vector<std::size_t>
         reached;  // obstacles within reach of any block of nodes, listed once for each unit
@@ -133,7 +133,8 @@ struct Trial {
     double critical_step;  // sqrt(3)/omega of the trusses in contact (s)
     double impact_after;   // a rigid impact begins this long after t (s)
 
-    // Does the impact begin within the step? Then the trial ended when that was found.
+    // Does a rigid impact begin within the step? Then try_step() returned when it was found, and the trial is
+    // incomplete.
     bool impact_within() const { return impact_after < dt && dt > 2.0 * tolerance::shortest_step; }
 
     bool body_rests() const;  // on tyres or bottomed-out trusses

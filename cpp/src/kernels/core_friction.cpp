@@ -12,7 +12,7 @@ Wrench core_friction(std::span<RigidContact> contacts, std::size_t body, const R
     double total = 0.0;
     for (const RigidContact& contact : contacts)
         if (slides(contact)) total += contact.friction * contact.impulse;
-    // Twice the speed that full friction would take from the mass centre, as the body also turns.
+    // Twice the change of speed of the mass centre by full friction, as friction also rotates the body.
     const double slowest = std::max(full_speed, 2.0 * total * (model.inverse_mass + other_inverse_mass));
     Wrench sum;
     for (RigidContact& contact : contacts) {

@@ -148,7 +148,8 @@ void set_rate_factor(double rate_sensitivity, const BlockColumn& force, const Tw
             factor[i] = 1.0;
             continue;
         }
-        // The truss shortens by the approach along n times -b . h, which is what pressure and truss force differ by.
+        // The truss shortens by -b . h times the approach along n. The normal force is the truss force times the same
+        // factor.
         const double approach =
             -contact.normal(i).dot(motion.velocity + motion.angular_velocity.cross(places[i]));
         const double rate = rate_sensitivity * std::max(0.0, approach * contact.pressure[i] / force[i]);

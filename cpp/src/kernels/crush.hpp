@@ -1,9 +1,9 @@
 // Crushing and separation of one block of shell nodes (paper 5.3.1, 5.3.2) and the forces of their trusses.
 //
-// A node at a surface is held on it: pushed back along the normal when the surface has moved in
-// (U1 = U + n * penetration), brought along when the surface moves out while the truss still presses.
-// The displacement follows the mean of the normal's old and new direction in body axes, so that a path is
-// followed to second order while the body turns. From B = node - anchor:
+// A node at a surface is held on it. It is pushed back along the normal when the surface has moved in:
+// U1 = U + n * penetration. It follows a surface that moves out while its truss still pushes. The displacement is along
+// the mean of the normals at the start and at the end of the step, in body axes. So paths are followed to second order
+// while the body rotates. From B = node - anchor:
 //   deflection d = B_0 - |B|,  truss force F(d) by the law of Fig. 3,  b = B/|B|
 //   force on the vehicle:  projected   F * (-b . n) * n      (default)
 //                          along_truss F * (-b)              (the paper's rule)
@@ -29,8 +29,8 @@
 namespace birm3d {
 
 // The inverse effective mass of a node along n (the denominator of Eq. 1), 1/m + (r x n) . I^-1 (r x n), as a
-// quadratic form in its place r, body axes. A node slides along n, which leaves r x n alone: uncrushed places
-// will do.
+// quadratic form in its place r, body axes. A node is displaced along n, which does not change r x n. So uncrushed
+// places give the same result.
 struct InverseMass {
     InverseMass(const RigidBody& body, const Vec3& normal);
 
@@ -38,7 +38,7 @@ struct InverseMass {
     Mat3 form;        // 1/(kg m^2)
 };
 
-// A surface that presses a unit, now and at the instant before (body axes).
+// A flat surface that the nodes of a unit push on, at the end and at the start of the step (body axes).
 struct FlatContact {
     FlatContact(const RigidBody& body, const HalfSpace& face_, const HalfSpace& face_before);
 
@@ -61,7 +61,7 @@ struct CrushSums {
     double stiffness() const { return flat_stiffness + packet_sum(nodes.stiffness); }   // 1/s^2
     double normal_force() const { return packet_sum(nodes.force); }                     // N
 
-    // Subtracts the part of a block.
+    // Subtracts the sums of one block.
     CrushSums& operator-=(const CrushSums& part);
 };
 

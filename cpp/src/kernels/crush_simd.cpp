@@ -26,16 +26,17 @@ constexpr double pushes_off = -1.0;
 
 // Direction in which a node moves onto the surface, for each unit of gap; and the vector `projector`, whose product
 // with the truss's unit vector turns the truss force into a normal force (see crush.hpp).
-struct Place {
+struct Directions {
     Vector direction, projector;
 };
 
-// Both give the directions of the eight nodes from i on. Nodes that arrive at a flat surface are moved along n.
+// Flat and Curved have the same members. at(i) gives the directions of the eight nodes from i on. Nodes that arrive
+// at a flat surface are moved along n.
 struct Flat {
     BIRM3D_INLINE explicit Flat(const FlatPress& s)
         : n{s.nx, s.ny, s.nz}, h{s.hx, s.hy, s.hz}, offset(s.offset) {}
     BIRM3D_INLINE Packet gap(std::size_t, const Vector& node) const { return dot(n, node) - offset; }
-    BIRM3D_INLINE Place at(std::size_t, const Packet& F0) const {
+    BIRM3D_INLINE Directions at(std::size_t, const Packet& F0) const {
         const Packet zero = 0.0;
         return {{where_above(F0, zero, h.x, n.x), where_above(F0, zero, h.y, n.y),
                  where_above(F0, zero, h.z, n.z)},
@@ -54,24 +55,24 @@ struct Curved {
         return {Packet::load(s.nx + i), Packet::load(s.ny + i), Packet::load(s.nz + i)};
     }
     // At an edge normals differ sharply; then the normal before is not used for the path.
-    BIRM3D_INLINE Place at(std::size_t i, const Packet& F0) const {
+    BIRM3D_INLINE Directions at(std::size_t i, const Packet& F0) const {
         const Packet zero = 0.0, one = 1.0;
         const Vector n = normal(i);
         const Vector b{Packet::load(s.bx + i), Packet::load(s.by + i), Packet::load(s.bz + i)};
         const Packet cosine = dot(n, b), per_force = Packet::load(s.per_force + i);
         const Packet follows = where_above(F0, zero, where_above(cosine, sharp_edge, one, zero), zero);
         const Packet mean = 1.0 / (1.0 + follows * cosine);
-        const auto way = [&](const Packet& own, const Packet& before) {
+        const auto path = [&](const Packet& own, const Packet& before) {
             return where_above(per_force, zero, before, (own + follows * before) * mean);
         };
         const auto projector = [&](const Packet& own, const Packet& before) {
             return where_above(per_force, zero, before * per_force, own);
         };
-        return {{way(n.x, b.x), way(n.y, b.y), way(n.z, b.z)},
+        return {{path(n.x, b.x), path(n.y, b.y), path(n.z, b.z)},
                 {projector(n.x, b.x), projector(n.y, b.y), projector(n.z, b.z)}};
     }
     BIRM3D_INLINE Packet drawn(std::size_t i) const { return Packet::load(s.per_force + i); }
-    // Of a unit of normal force; keeps it, and the place, for later.
+    // Torque of a unit normal force. Stores it and the place of the node, which friction needs.
     BIRM3D_INLINE Vector torque(std::size_t i, const Vector& node, const Vector& n) const {
         const Packet of_indentation = drawn(i), zero = 0.0;
         const auto keep = [&](double* column, const Packet& found) {
@@ -147,7 +148,7 @@ BIRM3D_INLINE Packet load_recovery(const PressColumns& truss, Unloading& of, con
 // Releases the nodes of the packet at i whose trusses have stopped pushing. A node on a receding surface stops where
 // its truss reaches zero force. A truss that pushes its node off the surface extends at once to that length, and its
 // stored energy is lost. An indentation keeps such a node at its surface. Returns the correction of twice the work on
-// the trusses for the first kind (J).
+// the trusses of nodes that a receding surface released (J).
 template <class Surface>
 Packet release(const PressColumns& truss, const Surface& surface, const PressState<const double>& before,
                const PressState<double>& now, std::size_t i, const Packet& gap) {
@@ -210,16 +211,16 @@ BIRM3D_INLINE void hold(const PressColumns& truss, const Surface& surface,
             if constexpr (!flat) surface.leave(i);
             continue;
         }
-        const Place place = surface.at(i, F0);
+        const Directions directions = surface.at(i, F0);
         const Packet depth = where_above(zero, gap, gap, where_above(F0, zero, gap, zero));
-        const Vector node{from.x - depth * place.direction.x, from.y - depth * place.direction.y,
-                          from.z - depth * place.direction.z};
+        const Vector node{from.x - depth * directions.direction.x, from.y - depth * directions.direction.y,
+                          from.z - depth * directions.direction.z};
 
         // From the node to its anchor. A bottomed-out truss has no direction; its force acts along n. A truss that
         // lies in the surface, as where the rigid body stands at it, keeps its force, of which nothing acts along n.
         const Vector b{Packet::load(truss.anchor_x + i) - node.x, Packet::load(truss.anchor_y + i) - node.y,
                        Packet::load(truss.anchor_z + i) - node.z};
-        const Packet length = square_root(dot(b, b)), outside = dot(b, place.projector);
+        const Packet length = square_root(dot(b, b)), outside = dot(b, directions.projector);
         const Packet along_normal =
             where_above(outside, in_surface, greater(outside, zero) / length, pushes_off);
         const Packet projection = where_above(length, least, along_normal, one);

@@ -32,13 +32,13 @@ struct FlatPress {
     double hx, hy, hz;
 };
 
-// Cosine above which the normals of two instants are one surface's.
+// Cosine above which the normals at the start and at the end of the step belong to one surface.
 inline constexpr double sharp_edge = 0.5;
 
 // The same for surfaces of any shape, node by node.
 struct CurvedPress {
     const double* gap;
-    const double *nx, *ny, *nz;  // outward normal now, and of the same surface at the instant before
+    const double *nx, *ny, *nz;  // outward normal now, and of the same surface at the start of the step
     const double *bx, *by, *bz;
     // Above zero for nodes that follow an indentation. Then b is the direction of the displacement, and the normal
     // force is this times the truss force along b.

@@ -12,7 +12,8 @@ namespace birm3d {
 // Around a block of nodes.
 Box box_around(const BlockColumn& x, const BlockColumn& y, const BlockColumn& z);
 
-// What Nearest says, for a block of nodes: signed distances (m) and outward unit normals in body axes.
+// As Nearest (geometry/nearest.hpp), for a block of nodes: signed distances (m) and outward unit normals in body
+// axes.
 struct alignas(64) NearestOfBlock {
     BlockColumn gap, nx, ny, nz;
 };

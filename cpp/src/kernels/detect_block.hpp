@@ -1,4 +1,4 @@
-// What the parts of the detection share.
+// Declarations that the files detect_*.cpp share.
 #pragma once
 
 #include "kernels/detect.hpp"

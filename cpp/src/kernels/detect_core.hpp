@@ -19,7 +19,7 @@ struct PlacedShape {
     Placement placement;
     std::size_t obstacle = 0;
     double friction = 0.0;
-    Twist motion = {};  // its own, seen as if it were part of the body: about the body's origin, body axes
+    Twist motion = {};  // of the obstacle, as a twist about the body's origin, body axes
 };
 
 // Distance within which an anchor can reach a surface in dt, in any direction (m); `motion` in body axes.

@@ -1,5 +1,5 @@
-// Meshes: the tree is walked once for the whole block, and each triangle met is tried on all nodes at a time.
-// Where that would be too many, because the triangles are small against the block, each node walks by itself.
+// Meshes: the tree is walked once for the whole block, and each triangle met is tried on all nodes at a time. If the
+// triangles are small relative to the block, that would be too many: then each node searches the tree alone.
 #include <cmath>
 
 #include "base/block_loop.hpp"
@@ -10,7 +10,7 @@ namespace birm3d {
 
 namespace {
 
-// More triangles than this are not tried on whole blocks: found by measuring.
+// Most triangles that are tried on whole blocks; measured to be fastest.
 constexpr std::size_t most_triangles = 32;
 
 // The nearest triangle of each node so far.

@@ -31,7 +31,7 @@ class SomeEdges {
 
 class EdgesInView {
   public:
-    // Edges that are more than can be looked through are all taken.
+    // If there are more edges than SomeEdges::most, none is left out.
     EdgesInView(const std::vector<PrismEdge>& edges, const Rectangle& block)
         : edges_(edges), all_(edges.size() > SomeEdges::most) {
         if (all_) return;
@@ -42,13 +42,13 @@ class EdgesInView {
         }
     }
 
-    // Square of a distance that no node is further from some edge (m^2).
+    // Upper bound, for all nodes, of the square of the distance to the nearest edge (m^2).
     double most() const {
         constexpr double rounding = 1.0 + 1e-9;
         return rounding * most_;
     }
 
-    // Those that are no further than this from some node.
+    // Edges that are within this squared distance of any node.
     EdgeList within(double most) {
         if (all_) near_.take_all(edges_);
         for (std::size_t e = 0; e < edges_.size() && !all_; ++e)
@@ -56,7 +56,8 @@ class EdgesInView {
         return near_.list();
     }
 
-    // Those that lines from the nodes along +x may cross or not; turns `side` at those that all of them cross.
+    // Edges that lines from some nodes along +x cross, and lines from others may not. Reverses `side` for each edge
+    // that all of the lines cross.
     EdgeList splitting(const Rectangle& block, double& side) {
         if (all_) splitting_.take_all(edges_);
         for (std::size_t e = 0; e < edges_.size() && !all_; ++e) {

@@ -46,7 +46,7 @@ bool reaches(const Prism& prism, const Placement& now, const Box& box, double ma
 }
 
 bool reaches(const TriangleMesh& mesh, const Placement& now, const Box& box, double margin) {
-    // Behind an open mesh a point is inside wherever its nearest point is not on the rim: no bounds.
+    // The inside of an open mesh has no bounds: it is wherever the nearest point is not on the rim.
     if (!mesh.closed()) return true;
     const Box own = rotated(now, box);
     return !too_far(distance(mesh.bounds(), own), margin) &&

@@ -38,7 +38,7 @@ BIRM3D_INLINE NearestEdge<Packet> nearest_edge(const EdgeList& edges, const Pack
     return best;
 }
 
-// `count`: of faces, where it is known: then all that is known of them stays in registers.
+// `count`: number of faces, so that what is known of them stays in registers; 0: any number.
 template <std::size_t count>
 BIRM3D_INLINE void ask(const PrismView& prism, const PlainPlacement& t, const Points& own, double* gap,
                        const Columns& normals) {

@@ -8,7 +8,7 @@
 
 namespace birm3d {
 
-// A placement in plain numbers, and its way back for directions.
+// A placement (geometry/placement.hpp) in plain numbers.
 struct PlainPlacement {
     double xx, xy, xz, yx, yy, yz, zx, zy, zz;
     double x, y, z;
@@ -46,7 +46,7 @@ struct PrismView {
 using PlaceNodes = void (*)(const PlainPlacement& placed, const Points& nodes, const Columns& own,
                             Extent& extent);
 using FindExtent = void (*)(const Points& nodes, Extent& extent);
-// Gaps of nodes in the prism's axes, and their normals in the axes that `turn` comes from.
+// Gaps of nodes `own`, which are in the prism's axes, and their normals in body axes.
 using AskPrism = void (*)(const PrismView& prism, const PlainPlacement& placed, const Points& own,
                           double* gap, const Columns& normals);
 

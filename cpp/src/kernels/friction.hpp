@@ -16,8 +16,8 @@ struct FrictionLoad {
     Mat6 resistance = Mat6::Zero();  // friction of nodes that slide slowly is -resistance (v, w)
 };
 
-// `motion`: the vehicle's twist in body axes. `common_normal`: where all nodes have one, or null. Adds to `rubbing` (body
-// axes).
+// `motion`: the vehicle's twist in body axes. `common_normal`: where all nodes have one, or null. Adds to
+// `friction_load` (body axes).
 void add_friction(double mu, double full_speed, const Twist& motion, const Places& places,
                   const BlockContact& contact, const Vec3* common_normal, FrictionLoad& friction_load);
 

@@ -50,8 +50,8 @@ double free_rolling_speed(double full_speed, std::span<const TireNodeContact> wh
             sum += node.pressure * fraction_of_full(node, q, full_speed).dot(node.rolling);
         return sum;
     };
-    // The Illinois method (Dowell and Jarratt, BIT 11, 1971, p. 168). Every third round halves: that finds the corners too
-    // which slow sliding makes.
+    // The Illinois method (Dowell and Jarratt, BIT 11, 1971, p. 168). Every third round bisects, because slow sliding
+    // makes corners in the torque.
     constexpr double as_good = 1e-14;
     double below = torque(low), above = torque(high);
     int side = 0;  // on which the last place lay

@@ -1,17 +1,16 @@
 // Coulomb friction between a wheel's tread and a barrier.
 //
-// The tread slides with the motion of the body, u = v + w x r, and with that of the wheel about its axle: together
-// u_i + q t_i at node i, t_i = (s x d_i)/R, where q is the rolling speed that belongs to the wheel's rotation. A
-// wheel on the road has q = v_r. Pressed on a barrier it does not keep that: the angular momentum of a car's wheel,
-// some 100 N m s at 30 m/s, is gone after 10 ms under 30 kN of friction. A wheel that is free to turn is taken to
-// have the q at which friction has no torque about its axle,
-//     sum_i F_i . t_i = 0,   F_i = -mu N_i (u_i + q t_i)/|u_i + q t_i|,
-// as nodes are taken to have no mass: what is left of the sliding is along the spokes, so that a tread that a barrier
-// meets below and ahead of the axle is pushed up and back. The wheel then gives and takes no energy; the power of
-// friction on the body is what friction turns into heat, and never positive. Left out: the wheel's inertia, the
-// torque of the ground and of the engine. A locked wheel has q = 0.
+// The tread slides with the motion of the body, u = v + w x r, and with the rotation of the wheel about its axle. Node i
+// of the tread slides with u_i + q t_i, t_i = (s x d_i)/R, where q is the rolling speed of the wheel. On the road
+// q = v_r. A wheel that pushes on a barrier soon loses that speed: a car's wheel has an angular momentum of some
+// 100 N m s at 30 m/s, and a friction of 30 kN takes it in 10 ms. Therefore the inertia of the wheel is neglected, and a
+// wheel that is free to rotate has the q at which friction has no torque about its axle:
+//     sum_i F_i . t_i = 0,   F_i = -mu N_i (u_i + q t_i)/|u_i + q t_i|.
+// The rest of the sliding is along the spokes: a tread that meets a barrier below and ahead of the axle is pushed up and
+// back. Such a wheel neither stores nor releases energy, and the power of friction on the body is never positive. The
+// torques of ground and engine are neglected, too. A locked wheel has q = 0.
 //
-// Below `full_speed` the force falls as that on the skin does (kernels/friction.hpp).
+// Below `full_speed` the force is reduced as on the skin (kernels/friction.hpp).
 #pragma once
 
 #include <span>
@@ -39,7 +38,7 @@ TireNodeContact tire_node_contact(const TireNode& node, std::size_t near, const 
 // q of a wheel that is free to turn (m/s), from all its nodes that push; 0 where no node pushes.
 double free_rolling_speed(double full_speed, std::span<const TireNodeContact> wheel);
 
-// Adds a node's friction to `rubbing` (body axes); `turning`: q.
+// Adds the friction of a node to `friction_load` (body axes). `rolling`: q.
 void add_tire_node_friction(double mu, double full_speed, double rolling, const TireNodeContact& node,
                             FrictionLoad& friction_load);
 

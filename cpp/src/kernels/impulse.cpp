@@ -247,7 +247,7 @@ void ImpulseSolver::factorise() {
             if (row.other < 0) continue;
             const auto b = Index{6} * row.other;
             system_.block<6, 6>(b, b) += row.g_other / row.compliance * row.g_other.transpose();
-            // The lower triangle is what the factors are made of.
+            // The factorisation reads the lower triangle only.
             if (a > b)
                 system_.block<6, 6>(a, b) += row.g / row.compliance * row.g_other.transpose();
             else

@@ -3,19 +3,21 @@
 // Each row has a Jacobian J: force and torque of a unit impulse on each of its two bodies. With A = J M^-1 J^T
 // and v the separation velocities without impulses, the impulses j and the separation velocities w obey
 //   w = A j + v >= target,   j >= 0,   (w - target) . j = 0    for rows that push only,
-// w = target for bilateral rows. For one contact this is Eq. 1: j = -(1 + xi) v / (1/M_a + 1/M_b + n.[I_a^-1 (r_a x
-// n) x r_a] + ...), with target = -xi v. (The paper's v_rel^-1 is v_rel^-, the velocity before the impact.) A small
-// compliance C on the diagonal makes the impulses of redundant rows unique. Its effect is removed again by the
-// proximal-point method (Rockafellar, SIAM J. Control Optim. 14, 1976, p. 877), each time with the target moved on by
-// the last give: (A + C) j_new + v >= target + C j_old. What can not be met by all is then met as far as bodies of
-// these compliances would.
+// w = target for bilateral rows. For one contact this is Eq. 1 with target = -xi v:
+//   j = -(1 + xi) v / (1/M_a + 1/M_b + n.[I_a^-1 (r_a x n) x r_a] + n.[I_b^-1 (r_b x n) x r_b]).
+// (The paper's v_rel^-1 is v_rel^-, the velocity before the impact.)
+//
+// A small compliance C on the diagonal makes the impulses of redundant rows unique. The proximal-point method
+// (Rockafellar, SIAM J. Control Optim. 14, 1976, p. 877) removes its effect: each iteration adds the compliance times the
+// last impulses to the targets, (A + C) j_new + v >= target + C j_old. Targets that contradict each other are met as far
+// as bodies of these compliances would meet them.
 //
 // Solved exactly by the active-set method of Lawson and Hanson (Solving Least Squares Problems, ch. 23). The most
 // violated row is activated first, then all violated rows together for some rounds, then one by one again. Bilateral
 // rows are always active. Many active rows are solved for through the bodies' velocity changes u:
 //   (A + C) j = b   is   (M + J^T C^-1 J) u = J^T C^-1 b,   j = C^-1 (b - J u),
-// so that a hundred points of one body cost a 6 x 6 system. Iterative refinement gives back the digits that a
-// small C takes.
+// so that a hundred points of one body cost a 6 x 6 system. A small C makes that system lose digits. Iterative
+// refinement recovers them.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -45,8 +47,8 @@ double inverse_effective_mass(const RigidContact& contact, std::span<const Conta
 // Solves for the same contacts once or several times, between which only the bodies' motions change.
 class ImpulseSolver {
   public:
-    // Takes places and compliances of the contacts, and masses. `speed_scale`: of the scene (m/s), for the tolerance. In
-    // the memory of what was prepared before.
+    // Takes places and compliances of the contacts, and masses. `speed_scale`: of the scene (m/s), for the tolerance.
+    // Reuses the memory of the last call.
     void prepare(std::span<const RigidContact> contacts, std::span<const ContactBody> bodies,
                  double speed_scale);
 

@@ -1,9 +1,10 @@
 // Free motion of a rigid body: kick (impulses change momenta) and drift (momenta move the body).
 //
-// Kick-drift-kick is the leapfrog scheme: explicit, second order, time-reversible. In the drift the angular
-// momentum L stands still in the world while the body turns; the implicit midpoint rule on Euler's equations
-//   P1 - P0 = -theta x (P0 + P1)/2,  theta = dt * I^-1 (P0 + P1)/2,  P = R^T L
-// keeps both |P| and the rotational energy P . I^-1 P / 2 exactly, and is met by q1 = cayley(q0, theta).
+// Kick-drift-kick is the leapfrog scheme: explicit, second order, time-reversible. In the drift the angular momentum L
+// is constant in world axes while the body rotates. P = R^T L, the same in body axes, follows Euler's equations by the
+// implicit midpoint rule
+//   P1 - P0 = -theta x (P0 + P1)/2,  theta = dt * I^-1 (P0 + P1)/2.
+// It keeps both |P| and the rotational energy P . I^-1 P / 2 exactly. The new orientation is q1 = cayley(q0, theta).
 #pragma once
 
 #include "birm3d/base/types.hpp"

@@ -60,7 +60,7 @@ void find_joint_rows(const Joint& joint, std::size_t index, const BodyState& lea
     }
     row.bilateral = false;
     const Vec3 axis = (leading.orientation * Vec3::UnitY()).cross(trailing.orientation * Vec3::UnitZ());
-    // Kingpin in line with the tilting axis: the direction of the stop is undefined. The stops keep a joint from this
+    // If the kingpin is parallel to the tilting axis, the direction of the stop is undefined. The stops prevent this
     // position.
     const double size = axis.norm();
     if (size < 1e-6) return;

@@ -1,9 +1,9 @@
 // Joints as rows of the impulse solver, for any two bodies.
 //
-// Held directions are the world's x, y, z at the joint's place, halfway between its two places so that the pair
-// of impulses keeps the angular momentum whatever gap there is; of a welded joint also turns about x, y, z. The stops of
-// a fifth wheel are two rows about the Cardan axis s_leading x t_trailing, along which the rate of the relative
-// roll is the difference of the angular velocities: sin(roll) = -s_leading . t_trailing.
+// A joint has rows for displacements along the world's x, y and z; a welded joint also for rotations about them. Impulses
+// act halfway between the joint's places on the two bodies. So a pair of impulses keeps the angular momentum, whatever
+// the gap between these places. The stops of a fifth wheel are two rows about the Cardan axis s_leading x t_trailing.
+// The difference of the angular velocities along it is the rate of the relative roll, sin(roll) = -s_leading . t_trailing.
 #pragma once
 
 #include <vector>

@@ -45,7 +45,7 @@ std::vector<SimdPath> simd_paths() {
 
 namespace {
 
-// Without memory for three rows nothing can run: then the program ends here.
+// Nothing can run if there is no memory for three rows; the program may end here.
 SimdPath fastest() noexcept {
     return simd_paths().back();
 }

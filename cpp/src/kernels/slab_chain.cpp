@@ -16,7 +16,7 @@ void SlabChain::set_up(std::span<const PinnedSlab> slabs, std::span<const SlabPi
     pins_ = pins;
     drift_ = drift;
     work_ = 0;
-    parts_.resize(slabs.size());
+    status_.resize(slabs.size());
     blocks_.resize((slabs.size() + block_size - 1) / block_size);
     links_.resize(pins.size());
     motions_.assign(slabs.size(), Vec3::Zero());
@@ -32,7 +32,7 @@ void SlabChain::set_up(std::span<const PinnedSlab> slabs, std::span<const SlabPi
         links_[l].target.setZero();
         if (drift > 0.0 && pin.gap.cwiseAbs().maxCoeff() > closed)
             for (const std::size_t beside : {l, l + 1})
-                parts_[beside].awake = parts_[beside].fresh = true;
+                status_[beside].awake = status_[beside].fresh = true;
     }
 }
 
@@ -50,7 +50,7 @@ void SlabChain::set_up_slab(const PinnedSlab& slab, std::size_t s) {
         b.corners[c].arm_x[i] = slab.arm[c].x() / k, b.corners[c].arm_y[i] = slab.arm[c].y() / k;
     for (SlabEnd* end : {&b.low, &b.high})
         set_up_end(b, *end, i, Vec2::Zero(), Vec2::Zero());  // ends without a pin
-    parts_[s].awake = parts_[s].fresh = !b.start(i).isZero(0.0) || !b.q(i).isZero(0.0);
+    status_[s].awake = status_[s].fresh = !b.start(i).isZero(0.0) || !b.q(i).isZero(0.0);
 }
 
 // `to_middle`: from the place on the slab to the middle of the pin's two places.
@@ -64,9 +64,9 @@ void SlabChain::set_up_end(const SlabBlock& b, SlabEnd& end, std::size_t i, cons
 
 void SlabChain::find_runs() {
     runs_.clear();
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-        if (!parts_[i].awake) continue;
-        if (i == 0 || !parts_[i - 1].awake) runs_.push_back({i, i});
+    for (std::size_t i = 0; i < status_.size(); ++i) {
+        if (!status_[i].awake) continue;
+        if (i == 0 || !status_[i - 1].awake) runs_.push_back({i, i});
         runs_.back().end = i + 1;
     }
 }
@@ -101,8 +101,8 @@ void SlabChain::wake(const Run& run, std::size_t end, int direction) {
     const std::size_t wanted = 1 + (run.end - run.begin) / 4;
     auto i = static_cast<std::ptrdiff_t>(end);
     for (std::size_t count = 0; count < wanted; ++count, i += direction) {
-        if (i < 0 || i >= static_cast<std::ptrdiff_t>(parts_.size())) break;
-        Part& woken = parts_[static_cast<std::size_t>(i)];
+        if (i < 0 || i >= static_cast<std::ptrdiff_t>(status_.size())) break;
+        SlabStatus& woken = status_[static_cast<std::size_t>(i)];
         if (woken.awake) break;
         woken.awake = woken.fresh = true;
     }
@@ -111,25 +111,25 @@ void SlabChain::wake(const Run& run, std::size_t end, int direction) {
 // Adds slabs before and behind the run where its ends are not held. Returns whether any were added.
 bool SlabChain::wake_around(const Run& run) {
     const bool before = run.begin > 0 && !is_held(run.begin);
-    const bool behind = run.end < parts_.size() && !is_held(run.end - 1);
+    const bool behind = run.end < status_.size() && !is_held(run.end - 1);
     if (before) wake(run, run.begin - 1, -1);
     if (behind) wake(run, run.end, 1);
     return before || behind;
 }
 
-// Slabs beside moving or pushed slabs may hold them.
+// Adds the neighbours of slabs that move or are pushed, because they may hold them.
 void SlabChain::take_in_neighbours() {
-    for (std::size_t i = 1; i < parts_.size(); ++i)
-        parts_[i].awake = parts_[i].awake || parts_[i - 1].fresh;
-    for (std::size_t i = parts_.size() - 1; i-- > 0;)
-        parts_[i].awake = parts_[i].awake || parts_[i + 1].fresh;
-    for (Part& part : parts_)
+    for (std::size_t i = 1; i < status_.size(); ++i)
+        status_[i].awake = status_[i].awake || status_[i - 1].fresh;
+    for (std::size_t i = status_.size() - 1; i-- > 0;)
+        status_[i].awake = status_[i].awake || status_[i + 1].fresh;
+    for (SlabStatus& part : status_)
         part.fresh = part.awake;
 }
 
-void SlabChain::hand_over() {
-    for (std::size_t s = 0; s < parts_.size(); ++s) {
-        if (!parts_[s].awake) continue;
+void SlabChain::store_results() {
+    for (std::size_t s = 0; s < status_.size(); ++s) {
+        if (!status_[s].awake) continue;
         const SlabBlock& b = block_of(s);
         const std::size_t i = s % block_size;
         const double k = b.gyration[i];
@@ -150,13 +150,13 @@ void SlabChain::solve(std::span<const PinnedSlab> slabs, std::span<const SlabPin
         for (const Run& run : runs_) {
             bool fresh = false;
             for (std::size_t i = run.begin; i < run.end; ++i)
-                fresh = fresh || parts_[i].fresh, parts_[i].fresh = false;
+                fresh = fresh || status_[i].fresh, status_[i].fresh = false;
             if (fresh) solve_run(run);
         }
         for (const Run& run : runs_)
             woken = wake_around(run) || woken;
     }
-    hand_over();
+    store_results();
 }
 
 }  // namespace birm3d

@@ -1,8 +1,8 @@
 // Coulomb friction of slabs that pins hold together end to end: one minimum for all of them.
 //
-// The convex function is that of ground_slide.hpp, summed over the slabs, with what the pins hold as conditions:
-// where a chain is held, and how far it is dragged along, depends on all of it. |u| is regularised as eta =
-// sqrt(|u|^2 + e^2), with e a millionth of the speed that friction can remove.
+// The convex function is that of ground_slide.hpp, summed over the slabs. The pins are its equality constraints. All
+// slabs of a chain are solved together, because how far friction lets one move depends on all of them. |u| is regularised
+// as eta = sqrt(|u|^2 + e^2), with e a millionth of the speed that friction can remove.
 //
 // Newton's method for the motions and the frictions y_i together, each a share of the corner's limit c (Chan, Golub and
 // Mulet, SIAM J. Sci. Comput. 20, 1999, p. 1964):
@@ -28,7 +28,7 @@ namespace birm3d {
 using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
 
-// Motions along the ground and about the vertical, world axes: x, y, rotation.
+// A slab that slides on the ground. Motions are (x, y, rotation about the vertical), world axes.
 struct PinnedSlab {
     double mass;                 // kg
     double inertia;              // about the vertical (kg m^2)
@@ -38,7 +38,7 @@ struct PinnedSlab {
     Vec3 guess = Vec3::Zero();   // of the motion with both; zero if it is expected to rest
 };
 
-// Between a slab and the next one.
+// The pin between a slab and the next one.
 struct SlabPin {
     Vec2 on_first, on_next;   // from the mass centres to the place of the pin on either slab (m)
     Vec2 gap = Vec2::Zero();  // from the place on the next slab to that on the first one (m)
@@ -93,18 +93,18 @@ class SlabChain {
     std::span<const Vec3> pulls() const { return pulls_; }
 
     // Was the slab part of the system? Others rest.
-    bool is_awake(std::size_t slab) const { return slab < parts_.size() && parts_[slab].awake; }
+    bool is_awake(std::size_t slab) const { return slab < status_.size() && status_[slab].awake; }
 
     // Cost of the last solution: the sum of slabs over all Newton steps.
     std::size_t work() const { return work_; }
 
   private:
-    struct Part {
+    struct SlabStatus {
         bool awake, fresh;
     };
     struct Link {
-        Vec2 target, lack, pull;
-        Mat2 inverse, beside;  // of the eliminated block; the block beside it
+        Vec2 target, rhs, pull;
+        Mat2 inverse, off_diagonal;  // of the eliminated block; the block beside it
     };
     // Slabs that are solved for together. Slabs before and behind are at rest, and their pins have no force.
     struct Run {
@@ -121,7 +121,7 @@ class SlabChain {
     bool is_held(std::size_t slab) const;
     void take_in_neighbours();
     Vec3 pull_on(std::size_t slab) const;
-    void hand_over();
+    void store_results();
 
     void solve_run(const Run& run);
     void start_from_pins(const Run& run);
@@ -141,7 +141,7 @@ class SlabChain {
 
     std::span<const SlabPin> pins_;
     double drift_ = 0.0;
-    std::vector<Part> parts_;
+    std::vector<SlabStatus> status_;
     std::vector<SlabBlock> blocks_;
     std::vector<Link> links_;
     std::vector<Run> runs_;

@@ -97,22 +97,22 @@ void SlabChain::find_pulls(const Run& run) {
         Link& link = links_[l];
         const SlabBlock &first = block_of(l), &next = block_of(l + 1);
         Mat2 block = at(first.at_high, l) + at(next.at_low, l + 1);
-        link.lack = link.target - at(first.high.speed_x, first.high.speed_y, l) +
+        link.rhs = link.target - at(first.high.speed_x, first.high.speed_y, l) +
                     at(next.low.speed_x, next.low.speed_y, l + 1);
         if (l > run.begin) {
             const Link& before = links_[l - 1];
-            const Mat2 across = before.beside.transpose() * before.inverse;
-            block -= across * before.beside;
-            link.lack -= across * before.lack;
+            const Mat2 across = before.off_diagonal.transpose() * before.inverse;
+            block -= across * before.off_diagonal;
+            link.rhs -= across * before.rhs;
         }
         link.inverse = block.inverse();
-        if (l + 2 < run.end) link.beside = -at(next.across, l + 1);
+        if (l + 2 < run.end) link.off_diagonal = -at(next.across, l + 1);
     }
     for (std::size_t l = run.end - 1; l-- > run.begin;) {
         Link& link = links_[l];
-        Vec2 lack = link.lack;
-        if (l + 2 < run.end) lack -= link.beside * links_[l + 1].pull;
-        link.pull = link.inverse * lack;
+        Vec2 rhs = link.rhs;
+        if (l + 2 < run.end) rhs -= link.off_diagonal * links_[l + 1].pull;
+        link.pull = link.inverse * rhs;
         SlabEnd &high = block_of(l).high, &low = block_of(l + 1).low;
         high.pull_x[l % block_size] = low.pull_x[(l + 1) % block_size] = link.pull.x();
         high.pull_y[l % block_size] = low.pull_y[(l + 1) % block_size] = link.pull.y();

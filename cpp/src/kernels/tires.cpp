@@ -65,7 +65,8 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
     // Speed that a friction coefficient of 1 would take from a wheel: twice that of the mass centre, as the
     // body also turns.
     const double speed_change = 2.0 * total * unit.body.inverse_mass;
-    // At small slip the impulse is C N dt * v_across / v_along: v_along is held where that reverses nothing.
+    // At small slip the impulse is C N dt * v_across / v_along. A lower bound of v_along keeps it from reversing the
+    // motion.
     const double slowest = settings.cornering_stiffness * speed_change;
     const auto velocity_at = [&](const Vec3& arm) -> Vec3 {
         const Vec3 now = motion.now.velocity + motion.now.angular_velocity.cross(arm);
@@ -78,7 +79,8 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
         const double speed = velocity.norm();
         const Vec3 heading = Vec3(R(0, 0), R(1, 0), 0.0).normalized();
         const double across = std::abs(heading.x() * velocity.y() - heading.y() * velocity.x());
-        // The paper's "parallel to the r-direction", to rounding: rolling, but for the brakes.
+        // The velocity is "parallel to the r-direction" (paper), up to rounding: the wheel rolls, and only brakes
+        // slow it.
         const double sliding = across <= 1e-9 * speed ? settings.braking : 1.0;
         if (sliding == 0.0) return sum;
         const Vec3 direction = -sliding / std::max(speed, mu * speed_change) * velocity;

@@ -10,7 +10,7 @@
 //                   circle), and at b = 1 the locked wheel slides.
 //   skid            the paper's: nothing while the mass centre moves exactly along r, else mu N against its
 //                   velocity.
-// Both fall in proportion to the speed where they would otherwise reverse it.
+// Both are reduced in proportion to the speed where they would otherwise reverse the sliding.
 #pragma once
 
 #include <span>

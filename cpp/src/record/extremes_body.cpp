@@ -56,7 +56,7 @@ double penetration_of(const UnitHistory& unit, const TrussMesh& mesh, const Vec3
     std::optional<Eigen::Vector4d> known;
     double furthest = 0.0;
     const double twice_reach = 2.0 * anchors.reach(), rounding = 1e-13 * anchors.reach();
-    const auto look = [&](std::size_t k) {
+    const auto compare = [&](std::size_t k) {
         const double center = past.dot(unit.position[k] - origin);
         const double missing = greatest - center;
         if (anchors.reach() + rounding <= missing) return;
@@ -72,9 +72,9 @@ double penetration_of(const UnitHistory& unit, const TrussMesh& mesh, const Vec3
     for (std::size_t k = 0; k < unit.position.size(); ++k)
         if (const double at = past.dot(unit.position[k]); at > furthest_along)
             furthest_along = at, deepest = k;
-    look(deepest);
+    compare(deepest);
     for (std::size_t k = 0; k < unit.position.size(); ++k)
-        look(k);
+        compare(k);
     return greatest;
 }
 

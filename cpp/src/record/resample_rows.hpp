@@ -62,8 +62,8 @@ struct OutputInstants {
         return {a, a + width, time_at(row + 1) - time_at(row)};
     }
 
-    // Impulse from the start of the step to each instant of a force with end values a and b; `bend` as of
-    // StepView::force_integral, `impulse` is spread evenly (N s).
+    // Impulse from the start of the step to each instant of a force with end values a and b; `curvature` as
+    // of StepView::force_integral, `impulse` is spread evenly (N s).
     void integrate(const Span& s, double a, double b, double curvature, double impulse, double* to) const {
         const double *t = within.data() + s.first, *u = fraction.data() + s.first,
                      *w = smooth.data() + s.first;

@@ -86,7 +86,7 @@ Ends ends_along(const Scene& scene, const State& state, const Vec3& direction) {
         const Mat3 R = body.orientation.toRotationMatrix();
         const Vec3 own = R.transpose() * direction;
         const double middle = direction.dot(body.position);
-        const auto look = [&](std::size_t b, const Box& box, const BlockColumn& x, const BlockColumn& y,
+        const auto compare = [&](std::size_t b, const Box& box, const BlockColumn& x, const BlockColumn& y,
                               const BlockColumn& z) {
             // A block that can not reach further is left out.
             const double center = middle + own.dot(box.center);
@@ -99,8 +99,8 @@ Ends ends_along(const Scene& scene, const State& state, const Vec3& direction) {
         };
         for (std::size_t b = 0; b < mesh.blocks; ++b) {
             const TrussBlock& of = mesh.block[b];
-            look(b, mesh.node_box[b], of.node_x, of.node_y, of.node_z);
-            if (b < mesh.skin_blocks) look(b, mesh.anchor_box[b], of.anchor_x, of.anchor_y, of.anchor_z);
+            compare(b, mesh.node_box[b], of.node_x, of.node_y, of.node_z);
+            if (b < mesh.skin_blocks) compare(b, mesh.anchor_box[b], of.anchor_x, of.anchor_y, of.anchor_z);
         }
     }
     return ends;

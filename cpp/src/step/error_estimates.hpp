@@ -26,8 +26,9 @@ double rotation_error(const Scene& scene, const State& state, double dt);
 // Error by the rotation of joint forces with their bodies, which the half kicks follow to second order.
 double joint_error(const Scene& scene, const State& state, double dt);
 
-// Error by the work of the weight. It is done along the drift, but the half kicks book the mean of the velocities beside
-// them; these differ where contacts open or close. Expressed as a velocity at the scene's reference speed.
+// Error of the work of gravity. The bodies fall by the drift, but the energy balance counts the mean velocities of
+// the half kicks. The two differ where contacts open or close. Expressed as a velocity at the scene's reference
+// speed.
 double weight_error(const Scene& scene, const State& from, const Trial& trial);
 
 // Longest stable step, sqrt(3)/omega, with omega of the trusses in contact (s); infinite where none is.

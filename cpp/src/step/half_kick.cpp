@@ -85,16 +85,16 @@ void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpuls
     }
     std::erase_if(contacts, [&](const RigidContact& contact) {
         if (contact.bilateral) return false;
-        // A tyre that carried load before the drift is still in contact after it, though rotation may have opened a gap of
-        // rounding size. An approach that only the forces of this step make is no impact.
+        // A tyre that carried load before the drift is still in contact after it, though rotation may have opened a
+        // gap of rounding size. It makes an impact only if it approached before the forces of this step.
         if (contact.source == ContactSource::tire && before_drift[contact.body].tire[contact.index] > 0.0)
             return contact.is_impact;
         return contact.gap > tolerance::touching_gap || approaches_hard(contact, bodies);
     });
 }
 
-// Time until the first approaching contact reaches its surface at an impact speed (s). An approach that only the forces of
-// this step make, and that ends within `negligible` (s), is resting contact and needs no impact of its own.
+// Time until the first approaching contact reaches its surface at an impact speed (s). An approach that only the
+// forces of this step cause is resting contact if it ends within `negligible` (s). It makes no impact.
 double time_to_impact(double negligible, std::span<const ContactBody> bodies,
                       const std::vector<RigidContact>& contacts) {
     double earliest = infinity;

@@ -66,7 +66,7 @@ double compressive_fraction(const Load& corrector, const LoadHistory& before, co
     return curvature > root * root ? root * root / curvature : 1.0;
 }
 
-// What one structure's contacts had at the start of the step and bear at its end.
+// The contacts of one structure: their load histories at the start of the step and their loads at its end.
 struct StructureStep {
     const LoadHistory& before;             // of the structure as a whole
     std::span<const LoadHistory> befores;  // of each contact

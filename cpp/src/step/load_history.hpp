@@ -1,11 +1,12 @@
 // The predictor and the corrector of the stepping scheme: fourth order in smooth loads at one evaluation a step.
 //
-// Let W0 and W1 be the load at the start and the end of a step of length dt, h and g the lengths of the two steps
-// before, W' and W'' the first and second divided differences that end at W0, W1' and W1'' those that end at W1.
-// With momenta V, the body drifts with
-//   V0 + dt/2 W0 + P,   predictor P = dt^2/6 W' + dt^2 (dt/12 + h/6) W'',
-// and its momentum after the step is
-//   V1 = V0 + dt/2 (W0 + W1) + C,
+//   dt, h, g    lengths of this step and of the two steps before
+//   W0, W1      load at the start and at the end of this step
+//   W', W''     first and second divided differences of the load that end at W0; W1', W1'': those that end at W1
+//   V0, V1      momenta before and after this step
+// The body drifts with V0 + dt/2 W0 + P,
+//   predictor P = dt^2/6 W' + dt^2 (dt/12 + h/6) W''.
+// Its momentum after the step is V1 = V0 + dt/2 (W0 + W1) + C,
 //   corrector C = -dt^3/6 W1'' - dt^3 (dt/12 + h/6) / (dt + h + g) (W1'' - W'').
 // P is the drift of Beeman (J. Comput. Phys. 20, 1976, p. 130, with Schofield's corrector). C is the corrector of
 // Adams and Moulton for steps of variable length (Hairer, Norsett and Wanner, Solving Ordinary Differential

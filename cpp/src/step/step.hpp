@@ -17,7 +17,7 @@ namespace birm3d {
 // Computes a step of `dt` seconds from `state` into `trial`, which the step control then judges.
 void try_step(const Scene& scene, const State& state, double dt, const StepOptions& options, Trial& trial);
 
-// Makes the trial the state. After that the trial holds nothing of meaning until the next try.
+// Makes the trial the state. The contents of the trial are not valid afterwards, until the next try_step().
 void accept(const Scene& scene, Trial& trial, State& state);
 
 }  // namespace birm3d

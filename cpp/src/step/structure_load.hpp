@@ -1,6 +1,6 @@
 // Segments that are joined form one structure, and the stepping scheme follows the load on the structure as a whole.
-// Where a node passes from one segment to the next, the structure's load stays continuous while each segment's jumps:
-// so a wall in segments gives the same result as the same wall in one piece.
+// When a node passes from one segment to the next, the load on each segment jumps, but the load on the structure is
+// continuous. So a wall of segments gives the same result as the same wall in one piece.
 #pragma once
 
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace birm3d {
 
-// The contacts of one structure are neighbours in `contacts`. Index one past the last that belongs to the structure of
-// contacts[first].
+// Index one past the last contact of the structure that contacts[first] belongs to. `contacts` has the contacts of
+// one structure side by side.
 inline std::size_t end_of_structure(const Scene& scene, std::span<const ContactLoad> contacts,
                                     std::size_t first) {
     const std::size_t structure = scene.obstacles[contacts[first].obstacle].structure;

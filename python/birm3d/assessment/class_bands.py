@@ -1,4 +1,4 @@
-"""Bands of design loads: what the other vehicles of a class ask of an element."""
+"""Bands of design loads over the vehicles of a class."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _FAILED = "{n} of {all} vehicles of the class could not be run and are not in th
 
 
 class Bands(NamedTuple):
-    """Rows with their bands, and what is to be said of these."""
+    """Rows with their bands, and cautions about these."""
 
     rows: tuple[ElementDesign, ...]
     cautions: list[str]
@@ -145,7 +145,7 @@ def _is_outside(row: ElementDesign) -> bool:
 
 
 def _banded(row: ElementDesign, vehicles: Sequence[Sequence[ElementDesign]]) -> ElementDesign:
-    """Return a row with bands over vehicles, of each of which there is what it carries in every scene."""
+    """Return a row with its bands; of each vehicle there is what the element carries in every scene."""
     if not vehicles or not row.scene:
         return row
     bands = {}

@@ -25,7 +25,7 @@ class Criterion:
     limit : str
         In the same unit, as text.
     passed : bool or None
-        ``None``: the value is reported, no verdict hangs on it.
+        ``None``: the value is reported without a verdict.
     grade : str
         Class that the value falls into, as ``"A"`` or ``"preferred"``; may be empty.
     """

@@ -1,4 +1,4 @@
-"""What the design loads of a run rest on: said where it matters."""
+"""Cautions about design loads: assumptions that they depend on, where these matter."""
 
 from __future__ import annotations
 
@@ -55,9 +55,9 @@ def barrier_caution(barrier: Barrier) -> list[str]:
 
 
 def run_cautions(result: Result) -> dict[str, tuple[str, ...]]:
-    """Return what is to be said of the loads of one run: text -> names of the elements that it is said of.
+    """Return cautions about the loads of one run: text -> names of the elements that it is about.
 
-    Elements with less than a hundredth of the greatest load are left alone.
+    Elements with less than a hundredth of the greatest load have none.
     """
     loads = touched_elements(result.element_loads)
     least = _LEAST_SHARE * max((load.peak_force for load in loads), default=0.0)

@@ -1,4 +1,4 @@
-"""The design loads of a barrier: a table, its files, and what is to be said of it."""
+"""The design loads of a barrier: a table, its files, and cautions about it."""
 
 # Longer than 300 lines: one class, of which each method writes the same table in another form.
 from __future__ import annotations
@@ -85,7 +85,7 @@ class DesignLoad:
     normal : ndarray, shape (3,)
         Horizontal unit vector square to the barrier's line, into the barrier.
     caution : str
-        What the numbers rest on, where it matters.
+        Assumptions that the numbers depend on, where they matter.
     quantile : float
         Which value of all scenes counts; 1 is the greatest.
     draws : int

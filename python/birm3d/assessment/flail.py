@@ -73,7 +73,7 @@ def flail_space(pulse: Pulse) -> FlailSpace:
 def head_impact(pulse: Pulse, head_x: float) -> HeadImpact:
     """Return THIV and PHD: a planar motion with yaw, the head 0.6 m from the front and 0.3 m from the sides.
 
-    The head starts on the vehicle's longitudinal axis, `head_x` [m] before the point of the pulse, and keeps
+    The head starts on the vehicle's longitudinal axis, `head_x` [m] before the point of the pulse. It keeps
     the velocity that this point had at time zero. PHD is the greatest 10-ms mean of the magnitude of the
     horizontal acceleration after the strike.
     """

@@ -1,4 +1,4 @@
-"""What standards measure between a vehicle and a barrier: penetration, deflection, intrusion, the way out."""
+"""What standards measure between a vehicle and a barrier: penetration, deflection, intrusion, exit box."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ class ExitBox(NamedTuple):
 
 
 def exit_box(result: Result, heavy: bool) -> ExitBox:
-    """Return the exit box of EN 1317-2 and MASH, and how near the wheels come to leaving it.
+    """Return the exit box of EN 1317-2 and MASH, and the greatest distance of a wheel within its length.
 
     Its width is 2.2 m, of heavy vehicles 4.4 m, and the vehicle's width and 16 % of its length; it is 10 m
     long, of heavy vehicles 20 m. Beyond the end of the run the vehicle goes straight on as it moved then.

@@ -10,7 +10,7 @@ elastic-plastic one is the resistance R at which max|u| is the ductility times R
 displacement.
 
 Loads are means over their intervals, so each interval is solved exactly for a constant load. After the last
-one the load is zero, and the system swings on.
+one the load is zero, and the system vibrates freely.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ _LEAST = 1e-4  # of the elastic force
 def elastic_force(load: Floats, interval: float, period: float, damping: float = 0.0) -> float:
     """Return the greatest force in the spring of an elastic system, [N] for a load in N.
 
-    With L = -z w + i w_d the state is one complex number, s' = L s + p, and m w_d u = Im s (the integral of
-    Duhamel). Between two turns of the velocity, Im(L s + p) = 0, no displacement is greater.
+    The state is one complex number s (the integral of Duhamel): s' = L s + p, L = -z w + i w_d, and m w_d u =
+    Im s. Between two turns of the velocity, Im(L s + p) = 0, no displacement is greater.
 
     Parameters
     ----------
@@ -73,9 +73,9 @@ def resistance(
 ) -> float:
     """Return the greatest resistance R at which the demand is the ductility, [N] for a load in N.
 
-    Solves ``ductility_demand(R) = ductility`` (scipy's ``brentq``). A little more resistance would yield
-    less; where less resistance would do too, as may be with loads that change their sign, it is not taken.
-    At ductility 1 it is :func:`elastic_force`.
+    Solves ``ductility_demand(R) = ductility`` (scipy's ``brentq``). With a little more resistance the system
+    yields less. Under loads that change their sign lower resistances may be solutions, too; these are not
+    used. At ductility 1 it is :func:`elastic_force`.
 
     Parameters
     ----------

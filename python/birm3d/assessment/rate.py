@@ -74,8 +74,8 @@ def rate(
     Raises
     ------
     ValueError
-        If the standard or the vehicle is not known, the vehicle has no such point, the run has no barrier,
-        goes along it, or is not over.
+        If the standard or the vehicle is not known, or the vehicle has no such point. If the run has no
+        barrier, has a path along it, or is not over.
     """
     name, rest = split_standard(standard)
     if isinstance(result, Prediction):

@@ -158,7 +158,7 @@ class OccupantRisk:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is to be looked at before the values are used."""
+        """What to consider before the values are used."""
         gained = self.pulse.velocity[-1, 0] - self.pulse.velocity[self.pulse.zero, 0]
         if "x" in self.pulse.known and gained > _FORWARD:
             return (_PUSHED_ON.format(gained=gained),)

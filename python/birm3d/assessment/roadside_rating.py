@@ -137,8 +137,8 @@ def _conditions(
 def _containment(result: Result, name: str) -> Criterion:
     """Return whether the vehicle was kept on its side of the barrier.
 
-    A run that ends with the vehicle sliding along the barrier tells as much; one that ends while it moves
-    into the barrier tells nothing.
+    A run that ends while the vehicle slides along the barrier decides this, too. One that ends while it moves
+    into the barrier does not.
 
     Raises
     ------
@@ -182,7 +182,7 @@ def _working_width(result: Result) -> float:
 
 
 def _tipping(result: Result) -> list[str]:
-    """Return what is to be said where a segment that stands free would begin to tip."""
+    """Return a caution if a free-standing segment would begin to tip."""
     ratio = float(result.metrics.get("max_overturning_ratio", 0.0))
     return [_TIPS.format(ratio=ratio)] if ratio > 1.0 else []
 

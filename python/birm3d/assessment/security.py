@@ -1,9 +1,9 @@
 """Ratings of security barriers: ASTM F2656, SD-STD-02.01, IWA 14-1 and ISO 22343-1, PAS 68.
 
-Where numbers are from: masses of ASTM F2656 and its penetration classes, K and L levels, the code strings:
-public summaries of the standards and makers' certificates. IWA 14-1 measures from the front of the barrier,
-PAS 68 from its back (Heald, "What is IWA 14?"). Speed windows, tolerances of masses and reference points of
-the vehicles are from memory.
+Masses and penetration classes of ASTM F2656, K and L levels and code strings are from public summaries of the
+standards and makers' certificates. IWA 14-1 measures from the front of the barrier, PAS 68 from its back
+(Heald, "What is IWA 14?"). Speed windows, tolerances of masses and reference points of the vehicles are from
+memory.
 """
 
 from __future__ import annotations

@@ -25,8 +25,8 @@ _BEFORE = 0.25
 def severity_index(pulse: Pulse, edition: int) -> float:
     """Return the acceleration severity index, its greatest value from time zero on.
 
-    ASI = max sqrt((ax / 12 g)^2 + (ay / 9 g)^2 + (az / 10 g)^2) of smoothed components: 50-ms means in the
-    edition of 1998, a four-pole Butterworth low-pass of 13 Hz run forward and back in that of 2010.
+    ASI = max sqrt((ax / 12 g)^2 + (ay / 9 g)^2 + (az / 10 g)^2) of smoothed components. The edition of 1998
+    smooths by 50-ms means, that of 2010 by a four-pole Butterworth low-pass of 13 Hz, run forward and back.
     """
     pulse.require_axes("ASI", "x", "y", "z")
     if edition not in (1998, 2010):

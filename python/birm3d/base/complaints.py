@@ -1,4 +1,4 @@
-"""What is to be said of runs that are not to be believed, once for a run and once for a study."""
+"""Warnings about runs whose results are not reliable, once for a run and once for a study."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Complaints:
     def told(self) -> Complaints:
         """Return the same with the texts made of what they are made of, which is not kept."""
         for kind in self._kinds.values():
-            kind.text = _told(kind.text)
+            kind.text = _text_of(kind.text)
         return self
 
     def merge(self, others: Complaints) -> None:
@@ -75,7 +75,7 @@ class Complaints:
             rows = (
                 "" if count == 1 else f", the worst of {count:,} in {runs:,} runs: rows {_ranges(kind.rows)}"
             )
-            yield category, f"{_told(kind.text)} (row {kind.worst_row}{rows})"
+            yield category, f"{_text_of(kind.text)} (row {kind.worst_row}{rows})"
 
     def warn(self, runs: int) -> None:
         """Warn once of each quantity, at the line that called this package; of so many runs."""
@@ -83,7 +83,7 @@ class Complaints:
             warnings.warn(text, category, stacklevel=caller_level())
 
 
-def _told(text: Callable[[], str] | str) -> str:
+def _text_of(text: Callable[[], str] | str) -> str:
     return text if isinstance(text, str) else text()
 
 

@@ -23,7 +23,7 @@ _PUSH = 0.1
 # A derivative that changes by this share with the step of its differences is none.
 _ALL_ERROR = 0.5
 # Nor is one that is this small beside the greatest, where differences cancel to the last digits.
-_NIL = 1e-9
+_ZERO = 1e-9
 # An interval that covers so much of the way between the bounds says no more than the bounds.
 _AS_WIDE_AS_BOUNDS = 0.8
 # Correlation from which a parameter is named beside one that is not identified.
@@ -76,7 +76,7 @@ class Analysis:
     doubts : list of str
         Why intervals that are given say less than they seem to.
     condition_number : float or None
-        Of the Jacobian by the shares; ``None`` where a column is nil.
+        Of the Jacobian by the shares; ``None`` where a column is zero.
     singular_values : ndarray, shape (p,)
     """
 
@@ -96,7 +96,7 @@ def analyse(search: Search, *, confidence: float, uncertainty: str, profiled: bo
     The covariance is s^2 (J^T J)^-1 (Seber and Wild, Nonlinear Regression, 1989, section 5.1) over the
     parameters that the data determine. Left out, each with its reason:
 
-    * insensitive: the column of J is nil, or within the error E of its finite differences, which is known
+    * insensitive: the column of J is zero, or within the error E of its finite differences, which is known
       from a second J with twice the steps;
     * rank-deficient: with columns scaled to length 1, a right singular vector v has |E v| >= |J v| / 2: what
       it seems to change is error; every parameter with a share in v;
@@ -113,12 +113,12 @@ def analyse(search: Search, *, confidence: float, uncertainty: str, profiled: bo
     residual = channel.residuals(point)
     error = channel.jacobian_change(point)
     lengths = np.linalg.norm(jacobian, axis=0)
-    nil = _NIL * float(np.linalg.norm(channel.noise.weights * problem.measured))
+    zero = _ZERO * float(np.linalg.norm(channel.noise.weights * problem.measured))
     reasons: dict[int, str] = {}
     notes: list[str] = []
 
     for k, label in enumerate(labels):
-        if lengths[k] <= max(nil, float(np.linalg.norm(error[:, k])) / _ALL_ERROR):
+        if lengths[k] <= max(zero, float(np.linalg.norm(error[:, k])) / _ALL_ERROR):
             reasons[k] = f"insensitive: nothing that was measured changes with {label}"
     gradient = jacobian.T @ residual
     for k, parameter in enumerate(problem.parameters.parameters):
@@ -137,7 +137,7 @@ def analyse(search: Search, *, confidence: float, uncertainty: str, profiled: bo
 
     free = np.array([k for k in range(len(labels)) if k not in reasons], int)
     spread = _spread(search, residual, len(free), confidence, uncertainty)
-    covariance, unresolved = _covariance(jacobian[:, free], error[:, free], nil)
+    covariance, unresolved = _covariance(jacobian[:, free], error[:, free], zero)
     for direction in unresolved:
         reason = _combination(problem, point, free, direction)
         for k in free[np.abs(direction) > _PART_OF_DIRECTION * np.abs(direction).max()]:
@@ -191,14 +191,14 @@ def _spread(search: Search, residual: Floats, free: int, confidence: float, unce
     return normal
 
 
-def _covariance(jacobian: Floats, error: Floats, nil: float) -> tuple[Floats, list[Floats]]:
+def _covariance(jacobian: Floats, error: Floats, zero: float) -> tuple[Floats, list[Floats]]:
     """(J^T J)^-1 over the directions that are resolved, and the others (columns scaled to length 1)."""
     if jacobian.shape[1] == 0:
         return np.zeros((0, 0)), []
     lengths = np.linalg.norm(jacobian, axis=0)
     _, singular, directions = np.linalg.svd(jacobian / lengths, full_matrices=False)
     errors = np.linalg.norm((error / lengths) @ directions.T, axis=0)
-    resolved = singular > np.maximum(nil / lengths.max(), errors / _ALL_ERROR)
+    resolved = singular > np.maximum(zero / lengths.max(), errors / _ALL_ERROR)
     kept = directions[resolved] / singular[resolved, None]
     return (kept.T @ kept) / np.outer(lengths, lengths), [
         direction / lengths for direction in directions[~resolved]

@@ -13,68 +13,68 @@ import click
 __all__ = ["COMMANDS", "main"]
 
 
-class _Place(NamedTuple):
+class _Command(NamedTuple):
     module: str
     function: str
     help: str
 
 
 COMMANDS = {
-    "calibrate": _Place(
+    "calibrate": _Command(
         "calibrate",
         "calibrate_file",
         "Fit scenes to measurements: FIT_FILE names scenes, measured curves and scalars, parameters.",
     ),
-    "from-facts": _Place(
+    "from-facts": _Command(
         "from_facts",
         "from_facts",
         "Make the file of a vehicle by its KIND and what is known of it; prints what was assumed.",
     ),
-    "from-mesh": _Place(
+    "from-mesh": _Command(
         "from_mesh",
         "from_mesh",
         "Make the file of a vehicle whose skin is a MESH; prints what was assumed.",
     ),
-    "loads": _Place(
+    "loads": _Command(
         "loads",
         "loads",
         "Compute design loads of each element: a SCENE file, a result (.npz), or --vehicle and --speed.",
     ),
-    "overlay": _Place(
+    "overlay": _Command(
         "overlay",
         "overlay",
         "Histories of several RESULTS (.npz of `birm3d run --save`, or capsules) in one figure.",
     ),
-    "predict": _Place(
+    "predict": _Command(
         "predict",
         "predict",
         "Metrics with bands: a SCENE file, or --vehicle and --speed; what is not known is drawn.",
     ),
-    "rate": _Place(
+    "rate": _Command(
         "rate",
         "rate",
         "Rate one crash by standards: a SCENE file, a result (.npz, .birm3d), or --vehicle and --speed.",
     ),
-    "report": _Place(
+    "report": _Command(
         "report",
         "report",
         "Write the dossier of one crash: a SCENE file, a result (.npz, .birm3d), or --vehicle and --speed.",
     ),
-    "rerun": _Place(
+    "rerun": _Command(
         "rerun",
         "rerun",
         "Run a CAPSULE (.birm3d) or a saved result (.npz) once more and compare it bit for bit.",
     ),
-    "run": _Place("run", "run", "Run one crash: a SCENE file, or the options --vehicle and --speed."),
-    "search": _Place(
+    "run": _Command("run", "run", "Run one crash: a SCENE file, or the options --vehicle and --speed."),
+    "search": _Command(
         "search",
         "search",
         "Search for the greatest gap, the least height or segment mass, or the worst offset.",
     ),
-    "sweep": _Place(
+    "sweep": _Command(
         "sweep", "sweep", "Run a SCENE file, or --vehicle and --speed, with many values of what it has."
     ),
-    "vehicles": _Place("vehicles", "vehicles", "List the vehicles that come with the package."),
+    "vehicles": _Command("vehicles", "vehicles", "List the vehicles that come with the package."),
 }
 """Name of a command -> its module, its function, and the first sentence of its help.
 

@@ -78,7 +78,7 @@ def reading(path: str | Path, must: str, error: type[FileFormatError] = FileForm
     except MemoryError as cause:
         raise error.at(path, None, f"{must}, but it asks for more memory than there is") from cause
     except Exception as cause:
-        raise error.at(path, None, f"{must}, but {_told(cause)}") from cause
+        raise error.at(path, None, f"{must}, but {_reason(cause)}") from cause
 
 
 def reads(
@@ -98,7 +98,7 @@ def reads(
     return decorate
 
 
-def _told(cause: Exception) -> str:
+def _reason(cause: Exception) -> str:
     if isinstance(cause, KeyError):
         return f"{cause} is missing"
     if isinstance(cause, ValueError):

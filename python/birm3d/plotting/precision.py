@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_requested_vs_achieved", "plot_work_precision"]
 
-# An error of nil has no logarithm: it is drawn here.
+# An error of zero has no logarithm: it is drawn here.
 _NIL = 1e-12
 _LABELS = {"tolerance": "adaptive", "time_step": "fixed step", "mesh_density": "mesh, own settings"}
 

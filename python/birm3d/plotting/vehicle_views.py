@@ -55,7 +55,7 @@ def plot_vehicle(vehicle: Vehicle) -> Figure:
     unit = vehicle.units[0]
     names = list(unit.zones)
     colors = mpl.colormaps["tab20"](np.arange(max(1, len(names))) % 20)
-    told = _told(unit)
+    told = _caption(unit)
     figure = new_figure(_WIDTH, 8.0 if told else 7.2)
     grid = figure.add_gridspec(3, 2, width_ratios=(2.2, 1.0), height_ratios=(1.0, 1.0, 0.3 if told else 0.01))
     for number, view in enumerate(_VIEWS):
@@ -152,7 +152,7 @@ def _mass_text(unit: Vehicle) -> str:
     return f"{behind}; inertia in roll, pitch, yaw {roll:,.0f}, {pitch:,.0f}, {yaw:,.0f} kg m²"
 
 
-def _told(unit: Vehicle) -> str:
+def _caption(unit: Vehicle) -> str:
     lines = [one.text for one in unit.assumptions]
     lines = [line if len(line) <= _LETTERS else f"{line[:_LETTERS]}..." for line in lines]
     if len(lines) > _MOST_LINES:

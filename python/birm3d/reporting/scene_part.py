@@ -107,7 +107,7 @@ def _unit_blocks(unit: Vehicle) -> Iterator[Block]:
         f"{unit.name}: stiffness zones",
         ("zone", "law per unit of area", "status", "source"),
         [
-            (name.replace("_", " "), _law(law), *_told(laws.get(name), law != file.laws.get(name)))
+            (name.replace("_", " "), _law(law), *_remarks(laws.get(name), law != file.laws.get(name)))
             for name, law in unit.zones.items()
         ],
     )
@@ -119,7 +119,7 @@ def _plain(value: float) -> str:
     return f"{value:,.0f}" if abs(value) >= 1000.0 else f"{value:.4g}"
 
 
-def _told(zone: Any, changed: bool) -> tuple[str, str]:
+def _remarks(zone: Any, changed: bool) -> tuple[str, str]:
     """Return status and sources of a zone; of one that is not the file's that it was changed."""
     if zone is None:
         return "", ""

@@ -1,4 +1,4 @@
-"""What comes out of a run: histories, scalars, loads, crush, accounts and the file that keeps them."""
+"""What comes out of a run: histories, scalars, loads, crush, balances and the files that hold them."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ def capture(result: RunRecord, frames: int | Sequence[float] | npt.NDArray[np.fl
     Raises
     ------
     ValueError
-        If the frames are outside the run, or the scene does not end in the same bits as the result did: then
+        If the frames are outside the run. If the scene does not end in the same bits as the result, because
         another version of the package made it.
     """
     times = frame_times(result.time, frames)

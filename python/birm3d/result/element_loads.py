@@ -25,7 +25,7 @@ __all__ = [
 Floats = npt.NDArray[np.float64]
 
 LEAST_SHARE = 0.01
-"""Below this share of its greatest value a horizontal force has no height that means anything."""
+"""Fraction of its greatest value below which the height of a horizontal force is not computed."""
 
 _WINDOW = 0.05  # s
 
@@ -35,17 +35,15 @@ class ElementLoad:
     """What one element of a barrier feels, n rows; interval means.
 
     Forces are those of the vehicle on the element, in world axes (z up): the sum over all elements is
-    ``-result.barrier_force``. Moments are about the element's foot. That is the foot of a post's axis, the
-    middle of the face's foot of a wall's segment, or the middle of a Jersey segment's base. A mesh has its
-    moments about the barrier's origin.
-    A free-standing segment takes its foot along; its line is that at the start. A moment follows the
-    right-hand rule: a force along +x at a height has a moment about +y.
+    ``-result.barrier_force``. Moments are about the element's foot. The foot is that of a post's axis, the
+    middle of the foot of a wall segment's face, or the middle of a Jersey segment's base. A mesh has its
+    moments about the barrier's origin. A free-standing segment takes its foot along; its line is that at the
+    start. A moment follows the right-hand rule: a force along +x at a height has a moment about +y.
 
-    Peaks are magnitudes of resultants: of the sum of the force vectors of all nodes on the element, and for
-    50-ms values of the mean of that vector.
-
-    Unfiltered peaks have the blow of the rigid body in one interval where a crush zone is used up; compare
-    50-ms means, or filter the histories, where that happens.
+    Peaks are magnitudes of the resultant, which is the sum of the force vectors of all nodes on the element.
+    50-ms values are magnitudes of the mean of that vector. Where a crush zone is used up, the rigid body
+    strikes the element, and the unfiltered peak has all of that impulse in one interval. Then compare 50-ms
+    means, or filter the histories.
 
     Attributes
     ----------

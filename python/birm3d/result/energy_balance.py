@@ -1,4 +1,4 @@
-"""What tells a user that a run is not to be believed."""
+"""Warnings of balances of energy and momentum that do not close."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ ENERGY_LIMIT = 5e-3
 """Energy residual, relative to the energy at the run's disposal, beyond which a run is wrong."""
 
 FALL_LIMIT = 5e-3
-"""Fall of a dissipated term from its highest value, relative to the energy at the run's disposal."""
+"""Decrease of a dissipated energy from its highest value, relative to the energy at the run's disposal."""
 
 MOMENTUM_LIMIT = 1e-6
-"""Momentum of a step that no impulse explains, relative to the largest of the run."""
+"""Change of momentum in a step less all impulses in it, relative to the largest momentum of the run."""
 
 
 class BalanceWarning(UserWarning):
-    """A balance of a run does not close: energy, momentum, or dissipation that comes back."""
+    """A balance of a run does not close: of energy or momentum, or a dissipated energy decreases."""
 
 
 def warn_if_open(scene: Scene, balances: _core.Balances) -> None:
-    """Warn with :class:`BalanceWarning` of each account that is out of bounds, with its size, time and place.
+    """Warn with :class:`BalanceWarning` of each balance that is out of bounds, with its size, time and place.
 
     - energy: the sum of all terms departs from that at the start by more than :data:`ENERGY_LIMIT` of the
       energy at disposal. That is the initial kinetic energy and what the weight has done;

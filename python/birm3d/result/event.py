@@ -6,19 +6,19 @@ element of the barrier so that no rotation brings it back. A vehicle that goes o
 be out of its reach. What it does then decides, except for rolling over, which counts over the whole run:
 
 ``overridden``
-    It left past the barrier's line, or rests there, and while its mass centre was past the line the top of an
-    element stood under its rigid body.
+    It left past the barrier's line, or rests there. While its mass centre was past the line, the top of an
+    element was below its rigid body.
 ``passed``
     It left past the line, or towards it beyond the barrier's end, or rests behind the barrier out of reach.
 ``rolled_over``
     Neither of these, and an up axis was beyond 90 degrees from the vertical at some step. Vehicles that start
     more than 45 degrees from upright are not judged.
 ``redirected``
-    Contained, and it leaves along the barrier: within 45 degrees of the line, in the direction in which it
-    came, with more than a tenth of its impact speed. Or it slides on along a straight barrier, at rest
-    sideways. Or it still slides along any barrier when a run without a duration ends after 5 s.
+    Contained, and it leaves along the barrier, within 45 degrees of the line in its direction of travel. It
+    has more than a tenth of its impact speed. Or it slides on along a straight barrier, at rest sideways. Or
+    it still slides along any barrier when a run without a duration ends after 5 s.
 ``stopped``
-    Contained, and its motion into the barrier ended: it rebounds or rests, or has less than a tenth of its
+    Contained, and its motion into the barrier ended: it rebounds or rests. Or it has less than a tenth of its
     impact speed when a run without a duration ends after 5 s.
 ``undecided``
     The run ended before, or there is no barrier.

@@ -1,4 +1,4 @@
-"""What the nodes of a skin press on the front of a barrier, step by step."""
+"""Forces of the nodes of a skin on the front of a barrier, step by step."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MOST_INSTANTS = 800  # at which nodes are looked at: of longer runs not at the 
 
 
 class FaceStep(NamedTuple):
-    """What nodes press on the front at the end of a step."""
+    """Forces of nodes on the front at the end of a step."""
 
     time: float
     along: Floats
@@ -31,7 +31,7 @@ class FaceStep(NamedTuple):
 
 
 def face_steps(result: RunRecord, front: Front) -> list[FaceStep]:
-    """Return what nodes press on the front at the ends of all steps."""
+    """Return the forces of nodes on the front at the ends of all steps."""
     core = result.scene.start()
     shapes = unit_shapes(result.scene.vehicle)
     steps = [FaceStep(core.time, *[np.empty(0)] * 3)]
@@ -55,7 +55,7 @@ def face_steps(result: RunRecord, front: Front) -> list[FaceStep]:
 def _pressed(
     core: _core.Simulation, unit: int, shape: UnitShape, front: Front
 ) -> tuple[Floats, Floats, Floats]:
-    """Return places along the line, heights and forces across it of the nodes of a unit that press now."""
+    """Return places along the line, heights and forces across it of the nodes of a unit in contact."""
     force = core.truss_force(unit)[: len(shape.nodes)]
     pushing = np.flatnonzero(force > 0.0)
     if len(pushing) == 0:

@@ -1,4 +1,4 @@
-"""Histories by which runs are laid over each other: name, unit and how they follow from a result."""
+"""Histories in which runs are compared: name, unit and how they follow from a result."""
 
 from __future__ import annotations
 

@@ -160,10 +160,10 @@ def load_map(
 ) -> LoadMap:
     """Return the force on the cells of a grid over the front of a fixed barrier.
 
-    The scene is run once more, and at each step every node that presses on the front is in the cell in which
-    it stands then. Between steps forces are linear in time. In each row the cells are scaled to the force
-    that the result has across the line, so that they add up to it. What the rigid body or a tyre presses by
-    itself is in the cell where the moments of the barrier's load put it.
+    The scene is run once more. At each step the force of every node on the front counts in the cell where the
+    node then is. Between steps forces are linear in time. In each row the cells are scaled to the force that
+    the result has across the line, so that they add up to it. Forces of the rigid body and of tyres have no
+    nodes. They count in one cell, whose place follows from the moments of the barrier's load.
 
     Of a sloped face the force across the line counts, not that square to the face. Of posts in one row each
     has a column of cells; a node's force is on the nearest post, at the node's height, and the column is
@@ -234,7 +234,7 @@ def _completed(
     cells: Floats,
     edges: tuple[Floats, Floats],
 ) -> Floats:
-    """Scale the cells in place to the result's force, and add what no node presses at its own place."""
+    """Scale the cells in place to the result's force, and add the force without nodes at its own place."""
     force = np.zeros(len(cells))
     moments = np.zeros((len(cells), 2))  # of the force across the line: along and height [N m]
     for i, load in enumerate(element_loads(result)):
@@ -286,7 +286,7 @@ def _completed_posts(
 
 
 def _moments_of(time: Floats, steps: list[FaceStep]) -> Floats:
-    """Return the moments of what nodes press in the middles of the rows, shape (n, 2) [N m]."""
+    """Return the moments of the nodes' forces in the middles of the rows, shape (n, 2) [N m]."""
     ends = np.array([step.time for step in steps])
     at_ends = np.array([(step.force @ step.along, step.force @ step.height) for step in steps])
     return np.column_stack([np.interp(_middles(time), ends, at_ends[:, k]) for k in range(2)])

@@ -45,9 +45,10 @@ _Function = Callable[[RunValues], float | None]
 def compute_metrics(result: RunRecord, names: Collection[str] | None = None) -> dict[str, float]:
     """Return the scalars of a run, SI units and degrees: all that it has, or those among `names`.
 
-    What each is, :data:`birm3d.metrics.METRICS` says. A run has those of which it has what they are made of:
-    a barrier, wheels and a ground, two units, segments that stand free, a sampling rate that a filter allows.
-    The values at separation do not depend on the duration, once it is long enough.
+    What each is, :data:`birm3d.metrics.METRICS` says. A run has a metric if it has all that the metric is
+    computed from. That may be a barrier, wheels and a ground, two units, free-standing segments, or a
+    sampling rate that a filter allows. The values at separation do not depend on the duration, once it is
+    long enough.
 
     A result that was read from a file has the scalars that it was saved with.
 

@@ -1,4 +1,4 @@
-"""What a run did not compute because nothing hangs on it, and why: counts of the core in words."""
+"""What a run did not compute because no result depends on it, and why: counts of the core in words."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from ..barrier.base import Barrier
     from .analysis import RunAnalysis
 
-__all__ = ["left_out"]
+__all__ = ["omitted_lines"]
 
 
-def left_out(result: RunAnalysis) -> list[str]:
+def omitted_lines(result: RunAnalysis) -> list[str]:
     """Return what was left out, in groups: a line for each thing, how many of how many, and (why).
 
     Nodes, elements, steps and tyres are counted by the core in the steps that were accepted

@@ -1,4 +1,4 @@
-"""What tells a user that the rigid body got into a barrier."""
+"""Warning of a rigid body that overlaps a barrier."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 __all__ = ["OVERLAP_LIMIT", "OverlapWarning", "overlaps"]
 
 OVERLAP_LIMIT = 0.1
-"""Overlap of the rigid body with a barrier beyond which a run is not to be believed [m]."""
+"""Overlap of the rigid body with a barrier beyond which a run is not reliable [m]."""
 
 
 class OverlapWarning(UserWarning):
-    """The rigid body got into the barrier: loads and travel of the run are not to be believed.
+    """The rigid body overlapped the barrier: loads and travel of the run are not reliable.
 
-    Trusses hold the rigid body at the barrier where they are closed, and only there. Between their anchors
-    an edge of a wall or a post can enter the body: by a few centimetres with the usual meshes, right through
-    with very coarse ones. The overlap is measured on the core boxes of the vehicle's file, whatever the mesh:
-    how far body and barrier would have to be moved apart. Vehicles from arrays have no boxes, and are
-    measured at their anchors alone.
+    Only anchors of bottomed-out trusses hold the rigid body at the barrier. Between them an edge of a wall or
+    a post can enter the body. With the usual meshes it enters by a few centimetres; with very coarse ones it
+    passes through. The overlap is the distance by which body and barrier would have to be moved apart. It is
+    measured on the core boxes of the vehicle's file, whatever the mesh. Vehicles from arrays have no boxes,
+    and are measured at their anchors alone.
     """
 
 

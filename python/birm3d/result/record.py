@@ -268,9 +268,9 @@ class RunRecord:
         ``impacts`` (lost in rigid contacts). Then their ``total``, and ``residual``: total now less total at
         the start, as no work enters from outside. ``kinetic`` is that of all bodies. Where the barrier is
         free-standing also ``barrier_ground_friction``, what its segments lost to friction on the ground.
-        Where units or segments are joined also ``joints``: what the held directions took, zero but for the
-        error of the steps. It has a term of its own so that this error is not mistaken for a loss. What the
-        stops of a fifth wheel take is in ``impacts``.
+        Where units or segments are joined also ``joints``: the work of joint forces in the held directions.
+        It is zero up to the error of the steps, and is separate so that this error is not mistaken for a
+        loss. The loss at the stops of a fifth wheel is in ``impacts``.
         """
         terms = {name: getattr(self._history, name) for name in _ENERGIES}
         if self._segments:
@@ -284,8 +284,9 @@ class RunRecord:
     def momentum_residual(self) -> float:
         """Greatest |m a - sum of forces| over the greatest force, of all rows.
 
-        The greatest force is at least the weight, and at least what stops the vehicle from its speed at the
-        start (at least 0.1 m/s) within 1 s. So rounding is not measured by itself where nothing pushes.
+        The greatest force counts as no less than the weight, and no less than what stops the vehicle from its
+        speed at the start within 1 s. That speed counts as 0.1 m/s at least. So rounding errors stay small
+        relative to it where nothing pushes.
         """
         return self._history.momentum_residual
 

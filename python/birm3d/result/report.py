@@ -8,7 +8,7 @@ from .. import units
 from ..scene.text import overlap_text
 from .core_contact import core_lines
 from .element_loads import touched_elements
-from .omitted import left_out
+from .omitted import omitted_lines
 
 if TYPE_CHECKING:
     from ..barrier.base import Barrier
@@ -76,7 +76,7 @@ def report(result: RunAnalysis) -> str:
     lines += [
         "",
         "left out",
-        *(f"  {line}" for line in left_out(result)),
+        *(f"  {line}" for line in omitted_lines(result)),
     ]
     return "\n".join(lines)
 

@@ -141,13 +141,14 @@ class Result(RunAnalysis):
         cell
             Side of the square cells [m]; ``None``: 0.25 m, more in long runs.
         lateral, height
-            Increasing edges of the cells, instead of square ones, along the wall's line and above
-            its foot [m].
+            Increasing edges of the cells, instead of square ones, along the barrier's line and above its foot
+            [m].
 
         Raises
         ------
         ValueError
-            If the barrier is no rigid wall, or the cells are too small or do not increase.
+            If the barrier is a mesh, stands free or has several rows of posts. If the cells are too small or
+            do not increase.
         """
         return load_map(self, cell, lateral=lateral, height=height)
 
@@ -191,8 +192,8 @@ class Result(RunAnalysis):
         Raises
         ------
         ValueError
-            If the scene does not run again to the same bits, as that of a result of another version may not,
-            or the path is a folder or lies in none.
+            If the scene does not run again to the same bits, as may happen with a result of another version.
+            If the path is a folder or lies in none.
         """
         capsules.write(self, self._text_of_file(), path)
 
@@ -221,8 +222,7 @@ def load(path: str | Path) -> Result:
     Raises
     ------
     FileFormatError
-        If the file can not be read, is no result, is damaged or was changed, or is of a version that this one
-        does not know.
+        If the file can not be read, is no result, is damaged or was changed, or is of a newer version.
     """
     path = Path(path)
     with path.open("rb") as stream:

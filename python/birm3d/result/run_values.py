@@ -1,4 +1,4 @@
-"""What several metrics of a run share, of a run with histories and of one without."""
+"""Values that several metrics of a run use, for runs with and without histories."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class ResultOutcome:
 
 
 class RunValues:
-    """What several metrics of a run share. What the core has found is taken from it at once."""
+    """Values that several metrics of a run use; those that the core has found are read from it at once."""
 
     normal_force: _core.ExtremeNormalForce
     motion: _core.ExtremeMotion

@@ -1,4 +1,4 @@
-"""What a user is told of a run that is over and not to be believed."""
+"""Warnings about a finished run whose results are not reliable."""
 
 from __future__ import annotations
 

@@ -42,10 +42,10 @@ def lateral_movement(result: RunRecord) -> Floats:
 def overturning_ratio(result: RunRecord, loads: Sequence[ElementLoad]) -> Floats:
     """Return the overturning moment over the restoring one of each segment, shape (n, k).
 
-    It is (|M| + F_z b) / (m g b), at least 0. M is the moment of the vehicle's force about the middle of the
-    base, less that of the segment's own inertia, both about its long axis. F_z is the vertical force on it
-    (negative downwards), and b half its base. Means over 50 ms that end at each row. Above 1 it begins to tip
-    about its toe, which the model leaves out. Friction and pins are taken to act at the ground.
+    It is (|M| + F_z b) / (m g b), at least 0. M is a moment about the long axis through the middle of the
+    base. It is that of the vehicle's force less that of the segment's own inertia. F_z is the vertical force
+    on it (negative downwards), and b half its base. Means over 50 ms that end at each row. Above 1 it begins
+    to tip about its toe, which the model leaves out. Friction and pins are taken to act at the ground.
 
     Raises
     ------

@@ -32,11 +32,12 @@ _UNITS = {"acceleration": "m/s^2", "velocity": "m/s", "position": "m"}
 class Sensor:
     """A point that moves with one rigid body of the vehicle; :meth:`birm3d.Result.sensor` places it.
 
-    The point has the position x + R p and the velocity v + w x R p. Here (x, v) is the mass centre's motion,
-    R the rotation from body to world axes, w the angular velocity in world axes and p the lever in body axes.
-    Its acceleration is the mean of that velocity's change over the output interval, as the accelerations of
-    :class:`birm3d.Result` are. So it has the angular and the centripetal part, and adds up to the change of
-    velocity exactly. Gravity is not taken off: the channel of a vehicle at rest is zero.
+    The point has the position x + R p and the velocity v + w x R p. Here x and v are place and velocity of
+    the mass centre, and R is the rotation from body to world axes. The vector w is the angular velocity in
+    world axes and p the lever in body axes. Its acceleration is the mean of that velocity's change over the
+    output interval, as the accelerations of :class:`birm3d.Result` are. So it has the angular and the
+    centripetal part, and adds up to the change of velocity exactly. Gravity is not taken off: the channel of
+    a vehicle at rest is zero.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Records of a run that were read from a file; they read like the core's."""
+"""Records of a run that were read from a file, with the same attributes as those of the core."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The numbers of a run that decide, with labels and units of practice."""
+"""The main numbers of a run, with labels and the units of practice."""
 
 from __future__ import annotations
 

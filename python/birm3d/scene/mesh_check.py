@@ -61,12 +61,12 @@ def coarse_skins(scene: Scene) -> Iterator[Complaint]:
         # Nothing passes between nodes that is wider than all of the skin: no spacing is asked for at walls.
         if narrowest.width < (high - low).max() and narrowest.width < unit.node_spacing:
             share = unit.node_spacing / narrowest.width
-            text = partial(_told, scene, unit, narrowest)
+            text = partial(_message, scene, unit, narrowest)
             yield Complaint(CoarseSkinWarning, f"width of the {narrowest.name}", share, text)
             return
 
 
-def _told(scene: Scene, unit: Vehicle, part: SeenPart) -> str:
+def _message(scene: Scene, unit: Vehicle, part: SeenPart) -> str:
     remedies = []
     if unit.has_file:
         # Elements along an edge are whole ones: half as many more than in proportion are enough.

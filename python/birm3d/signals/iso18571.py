@@ -7,7 +7,7 @@ hand. The definition followed is that of the public implementation of the Vehicl
 used itself: the first brings a compiler (numba, through dtwalign) and half a dozen packages that it never
 imports, the second has no wheels below Python 3.12.
 
-The curves are sampled at 10 kHz, as the standard has it: the slope score hangs on it.
+The curves are sampled at 10 kHz, as the standard has it: the slope score depends on it.
 """
 
 from __future__ import annotations

@@ -76,7 +76,7 @@ def w2_force(
     """Return the exact wall force of W2 [N] at times since the first touch [s], same shape.
 
     One mass on one spring in each of three phases, w = sqrt(k / m): to the knee, to the turn, and off along
-    the unloading slope until the force is nil. Stiffnesses in N/m; the block must turn beyond the knee [m].
+    the unloading slope until the force is zero. Stiffnesses in N/m; the block must turn beyond the knee [m].
     """
     for name, value in (("k_initial", k_initial), ("k_hardening", k_hardening), ("k_unloading", k_unloading)):
         positive(name, value)

@@ -72,9 +72,8 @@ def greatest_gap(
     resolution
         Width at which the bisection stops [m]; ``None``: a hundredth of the range.
     draws
-        Vehicles of the class that are run at the limit and at safer values, a power of 2 from 8, or 0: for
-        how many of them it holds, see :func:`birm3d.predict`. ``None``: 16, where the vehicle's file says how
-        its class scatters.
+        Number of vehicles of the class for which the limit and safer values are checked, a power of 2 from 8,
+        or 0; see :func:`birm3d.predict`. ``None``: 16, where the vehicle's file says how its class scatters.
     executor, progress
         See :func:`birm3d.study.runner.run_study`.
 

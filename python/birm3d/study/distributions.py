@@ -82,8 +82,8 @@ def quantiles(name: str, distribution: Any, shares: Floats) -> Floats:
 def sample(distributions: Mapping[str, Any], n: int, seed: int, *, stream: str = "") -> Floats:
     """Return a sample, shape (n, len(distributions)), by inverse distribution functions.
 
-    Row i depends on (seed, stream, i, name of the parameter) alone: a longer sample has the shorter one at
-    its start, and another parameter beside it changes nothing.
+    Row i depends on (seed, stream, i, name of the parameter) alone. So a longer sample begins with the
+    shorter one, and another parameter does not change the values of this one.
     """
     columns = [quantiles(name, d, uniforms(name + stream, n, seed)) for name, d in distributions.items()]
     return np.column_stack(columns) if n else np.empty((0, len(columns)))

@@ -29,13 +29,12 @@ def ensemble(
 ) -> Study:
     """Run many scenes on all cores and return their metrics, in the order of the scenes.
 
-    A run depends on its scene alone: the same bits come out for any executor, number of threads and order.
-    Memory does not grow with the number of runs, but for a row of numbers each, if the scenes are made one by
-    one, as a generator makes them.
+    A run depends on its scene alone: the same bits come out for any executor, number of threads and order. If
+    the scenes are made one by one, as by a generator, a finished run keeps only a row of numbers in memory.
 
     No histories are made: a chunk of runs is one call of the core, which finds what the metrics are made of;
-    the numbers are the same bits. Scenes that differ in how the vehicle comes only are faster as a
-    :func:`birm3d.sweep` with ``mode="list"``, which makes nothing anew but the numbers.
+    the numbers are the same bits. Scenes that differ only in the approach of the vehicle are faster as a
+    :func:`birm3d.sweep` with ``mode="list"``, which makes vehicle and barrier only once.
 
     Parameters
     ----------
@@ -65,8 +64,7 @@ def ensemble(
     StudyInterrupted
         A KeyboardInterrupt, with the finished runs in its ``study``.
     OverlapWarning, BalanceWarning
-        As warnings, each once: how many and which rows are not to be believed, and what is wrong with the
-        worst.
+        As warnings, each once: how many and which rows are not reliable, and what is wrong with the worst.
 
     Examples
     --------

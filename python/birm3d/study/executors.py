@@ -165,8 +165,9 @@ def _at_start(thing: Any) -> Any:
 def _shipped(executor: Any, packed: bytes, files: ExitStack) -> Any:
     """Return the base scene as an argument of tasks.
 
-    A client of dask has it sent to each worker once. Processes of this machine read it from a file: more than
-    a pipe holds, and Python before 3.11.5 waits for ever to hand it to a worker that died.
+    A client of dask has it sent to each worker once. Processes of this machine read it from a file. It is
+    larger than a pipe holds, and Python before 3.11.5 never returns from sending that much to a worker that
+    died.
     """
     if isinstance(executor, ProcessPoolExecutor):
         folder = files.enter_context(TemporaryDirectory(prefix="birm3d-", ignore_cleanup_errors=True))

@@ -115,7 +115,7 @@ def fragility(
     """Return the probability of stopping, or of exceeding limits, against the impact speed.
 
     A run *stops* if the barrier contains the vehicle: its outcome (:mod:`birm3d.result.event`) is ``stopped``
-    or ``redirected``, or ``rolled_over`` and its motion towards the barrier ended (the run has
+    or ``redirected``. ``rolled_over`` counts if the motion towards the barrier ended (the run has
     ``time_of_zero_velocity``). Give a limit to ``vehicle_penetration`` to ask how far it got.
 
     Parameters

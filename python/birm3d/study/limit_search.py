@@ -1,7 +1,7 @@
-"""The greatest or least value of something at which a barrier still does what it should.
+"""The greatest or least value of a parameter at which a barrier still meets its criterion.
 
 A coarse scan of the whole range comes first, then bisection of the change that governs. An outcome need not
-be monotonic, so the answer counts from the safe end of the range: up to it all values hold that were tried.
+be monotonic. Therefore the answer counts from the safe end of the range: all values tried up to it hold.
 """
 
 # Longer than 300 lines: one search with its answer, its table and its text.
@@ -98,7 +98,7 @@ class NotInRangeError(ValueError):
 
 
 class Limit:
-    """The greatest (or least) value at which a barrier still does what it should.
+    """The greatest (or least) value at which a barrier still meets its criterion.
 
     Attributes
     ----------
@@ -239,7 +239,7 @@ class Limit:
 
     @property
     def remarks(self) -> list[str]:
-        """What the answer rests on, a sentence each."""
+        """What the answer depends on, a sentence each."""
         values = len(_held(self.runs))
         lines = [f"Holds: {self.criterion}. {len(self.runs)} runs at {values} values."]
         if self.exceptions:
@@ -290,7 +290,7 @@ def search_limit(
     executor: Any,
     progress: bool | None,
 ) -> Limit:
-    """Scan a range, then bisect where the value that is sought stops to hold.
+    """Scan a range, then bisect between the last value that holds and the first that does not.
 
     Raises
     ------

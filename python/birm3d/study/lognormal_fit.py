@@ -92,9 +92,10 @@ def fit_lognormal(
 ) -> tuple[LognormalFit | None, str]:
     """Fit Phi(a + b ln v) to counts, or say why there is no curve.
 
-    Without overlap of the two outcomes the likelihood has no maximum. In one variable it has one if and only
-    if the ranges of the speeds with and without the event overlap in more than a point (Silvapulle 1981).
-    With a slope b that may as well be zero the speed of one in two is anywhere: there is no curve either.
+    Without overlap of the two outcomes the likelihood has no maximum. In one variable it has one exactly if
+    the range of speeds with the event and that without overlap in more than a point (Silvapulle 1981). If the
+    slope b does not differ significantly from zero, the median is not determined, and there is no curve
+    either.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Monte Carlo: what uncertain parameters make of the metrics."""
+"""Monte Carlo: distributions of the metrics for uncertain parameters."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def monte_carlo(
     """Run a scene n times with parameters drawn from distributions, independent of each other.
 
     Run i's parameters depend on (seed, i, name of the parameter) alone, see
-    :func:`birm3d.study.distributions.sample`: a greater n keeps the earlier runs, and with a ``store``
+    :func:`birm3d.study.distributions.sample`. So a greater n keeps the earlier runs, and with a ``store``
     only the new ones are run.
 
     Parameters

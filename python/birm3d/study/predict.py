@@ -171,13 +171,14 @@ def predict(
 ) -> Prediction:
     """Run a scene with what is not known of a vehicle drawn as its class scatters.
 
-    Drawn are forces of front, side and corner, height of the mass centre, friction and tyres, each lognormal
-    as the blocks ``[[scatter]]`` of the vehicle's file say (:attr:`birm3d.Vehicle.scatter`). A median there
-    may differ from 1, where the class differs from the vehicle that a preset was fitted to: the median here
-    is then not what the scene gives by itself. Mass, speed, angle and barrier are those of the scene.
+    Drawn are forces of front, side and corner, height of the mass centre, friction and tyres. Each is
+    lognormal, by the blocks ``[[scatter]]`` of the vehicle's file (:attr:`birm3d.Vehicle.scatter`). A median
+    there may differ from 1, where the class differs from the vehicle that a preset was fitted to. Then the
+    median of a metric is not the value of the scene itself. Mass, speed, angle and barrier are those of the
+    scene.
 
-    The draws are the first n points of Sobol's sequence, one dimension for each quantity, whatever the scene:
-    two predictions differ by their scenes and not by chance (common random numbers).
+    The draws are the first n points of Sobol's sequence, one dimension for each quantity, whatever the scene.
+    So two predictions differ by their scenes and not by chance (common random numbers).
 
     Parameters
     ----------

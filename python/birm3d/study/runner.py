@@ -96,8 +96,8 @@ def run_study(
         Names of the metrics wanted; ``None``: all but ``run_time``, which is not the same twice.
     executor
         Any :class:`concurrent.futures.Executor`, or a ``dask.distributed.Client``; ``None``: a thread for
-        each core of the machine. The C++ core releases the interpreter's lock, making a vehicle and its
-        metrics does not: processes are faster where there are more than a few cores.
+        each core of the machine. The C++ core releases the interpreter's lock; making a vehicle and its
+        metrics does not. So processes are faster where there are more than a few cores.
     store
         File for finished runs (SQLite), written as they finish. If it has runs of this study already, they
         are taken from there. More rows than it has are welcome: they are added.
@@ -124,8 +124,8 @@ def run_study(
     StudyInterrupted
         A KeyboardInterrupt, with the finished runs in its ``study`` and in the store.
     OverlapWarning, BalanceWarning, CoarseSkinWarning
-        As warnings, each once for all runs that were run now: how many and which rows are not to be
-        believed, and what is wrong with the worst.
+        As warnings, each once for all runs that were run now: how many and which rows are not reliable, and
+        what is wrong with the worst.
     """
     # Longer than 60 lines: whichever way a study stops, what is finished is handed out, and said.
     # What only a study needs, such as sqlite3 and multiprocessing, is loaded by the first one.

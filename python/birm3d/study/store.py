@@ -1,8 +1,8 @@
 """Finished runs on disk: an SQLite file that survives an interruption at any moment.
 
-Table ``study``: key, value (format, fingerprint, package version, units as JSON). Table ``runs``: one row a
-finished run with its number, its parameters, its metrics (NULL: the run does not have it), ``end_reason``,
-``outcome``, ``state_hash``, ``error``, and a checksum of all of it. Any SQLite tool reads it:
+Table ``study``: key, value (format, fingerprint, package version, units as JSON). Table ``runs``: one row for
+each finished run. Its columns are number, parameters, metrics (NULL: the run does not have it),
+``end_reason``, ``outcome``, ``state_hash``, ``error``, and a checksum of all of it. Any SQLite tool reads it:
 ``sqlite3 study.db 'select * from runs'``.
 """
 

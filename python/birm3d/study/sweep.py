@@ -58,8 +58,8 @@ def sweep(
     Raises
     ------
     ValueError
-        Naming the argument, its limit and the value: an empty list, an unknown name, a NaN, lists of
-        different lengths side by side, a store of another study.
+        Naming the argument, its limit and the value. Refused are an empty list, an unknown name, a NaN, lists
+        of different lengths side by side, and a store of another study.
 
     Examples
     --------

@@ -217,8 +217,8 @@ class Study:
         Raises
         ------
         ValueError
-            If there is no such row, if the study needs a base and has none, or if the row's scene can not be
-            made (``error`` says so too).
+            If there is no such row, or the study needs a base and has none. If the row's scene can not be
+            made, as ``error`` says too.
         """
         from ..simulation.parameters import varied
         from ..simulation.simulation import Simulation

@@ -1,4 +1,4 @@
-"""Runs of which the histories are needed: each is made, looked at by a function, and let go."""
+"""Runs whose histories are needed: each is run, evaluated by a function, and deleted."""
 
 from __future__ import annotations
 

@@ -176,7 +176,7 @@ def worst_offset(
     """Return for each spacing of a row of bollards where it is worst to be hit, and how bad that is.
 
     At each spacing the offset is searched over one whole spacing around the row's middle, by
-    :func:`birm3d.critical_impact_point`: a scan, then a refinement at its best point.
+    :func:`birm3d.critical_impact_point`. A scan is followed by a refinement at its best point.
 
     Parameters
     ----------

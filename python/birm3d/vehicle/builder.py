@@ -83,7 +83,7 @@ def _of_file(recipe: VehicleRecipe, shape: VehicleShape | None) -> Vehicle:
 
         shape = shape_of(file, float(recipe.mesh_density))
     if not recipe.tire_contact and (shape.wheel_of_node >= 0).any():
-        shape = shape.without_treads
+        shape = shape.without_tire_nodes
     center, inertia = recipe.mass_properties()
     wheels = shape.wheels.copy()
     wheels[:, :3] -= center

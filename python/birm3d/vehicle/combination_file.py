@@ -46,7 +46,7 @@ class UnitReference(Strict):
 
 
 class JointBlock(Block):
-    """How the trailing unit hangs on the leading one; see :class:`birm3d.Joint`."""
+    """How the trailing unit is attached to the leading one; see :class:`birm3d.Joint`."""
 
     kind: Literal["fifth_wheel", "welded"]
     place_on_leading_m: Point

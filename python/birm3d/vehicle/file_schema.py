@@ -386,14 +386,14 @@ class Assumption(Strict):
 
 
 class Scaled(Block):
-    """What the vehicle that the file extends is scaled to before the file's own blocks take the place of its.
+    """Mass and size that the vehicle extended is scaled to, before the file's own blocks replace its blocks.
 
     The numbers are those of :meth:`birm3d.Vehicle.scaled_to`. In place of length_m and wheelbase_m, x_m may
-    have rows [place of the vehicle extended, place here], and so may z_m in place of height_m: places between
-    go in proportion. Zones hold at mass_kg; solids weigh solids_kg where that is given. element_size_m: of
-    the shell, see Exterior. without: what of the vehicle extended has no place here. It has names of solids,
-    wheels, points and core boxes, and of zones as "zone.hood". Solids, wheels, points and core boxes of the
-    file take the place of those of the same name, others are added.
+    have rows [place of the vehicle extended, place here]. So may z_m in place of height_m. Places between are
+    interpolated. Zones hold at mass_kg; solids weigh solids_kg where that is given. element_size_m: of the
+    shell, see Exterior. without: what is left out of the vehicle extended. It has names of solids, wheels,
+    points and core boxes, and of zones as "zone.hood". Solids, wheels, points and core boxes of the file take
+    the place of those of the same name, others are added.
     """
 
     mass_kg: Positive

@@ -33,7 +33,7 @@ KINDS: Mapping[str, tuple[tuple[str, float], ...]] = {
 """Kinds of vehicles, and the presets of each with their masses [kg]."""
 
 _LOADED = ("truck", "cab_over_truck", "bus")
-"""Kinds whose mass is the load's as well: their size does not go with it."""
+"""Kinds whose mass includes a load: their size does not follow from it."""
 
 
 class _Law(NamedTuple):

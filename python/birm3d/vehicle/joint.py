@@ -23,7 +23,7 @@ _FIT = 1e-3
 @checked
 @dataclass(frozen=True)
 class Joint:
-    """How a trailing unit hangs on a leading one.
+    """How a trailing unit is attached to a leading one.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A vehicle's mass centre at another height: the same mass, stood higher or lower."""
+"""A vehicle's mass centre at another height."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """What vehicles are made of: a frozen description, from which :func:`birm3d.vehicle.build` makes the vehicle.
 
 Every change of a vehicle is a change of its recipe. What the change does not name stays as it is, and the
-vehicle is built anew from all of it: nothing gets lost on the way.
+vehicle is built anew from all of it.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class VehicleArrays:
             wheels=wheels,
         )
 
-    def without_treads(self) -> VehicleArrays:
+    def without_tire_nodes(self) -> VehicleArrays:
         """Return the same without the nodes by which tyres meet barriers."""
         shell = self.wheel_of_node < 0
         columns = ("nodes", "anchors", "area", "zone_of_node", "wheel_of_node", "along_of_node")
@@ -202,7 +202,7 @@ class VehicleRecipe:
 
     def without_tire_contact(self) -> VehicleRecipe:
         """Return the recipe with tyres that meet the ground only."""
-        arrays = None if self.arrays is None else self.arrays.without_treads()
+        arrays = None if self.arrays is None else self.arrays.without_tire_nodes()
         return dataclasses.replace(self, tire_contact=False, arrays=arrays)
 
     def with_zones(self, zones: Mapping[str, Zone]) -> VehicleRecipe:
@@ -227,7 +227,7 @@ class VehicleRecipe:
         return dataclasses.replace(self, arrays=dataclasses.replace(self.arrays, truss_laws=laws))
 
     def scaled_to(self, mass: float, factors: Mapping[str, float]) -> VehicleRecipe:
-        """Return the recipe of another mass [kg], its dimensions times factors; see `Vehicle.scaled_to`."""
+        """Return the recipe of another mass [kg], its dimensions times factors; see ``Vehicle.scaled_to``."""
         if self.file is None:
             raise ValueError(f"scaled_to needs a vehicle that has a file, got {self.name!r} from arrays")
         file = self.file

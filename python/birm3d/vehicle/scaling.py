@@ -7,10 +7,10 @@ stretched with the structure that it is a part of, and its stress follows from t
 
 m is the mass that the zones hold for, a the factor of a panel's area, and s that of the depth behind it. The
 depth is the distance from end to rigid core for front and rear, the width for sides, the height for roof and
-underside. So a similar vehicle at the same speed is crushed by the same share of its length, and by the same
-depth where its size stays. NHTSA's tests at 56 km/h agree: within a class, displacement goes with length to
-the power 1.33 (+-0.50, 20 cars) and 0.87 (+-0.40, 12 sport utility vehicles); over all classes, with mass to
-the power 0.09 (+-0.08, 40 vehicles).
+underside. So a similar vehicle at the same speed is crushed by the same fraction of its length. If its size
+stays, it is crushed by the same depth. NHTSA's tests at 56 km/h agree: within a class, displacement goes with
+length to the power 1.33 (+-0.50, 20 cars) and 0.87 (+-0.40, 12 sport utility vehicles); over all classes,
+with mass to the power 0.09 (+-0.08, 40 vehicles).
 """
 
 from __future__ import annotations
@@ -152,8 +152,8 @@ def panel_factors(scaling: Scaling, extent: Extent, panel: str) -> Factors:
 def scaling_between(extent: Extent, factors: Mapping[str, float]) -> Scaling:
     """Return the scaling by factors of dimensions, named as in :data:`SIZES`; others stay.
 
-    The wheelbase goes in proportion to the length, or as its own factor says. Then the places between the
-    first and the last axle go in proportion to it, those beyond in proportion to what is left of the length.
+    The wheelbase goes in proportion to the length, or as its own factor says. Then places between the first
+    and the last axle scale with the wheelbase. Places beyond scale with the rest of the length.
 
     Raises
     ------

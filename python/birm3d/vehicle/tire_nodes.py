@@ -1,16 +1,17 @@
 """Nodes on the treads of a vehicle's tyres, by which they meet barriers.
 
-A tyre is there as the outer edge of its tread, the circle that comes first to a barrier beside the vehicle.
-Each node carries the stress of the file's zone for tyres times its part of the tread (its length of the
-circle times the width of the wheel). Its truss runs across the vehicle, level at the height of the axle and
-up to 60 degrees steep below and above. So a wheel resists a wall beside it and what it goes over. No truss
-runs lengthways, for what a wheel resists in a crash head-on is already in the zones of the front. It is long,
-so that it hardly turns while it is pressed; its anchor is no point of the vehicle. Nodes near the ground are
-left out: there the wheel stands on it. Neither suspension nor steering is modelled.
+A tyre is represented by the outer edge of its tread, the circle that first meets a barrier beside the
+vehicle. Each node carries the stress of the file's zone for tyres times its part of the tread. That part is
+its length of the circle times the width of the wheel. Its truss runs across the vehicle, level at the height
+of the axle and up to 60 degrees steep below and above. So a wheel resists a wall beside it and what it goes
+over. No truss runs lengthways, for what a wheel resists in a crash head-on is already in the zones of the
+front. Trusses are long, so that they hardly rotate while they are pressed; their anchors are no points of the
+vehicle. Nodes near the ground are left out: there the wheel stands on it. Neither suspension nor steering is
+modelled.
 
-Treads rub on a barrier with a coefficient of their own (:attr:`birm3d.Settings.mu_tire_barrier`). A wheel
-that is not locked has the spin at which that friction has no torque about its axle. So a barrier which meets
-it below and ahead of the axle pushes it up and back.
+Friction between treads and a barrier has its own coefficient (:attr:`birm3d.Settings.mu_tire_barrier`). A
+wheel that is not locked has the angular velocity at which that friction has no torque about its axle. So a
+barrier which meets it below and ahead of the axle pushes it up and back.
 """
 
 from __future__ import annotations

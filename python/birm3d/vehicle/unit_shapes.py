@@ -1,4 +1,4 @@
-"""What the units of a vehicle look like, for pictures: the one place that knows where a vehicle keeps it."""
+"""What the units of a vehicle look like, for pictures."""
 
 from __future__ import annotations
 

@@ -127,14 +127,14 @@ class VehicleVariants(VehicleData):
     ) -> Self:
         """Return another vehicle of the same class: this one as its file loads it, of another mass and size.
 
-        All solids get heavier in proportion, and so do all forces of the zones: at the same size the same
-        crash is met with the same deceleration and the same crush. So predicted, the crush of 37 vehicles
-        that no zone was fitted to has a median error of 7 % (``tests/bench/bench_blind.py``). For a load in
-        this vehicle see :meth:`with_gvw` and :meth:`with_payload`, which leave the zones alone.
+        The masses of all solids and the forces of all zones change in proportion. So a vehicle of the same
+        size has the same deceleration and the same crush in the same crash. So predicted, the crush of 37
+        vehicles that no zone was fitted to has a median error of 7 % (``tests/bench/bench_blind.py``). For a
+        load in this vehicle see :meth:`with_gvw` and :meth:`with_payload`, which leave the zones alone.
 
-        Shape, solids, wheels, core, zones and named points go to the new size together, so that the inertia
-        follows: every radius of gyration goes with the dimensions across it. What is crushed is stretched
-        with the structure, and forces follow from mass over depth: :mod:`birm3d.vehicle.scaling`.
+        Shape, solids, wheels, core, zones and named points are scaled together. So the inertia follows: each
+        radius of gyration scales with the dimensions across its axis. What is crushed is stretched with the
+        structure, and forces follow from mass over depth: :mod:`birm3d.vehicle.scaling`.
 
         Parameters
         ----------
@@ -170,9 +170,10 @@ class VehicleVariants(VehicleData):
     def with_rate_sensitivity(self, rate_sensitivity: Quantity) -> Self:
         """Return the vehicle with loading envelopes that grow with speed; at 0 that is left out.
 
-        What is crushed has inertia and rate strength, which the paper's massless trusses lack: an envelope
-        grows by 1 + (rate_sensitivity * rate of deflection)^2 while it is loaded [s/m], >= 0. Finite-element
-        vehicles were met with 0.05 to 0.07 s/m (``tests/bench/README.md``).
+        What is crushed has inertia and rate strength, which the paper's massless trusses lack. Therefore an
+        envelope is multiplied by 1 + (rate_sensitivity * rate of deflection)^2 while it is loaded;
+        rate_sensitivity [s/m] >= 0. Finite-element vehicles were met with 0.05 to 0.07 s/m
+        (``tests/bench/README.md``).
         """
         rate = si("rate_sensitivity", rate_sensitivity, "time per length")
         return self._changed(self._description.each(rate_sensitivity=rate))
@@ -203,11 +204,11 @@ class VehicleVariants(VehicleData):
     def with_mass_center_height(self, height: Quantity | None) -> Self:
         """Return the vehicle with its mass centre at another height above the ground [m].
 
-        All parts of the mass go up or down in proportion to their height above the ground and keep their
-        place in plan: of the solids z becomes z times the ratio of the heights. So the inertia about the mass
-        centre follows (:mod:`birm3d.vehicle.mass_center`): vertical second moments grow with the square
-        of the ratio, the yaw inertia stays. Skin, core and wheels stay where they are. The height holds for
-        every later mass and payload, and for a vehicle of another mass (:meth:`scaled_to`).
+        All parts of the mass keep their place in plan. Their heights above the ground are multiplied by the
+        ratio of the new height to the old one. So the inertia about the mass centre follows
+        (:mod:`birm3d.vehicle.mass_center`): vertical second moments grow with the square of the ratio, the
+        yaw inertia stays. Skin, core and wheels stay where they are. The height holds for every later mass
+        and payload, and for a vehicle of another mass (:meth:`scaled_to`).
 
         Parameters
         ----------
@@ -217,8 +218,7 @@ class VehicleVariants(VehicleData):
         Raises
         ------
         ValueError
-            If the height is out of range, or the mass centre of a vehicle from arrays is on the ground, where
-            no ratio leads away from.
+            If the height is out of range, or the mass centre of a vehicle from arrays is on the ground.
         """
         number = None if height is None else si("mass_center_height", height, "length")
         return self._changed(self._description.with_mass_center_height(number))

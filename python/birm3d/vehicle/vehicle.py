@@ -203,10 +203,10 @@ class Vehicle(OldVehicleNames):
     ) -> Vehicle:
         """Make a vehicle whose skin is a mesh: an LS-DYNA keyword file, STL, OBJ, PLY, glTF, VTK, ...
 
-        A mesh says where the skin is. The rest is that of the vehicle's class, scaled to the mass and to the
-        size of the mesh as :meth:`from_facts` does it: stiffness, rigid core, shares of mass, tyres.
-        :attr:`assumptions` says what was assumed, ``plot()`` shows it, :meth:`save` writes all of it to one
-        file. Needs the extra ``mesh``.
+        A mesh says where the skin is. Stiffness, rigid core, distribution of mass and tyres are those of the
+        vehicle's class. They are scaled to the mass and to the size of the mesh as :meth:`from_facts` does
+        it. :attr:`assumptions` says what was assumed, ``plot()`` shows it, :meth:`save` writes all of it to
+        one file. Needs the extra ``mesh``.
 
         Of a keyword file, shells and solids of all parts and of included files are read. A closed skin is
         laid around them; engine and seats do no harm. Parts whose titles say tyre or wheel give the wheels.
@@ -244,8 +244,8 @@ class Vehicle(OldVehicleNames):
         inertia
             About the mass centre, shape (3,) or (3, 3) [kg m^2].
         use_densities
-            Of a keyword file: mass centre and inertia are those of its own densities, thicknesses and added
-            masses, brought to `mass`, in place of the class's.
+            Whether mass centre and inertia follow from the densities, thicknesses and added masses of a
+            keyword file, scaled to `mass`. Else they are those of the class.
         zones, core
             Blocks ``[zone.<name>]`` and ``[[core]]`` of a vehicle file by their names: a new one, or what
             differs from that of the class.
@@ -407,8 +407,8 @@ class Vehicle(OldVehicleNames):
         Raises
         ------
         ValueError
-            If there are not two units of one body, if a zone's name is in both, or if the heights of the
-            joint on the two units differ by more than 1 mm.
+            If there are not two units of one body, or a zone's name is in both. If the heights of the joint
+            on the two units differ by more than 1 mm.
         """
         from .articulated import articulate
 

@@ -1,7 +1,7 @@
 """What a vehicle has that is not in the blocks of its file: the block ``[changes]`` of a saved one.
 
-A saved file has all blocks of the file that the vehicle comes from, with their sources, and a block
-``[changes]`` that says how the vehicle differs. The same vehicle comes back from it, bit for bit.
+A saved file has all blocks of the file that the vehicle comes from, with their sources. Its block
+``[changes]`` says how the vehicle differs. The same vehicle comes back from it, bit for bit.
 """
 
 from __future__ import annotations

@@ -46,7 +46,7 @@ class VehicleData(VehicleFields):
         from .vehicle_shape import shape_of
 
         shape = shape_of(file, self._mesh_density)
-        return shape if (self.wheel_of_node >= 0).any() else shape.without_treads
+        return shape if (self.wheel_of_node >= 0).any() else shape.without_tire_nodes
 
     @cached_property
     def _description(self) -> VehicleRecipe | CombinationRecipe:

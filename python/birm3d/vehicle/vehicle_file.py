@@ -404,10 +404,10 @@ def read_vehicle_file(path: str | Path) -> VehicleFile:
     Parameters
     ----------
     path
-        TOML file. With ``extends = "pickup"`` (a preset, or a file beside it) it states only what differs:
-        whole top-level keys are replaced, zones one by one, sources are added; new zones are matched first.
-        ``without = ["zone.engine"]`` leaves zones of that vehicle out.
-        With a block ``[scaled]`` the vehicle extended is scaled before that.
+        TOML file. With ``extends = "pickup"`` (a preset, or a file beside it) it states only what differs.
+        Its top-level keys replace those of that vehicle, its zones replace zones one by one, and its sources
+        are added. New zones are matched first. ``without = ["zone.engine"]`` leaves zones of that vehicle
+        out. With a block ``[scaled]`` the vehicle extended is scaled before that.
 
     Raises
     ------

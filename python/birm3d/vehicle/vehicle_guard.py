@@ -1,4 +1,4 @@
-"""What tells a change of a vehicle's own arrays from a change that its file can follow."""
+"""Distinguishes changes of a vehicle's arrays from changes that its recipe can hold."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ class VehicleShape:
         self._seen: OrderedDict[bytes, tuple[Floats, Floats]] = OrderedDict()
 
     @cached_property
-    def without_treads(self) -> VehicleShape:
+    def without_tire_nodes(self) -> VehicleShape:
         """The same without the nodes by which tyres meet barriers."""
         shell = self.wheel_of_node < 0
         return VehicleShape(

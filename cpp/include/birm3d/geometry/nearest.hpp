@@ -5,7 +5,7 @@
 
 namespace birm3d {
 
-// `point - gap * normal` is the nearest point of the surface, and the normal is the gradient of the gap.
+// For a point p, p - gap * normal is the nearest point of the surface. The normal is the gradient of the gap.
 struct Nearest {
     double gap;   // signed distance of the point (m), negative inside
     Vec3 normal;  // outward, unit

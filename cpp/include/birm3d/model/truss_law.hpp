@@ -1,7 +1,7 @@
 // Force-deflection law of an inelastic truss (paper Fig. 3).
 //
 //   force
-//   f_max |            ________ plateau until the member is closed
+//   f_max |            ________ plateau until the truss bottoms out
 //         |           /|
 //         |          / |  k_hardening
 //         |    _____/  /
@@ -13,7 +13,7 @@
 // The loading envelope is piecewise linear with any number of points: a sum of hinges,
 //   F_env(d) = sum_j slope_change_j * max(0, d - deflection_j),
 // so that one loop without branches serves every curve; the paper's knee is its two-slope case.
-// Below the peak deflection d_p (force F_p) the member moves on  F = max(0, F_p - k (d_p - d)).
+// Below the peak deflection d_p (force F_p) the truss moves on  F = max(0, F_p - k (d_p - d)).
 //
 // Fig. 3 has one slope k = k_unloading. Metal structures spring back by a nearly constant length r instead,
 // `recovery`. It is less in proportion to what has been crushed. For a truss of length L:

@@ -86,7 +86,7 @@ struct alignas(64) TrussBlock {
     BlockColumn anchor_x, anchor_y, anchor_z;  // (m)
     BlockColumn length;                        // uncrushed (m)
     BlockColumn k_unloading;                   // N/m
-    BlockColumn compliance;                    // 1/k_unloading, or 0 for a member without stiffness (m/N)
+    BlockColumn compliance;                    // 1/k_unloading, or 0 for a truss without stiffness (m/N)
     BlockColumn per_recovery;                  // 1/recovery of its curve (1/m)
     BlockColumn panel;                         // number of its panel
 };

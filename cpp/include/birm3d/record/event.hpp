@@ -49,7 +49,7 @@ struct Event {
     Vec3 released_velocity = Vec3::Zero();
 
     bool left = false;                 // for good?
-    bool separated = false;            // and had touched: `released_*` are those of the separation
+    bool separated = false;            // and had touched: `released_at` and `released_velocity` are final
     double deflection = 0.0;           // greatest of all trusses when it had left (m)
     std::uint64_t later_contacts = 0;  // contacts that began after it had left
 

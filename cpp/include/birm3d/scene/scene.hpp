@@ -13,8 +13,8 @@
 
 namespace birm3d {
 
-// The start: the vehicle comes along a straight path at `impact_angle` to the barrier's line and stands
-// `standoff` before its first touch.
+// The start: the vehicle comes along a straight path at `angle` to the barrier's line and stands `standoff` before
+// its first touch.
 struct Approach {
     double speed = 0.0;   // m/s, >= 0
     double angle = 0.0;   // rad between path and barrier line, in [0, pi]; pi/2 = head-on

@@ -18,8 +18,8 @@ __all__ = ["Limit", "limit_of", "order_of", "richardson"]
 
 # An answer that changes by less than this share of its scale is converged: rounding of sums over thousands.
 _ROUNDING = 1e-12
-# Extrapolated where each change is at most this share of the one before it: the limit is then at most four
-# times the last change away.
+# Answers are extrapolated where each change is at most this fraction of the one before it. The limit is then
+# at most four times the last change away.
 _FALLS = 0.8
 # What is not extrapolated is uncertain by so many times the range of the last three answers.
 _NOISE = 2.0
@@ -48,7 +48,7 @@ def order_of(h: npt.ArrayLike, changes: npt.ArrayLike) -> float | None:
     Returns
     -------
     float or None
-        None: fewer than two changes, or one is nil, as of the yaw in a crash that has none.
+        None: fewer than two changes, or one of them is zero.
     """
     found = np.abs(np.asarray(changes, float))
     if len(found) < 2 or not (found > 0.0).all():
@@ -64,12 +64,12 @@ def richardson(coarse: float, fine: float, ratio: float, order: float) -> float:
 def limit_of(h: Sequence[float], values: Sequence[float], scale: float) -> Limit:
     """Return what answers converge to, with its uncertainty.
 
-    The limit is extrapolated where the last three changes (two, if there are no more) have one sign and each
-    is at most 0.8 of the one before. Its uncertainty is the greatest of the whole correction, the last change
-    and a quarter of the one before, as noise may make the last change small. Where they have one sign but do
-    not fall so, the limit is the last answer. It is uncertain by four times the range of the last three,
-    which covers falls to 0.89. Where signs differ, noise is what is left, such as where an event falls in a
-    step. The limit then is the last answer, uncertain by twice that range.
+    The limit is extrapolated where the last three changes have one sign and each is at most 0.8 of the one
+    before. Two changes do if there are no more. Its uncertainty is the greatest of three: the whole
+    correction, the last change, and a quarter of the one before. Noise may make the last change small. Where
+    they have one sign but do not fall so, the limit is the last answer. It is uncertain by four times the
+    range of the last three, which covers falls to 0.89. Where signs differ, noise is what is left, such as
+    where an event falls in a step. The limit then is the last answer, uncertain by twice that range.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Relative errors of metrics: by what the departure of each is divided, and which have none.
+"""Relative errors of metrics: the scale of each error, and which metrics have none.
 
-An error is |value - converged value| over a scale, max(|converged value|, least). ``least`` keeps a metric
-that is nil or near it, as the pitch of a head-on crash, from being judged by digits that nobody reads:
+An error is |value - converged value| over a scale, max(|converged value|, least). ``least`` keeps the error
+finite for metrics that are zero or nearly so, as the yaw of a head-on crash:
 
 =======================================  ============================================================
 unit                                     least scale
@@ -31,10 +31,10 @@ from ...scene.scene import Scene
 __all__ = ["BALANCES", "BOOKKEEPING", "compared_metrics", "least_scales", "relative_errors"]
 
 BOOKKEEPING = frozenset(name for name, metric in METRICS.items() if metric.error == "effort")
-"""How an answer was found, and how long its tail is: no part of the answer."""
+"""Metrics that say how an answer was found, and how long the run went on; they have no error."""
 
 BALANCES = frozenset(name for name, metric in METRICS.items() if metric.error == "balance")
-"""Errors themselves: their converged value is nil, and they are shown as they are."""
+"""Metrics that are errors themselves: their converged value is zero, and they are shown as they are."""
 
 
 def compared_metrics(metrics: Collection[str]) -> tuple[str, ...]:

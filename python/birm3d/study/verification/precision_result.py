@@ -48,8 +48,8 @@ class WorkPrecision(PrecisionTable):
     def recommend(self, error: float = 0.01, metrics: Collection[str] | None = None) -> Recommendation:
         """Return the cheapest setting with a wanted error.
 
-        A setting counts if it and all stricter ones of its kind have the error in every metric, with the
-        uncertainty of the converged value added: a small error between larger ones is luck.
+        A setting counts if it and all stricter ones of its kind have the error in every metric. The
+        uncertainty of the converged value is added. A small error between larger ones does not count.
 
         Parameters
         ----------

@@ -42,13 +42,13 @@ def stability(
     and down to full elasticity; posts of 10 mm; a minute at rest; contact at t = 0; vehicles of one node and
     of 100,000; ten rollovers; a barrier whose segments move.
 
-    A run **held** if the energy and momentum balances close, every number is finite, and no node or rigid
-    body ended a step inside the barrier. It also did what the scene makes it do: met a barrier in its way,
-    stayed in front of a post at its middle, stayed at rest. It was **refused** if an error said why not. It
-    was **warned** of if a run of a fixed step tells that its energy balance is open
-    (:class:`birm3d.BalanceWarning`). The same word is for a vehicle that missed what the scene told it
-    could pass between nodes (:class:`birm3d.CoarseSkinWarning`). All else is a **FAULT**: an answer that
-    its balances contradict.
+    A run **held** if its balances of energy and momentum close, and every number is finite. No node and no
+    rigid body may end a step inside the barrier. The vehicle must also do what the scene demands. It meets a
+    barrier in its path, stays in front of a post at its middle, or stays at rest. It was **refused** if an
+    error said why not. It was **warned** of if a run of a fixed step tells that its energy balance is open
+    (:class:`birm3d.BalanceWarning`). The same word is for a vehicle that missed what the scene told it could
+    pass between nodes (:class:`birm3d.CoarseSkinWarning`). All else is a **FAULT**: an answer that its
+    balances contradict.
 
     Parameters
     ----------
@@ -95,16 +95,16 @@ def _judged(case: Case, limits: Limits) -> StabilityRow:
     try:
         simulation, coarse = _made(case)
     except _REFUSALS as refused:
-        return replace(blank, reason=_told(refused))
+        return replace(blank, reason=_reason(refused))
     except Exception as failed:  # a study of faults ends with none of them
-        return replace(blank, verdict=FAULT, reason=_told(failed))
+        return replace(blank, verdict=FAULT, reason=_reason(failed))
     barrier = simulation.scene.barrier
     diameter = getattr(barrier, "diameter", math.inf)
     limits = replace(limits, node_depth=min(limits.node_depth, 0.1 * diameter))
     try:
         watched, error = step_through(simulation, limits)
     except Exception as failed:
-        return replace(blank, verdict=FAULT, reason=_told(failed))
+        return replace(blank, verdict=FAULT, reason=_reason(failed))
     row = replace(
         blank,
         outcome=watched.outcome,
@@ -115,7 +115,7 @@ def _judged(case: Case, limits: Limits) -> StabilityRow:
         anchor_depth=watched.anchor_depth,
     )
     if error is not None:
-        return replace(row, reason=_told(error))
+        return replace(row, reason=_reason(error))
     faults = [watched.fault] if watched.fault else []
     missed = _missed(case, simulation, watched.touched)
     if missed and not faults and coarse:
@@ -169,5 +169,5 @@ def _missed(case: Case, simulation: Simulation, touched: bool) -> list[str]:
     return faults
 
 
-def _told(error: Exception) -> str:
+def _reason(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"

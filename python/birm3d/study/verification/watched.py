@@ -1,4 +1,4 @@
-"""A run that is watched step by step: what may never happen in a crash, counted."""
+"""A run that is checked step by step for what may never happen in a crash."""
 
 from __future__ import annotations
 

@@ -57,8 +57,8 @@ def work_precision(
     the answers at ``references`` tend to, with the uncertainty of that (:func:`.convergence.limit_of`). They
     are relative to the magnitude of the converged value or to a least scale of the metric, the greater of
     both (see :mod:`birm3d.study.verification.errors`). Other contact models and representations of the
-    barrier are other models of the same crash: each has its own converged values, and
-    :meth:`.WorkPrecision.departures` tells how far they are from the scene's. Meshes are compared with what
+    barrier are other models of the same crash. Each has its own converged values, and
+    :meth:`.WorkPrecision.departures` returns how far they are from the scene's. Meshes are compared with what
     finer ones tend to.
 
     Parameters

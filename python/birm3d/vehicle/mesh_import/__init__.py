@@ -1,1 +1,1 @@
-"""Vehicles whose skin is a mesh of the user: readers, checks, and what becomes of it."""
+"""Vehicles whose skin is a mesh of the user: readers, checks, and the vehicle made of it."""

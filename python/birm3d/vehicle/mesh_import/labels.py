@@ -17,8 +17,8 @@ Ints = npt.NDArray[np.int64]
 
 _END = 0.25  # m behind what bow and profile of an end explain: a panel that looks ahead is no front there
 
-# Elements that round the edges between an end and its neighbours are the end's: a skin that is laid around a
-# preset has the preset's areas of front and rear, within 3 %.
+# Elements at the rounded edges between an end and its neighbours belong to the end. So a skin that is laid
+# around a preset has the preset's areas of front and rear, within 3 %.
 _ENDS_FIRST = 1.8
 
 

@@ -21,8 +21,8 @@ _BOX = ((-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1,
 def solid_of(mass: float, center: Floats, inertia: Floats) -> Solid:
     """Return the uniform box with this mass [kg], mass centre (3,) [m] and inertia (3, 3) about it [kg m^2].
 
-    A box of sides a along its own axes has the second moments m a^2 / 12, which J = trace(I) / 2 - I has as
-    principal values: every inertia of a mass is that of one box.
+    A box with sides a along its own axes has the second moments m a^2 / 12. They are the principal values of
+    J = trace(I) / 2 - I. So every inertia of a mass is that of exactly one box.
     """
     moments, axes = np.linalg.eigh(0.5 * np.trace(inertia) * np.eye(3) - inertia)
     # The axis nearest to x first, and so on; then each along its own, so that the corners keep their order.

@@ -1,7 +1,7 @@
 """A vehicle whose skin is a mesh: see :meth:`birm3d.Vehicle.from_mesh`.
 
-The preset of its class, scaled to mass and size of the mesh, has all that a mesh does not say: stiffness,
-rigid core, shares of mass, tyres. The mesh takes the place of the preset's skin.
+Stiffness, rigid core, distribution of mass and tyres are those of the preset of its class, scaled to mass and
+size of the mesh. The mesh takes the place of the preset's skin.
 """
 
 from __future__ import annotations
