@@ -338,6 +338,18 @@ def test_names_in_docstrings_that_do_not_exist_are_found() -> None:
     assert unknown_names_of_module(source) == ["gone", "old"]
 
 
+def test_glossary_has_the_names_of_the_code() -> None:
+    """The last column of each row: identifiers of C++ or Python, as they are written."""
+    files = [*CPP_FILES, *sorted((ROOT / "python/birm3d").rglob("*.py"))]
+    known = {name for path in files for name in IDENTIFIER.findall(path.read_text(encoding="utf-8"))}
+    rows = [
+        line for line in (DOCS / "glossary.md").read_text(encoding="utf-8").splitlines() if line[:1] == "|"
+    ]
+    names = {name for row in rows for name in re.findall(r"`([^`]+)`", row.split("|")[-2])}
+    assert len(names) > 80
+    assert [name for name in sorted(names) if not set(IDENTIFIER.findall(name)) <= known] == []
+
+
 @pytest.mark.slow
 def test_site_builds_without_warnings(tmp_path: Path) -> None:
     """Every page, table, picture and docstring; a warning is an error."""

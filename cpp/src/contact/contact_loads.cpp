@@ -28,14 +28,14 @@ struct NodeLoads {
     double normal_force, x, y, z, tx, ty, tz;
 };
 
-// Keeps the pressure of nodes whose nearest obstacle is the k-th, and sums their loads.
+// Keeps the normal forces of nodes whose nearest obstacle is the k-th, and sums their loads.
 BIRM3D_BLOCK_LOOP NodeLoads select_loads(const std::array<std::size_t, block_size>& nearest, std::size_t k,
-                                         const BlockContact& contact, BlockColumn& pressure) {
+                                         const BlockContact& contact, BlockColumn& normal_force) {
     alignas(64) BlockColumn force, x, y, z, tx, ty, tz;
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < block_size; ++i) {
-        const double own = nearest[i] == k ? contact.pressure[i] : 0.0;
-        pressure[i] = force[i] = own;
+        const double own = nearest[i] == k ? contact.normal_force[i] : 0.0;
+        normal_force[i] = force[i] = own;
         x[i] = own * contact.nx[i];
         y[i] = own * contact.ny[i];
         z[i] = own * contact.nz[i];
@@ -66,9 +66,9 @@ void add(const CrushSums& sums, SkinForces& skin) {
 }
 
 // Reduces normal forces to the part that causes friction on the rigid body (TrussCurve::friction_share).
-void take_share(const BlockColumn& share, BlockColumn& pressure) {
+void take_share(const BlockColumn& share, BlockColumn& normal_force) {
     for (std::size_t i = 0; i < block_size; ++i)
-        pressure[i] *= share[i];
+        normal_force[i] *= share[i];
 }
 
 // The load on the k-th near obstacle, world axes. Adds its stored energy and its resistance to `skin`. `R`: body to
@@ -130,7 +130,7 @@ void apply_friction(const ContactPass& pass, std::size_t k, const Places& places
     if (block.indentations.empty() && !shares)
         return add_friction(mu, pass.full_friction_speed, motion, places, contact, normal, to.friction_load);
     BlockContact along = contact;
-    if (shares) take_share(pass.mesh.friction_share[block.index], along.pressure);
+    if (shares) take_share(pass.mesh.friction_share[block.index], along.normal_force);
     if (block.indentations.empty())
         return add_friction(mu, pass.full_friction_speed, motion, places, along, normal, to.friction_load);
     slide_along_panel(block.faces, along);
@@ -141,7 +141,7 @@ void distribute_loads(const ContactPass& pass, ContactBlock& block, ContactSums&
     if (!block.corners.empty()) distribute_corner_forces(pass, block, sums);
     BlockContact part = block.contact;
     for (std::size_t k = 0; k < block.reachable.size(); ++k) {
-        const NodeLoads of = select_loads(block.nearest, k, block.contact, part.pressure);
+        const NodeLoads of = select_loads(block.nearest, k, block.contact, part.normal_force);
         if (!(of.normal_force > 0.0)) continue;
         ObstacleSums& to = sums.obstacles[block.reachable[k]];
         to.contact += {Vec3(of.x, of.y, of.z), Vec3(of.tx, of.ty, of.tz)};

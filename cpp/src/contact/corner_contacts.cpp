@@ -186,7 +186,7 @@ void resolve_corner(const ContactPass& pass, std::size_t i, ContactBlock& block)
 void add_corner_forces(const ContactPass& pass, const std::vector<double>& force, std::size_t of,
                        std::size_t k, const ContactBlock& block, BlockContact& part, ContactSums& sums) {
     ObstacleSums& to = sums.obstacles[block.reachable[k]];
-    part.pressure.fill(0.0);
+    part.normal_force.fill(0.0);
     double sum = 0.0;
     for (std::size_t c = 0; c < block.corners.size(); ++c) {
         const CornerFace& face = block.corners[c].face[of];
@@ -196,12 +196,12 @@ void add_corner_forces(const ContactPass& pass, const std::vector<double>& force
         const Vec3 node(block.end->x[i], block.end->y[i], block.end->z[i]);
         const Vec3 at = face.indented ? face.place : node;
         const Vec3 torque = face.indented ? face.torque : Vec3(node.cross(face.normal));
-        const double pressure = force[c] * face.weight * face.per_force;
-        part.pressure[i] = pressure;
+        const double normal_force = force[c] * face.weight * face.per_force;
+        part.normal_force[i] = normal_force;
         part.nx[i] = face.normal.x(), part.ny[i] = face.normal.y(), part.nz[i] = face.normal.z();
         part.px[i] = at.x(), part.py[i] = at.y(), part.pz[i] = at.z();
-        to.contact += {pressure * face.normal, pressure * torque};
-        sum += pressure;
+        to.contact += {normal_force * face.normal, normal_force * torque};
+        sum += normal_force;
     }
     if (!(sum > 0.0)) return;
     to.normal_force += sum;
@@ -244,8 +244,8 @@ void resolve_known_corner(const ContactPass& pass, Corner corner, ContactBlock& 
 void distribute_corner_forces(const ContactPass& pass, ContactBlock& block, ContactSums& sums) {
     std::vector<double> force;
     for (const Corner& corner : block.corners) {
-        force.push_back(block.contact.pressure[corner.node_index]);
-        block.contact.pressure[corner.node_index] = 0.0;
+        force.push_back(block.contact.normal_force[corner.node_index]);
+        block.contact.normal_force[corner.node_index] = 0.0;
     }
     BlockContact part = block.contact;
     for (std::size_t of = 0; of < Corner::most; ++of)

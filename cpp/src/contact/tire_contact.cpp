@@ -11,10 +11,10 @@ void note_tire_nodes(const ContactPass& pass, std::size_t k, std::size_t b, cons
     if (!(pass.scene.settings.mu_tire_barrier > 0.0)) return;
     const std::size_t first = pass.mesh.first[b] - pass.mesh.shell;
     for (std::size_t i = 0; i < block_size; ++i) {
-        if (!(contact.pressure[i] > 0.0)) continue;
+        if (!(contact.normal_force[i] > 0.0)) continue;
         sums.tire_nodes.push_back(tire_node_contact(pass.mesh.tire_nodes[first + i], k,
                                                     pass.relative_motion[k], places[i], contact.normal(i),
-                                                    contact.pressure[i]));
+                                                    contact.normal_force[i]));
     }
 }
 

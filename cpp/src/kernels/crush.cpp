@@ -89,7 +89,7 @@ bool crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, con
     const Vec3& h = surface.holding;
     const PressedNodes nodes = simd.press_flat(
         columns_of(mesh, b, factor), {n.x(), n.y(), n.z(), surface.face.offset, h.x(), h.y(), h.z()},
-        columns_of<const double>(before), columns_of<double>(now), gap.data(), contact.pressure.data(),
+        columns_of<const double>(before), columns_of<double>(now), gap.data(), contact.normal_force.data(),
         sums.nodes);
     set_flags(nodes, now);
     if (now.touching) sums.flat_stiffness += contact_stiffness(surface, mesh, b, now, nodes.pushing);
@@ -110,7 +110,7 @@ bool crush(const NodeFaces& faces, const RigidBody& body, const TrussMesh& mesh,
                            q(1, 1),           q(2, 2),           2.0 * q(0, 1),     2.0 * q(0, 2),
                            2.0 * q(1, 2)},
                           columns_of<const double>(before), columns_of<double>(now), gap.data(),
-                          contact.pressure.data(), sums.nodes);
+                          contact.normal_force.data(), sums.nodes);
     set_flags(nodes, now);
     return nodes.ceased;
 }
@@ -144,7 +144,7 @@ Wrench along_trusses(const TrussBlock& truss, const TrussBlockState& now, const 
 void set_rate_factor(double rate_sensitivity, const BlockColumn& force, const Twist& motion,
                      const Places& places, const BlockContact& contact, BlockColumn& factor) {
     for (std::size_t i = 0; i < block_size; ++i) {
-        if (!(contact.pressure[i] > 0.0)) {
+        if (!(contact.normal_force[i] > 0.0)) {
             factor[i] = 1.0;
             continue;
         }
@@ -152,7 +152,7 @@ void set_rate_factor(double rate_sensitivity, const BlockColumn& force, const Tw
         // factor.
         const double approach =
             -contact.normal(i).dot(motion.velocity + motion.angular_velocity.cross(places[i]));
-        const double rate = rate_sensitivity * std::max(0.0, approach * contact.pressure[i] / force[i]);
+        const double rate = rate_sensitivity * std::max(0.0, approach * contact.normal_force[i] / force[i]);
         factor[i] = 1.0 + rate * rate;
     }
 }

@@ -65,7 +65,7 @@ struct CrushSums {
     CrushSums& operator-=(const CrushSums& part);
 };
 
-// Moves block `b` from `before` to `now`, sets the pressures of `contact` and adds to the sums. The caller has set
+// Moves block `b` from `before` to `now`, sets the normal forces of `contact` and adds to the sums. The caller has set
 // the normals of `contact`. `factor`: on the loading envelopes, may be null. Returns whether any node stopped
 // pushing.
 bool crush(const FlatContact& surface, const TrussMesh& mesh, std::size_t b, const BlockColumn* factor,

@@ -236,18 +236,18 @@ BIRM3D_INLINE void hold(const PressColumns& truss, const Surface& surface,
 template <bool flat, bool recovers, class Surface>
 BIRM3D_INLINE PressedNodes press(const PressColumns& truss, const Surface& surface,
                                  const PressState<const double>& before, const PressState<double>& now,
-                                 double* gaps, double* pressures, NodeSums& sums) {
+                                 double* gaps, double* normal_forces, NodeSums& sums) {
     const Packet zero = 0.0, one = 1.0;
     Packet force = zero, work = zero, stored = zero, pushing = zero;
     bool ceased = false;
     Packet stiffness = zero;
     Vector moment{zero, zero, zero}, push{zero, zero, zero};
     bool pressed[block_size / packet_length];
-    hold<flat, recovers>(truss, surface, before, now, gaps, pressures, pressed);
+    hold<flat, recovers>(truss, surface, before, now, gaps, normal_forces, pressed);
     for (std::size_t i = 0; i < block_size; i += packet_length) {
         if (!pressed[i / packet_length]) continue;
         const Packet F0 = Packet::load(before.force + i), gap = Packet::load(gaps + i);
-        const Packet d = Packet::load(now.deflection + i), projection = Packet::load(pressures + i);
+        const Packet d = Packet::load(now.deflection + i), projection = Packet::load(normal_forces + i);
 
         // Fig. 3: the loading envelope by the changes of slope at its hinges, and the unloading line below it.
         Packet envelope = zero;
@@ -262,7 +262,7 @@ BIRM3D_INLINE PressedNodes press(const PressColumns& truss, const Surface& surfa
         // A truss that would push its node off the surface does not push at all.
         const Packet law = where_above(zero, projection, zero, where_above(line, envelope, envelope, line));
         const Packet F = where_above(zero, gap, law, where_above(F0, zero, law, zero));
-        const Packet pressure = F * greater(projection, zero);
+        const Packet normal_force = F * greater(projection, zero);
 
         F.store(now.force + i);
         greater(d, Packet::load(before.peak_deflection + i)).store(now.peak_deflection + i);
@@ -270,19 +270,19 @@ BIRM3D_INLINE PressedNodes press(const PressColumns& truss, const Surface& surfa
                                            : load_one_slope(truss, unloading, d, line, envelope, i);
         unloading.residual.store(now.residual + i);
         if constexpr (recovers) unloading.slope.store(now.unloading + i);
-        pressure.store(pressures + i);
+        normal_force.store(normal_forces + i);
 
         const Vector node{Packet::load(now.x + i), Packet::load(now.y + i), Packet::load(now.z + i)};
-        force = force + pressure;
+        force = force + normal_force;
         if constexpr (flat) {
-            moment = {moment.x + pressure * node.x, moment.y + pressure * node.y,
-                      moment.z + pressure * node.z};
+            moment = {moment.x + normal_force * node.x, moment.y + normal_force * node.y,
+                      moment.z + normal_force * node.z};
         } else {
             const Vector n = surface.normal(i);
-            push = {push.x + pressure * n.x, push.y + pressure * n.y, push.z + pressure * n.z};
+            push = {push.x + normal_force * n.x, push.y + normal_force * n.y, push.z + normal_force * n.z};
             const Vector torque = surface.torque(i, node, n);
-            moment = {moment.x + pressure * torque.x, moment.y + pressure * torque.y,
-                      moment.z + pressure * torque.z};
+            moment = {moment.x + normal_force * torque.x, moment.y + normal_force * torque.y,
+                      moment.z + normal_force * torque.z};
             const Packet k = unloading.slope * greater(projection * projection, one);
             stiffness = stiffness + where_above(F, zero, k * surface.inverse_mass(torque), zero);
         }
@@ -313,25 +313,25 @@ BIRM3D_INLINE PressedNodes press(const PressColumns& truss, const Surface& surfa
 
 PressedNodes press_flat(const PressColumns& truss, const FlatPress& surface,
                         const PressState<const double>& before, const PressState<double>& now, double* gaps,
-                        double* pressures, NodeSums& sums);
+                        double* normal_forces, NodeSums& sums);
 PressedNodes press_curved(const PressColumns& truss, const CurvedPress& surface,
                           const PressState<const double>& before, const PressState<double>& now, double* gaps,
-                          double* pressures, NodeSums& sums);
+                          double* normal_forces, NodeSums& sums);
 
 PressedNodes press_flat(const PressColumns& truss, const FlatPress& surface,
                         const PressState<const double>& before, const PressState<double>& now, double* gaps,
-                        double* pressures, NodeSums& sums) {
+                        double* normal_forces, NodeSums& sums) {
     if (truss.per_recovery != nullptr)
-        return press<true, true>(truss, Flat(surface), before, now, gaps, pressures, sums);
-    return press<true, false>(truss, Flat(surface), before, now, gaps, pressures, sums);
+        return press<true, true>(truss, Flat(surface), before, now, gaps, normal_forces, sums);
+    return press<true, false>(truss, Flat(surface), before, now, gaps, normal_forces, sums);
 }
 
 PressedNodes press_curved(const PressColumns& truss, const CurvedPress& surface,
                           const PressState<const double>& before, const PressState<double>& now, double* gaps,
-                          double* pressures, NodeSums& sums) {
+                          double* normal_forces, NodeSums& sums) {
     if (truss.per_recovery != nullptr)
-        return press<false, true>(truss, Curved(surface), before, now, gaps, pressures, sums);
-    return press<false, false>(truss, Curved(surface), before, now, gaps, pressures, sums);
+        return press<false, true>(truss, Curved(surface), before, now, gaps, normal_forces, sums);
+    return press<false, false>(truss, Curved(surface), before, now, gaps, normal_forces, sums);
 }
 
 }  // namespace birm3d::BIRM3D_INSTRUCTION_SET

@@ -59,6 +59,7 @@ struct PressedNodes {
 // Stores each node's gap before it was moved (m) and its normal force (N).
 template <class Surface>
 using Press = PressedNodes (*)(const PressColumns&, const Surface&, const PressState<const double>& before,
-                               const PressState<double>& now, double* gap, double* pressure, NodeSums& sums);
+                               const PressState<double>& now, double* gap, double* normal_force,
+                               NodeSums& sums);
 
 }  // namespace birm3d

@@ -53,8 +53,13 @@ void add_friction(double mu, double full_speed, const Twist& motion, const Place
                   const BlockContact& contact, const Vec3* common_normal, FrictionLoad& friction_load) {
     const Vec3& v = motion.velocity;
     const Vec3& w = motion.angular_velocity;
-    const SlidingNodes nodes{places.x.data(),   places.y.data(),   places.z.data(),        contact.nx.data(),
-                             contact.ny.data(), contact.nz.data(), contact.pressure.data()};
+    const SlidingNodes nodes{places.x.data(),
+                             places.y.data(),
+                             places.z.data(),
+                             contact.nx.data(),
+                             contact.ny.data(),
+                             contact.nz.data(),
+                             contact.normal_force.data()};
     alignas(64) BlockColumn slow;
     const FrictionSums by =
         simd.find_friction({mu, full_speed, v.x(), v.y(), v.z(), w.x(), w.y(), w.z()}, nodes, slow.data());

@@ -27,8 +27,8 @@ FrictionSums find_friction(const Sliding& s, const SlidingNodes& nodes, double* 
     const Packet zero = 0.0, full_speed = s.full_speed;
     Packet fx = zero, fy = zero, fz = zero, tx = zero, ty = zero, tz = zero, stiffest = zero;
     for (std::size_t i = 0; i < block_size; i += packet_length) {
-        const Packet pressure = Packet::load(nodes.pressure + i);
-        if (is_zero(pressure)) {
+        const Packet normal_force = Packet::load(nodes.normal_force + i);
+        if (is_zero(normal_force)) {
             zero.store(q + i);
             continue;
         }
@@ -42,7 +42,7 @@ FrictionSums find_friction(const Sliding& s, const SlidingNodes& nodes, double* 
         const Packet un = ux * nx + uy * ny + uz * nz;
         const Packet sx = ux - un * nx, sy = uy - un * ny, sz = uz - un * nz;
         const Packet speed = square_root(sx * sx + sy * sy + sz * sz);
-        const Packet per_speed = s.mu * pressure / greater(speed, full_speed);
+        const Packet per_speed = s.mu * normal_force / greater(speed, full_speed);
         const Packet slow = where_above(tolerance::fast_sliding * full_speed, speed, per_speed, zero);
         slow.store(q + i);
         stiffest = greater(stiffest, slow);

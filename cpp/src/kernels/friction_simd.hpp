@@ -12,7 +12,7 @@ struct Sliding {
 
 // Places, outward normals of the surface there and normal forces.
 struct SlidingNodes {
-    const double *x, *y, *z, *nx, *ny, *nz, *pressure;
+    const double *x, *y, *z, *nx, *ny, *nz, *normal_force;
 };
 
 // `slow`: does any node slide slowly?

@@ -26,10 +26,10 @@ Vec3 fraction_of_full(const TireNodeContact& node, double rolling, double full_s
 }  // namespace
 
 TireNodeContact tire_node_contact(const TireNode& node, std::size_t near, const Twist& motion,
-                                  const Vec3& arm, const Vec3& normal, double pressure) {
+                                  const Vec3& arm, const Vec3& normal, double normal_force) {
     const Vec3 u = motion.velocity + motion.angular_velocity.cross(arm);
     const Vec3 t(node.tread_r, 0.0, node.tread_t);
-    return {node.wheel, near, arm, along_surface(u, normal), along_surface(t, normal), normal, pressure};
+    return {node.wheel, near, arm, along_surface(u, normal), along_surface(t, normal), normal, normal_force};
 }
 
 double free_rolling_speed(double full_speed, std::span<const TireNodeContact> wheel) {
@@ -38,7 +38,7 @@ double free_rolling_speed(double full_speed, std::span<const TireNodeContact> wh
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const TireNodeContact& node : wheel) {
         const double square = node.rolling.squaredNorm();
-        if (!(square > no_rolling) || !(node.pressure > 0.0)) continue;
+        if (!(square > no_rolling) || !(node.normal_force > 0.0)) continue;
         const double own = -node.sliding.dot(node.rolling) / square;
         low = std::min(low, own);
         high = std::max(high, own);
@@ -47,7 +47,7 @@ double free_rolling_speed(double full_speed, std::span<const TireNodeContact> wh
     const auto torque = [&](double q) {
         double sum = 0.0;
         for (const TireNodeContact& node : wheel)
-            sum += node.pressure * fraction_of_full(node, q, full_speed).dot(node.rolling);
+            sum += node.normal_force * fraction_of_full(node, q, full_speed).dot(node.rolling);
         return sum;
     };
     // The Illinois method (Dowell and Jarratt, BIT 11, 1971, p. 168). Every third round bisects, because slow sliding
@@ -76,7 +76,7 @@ double free_rolling_speed(double full_speed, std::span<const TireNodeContact> wh
 void add_tire_node_friction(double mu, double full_speed, double rolling, const TireNodeContact& node,
                             FrictionLoad& friction_load) {
     const Vec3 u = node.sliding + rolling * node.rolling;
-    const double speed = u.norm(), q = mu * node.pressure / std::max(speed, full_speed);
+    const double speed = u.norm(), q = mu * node.normal_force / std::max(speed, full_speed);
     const Vec3 force = -q * u;
     friction_load.friction += {force, node.arm.cross(force)};
     if (speed < tolerance::fast_sliding * full_speed)

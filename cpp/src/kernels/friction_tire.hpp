@@ -28,12 +28,12 @@ struct TireNodeContact {
     Vec3 sliding = Vec3::Zero();  // of the body there, along the surface (m/s)
     Vec3 rolling = Vec3::Zero();  // t_i, along the surface
     Vec3 normal = Vec3::UnitZ();  // of the barrier
-    double pressure = 0.0;        // normal force (N)
+    double normal_force = 0.0;    // N
 };
 
 // `motion`: of the vehicle, seen from the barrier, body axes.
 TireNodeContact tire_node_contact(const TireNode& node, std::size_t near, const Twist& motion,
-                                  const Vec3& arm, const Vec3& normal, double pressure);
+                                  const Vec3& arm, const Vec3& normal, double normal_force);
 
 // q of a wheel that is free to turn (m/s), from all its nodes that push; 0 where no node pushes.
 double free_rolling_speed(double full_speed, std::span<const TireNodeContact> wheel);

@@ -15,8 +15,8 @@ struct Places {
 
 // One block of nodes beside a surface, body axes.
 struct alignas(64) BlockContact {
-    BlockColumn pressure;    // normal force of each node (N)
-    BlockColumn nx, ny, nz;  // outward normal at each
+    BlockColumn normal_force;  // of each node (N)
+    BlockColumn nx, ny, nz;    // outward normal at each
     // Where friction acts (m), and the torque of a unit of normal force about the mass centre (m). They are not set
     // at flat surfaces, where the node gives them.
     BlockColumn px, py, pz, tx, ty, tz;

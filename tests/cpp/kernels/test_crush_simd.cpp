@@ -20,7 +20,8 @@ bool same(const Pressed& a, const Pressed& b) {
     return same_bits(a.now.x, b.now.x) && same_bits(a.now.y, b.now.y) && same_bits(a.now.z, b.now.z) &&
            same_bits(a.now.deflection, b.now.deflection) && same_bits(a.now.force, b.now.force) &&
            same_bits(a.now.peak_deflection, b.now.peak_deflection) &&
-           same_bits(a.now.residual, b.now.residual) && same_bits(a.contact.pressure, b.contact.pressure) &&
+           same_bits(a.now.residual, b.now.residual) &&
+           same_bits(a.contact.normal_force, b.contact.normal_force) &&
            same_bits(a.contact.px, b.contact.px) && same_bits(a.contact.tx, b.contact.tx) &&
            same_bits(a.contact.tz, b.contact.tz) && same_bits(a.sums, b.sums) &&
            a.nodes.pushing == b.nodes.pushing && a.nodes.ceased == b.nodes.ceased;
@@ -77,10 +78,10 @@ TEST("every instruction set gives the same bits") {
                                      3e-6};
             by_flat.nodes = functions[k].press_flat(columns, flat, columns_of<const double>(before),
                                                     columns_of<double>(by_flat.now), gaps.data(),
-                                                    by_flat.contact.pressure.data(), by_flat.sums);
-            by_curved.nodes = functions[k].press_curved(columns, curved, columns_of<const double>(before),
-                                                        columns_of<double>(by_curved.now), gaps.data(),
-                                                        by_curved.contact.pressure.data(), by_curved.sums);
+                                                    by_flat.contact.normal_force.data(), by_flat.sums);
+            by_curved.nodes = functions[k].press_curved(
+                columns, curved, columns_of<const double>(before), columns_of<double>(by_curved.now),
+                gaps.data(), by_curved.contact.normal_force.data(), by_curved.sums);
             if (k == 0) {
                 first_flat = by_flat;
                 first_curved = by_curved;
@@ -91,7 +92,7 @@ TEST("every instruction set gives the same bits") {
             CHECK(same(by_curved, first_curved));
             for (std::size_t i = 0; i < 8; ++i)
                 CHECK(by_curved.now.x[i] == before.x[i] && by_curved.now.residual[i] == before.residual[i] &&
-                      by_curved.contact.pressure[i] == 0.0 && by_curved.contact.tx[i] == 0.0);
+                      by_curved.contact.normal_force[i] == 0.0 && by_curved.contact.tx[i] == 0.0);
         }
     }
 }

@@ -8,12 +8,12 @@ using namespace birm3d;
 
 namespace {
 
-// A block of nodes at which a wall of normal -x presses with `pressure` each.
+// A block of nodes at which a wall of normal -x pushes with `normal_force` on each.
 struct Pressed {
-    explicit Pressed(double pressure)
+    explicit Pressed(double normal_force)
         : mesh(laboratory::front_face(laboratory::w2_curve(), 8, 8)), state(mesh) {
         contact.set_normal(-Vec3::UnitX());
-        contact.pressure.fill(pressure);
+        contact.normal_force.fill(normal_force);
     }
     FrictionLoad friction(double mu, double full_speed, const Twist& motion, bool flat = true) const {
         FrictionLoad friction_load;

@@ -17,16 +17,16 @@ struct Found {
 
 }  // namespace
 
-TEST("every instruction set finds the same friction, and rows without pressure add nothing") {
+TEST("every instruction set finds the same friction, and rows without normal force add nothing") {
     laboratory::Random random(1);
     const std::vector<SimdPath> functions = simd_paths();
     for (int round = 0; round < 50; ++round) {
-        alignas(64) BlockColumn x, y, z, pressure;
+        alignas(64) BlockColumn x, y, z, normal_force;
         BlockContact contact;
         fill(random, x, 2.5, 0.5), fill(random, y, 0.0, 1.0), fill(random, z, 0.0, 0.7);
-        fill(random, pressure, 0.0, 1e4);
+        fill(random, normal_force, 0.0, 1e4);
         for (std::size_t i = 0; i < block_size; ++i) {
-            pressure[i] = i / 8 % 3 == 0 ? 0.0 : std::max(pressure[i], 0.0);
+            normal_force[i] = i / 8 % 3 == 0 ? 0.0 : std::max(normal_force[i], 0.0);
             const Vec3 n =
                 Vec3(-1.0, 0.4 * random.within(-1.0, 1.0), 0.4 * random.within(-1.0, 1.0)).normalized();
             contact.nx[i] = n.x(), contact.ny[i] = n.y(), contact.nz[i] = n.z();
@@ -34,8 +34,8 @@ TEST("every instruction set finds the same friction, and rows without pressure a
         // Some nodes slide slowly, others fast.
         const Vec3 v(0.0, 0.05, 0.02), w(0.3 * random.within(-1.0, 1.0), 0.05, 0.1);
         const double mu = 0.3, full_speed = 0.01;
-        const SlidingNodes nodes{x.data(),          y.data(),          z.data(),       contact.nx.data(),
-                                 contact.ny.data(), contact.nz.data(), pressure.data()};
+        const SlidingNodes nodes{x.data(),          y.data(),          z.data(),           contact.nx.data(),
+                                 contact.ny.data(), contact.nz.data(), normal_force.data()};
         Found first;
         for (std::size_t k = 0; k < functions.size(); ++k) {
             Found found;
@@ -58,7 +58,7 @@ TEST("every instruction set finds the same friction, and rows without pressure a
         for (std::size_t i = 0; i < block_size; ++i) {
             const Vec3 r(x[i], y[i], z[i]), n = contact.normal(i), u = v + w.cross(r);
             const Vec3 sliding = u - u.dot(n) * n;
-            const double per_speed = mu * pressure[i] / std::max(sliding.norm(), full_speed);
+            const double per_speed = mu * normal_force[i] / std::max(sliding.norm(), full_speed);
             force -= per_speed * sliding;
             torque -= r.cross(per_speed * sliding);
             const double slow = first.q[i];

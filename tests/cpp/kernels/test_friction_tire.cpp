@@ -73,7 +73,7 @@ TEST("friction has no torque about the axle of a wheel that is free, and takes e
         double heat = 0.0;
         for (const TireNodeContact& node : wheel) {
             const Vec3 u = node.sliding + q * node.rolling;
-            heat += mu * node.pressure * u.squaredNorm() / std::max(u.norm(), full_speed);
+            heat += mu * node.normal_force * u.squaredNorm() / std::max(u.norm(), full_speed);
         }
         CHECK_CLOSE(power / heat, -1.0, 1e-9, "the wheel gives and takes none; rounding as above");
         CHECK(f.force.norm() <= mu * pressed * (1.0 + 1e-14));
@@ -106,8 +106,8 @@ TEST("a locked wheel slides with the body") {
     const TireNodeContact node = at(-30.0 * degree, motion);
     BlockContact contact;
     contact.set_normal(-Vec3::UnitY());
-    contact.pressure.fill(0.0);
-    contact.pressure[0] = node.pressure;
+    contact.normal_force.fill(0.0);
+    contact.normal_force[0] = node.normal_force;
     BlockColumn x{}, y{}, z{};
     x[0] = node.arm.x(), y[0] = node.arm.y(), z[0] = node.arm.z();
     FrictionLoad skin, tread;
