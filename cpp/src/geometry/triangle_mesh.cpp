@@ -95,7 +95,8 @@ std::optional<Nearest> TriangleMesh::vertex_to_face(const Vec3& p, const Vec3& d
     std::optional<Nearest> best;
     data_->tree.along(p, -r, longest, [&](std::size_t i) {
         const Triangle& t = data_->triangles[i];
-        const double X = r.dot(t.normal), gap = t.normal.dot(p) - t.offset;  // Eq. 9-12: offset = D, gap = Y - D
+        // Eq. 9 to 12: the offset is D, n . p is Y, and X is r . n.
+        const double X = r.dot(t.normal), gap = t.normal.dot(p) - t.offset;
         if (!(X < 0.0 && gap <= 0.0) || (best && gap <= best->gap)) return;
         if (gap < longest * X) return;
         if (!holds(t, p - gap / X * r)) return;                       // P1, Eq. 13

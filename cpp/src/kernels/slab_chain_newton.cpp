@@ -98,7 +98,7 @@ void SlabChain::find_pulls(const Run& run) {
         const SlabBlock &first = block_of(l), &next = block_of(l + 1);
         Mat2 block = at(first.at_high, l) + at(next.at_low, l + 1);
         link.rhs = link.target - at(first.high.speed_x, first.high.speed_y, l) +
-                    at(next.low.speed_x, next.low.speed_y, l + 1);
+                   at(next.low.speed_x, next.low.speed_y, l + 1);
         if (l > run.begin) {
             const Link& before = links_[l - 1];
             const Mat2 across = before.off_diagonal.transpose() * before.inverse;

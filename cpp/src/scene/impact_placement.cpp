@@ -87,7 +87,7 @@ Ends ends_along(const Scene& scene, const State& state, const Vec3& direction) {
         const Vec3 own = R.transpose() * direction;
         const double middle = direction.dot(body.position);
         const auto compare = [&](std::size_t b, const Box& box, const BlockColumn& x, const BlockColumn& y,
-                              const BlockColumn& z) {
+                                 const BlockColumn& z) {
             // A block that can not reach further is left out.
             const double center = middle + own.dot(box.center);
             const double reach = own.cwiseAbs().dot(box.half) + 1e-9 * (1.0 + std::abs(center));

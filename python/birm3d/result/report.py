@@ -21,7 +21,7 @@ END_REASONS = {
     "stopped": "the vehicle stands still at the barrier",
     "sliding": "the vehicle slides along the barrier, where nothing can change any more",
     "duration": "the duration asked for is over",
-    "longest": "the longest event without a duration is over; the outcome is not decided",
+    "longest": "the longest event without a duration is over",
     "running": "the run is not over yet",
 }
 """Why a run ended, in words."""
