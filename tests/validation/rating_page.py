@@ -45,6 +45,7 @@ def write_dossier(case: GivenTest, folder: Path) -> Path:
         case.simulation().run(),
         folder / name,
         standards=[case.standard],
+        vehicle_class=case.vehicle_class or None,
         title=f"{case.name}: published {case.published}",
         project=f"Published test; {case.source}",
     )

@@ -8,6 +8,7 @@ from html import escape
 
 __all__ = ["Criterion", "criteria_html", "criteria_text", "table_html", "table_text"]
 
+_LARGE = 1000.0  # from here on one decimal is shown
 _HEAD = ("criterion", "value", "limit", "verdict")
 
 
@@ -46,7 +47,10 @@ class Criterion:
     @property
     def shown(self) -> str:
         """The value with its unit, as a table shows it."""
-        number = self.value if isinstance(self.value, str) else f"{self.value:.2f}"
+        if isinstance(self.value, str):
+            number = self.value
+        else:
+            number = f"{self.value:.2f}" if abs(self.value) < _LARGE else f"{self.value:,.1f}"
         return f"{number} {self.unit}".strip()
 
 

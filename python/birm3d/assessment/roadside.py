@@ -141,5 +141,7 @@ EN_1317 = RoadsideStandard(
     _european_speed,
     (1.0, 1.5),
     "EN 1317 asks for full-scale crash tests; EN 16303 says when a validated computation may stand beside "
-    "them. Widths are not normalised; loss of parts and intrusion into the cabin are not computed.",
+    "them. Widths are not normalised; loss of parts and intrusion into the cabin are not computed. Mass, "
+    "speed and angle are judged each by its own tolerance; what the standard asks of speed and angle "
+    "together is not judged.",
 )

@@ -31,6 +31,11 @@ _TIPS = (
     "The overturning moment of a segment is {ratio:.1f} times its restoring one: it would begin to tip, "
     "which is not computed. Containment, widths and occupant risk hold for segments that stay upright."
 )
+_NO_SPRINGS = (
+    "Wheels have no suspension: computed vehicles roll too little. A published 10000S test at a New Jersey "
+    "barrier of 0.81 m rolled over where this model stays upright: what it says of heavy vehicles is no evidence that they do not roll "
+    "over."
+)
 _WIDTHS = (0.6, 0.8, 1.0, 1.3, 1.7, 2.1, 2.5, 3.5)
 """Greatest working width, and vehicle intrusion, of the classes 1 to 8 of EN 1317-2 [m]."""
 
@@ -67,7 +72,7 @@ def rate_roadside(
         intrusion,
         judged[0].passed is True,
         (*rows, reported),
-        " ".join([standard.caution, MODEL_CAUTION, *_tipping(result)]),
+        " ".join([standard.caution, *([] if light else [_NO_SPRINGS]), MODEL_CAUTION, *_tipping(result)]),
         test.vehicle.code,
     )
 
@@ -103,7 +108,7 @@ def _angle(result: Result) -> float:
 
 def _conditions(
     result: Result, standard: RoadsideStandard, test: RoadsideTest
-) -> tuple[Criterion, Criterion, Criterion]:
+) -> tuple[Criterion, ...]:
     vehicle, speed = test.vehicle, result.scene.impact_speed / units.km_h
     least, most = standard.speed(test.speed)
     below, above = standard.angle
@@ -131,7 +136,15 @@ def _conditions(
             f"{test.angle - below:g} to {test.angle + above:g} deg",
             test.angle - below - slack <= angle <= test.angle + above + slack,
         ),
+        *([_severity(result, test)] if standard.name == "MASH" else []),
     )
+
+
+def _severity(result: Result, test: RoadsideTest) -> Criterion:
+    """Return the impact severity beside the least that MASH accepts (its table 2-2)."""
+    severity = float(result.metrics["impact_severity"]) / 1e3
+    least = _LEAST_SEVERITY * test.severity / 1e3
+    return Criterion("impact severity", severity, "kJ", f"at least {least:.1f} kJ", severity >= least)
 
 
 def _containment(result: Result, name: str) -> Criterion:
@@ -208,8 +221,6 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
     limits = FLAIL_LIMITS["MASH"]
     roll, pitch = _attitude(result)
     upright = result.outcome != "rolled_over"
-    severity = float(result.metrics["impact_severity"]) / 1e3
-    least = _LEAST_SEVERITY * test.severity / 1e3
     rows: list[Criterion] = [
         _containment(result, "A: contained, redirected or stopped"),
         Criterion("D: compartment", "not computed", "", "", None),
@@ -230,7 +241,6 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
             Criterion("greatest roll", roll, "deg", "", None),
         ]
     rows += [
-        Criterion("impact severity", severity, "kJ", f"at least {least:.1f} kJ", None),
         _box_row(exit_box(result, not light), judged=False),
         Criterion("dynamic deflection", _deflection(result), "m", "", None),
         Criterion("working width", _working_width(result), "m", "", None),

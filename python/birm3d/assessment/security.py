@@ -187,7 +187,8 @@ def _speed_row(speed: float, unit: str, windows: Sequence[_Window], level: str |
     texts = [
         f"{name}: {least:g} to {most:g}".replace(" to inf", " and above") for name, least, most in windows
     ]
-    return Criterion("impact speed", speed, unit, "; ".join(texts), level is not None, level or "no level")
+    limit = f"level {'; '.join(texts)} {unit}"
+    return Criterion("impact speed", speed, unit, limit, level is not None, level or "no level")
 
 
 def _angle_row(result: Result) -> Criterion:

@@ -34,6 +34,7 @@ class _Folder(click.ParamType):  # type: ignore[type-arg,unused-ignore]
     "--output", "-o", type=_Folder(), required=True, help="Folder: new, empty, or of an earlier dossier."
 )
 @click.option("--standard", "standards", multiple=True, help=f"{STANDARD_HELP}  [default: those that suit]")
+@click.option("--vehicle-class", help="What the standards call the vehicle.  [default: by kind and mass]")
 @click.option(
     "--study",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
@@ -54,6 +55,7 @@ def report(
     scene: Path | None,
     output: Path,
     standards: tuple[str, ...],
+    vehicle_class: str | None,
     study: Path | None,
     draws: int,
     title: str | None,
@@ -78,6 +80,7 @@ def report(
         study=beside,
         draws=draws,
         standards=standards or None,
+        vehicle_class=vehicle_class,
         title=title,
         project=project,
         client=client,

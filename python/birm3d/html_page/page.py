@@ -15,7 +15,6 @@ from ..barrier.text import barrier_text
 from ..io.atomic_write import whole_file
 from ..result.crush_profile import Side, crushed_sides
 from ..result.element_loads import touched_elements
-from ..result.event import DECIDED
 from ..result.metrics import METRIC_UNITS
 from ..result.report import END_REASONS
 from ..result.summary import ELEMENT_COLUMNS, element_rows, outcome_rows
@@ -165,8 +164,8 @@ def _check_rows(result: Result) -> list[tuple[str, ...]]:
     ):
         good = metrics[name] <= limit
         rows.append((label, "✓ yes" if good else "✗ no", f"{limit:g}", f"{metrics[name]:.1e}"))
-    decided = result.end_reason in DECIDED
-    rows.append(("the outcome is decided", "✓ yes" if decided else "✗ no", "", result.end_reason))
+    decided = result.outcome != "undecided"
+    rows.append(("the outcome is decided", "✓ yes" if decided else "✗ no", "", result.outcome))
     return rows
 
 

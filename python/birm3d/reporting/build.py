@@ -32,6 +32,7 @@ def dossier(
     study: Study | None = None,
     draws: int = 16,
     standards: Sequence[str] | None = None,
+    vehicle_class: str | None = None,
     design_loads: DesignLoad | None = None,
     title: str | None = None,
     project: str = "",
@@ -63,6 +64,9 @@ def dossier(
     standards
         To rate by, see :func:`birm3d.rate`. ``None``: those for security barriers where the path is within 45
         degrees of square to the barrier, else MASH and EN 1317; of them those that know the vehicle.
+    vehicle_class
+        What the standards call the vehicle, as ``"PU"``, see :func:`birm3d.rate`; ``None``: by its kind and
+        mass. Give it for a vehicle whose mass no standard has.
     design_loads
         What the elements have to carry, see :func:`birm3d.design_load`; ``None``: that of this run alone.
     title, project, client, author, date
@@ -84,9 +88,9 @@ def dossier(
         raise ValueError(f"result must have at least 2 rows, got {len(run.time)}")
     if not run.scene.impact_speed > 0.0:
         raise ValueError(f"result must be of a vehicle that moves, got {run.scene.impact_speed} m/s")
-    from .study_case import case_of
+    from .study_case import Asked, case_of
 
-    asked = None if standards is None else tuple(standards)
+    asked = Asked(None if standards is None else tuple(standards), vehicle_class)
     case = case_of(run, beside, asked, design_loads, prediction, draws)
     facts = {
         "project": project,

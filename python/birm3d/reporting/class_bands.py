@@ -33,6 +33,7 @@ _PARTS = {
     "barrier_friction": "friction of vehicle on barrier",
     "tire_friction": "friction of tyres on the ground",
 }
+_ROUNDING = 1e-9  # values below are rounding errors
 _Z = 1.2816  # of the normal distribution, 80 %, two sides
 
 
@@ -55,7 +56,12 @@ class ClassBands:
 
 
 def class_bands(
-    result: Result, prediction: Prediction | None, draws: int, standards: Sequence[str], with_risk: bool
+    result: Result,
+    prediction: Prediction | None,
+    draws: int,
+    standards: Sequence[str],
+    with_risk: bool,
+    vehicle_class: str | None = None,
 ) -> ClassBands | str:
     """Return the bands of a run, or why there are none.
 
@@ -69,6 +75,8 @@ def class_bands(
         That rate the run.
     with_risk
         Whether the run has occupant risk.
+    vehicle_class
+        What the standards call the vehicle; ``None``: by its kind and mass.
     """
     if prediction is None and draws == 0:
         return "no vehicles of its class were drawn (draws=0)"
@@ -81,7 +89,7 @@ def class_bands(
                 if "[[scatter]]" not in str(reason):
                     raise
                 return f"the file of {result.scene.vehicle.name!r} does not say how its class scatters"
-        look = partial(_look, standards=standards, with_risk=with_risk)
+        look = partial(_look, standards=standards, with_risk=with_risk, vehicle_class=vehicle_class)
         found, failed = look_at_study(prediction.study, look, progress=False)
     ratings = {}
     for standard in standards:
@@ -94,13 +102,13 @@ def class_bands(
 
 
 def _look(
-    run: Result, standards: Sequence[str], with_risk: bool
+    run: Result, standards: Sequence[str], with_risk: bool, vehicle_class: str | None
 ) -> tuple[dict[str, Rating], OccupantRisk | None]:
     """Return the ratings and the occupant risk of one vehicle of the class, as far as it has them."""
     ratings = {}
     for standard in standards:
         try:
-            ratings[standard] = rate(run, standard)
+            ratings[standard] = rate(run, standard, vehicle_class=vehicle_class)
         except ValueError:  # its outcome is not decided; the share of the others is shown
             continue
     try:
@@ -139,7 +147,7 @@ def class_blocks(result: Result, bands: ClassBands | str) -> Iterator[Block]:
     for name, *ends in predicted._answers():
         size, unit = shown_unit(METRIC_UNITS.get(name, ""))
         own = result.metrics.get(name) if name in result.metrics else None
-        numbers = ("–" if number is None else f"{number / size:.4g}" for number in (own, *ends))
+        numbers = ("–" if number is None else _number(number / size) for number in (own, *ends))
         cells.append((name.replace("_", " "), *numbers, unit))
     yield Table(
         f"This run beside {predicted.share:.0%} of the vehicles of its class",
@@ -148,6 +156,13 @@ def class_blocks(result: Result, bands: ClassBands | str) -> Iterator[Block]:
         numbers=True,
     )
     yield Caution(predicted.caution)
+
+
+def _number(value: float) -> str:
+    """Return a number as a table shows it: no power of ten up to seven digits, rounding errors as zero."""
+    if abs(value) < _ROUNDING:
+        return "0"
+    return f"{value:,.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"
 
 
 def headline_table(result: Result, bands: ClassBands | str) -> Table:

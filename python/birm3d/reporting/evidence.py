@@ -10,7 +10,6 @@ from ..plotting.energies import plot_energies
 from ..plotting.figure import new_figure
 from ..plotting.style import prepare, shown_unit
 from ..result.energy_balance import ENERGY_LIMIT, MOMENTUM_LIMIT
-from ..result.event import DECIDED
 from .blocks import Block, Caution, Section, Table, Text
 from .figures import figure
 from .given_tests import Compared
@@ -197,8 +196,7 @@ def _criteria(case: Case) -> Iterator[tuple[str, str, str, str]]:
     )
     worst = max((error for *_, error in computing_error(case) if error is not None), default=0.0)
     yield "headline numbers with a hundredth of the tolerance", f"{worst:.1e}", "1 %", verdict(worst <= 0.01)
-    decided = result.end_reason in DECIDED
-    yield "the outcome is decided", result.end_reason, "", verdict(decided)
+    yield "the outcome is decided", result.outcome, "", verdict(result.outcome != "undecided")
     told = len(case.warnings)
     yield "warnings of the run", str(told), "none", "pass" if told == 0 else "see the section on warnings"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from importlib.resources import files as resources
 from typing import Any
@@ -27,7 +28,7 @@ from .verdict import risk_section, verdict_section
 
 __all__ = ["page"]
 
-_GOOD, _BAD = ("pass", "right"), ("FAIL", "WRONG", "NOT")
+_VERDICT = re.compile(r"(pass|right)\b|(FAIL|WRONG|NOT)\b")
 
 
 def page(case: Case, title: str | None, facts: Mapping[str, str], beside: Mapping[str, bytes]) -> str:
@@ -108,7 +109,6 @@ def _tidy(text: str) -> str:
 
 
 def _mark(cell: str) -> str:
-    """Return the class of a cell with a verdict."""
-    if cell.startswith(_GOOD):
-        return "good"
-    return "bad" if cell.startswith(_BAD) else ""
+    """Return the class of a cell with a verdict; a verdict is a word of its own."""
+    found = _VERDICT.match(cell)
+    return "" if found is None else "good" if found[1] else "bad"

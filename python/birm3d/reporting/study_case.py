@@ -22,7 +22,7 @@ from ..study.predict import Prediction
 from .class_bands import ClassBands, class_bands
 from .given_tests import Compared, nearest
 
-__all__ = ["Case", "case_of", "is_oblique"]
+__all__ = ["Asked", "Case", "case_of", "is_oblique"]
 
 SECURITY = ("ASTM F2656", "ISO 22343-1", "IWA 14-1", "PAS 68", "SD-STD-02.01")
 ROADSIDE = ("MASH", "EN 1317")
@@ -30,6 +30,22 @@ _FRAMES = 60  # of the replay
 _FINER = 1e-2  # of the tolerance
 _LEAST_TOLERANCE = 1e-8
 _MOST_RATED = 2000  # runs of a study that are run once more to be rated
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a run is to be rated by.
+
+    Attributes
+    ----------
+    standards : tuple of str or None
+        ``None``: those that suit the impact and know the vehicle.
+    vehicle_class : str or None
+        What they call the vehicle; ``None``: by its kind and mass.
+    """
+
+    standards: tuple[str, ...] | None
+    vehicle_class: str | None
 
 
 @dataclass(frozen=True)
@@ -84,7 +100,7 @@ def is_oblique(result: Result) -> bool:
 def case_of(
     result: Result,
     study: Study | None,
-    standards: tuple[str, ...] | None,
+    asked: Asked,
     design_loads: DesignLoad | None,
     prediction: Prediction | None = None,
     draws: int = 0,
@@ -105,7 +121,7 @@ def case_of(
             f"{result.state_hash:016x} (result of birm3d {result.version}): run its scene anew"
         )
     framed = result if result.frames is not None else result.with_frames(min(_FRAMES, len(result.time)))
-    ratings, reasons = _rated(framed, standards)
+    ratings, reasons = _rated(framed, asked)
     risk = _risk(framed)
     names = [rating.standard for rating in ratings if "no rating" not in rating.designation]
     return Case(
@@ -114,38 +130,41 @@ def case_of(
         study=study,
         ratings=ratings,
         not_rated=reasons,
-        rating_study=None if study is None or not ratings else _rated_study(study, ratings[0].standard),
+        rating_study=None if study is None or not ratings else _rated_study(study, ratings[0].standard, asked),
         risk=risk,
         design_loads=_loads(framed, draws) if design_loads is None else design_loads,
-        bands=class_bands(result, prediction, draws, names, not isinstance(risk, str)),
+        bands=class_bands(
+            result, prediction, draws, names, not isinstance(risk, str), asked.vehicle_class
+        ),
         tests=[] if result.scene.barrier is None else nearest(result.scene),
         finer=_finer(result),
         warnings=list(dict.fromkeys(str(one.message) for one in told)),
     )
 
 
-def _rated(result: Result, standards: tuple[str, ...] | None) -> tuple[tuple[Rating, ...], dict[str, str]]:
-    if standards is not None:
-        return tuple(rate(result, standard) for standard in standards), {}
+def _rated(result: Result, asked: Asked) -> tuple[tuple[Rating, ...], dict[str, str]]:
+    called = asked.vehicle_class
+    if asked.standards is not None:
+        return tuple(rate(result, name, vehicle_class=called) for name in asked.standards), {}
     if result.scene.barrier is None:
         return (), {}
     ratings, reasons = [], {}
     for standard in ROADSIDE if is_oblique(result) else SECURITY:
         try:
-            ratings.append(rate(result, standard))
+            ratings.append(rate(result, standard, vehicle_class=called))
         except ValueError as reason:  # it does not know the vehicle
             reasons[standard] = str(reason)
     ratings.sort(key=lambda rating: "no rating" in rating.designation)
     return tuple(ratings), reasons
 
 
-def _rated_study(study: Study, standard: str) -> RatingStudy | None:
+def _rated_study(study: Study, standard: str, asked: Asked) -> RatingStudy | None:
     if len(study) > _MOST_RATED or not study.parameters or study._scene is None:
         return None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of its runs; the study has told them
         try:
-            return rate(study, standard)
+            return rate(study, standard, vehicle_class=asked.vehicle_class)
         except ValueError:  # none of its runs is one that the standard knows
             return None
 

@@ -28,6 +28,7 @@ def verdict_section(case: Case) -> Section:
         Table("At a glance", ("question", "answer"), list(_glance(case))),
         headline_table(result, case.bands),
     ]
+    blocks += [Caution(f"The run gave a warning: {text}") for text in case.warnings]
     if not isinstance(case.bands, str):
         blocks.append(Caution(case.bands.prediction.caution))
     if result.scene.barrier is None:
