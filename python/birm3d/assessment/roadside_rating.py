@@ -32,9 +32,9 @@ _TIPS = (
     "which is not computed. Containment, widths and occupant risk hold for segments that stay upright."
 )
 _NO_SPRINGS = (
-    "Wheels have no suspension: computed vehicles roll too little. A published 10000S test at a New Jersey "
-    "barrier of 0.81 m rolled over where this model stays upright: what it says of heavy vehicles is no evidence that they do not roll "
-    "over."
+    "Wheels have no suspension: computed vehicles roll too little. In a published 10000S test the truck "
+    "rolled over a New Jersey barrier of 0.81 m; computed, it stays upright. An upright heavy vehicle here is no "
+    "evidence that it does not roll over."
 )
 _WIDTHS = (0.6, 0.8, 1.0, 1.3, 1.7, 2.1, 2.5, 3.5)
 """Greatest working width, and vehicle intrusion, of the classes 1 to 8 of EN 1317-2 [m]."""
@@ -106,9 +106,7 @@ def _angle(result: Result) -> float:
     return min(angle, 180.0 - angle)
 
 
-def _conditions(
-    result: Result, standard: RoadsideStandard, test: RoadsideTest
-) -> tuple[Criterion, ...]:
+def _conditions(result: Result, standard: RoadsideStandard, test: RoadsideTest) -> tuple[Criterion, ...]:
     vehicle, speed = test.vehicle, result.scene.impact_speed / units.km_h
     least, most = standard.speed(test.speed)
     below, above = standard.angle

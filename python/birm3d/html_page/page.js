@@ -31,7 +31,7 @@ data.panels.forEach((panel, n) => {
     },
   }));
   Plotly.newPlot(div, curves, {
-    title: { text: panel.title, font: { size: 14 } },
+    title: { text: panel.cut ? `${panel.title} (${panel.cut})` : panel.title, font: { size: 14 } },
     font,
     margin: narrow ? { l: 50, r: 6, t: 32, b: 84 } : { l: 62, r: 12, t: 36, b: 76 },
     hovermode: "x unified",
@@ -61,9 +61,9 @@ const shapes = plan.barrier.map((faces) => ({
   x: joined(faces, 0), y: joined(faces, 1), name: "barrier", mode: "lines", fill: "toself",
   fillcolor: "#b9b4aa", line: { color: "#b9b4aa", width: 1 }, hoverinfo: "skip", showlegend: false,
 }));
-const paths = plan.paths.map((path) => ({
+const paths = plan.paths.map((path, unit) => ({
   x: path[0], y: path[1], name: "path of the mass centre", mode: "lines",
-  line: { color: "#000000", width: 1 },
+  line: { color: "#000000", width: 1 }, showlegend: unit === 0,
 }));
 const first = plan.outlines[0].map((polygon, unit) => ({
   x: polygon[0], y: polygon[1], name: "at t = 0", mode: "lines", hoverinfo: "skip",

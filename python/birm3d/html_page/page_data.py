@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import units
+from ..plotting.blows import readable_level
 from ..plotting.energies import energy_look
 from ..plotting.plan_axes import PlanAxes
 from ..plotting.style import DASH_DOT, DASHED, DOTTED, LEAST_ANGLE, LEAST_RATE, SOLID, filtered
@@ -32,6 +33,8 @@ Curves: TypeAlias = list[tuple[str, Floats]]
 _ROWS = 3000  # more than a screen has pixels across
 _ACCURACY = 1e-3  # of outlines, m
 _DIGITS = 6
+_BLOWS = ("kN", "g")  # units of what a blow may flatten
+_MARGIN = 0.05  # of a vertical range
 _ENERGIES = "Energy balance"
 _LEAST = {"deg": LEAST_ANGLE, "deg/s": LEAST_RATE}
 _DASHES = {SOLID: "solid", DASHED: "dash", DASH_DOT: "dashdot", DOTTED: "dot"}
@@ -41,11 +44,12 @@ def page_data(result: Result, frames: int) -> dict[str, Any]:
     """Return what the page's script draws; of long runs every so many rows."""
     every = -(-len(result.time) // _ROWS)
     ms = result.time[::every] * 1e3
+    interval = result.scene.settings.output_interval
     panels: list[dict[str, Any]] = [
         {
             "title": name,
             "unit": unit,
-            "range": _range(unit, curves),
+            **_vertical(unit, curves, interval),
             "curves": [{"name": label, "y": _short(values[::every])} for label, values in curves],
         }
         for name, unit, curves in _panels(result)
@@ -63,15 +67,26 @@ def page_data(result: Result, frames: int) -> dict[str, Any]:
     }
 
 
-def _range(unit: str, curves: Curves) -> list[float] | None:
-    """Return a range for angles and rates that are rounding errors; ``None``: that of the curves."""
+def _vertical(unit: str, curves: Curves, interval: float) -> dict[str, Any]:
+    """Return the range of a panel, ``None`` that of its curves, and which peak it cuts off.
+
+    Angles and rates that are rounding errors have a range, and panels that a blow would flatten.
+    """
     least = _LEAST.get(unit, 0.0)
-    low = min(float(values.min()) for _, values in curves)
-    high = max(float(values.max()) for _, values in curves)
-    if high - low >= least:
-        return None
-    middle = 0.5 * (low + high)
-    return [middle - 0.5 * least, middle + 0.5 * least]
+    shown = [values for name, values in curves if not name.endswith("unfiltered")]
+    low = min(float(values.min()) for values in shown)
+    high = max(float(values.max()) for values in shown)
+    if high - low < least:
+        middle = 0.5 * (low + high)
+        return {"range": [middle - 0.5 * least, middle + 0.5 * least]}
+    levels = [readable_level(values, interval) for values in shown]
+    top = max(min(float(v.max()), level) for v, level in zip(shown, levels, strict=True))
+    bottom = min(max(float(v.min()), -level) for v, level in zip(shown, levels, strict=True))
+    if unit not in _BLOWS or (top >= high and bottom <= low):
+        return {"range": None}
+    margin = _MARGIN * (top - bottom)
+    peaks = (f"{peak:,.0f}" for peak, cut in ((low, bottom > low), (high, top < high)) if cut)
+    return {"range": [bottom - margin, top + margin], "cut": f"peak {' and '.join(peaks)} {unit} cut off"}
 
 
 def _panels(result: Result) -> list[tuple[str, str, Curves]]:

@@ -16,7 +16,7 @@ function replayPanel(box, data) {
   }
   const views = Object.keys(data.views).map((name) =>
     element("button", { type: "button", textContent: name, onclick: () => replay.look(name) }));
-  const sees = element("input", { type: "checkbox" });
+  const sees = element("input", { type: "checkbox", checked: data.seeThrough });
   sees.addEventListener("change", () => replay.seeThrough(sees.checked));
   const closer = [["+", 0.8, "closer"], ["\u2212", 1.25, "farther"]].map(([text, factor, title]) =>
     element("button", { type: "button", textContent: text, title, onclick: () => replay.zoom(factor) }));
@@ -37,7 +37,8 @@ function makeReplay(box, data) {
   canvas.className = "replay-canvas";
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", "three-dimensional view of the run");
-  const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
+  // Without alpha: what lies below the picture must not shine through what is drawn half transparent.
+  const gl = canvas.getContext("webgl2", { alpha: false, antialias: true, preserveDrawingBuffer: true });
   if (!gl) return { show() {}, drawn: false };
   box.appendChild(canvas);
 
@@ -170,7 +171,7 @@ function makeReplay(box, data) {
   }
   const barrier = data.barrier.map((part) => ({
     ...part,
-    mesh: body(lengths(part.vertices), new Uint32Array(bytes(part.faces))),
+    mesh: body(new Float32Array(bytes(part.vertices)), new Uint32Array(bytes(part.faces))),
   }));
   const [low, high] = data.ground;
   const floor = body(Float32Array.of(low[0], low[1], -0.02, high[0], low[1], -0.02, high[0], high[1], -0.02,
@@ -227,19 +228,23 @@ function makeReplay(box, data) {
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const unitOf = (a) => a.map((x) => x / Math.hypot(...a));
   const camera = { ...data.camera };
-  let seeThrough = false, instant = data.time[0];
-  function eye() {
+  let seeThrough = data.seeThrough, instant = data.time[0];
+  function eye() { // from the point that is looked at
     const flat = Math.cos(camera.up);
     const away = [flat * Math.cos(camera.around), flat * Math.sin(camera.around), Math.sin(camera.up)];
-    return data.target.map((x, i) => x + camera.far * away[i]);
+    return away.map((x) => camera.far * x);
   }
   function render() {
     const ratio = Math.min(2, globalThis.devicePixelRatio || 1);
     const width = Math.round(canvas.clientWidth * ratio), height = Math.round(canvas.clientHeight * ratio);
     if (width === 0 || height === 0) return;
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
-    const place = eye();
-    const back = unitOf(place.map((x, i) => x - data.target[i]));
+    const now = between(instant);
+    const target = data.targets.length === 1 ? data.targets[0]
+      : mixed(data.targets[now[0]], data.targets[now[1]], now[2]);
+    const away = eye();
+    const place = target.map((x, i) => x + away[i]);
+    const back = unitOf(away);
     const right = unitOf(cross([0, 0, 1], back));
     const up = cross(back, right);
     const view = Float32Array.of(right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2],
@@ -260,7 +265,6 @@ function makeReplay(box, data) {
       draw(floor, still, "#e4e6e2", { light: false });
       draw(grid, still, "#c3c7c0", { light: false });
     }
-    const now = between(instant);
     for (const unit of units) {
       move(unit, now);
       gl.enable(gl.POLYGON_OFFSET_FILL);

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ..barrier.kinds import Bollards, Pole
 from ..barrier.surfaces import barrier_axes, barrier_surfaces
+from ..result.crushed_side import crushed_direction
 from ..result.skin import Skin, skins_at
 from ..vehicle.unit_shapes import UnitShape, unit_shapes
 
@@ -31,6 +31,7 @@ _STEP = 1e-3  # of packed lengths, m
 _MOVES = 5e-4  # a node that moves by less stays, m
 _AROUND = 6.0  # ground past what is shown, m
 _MARGIN = 1.25  # of the picture around what is shown
+_FAR = 3.0  # lengths of a vehicle; one that goes further is followed
 _HALF_ANGLE = 0.3  # of the lens, rad; as in replay.js
 
 
@@ -50,7 +51,7 @@ def _parts(result: Result) -> bool:
 
 
 def replay_data(result: Result, frames: int = 60) -> dict[str, Any]:
-    """Return what replay.js draws: millimetres in 16 bits, only of nodes that move.
+    """Return what replay.js draws: lengths of the vehicle in 16 bits, only of nodes that move.
 
     Parameters
     ----------
@@ -95,7 +96,7 @@ def replay_data(result: Result, frames: int = 60) -> dict[str, Any]:
         "ground": [low[:2].tolist(), high[:2].tolist()],
         "greatest": max(_LEAST_SCALE, *crushed),
         "colors": list(CRUSH_COLORS),
-        **_cameras(result, skins, world),
+        **_cameras(result, skins, world, instant),
     }
 
 
@@ -131,7 +132,10 @@ def _barrier(result: Result, times: Floats, world: Floats) -> list[dict[str, Any
     """Return the surfaces of the barrier; free-standing segments with where they are over time."""
     parts: list[dict[str, Any]] = []
     for i, (vertices, faces) in enumerate(barrier_surfaces(result.scene.barrier, world)):
-        part: dict[str, Any] = {"vertices": _packed(vertices), "faces": _text(faces.astype("<u4"))}
+        part: dict[str, Any] = {
+            "vertices": _text(np.asarray(vertices, "<f4")),  # they may be further off than 16 bits reach
+            "faces": _text(faces.astype("<u4")),
+        }
         if i < result.segment_position.shape[1]:
             place = result.segment_position[:, i]
             foot = [np.interp(times, result.time, place[:, axis]) for axis in (0, 1)]
@@ -141,25 +145,45 @@ def _barrier(result: Result, times: Floats, world: Floats) -> list[dict[str, Any
     return parts
 
 
-def _cameras(result: Result, skins: list[tuple[Skin, ...]], world: Floats) -> dict[str, Any]:
-    """Return the point that is looked at, the camera at first, and others by name."""
+def _cameras(result: Result, skins: list[tuple[Skin, ...]], world: Floats, instant: int) -> dict[str, Any]:
+    """Return the points that are looked at over the frames, the camera at first, and others by name.
+
+    A vehicle that goes far is followed, as it would be a dot in a picture of its whole path. The camera
+    stands where the greatest crush shows, and sees through walls, which would hide it.
+    """
     barrier = result.scene.barrier
     along, out, _ = barrier_axes(barrier)
-    low, high = world.min(axis=0), world.max(axis=0)
-    radius = 0.5 * float(np.linalg.norm(high - low))
     oblique = not 45.0 <= result.scene.impact_angle <= 135.0
-    if oblique:  # from where it goes: the struck corner shows
+    low, high = world.min(axis=0), world.max(axis=0)
+    targets = np.array([[*(0.5 * (low + high))[:2], 0.35 * (low[2] + high[2])]])
+    near = np.vstack([skin.world for skin in skins[instant]])
+    long = float(np.linalg.norm(np.ptp(near[:, :2], axis=0)))
+    followed = float(np.linalg.norm((high - low)[:2])) > _FAR * long
+    if followed:
+        middles = [np.mean([skin.center for skin in one], axis=0) for one in skins]
+        targets = np.array([[x, y, targets[0, 2]] for x, y, _ in middles])
+        low, high = near.min(axis=0), near.max(axis=0)
+    radius = 0.5 * float(np.linalg.norm(high - low))
+    far = _MARGIN * radius / math.tan(_HALF_ANGLE)
+    seen = crushed_direction(result, skins[instant])
+    if seen is not None:
+        first = seen
+    elif oblique:  # from where it goes: the struck corner shows
         ahead = math.copysign(1.0, float(result.velocity[0] @ along))
         first = 0.55 * out + 0.9 * ahead * along
-    else:  # posts can be looked past: what they do to the front shows
-        first = along + (-0.45 if isinstance(barrier, (Bollards, Pole)) else 0.45) * out
-    far = _MARGIN * radius / math.tan(_HALF_ANGLE)
-    around = math.atan2(first[1], first[0])
+    else:
+        first = along + 0.45 * out
+    posts = barrier is not None and barrier.has_posts
     beside = out if oblique else along
     towards = along if oblique else out
     return {
-        "target": [*(0.5 * (low + high))[:2].tolist(), float(0.35 * (low[2] + high[2]))],
-        "camera": {"around": around, "up": 0.42, "far": (0.5 if oblique else 0.7) * far},
+        "targets": np.round(targets, 3).tolist(),
+        "camera": {
+            "around": math.atan2(first[1], first[0]),
+            "up": 0.42,
+            "far": (1.0 if followed else 0.55 if oblique else 0.8) * far,
+        },
+        "seeThrough": seen is not None and barrier is not None and not posts,
         "views": {
             "three quarters": {},
             "side": {"around": math.atan2(beside[1], beside[0]), "up": 0.05},

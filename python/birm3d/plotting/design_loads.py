@@ -13,6 +13,7 @@ from ..assessment.element_design import degrees_between, design_direction
 from ..assessment.oscillator import LEAST_INTERVALS
 from ..result.element_loads import overturning
 from ..signals.filters import moving_average
+from .blows import name_cut_peaks, readable_level
 from .figure import new_figure
 from .style import BLUE, DASH_DOT, DASHED, GREEN, ORANGE, RED, filtered, legend, prepare
 
@@ -35,7 +36,8 @@ def plot_design_load(loads: DesignLoad) -> Figure:
     """Return loads by element, force and moment of the governing one, and its response spectrum.
 
     The governing element has the greatest equivalent static force. Its histories are those of the scene that
-    this force comes from. Unfiltered lines are thin. At most 12 elements are drawn, the most loaded ones.
+    this force comes from. Unfiltered lines are thin. A blow of a few milliseconds that would flatten the rest
+    is cut off, and its peak is written beside it. At most 12 elements are drawn, the most loaded ones.
 
     Raises
     ------
@@ -52,10 +54,11 @@ def plot_design_load(loads: DesignLoad) -> Figure:
     end = _end_of_load(row.load)
     direction = design_direction(row.load, loads.normal)
     degrees = degrees_between(loads.normal, direction)
+    for axes in (force, moment):
+        axes.set_xlim(0.0, end)
     _force(force, row, row.load.force @ direction, row.load.interval, degrees)
     _moment(moment, row, row.load)
     for axes in (force, moment):
-        axes.set_xlim(0.0, end)
         axes.set_xlabel("time [ms]")
     _spectrum(spectrum, loads, row)
     for axes in (bars, force, moment, spectrum):
@@ -90,7 +93,7 @@ def _bars(axes: Axes, loads: DesignLoad) -> None:
 
 
 def _force(axes: Axes, row: ElementDesign, force: Floats, interval: float, degrees: float) -> None:
-    ms = np.arange(len(force)) * interval * 1e3
+    ms = np.arange(len(force), dtype=np.float64) * (interval * 1e3)
     smooth, name = filtered(force, 60, interval)
     mean = moving_average(force, 0.05, interval)
     axes.plot(ms, force / 1e3, color=ORANGE, ls="-", lw=0.5, alpha=0.5, zorder=1.5)
@@ -99,14 +102,16 @@ def _force(axes: Axes, row: ElementDesign, force: Floats, interval: float, degre
     _mark(axes, ms, mean / 1e3, "kN")
     level = row.equivalent_static_force / 1e3
     axes.axhline(level, color=RED, ls=DASH_DOT, lw=1.4, label=f"equivalent static, {level:,.0f} kN")
-    top = max(float(smooth.max()), float(mean.max()), row.equivalent_static_force) / 1e3
-    axes.set_ylim(min(0.0, 1.1 * float(smooth.min()) / 1e3), 1.25 * top)
+    shown = readable_level(smooth, interval)
+    top = max(min(float(smooth.max()), shown), float(mean.max()), row.equivalent_static_force) / 1e3
+    axes.set_ylim(min(0.0, 1.1 * max(float(smooth.min()), -shown) / 1e3), 1.25 * top)
     axes.set_ylabel("force [kN]")
+    name_cut_peaks([(axes, [(ms, smooth / 1e3)], "kN")])
     axes.set_title(f"{row.name}: force at {round(degrees)}° from the normal", fontsize="medium")
 
 
 def _moment(axes: Axes, row: ElementDesign, load: ElementLoad) -> None:
-    ms = np.arange(len(load.moment)) * load.interval * 1e3
+    ms = np.arange(len(load.moment), dtype=np.float64) * (load.interval * 1e3)
     smooth, name = filtered(load.moment, 60, load.interval)
     mean = moving_average(load.moment, 0.05, load.interval)
     curves = [overturning(moment, load.line) / 1e3 for moment in (load.moment, smooth, mean)]
@@ -114,8 +119,10 @@ def _moment(axes: Axes, row: ElementDesign, load: ElementLoad) -> None:
     axes.plot(ms, curves[1], color=ORANGE, ls="-", lw=2.2, label=name)
     axes.plot(ms, curves[2], color=BLUE, ls=DASHED, lw=1.8, label="mean over the last 50 ms")
     _mark(axes, ms, curves[2], "kN m")
-    axes.set_ylim(0.0, 1.25 * max(float(curves[1].max()), float(curves[2].max())))
+    shown = readable_level(curves[1], load.interval)
+    axes.set_ylim(0.0, 1.25 * max(min(float(curves[1].max()), shown), float(curves[2].max())))
     axes.set_ylabel("moment [kN m]")
+    name_cut_peaks([(axes, [(ms, curves[1])], "kN m")])
     axes.set_title(f"{row.name}: overturning moment about its foot", fontsize="medium")
 
 
@@ -149,11 +156,11 @@ def _spectrum(axes: Axes, loads: DesignLoad, row: ElementDesign) -> None:
     axes.annotate(
         f"{own:g} s: {row.dynamic_load_factor:.2f}",
         (own, row.dynamic_load_factor),
-        (0.0, -14.0),
+        (9.0, 9.0),
         textcoords="offset points",
-        ha="center",
         fontsize="small",
         color=RED,
+        bbox={"fc": "w", "ec": "none", "pad": 1.0, "alpha": 0.85},
         zorder=7,
     )
     axes.set_ylim(0.0, 1.12 * axes.get_ylim()[1])

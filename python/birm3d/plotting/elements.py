@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..result.element_loads import overturning, resultant_height, touched_elements
+from .blows import readable_level
 from .figure import new_figure
 from .style import CYCLE, STYLES, WIDTHS, filtered, legend, prepare, title
 
@@ -23,8 +24,11 @@ Floats = npt.NDArray[np.float64]
 
 # A height is drawn where the force is above this share of the element's peak: below, it is noise.
 _HEIGHT_SHARE = 0.05
+# The panel of heights is as high as asked for where the force is above this share; less may ring.
+_HEAVY = 0.25
 # The figure ends where all forces stay below this share of the greatest, and some room after it.
 _LOAD_SHARE, _ROOM = 0.01, 1.08
+_CUT = 1.05  # of what a panel shows: peaks above are cut off
 # Peaks nearer to each other than these shares of the panel are marked once.
 _SAME_TIME, _SAME_VALUE = 0.02, 0.02
 
@@ -41,7 +45,8 @@ def plot_elements(result: Result) -> Figure:
     Forces and moments after CFC 60 (SAE J211-1), before magnitudes are taken; their peaks are marked with
     their values. Of walls the moment is that about their line, as in :class:`birm3d.ElementLoad`.
     Heights follow from both. They are not drawn where the horizontal force is below 5 % of its peak. The
-    figure ends where the load does.
+    figure ends where the load does. A blow of a few milliseconds that would flatten the rest is cut off, its
+    peak marked at the upper edge.
 
     Raises
     ------
@@ -67,9 +72,11 @@ def plot_elements(result: Result) -> Figure:
         force, class_ = filtered(load.force, 60, load.interval)
         moment, _ = filtered(load.moment, 60, load.interval)
         level = _level(force, load.line)
-        height = resultant_height(force, moment, load.line)
-        height = np.where(level > _HEIGHT_SHARE * level.max(), height, np.nan)
-        top = max(top, float(height.max(initial=0.1, where=np.isfinite(height))))
+        least = _HEIGHT_SHARE * readable_level(level, load.interval)
+        height = resultant_height(force, moment, load.line, least)
+        height = np.where(level > least, height, np.nan)
+        heavy = level > _HEAVY * readable_level(level, load.interval)
+        top = max(top, float(height.max(initial=0.1, where=heavy)))
         forces.append(np.linalg.norm(force, axis=1) / 1e3)
         moments.append(overturning(moment, load.line) / 1e3)
         force_panel.plot(ms, forces[-1], label=load.name, **look)
@@ -109,15 +116,21 @@ def _end_of_load(ms: Floats, forces: Sequence[Floats]) -> float:
 def _mark_peaks(
     axes: Axes, ms: Floats, curves: Sequence[Floats], names: Sequence[str], end: float, unit: str
 ) -> None:
-    """Mark the greatest value of each curve and write it above the curves, one below the other."""
-    top = max(float(curve.max()) for curve in curves)
+    """Mark the greatest value of each curve and write it above the curves, one below the other.
+
+    A blow that would flatten the rest is cut off: its mark, a triangle, is then at the upper edge.
+    """
+    interval = float(ms[1] - ms[0]) / 1e3
+    top = max(readable_level(curve, interval) for curve in curves)
     if top <= 0.0:
         return
+    edge = top * _CUT
     peaks: list[_Peak] = []
     for curve, name in zip(curves, names, strict=True):
         at = int(np.argmax(curve))
         time, value = float(ms[at]), float(curve[at])
-        axes.scatter([time], [value], s=16.0, color="k", zorder=6.0)
+        cut = value > edge
+        axes.scatter([time], [min(value, edge)], s=16.0, color="k", marker="^" if cut else "o", zorder=6.0)
         same = [
             i
             for i, peak in enumerate(peaks)
@@ -138,11 +151,12 @@ def _mark_peaks(
         height = top * (1.10 + 0.13 * row)
         axes.annotate(
             text,
-            (peak.time, peak.value),
+            (peak.time, min(peak.value, edge)),
             (peak.time + (-0.01 if late else 0.01) * end, height),
             fontsize="small",
             va="center",
             ha="right" if late else "left",
+            bbox={"fc": "w", "ec": "none", "pad": 0.5, "alpha": 0.85},
             arrowprops={"arrowstyle": "-", "lw": 0.6, "color": "0.4"},
             zorder=7.0,
         )

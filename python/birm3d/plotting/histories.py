@@ -21,6 +21,7 @@ from .style import (
     ORANGE,
     RED,
     at_least,
+    cut_peaks,
     fit,
     legend,
     plot_filtered,
@@ -43,7 +44,8 @@ def plot_histories(result: Result) -> Figure:
 
     Forces and accelerations after CFC 60 (vehicle structure, barrier), angular rates after CFC 180
     (integration), SAE J211-1; unfiltered interval means are thin lines behind. Velocities and angles are
-    states: they are not filtered.
+    states: they are not filtered. A blow of a few milliseconds that would flatten the rest of its panel is
+    cut off, and its peak is written beside it.
     """
     figure = new_figure(12.0, 10.5)
     panels = figure.subplots(3, 2, sharex=True)
@@ -90,6 +92,8 @@ def plot_histories(result: Result) -> Figure:
     for axes in panels[-1]:
         axes.set_xlabel("time [ms]")
         axes.set_xlim(0.0, float(ms[-1]))
+    for axes in (force, acceleration, rates, tires):
+        cut_peaks(axes)
     figure.suptitle(title(result))
     return figure
 

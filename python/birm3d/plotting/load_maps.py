@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from .figure import new_figure
 
@@ -19,6 +21,11 @@ __all__ = ["plot_load_map"]
 Floats = npt.NDArray[np.float64]
 
 _MOST_TEXTS = 120  # cells that are labelled with their numbers
+_NARROW = 0.6  # width over height of a map below which its panels stand side by side
+_FLAT, _FLAT_SIDE = 0.12, 0.4  # height over width, and width over height, below which scales are not equal
+_MOST_COLUMNS = 60  # whose cells have an edge
+_CROPPED = 0.01  # of the greatest peak: columns at the ends with less are not drawn
+_LEAST_CROP = 0.25  # of the columns; fewer that carry nothing are drawn
 _DARK = 0.55  # share of the greatest value from which on numbers are white
 
 
@@ -26,7 +33,10 @@ def plot_load_map(map_: LoadMap, time: float | None = None) -> Figure:
     """Return impulse and peak force of each cell; of an instant, the force then.
 
     The barrier is seen as the vehicle sees it: the place along the line, which is y, runs from right to left.
+    Of a long barrier the part is drawn where cells carry at least 1 % of the greatest peak; the title says
+    so.
     """
+    columns = _loaded(map_)
     if time is None:
         panels = [
             (f"Impulse, {map_.impulse.sum() / 1e3:.3g} kN s in all cells", "impulse [kN s]", map_.impulse),
@@ -36,26 +46,50 @@ def plot_load_map(map_: LoadMap, time: float | None = None) -> Figure:
         force = map_.at(time)
         head = f"Force at {time * 1e3:.1f} ms, {force.sum() / 1e3:,.0f} kN in all cells"
         panels = [(head, "force [kN]", force)]
-    width, height = np.ptp(map_.lateral), np.ptp(map_.height)
-    tall = float(np.clip(9.0 * height / width, 1.6, 5.0))
-    figure = new_figure(10.0, len(panels) * (tall + 0.8) + 0.6)
-    axes = figure.subplots(len(panels), 1, squeeze=False)[:, 0]
+    lateral = map_.lateral[columns.start : columns.stop + 1]
+    ratio = float(np.ptp(map_.height) / np.ptp(lateral))
+    figure, axes = _panels(len(panels), ratio)
     for panel, (head, label, values) in zip(axes, panels, strict=True):
-        _draw(figure, panel, map_, values / 1e3, label)
+        _draw(figure, panel, lateral, map_.height, values[:, columns] / 1e3, label)
+        panel.set_aspect("equal" if _FLAT < ratio < 1.0 / _FLAT_SIDE else "auto")
         panel.set_title(head, fontsize="medium")
-    figure.suptitle(map_.title, fontsize="medium")
+    text = map_.title
+    if columns != slice(0, len(map_.lateral) - 1):
+        text += f"\nfrom {lateral[0]:.1f} to {lateral[-1]:.1f} m; beyond, peaks are below 1 % of the greatest"
+    figure.suptitle(text, fontsize="medium")
     return figure
 
 
-def _draw(figure: Figure, axes: Axes, map_: LoadMap, values: Floats, label: str) -> None:
+def _loaded(map_: LoadMap) -> slice:
+    """Return the columns to draw: all, or those of a long barrier that carry load, and one more each side."""
+    peak = map_.peak.max(axis=0)
+    found = np.flatnonzero(peak > _CROPPED * peak.max(initial=0.0))
+    if not len(found):
+        return slice(0, len(peak))
+    low, high = max(0, int(found[0]) - 1), min(len(peak), int(found[-1]) + 2)
+    return slice(low, high) if high - low <= (1.0 - _LEAST_CROP) * len(peak) else slice(0, len(peak))
+
+
+def _panels(count: int, ratio: float) -> tuple[Figure, Sequence[Axes]]:
+    """Return a figure with so many panels of a map of this height over width."""
+    if ratio > 1.0 / _NARROW:
+        figure = new_figure(3.6 * count + 0.8, 6.0)
+        return figure, list(figure.subplots(1, count, squeeze=False)[0])
+    tall = float(np.clip(9.0 * ratio, 1.6, 5.0))
+    figure = new_figure(10.0, count * (tall + 0.8) + 0.6)
+    return figure, list(figure.subplots(count, 1, squeeze=False)[:, 0])
+
+
+def _draw(figure: Figure, axes: Axes, lateral: Floats, height: Floats, values: Floats, label: str) -> None:
     top = max(float(values.max(initial=0.0)), 1e-12)
+    edge = 0.4 if values.shape[1] <= _MOST_COLUMNS else 0.0
     cells = axes.pcolormesh(
-        map_.lateral, map_.height, values, cmap="YlOrRd", vmin=0.0, vmax=top, edgecolors="0.8", linewidth=0.4
+        lateral, height, values, cmap="YlOrRd", vmin=0.0, vmax=top, edgecolors="0.8", linewidth=edge
     )
     figure.colorbar(cells, ax=axes, label=label)
-    axes.set_aspect("equal")
     # Ticks change with the room that is left: labels of one width leave room for them beforehand.
     axes.yaxis.set_major_formatter("{x:.2f}")
+    axes.xaxis.set_major_locator(MaxNLocator(8 if np.ptp(lateral) > np.ptp(height) else 3))
     axes.invert_xaxis()
     axes.set_xlabel("along the barrier's line [m]")
     axes.set_ylabel("height [m]")
@@ -65,7 +99,7 @@ def _draw(figure: Figure, axes: Axes, map_: LoadMap, values: Floats, label: str)
         value = float(values[i, j])
         if value < 5e-3 * top:
             continue
-        place = (map_.lateral[j : j + 2].mean(), map_.height[i : i + 2].mean())
+        place = (lateral[j : j + 2].mean(), height[i : i + 2].mean())
         color = "w" if value > _DARK * top else "k"
-        text = f"{value:.0f}" if value >= 10.0 else f"{value:.2g}"
+        text = f"{value:,.0f}" if value >= 10.0 else f"{value:.2g}"
         axes.text(*place, text, ha="center", va="center", fontsize="x-small", color=color)

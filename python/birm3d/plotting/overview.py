@@ -18,6 +18,7 @@ from .style import (
     RED,
     SOLID,
     at_least,
+    cut_peaks,
     fit,
     legend,
     level_zeros,
@@ -35,7 +36,8 @@ __all__ = ["plot_result"]
 def plot_result(result: Result) -> Figure:
     """Return force and deceleration, motion, angles and the energy balance against time.
 
-    Forces and decelerations are shown as interval means (thin) and after CFC 60 (SAE J211-1).
+    Forces and decelerations are shown as interval means (thin) and after CFC 60 (SAE J211-1). A blow of a few
+    milliseconds that would flatten the rest is cut off, and its peak is written beside it.
     """
     figure = new_figure(11.5, 8.2)
     panels = figure.subplots(2, 2, sharex=True)
@@ -44,19 +46,19 @@ def plot_result(result: Result) -> Figure:
     ms = result.time * 1e3
     deceleration = -result.acceleration[:, 0] / units.g
 
-    right = force.twinx()
+    slowing = force.twinx()
     if result.scene.barrier is not None:
         plot_filtered(
             force, result, result.barrier_normal_force / 1e3, 60, "barrier force along the normal", BLUE
         )
-    plot_filtered(right, result, deceleration, 60, "deceleration along r", RED, 1)
+    plot_filtered(slowing, result, deceleration, 60, "deceleration along r", RED, 1)
     force.set_ylabel("barrier force [kN]")
-    right.set_ylabel("deceleration [g]")
+    slowing.set_ylabel("deceleration [g]")
     force.set_title("Barrier force, and deceleration of the mass centre")
-    for axes in (force, right):
+    for axes in (force, slowing):
         fit(axes)
-    level_zeros(force, right)
-    legend([force, right])
+    level_zeros(force, slowing)
+    legend([force, slowing])
 
     speed = np.linalg.norm(result.velocity, axis=1)
     heading = result.velocity[0] / speed[0] if speed[0] > 0.0 else np.array([1.0, 0.0, 0.0])
@@ -81,5 +83,6 @@ def plot_result(result: Result) -> Figure:
     for axes in panels[-1]:
         axes.set_xlabel("time [ms]")
         axes.set_xlim(0.0, float(ms[-1]))
+    cut_peaks(force, slowing)
     figure.suptitle(title(result))
     return figure

@@ -31,7 +31,9 @@ Floats = npt.NDArray[np.float64]
 
 _INSTANTS = 5
 _WIDTH = 10.0  # of the figure, inches
-_HEIGHTS = (4.5, 9.0)
+_TEXTS = 2.3  # of its height that texts take, inches
+_HEIGHTS = (3.4, 9.0)
+_FLAT = 2.6  # height of a panel, inches, below which its label takes two lines
 # Exit box of EN 1317-2 and MASH: depth A = a + width + 0.16 length over a length B. Cars (MASH: and pickups),
 # here up to 3.5 t, have a = 2.2 m and B = 10 m; heavier vehicles a = 4.4 m and B = 20 m.
 _CAR = 3500.0
@@ -93,8 +95,9 @@ def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box:
         drawn.append(_exit_box(axes, result, view.plan))
     draw_barrier(axes, view, around, drawn, result)
     axes.set_xlabel(view.labels[0])
-    axes.set_ylabel(view.labels[1])
-    fit_to(figure, axes, np.vstack(drawn), _WIDTH, _HEIGHTS, room=2.3)
+    fit_to(figure, axes, np.vstack(drawn), _WIDTH, _HEIGHTS, room=_TEXTS)
+    flat = figure.get_figheight() - _TEXTS < _FLAT
+    axes.set_ylabel(view.labels[1].replace("front of the", "front of\nthe") if flat else view.labels[1])
     figure.suptitle(f"{title(result)}\n{_outcome(result)}", fontsize="medium")
     figure.legend(loc="outside lower center", ncols=4, frameon=False, fontsize="small", borderaxespad=0.0)
     return figure

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 
 from ..scene.text import scene_text
 from ..signals.filters import cfc
+from .blows import name_cut_peaks, readable_level
 
 if TYPE_CHECKING:
     from ..result.result import Result
@@ -32,6 +33,7 @@ __all__ = [
     "WIDTHS",
     "Style",
     "at_least",
+    "cut_peaks",
     "filtered",
     "fit",
     "legend",
@@ -51,6 +53,7 @@ LEAST_ANGLE, LEAST_RATE = 1.0, 1.0
 BLUE, ORANGE, GREEN, RED = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 CYCLE = (BLUE, ORANGE, RED, GREEN, "#CC79A7", "#56B4E9", "#000000", "#7F7F7F")
 _UNFILTERED = "_unfiltered"
+_LEAST_ROWS = 3  # of a history; fewer are a straight line
 Style: TypeAlias = str | tuple[float, tuple[float, ...]]
 # Dashes with wide gaps, in line widths: a line below shows in them.
 SOLID: Style = "-"
@@ -108,15 +111,19 @@ def plot_filtered(
 def fit(axes: Axes) -> None:
     """Let the named lines set the vertical range; unfiltered ones may widen it by half on either side.
 
-    The impulse of a rigid contact within one row may be a thousand times the filtered force.
+    The impulse of a rigid contact within one row may be a thousand times the filtered force. A filtered blow
+    that would flatten all the rest is cut off, see :func:`cut_peaks`. Horizontal places are in ms.
     """
     named: list[tuple[float, float]] = []
     unfiltered: list[tuple[float, float]] = []
     for line in axes.get_lines():
         values = np.asarray(line.get_ydata(), float)
-        (unfiltered if line.get_label() == _UNFILTERED else named).append(
-            (float(values.min()), float(values.max()))
-        )
+        ends = (float(values.min()), float(values.max()))
+        if line.get_label() == _UNFILTERED:
+            unfiltered.append(ends)
+            continue
+        level = _readable(np.asarray(line.get_xdata(), float), values)
+        named.append((max(ends[0], -level), min(ends[1], level)))
     if not named:
         return
     low, high = float(np.min(named)), float(np.max(named))
@@ -126,6 +133,28 @@ def fit(axes: Axes) -> None:
     margin = 0.05 * (high - low)
     if margin > 0.0:
         axes.set_ylim(low - margin, high + margin)
+
+
+def _readable(ms: Floats, values: Floats) -> float:
+    if len(values) < _LEAST_ROWS:  # a straight line
+        return float(np.abs(values).max(initial=0.0))
+    return readable_level(values, float(ms[1] - ms[0]) / 1e3)
+
+
+def cut_peaks(*all_axes: Axes) -> None:
+    """Write the peaks that a panel cuts off, with the units of its labels; its limits must be final.
+
+    Axes that share the panel are given together.
+    """
+    panel = []
+    for axes in all_axes:
+        lines = [line for line in axes.get_lines() if line.get_label() != _UNFILTERED]
+        curves = [
+            (np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)) for line in lines
+        ]
+        unit = axes.get_ylabel().partition("[")[2].rstrip("]")
+        panel.append((axes, [curve for curve in curves if len(curve[1]) >= _LEAST_ROWS], unit))
+    name_cut_peaks(panel)
 
 
 def level_zeros(*all_axes: Axes) -> None:

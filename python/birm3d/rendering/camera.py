@@ -17,7 +17,7 @@ from ..vehicle.unit_shapes import unit_shapes
 if TYPE_CHECKING:
     from ..result.result import Result
 
-__all__ = ["VIEWS", "Camera", "View", "check_view", "crushed_direction", "driver_camera", "outside_camera"]
+__all__ = ["VIEWS", "Camera", "View", "check_view", "driver_camera", "outside_camera"]
 
 Floats = npt.NDArray[np.float64]
 VIEWS: tuple[View, ...] = get_args(View)
@@ -25,9 +25,6 @@ VIEWS: tuple[View, ...] = get_args(View)
 _LENS = 28.0  # vertical angle of the outer views, deg
 _DRIVER_LENS = 62.0
 _MARGIN = 1.15
-# Crush below this is not looked for [m]; of what is crushed, nodes above this share of the greatest count.
-_LEAST_CRUSH, _CRUSHED = 0.02, 0.25
-_ASIDE = 40.0  # by which the camera stands beside the direction of a crushed side, 0 at a corner, deg
 _UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -71,7 +68,7 @@ def outside_camera(
     taken
         Share of the picture's width, at its right, that is kept free.
     crushed
-        Level direction of the crushed side, see :func:`crushed_direction`.
+        Level direction of the crushed side, see :func:`birm3d.result.crushed_side.crushed_direction`.
     """
     ahead = _path(result)
     left = np.cross(_UP, ahead)
@@ -105,52 +102,6 @@ def outside_camera(
     shift = taken * aspect * (slope * distance if half_height is None else half_height)
     target = middle + (x_middle + shift) * right + y_middle * above
     return Camera(target + distance * back, target, above, _LENS, half_height)
-
-
-def crushed_direction(result: Result, skins: Sequence[Skin]) -> Floats | None:
-    """Return the level direction from which the greatest residual crush is best seen, a unit vector.
-
-    It is that of the crushed nodes from the middle of their unit, in parts of its length and width: a
-    crushed corner is seen from the corner. A crushed side is seen from beside its middle, where the barrier
-    hides less; of two such places from the left one.
-
-    Parameters
-    ----------
-    skins
-        Of all units at an instant: their poses then are used.
-
-    Returns
-    -------
-    ndarray of shape (3,) or None
-        World axes; ``None`` where nothing is crushed.
-    """
-    best, direction = _LEAST_CRUSH, None
-    for unit, (shape, skin) in enumerate(zip(unit_shapes(result.scene.vehicle), skins, strict=True)):
-        corners = np.unique(shape.quads)
-        if len(corners) == 0:
-            continue
-        nodes = shape.nodes[corners]
-        crush = np.linalg.norm(result.final_nodes(unit)[corners] - nodes, axis=1)
-        if crush.max() <= best:
-            continue
-        best = float(crush.max())
-        middle, half = 0.5 * (nodes.max(axis=0) + nodes.min(axis=0)), 0.5 * np.ptp(nodes, axis=0)
-        weight = np.where(crush > _CRUSHED * best, crush, 0.0)
-        place = (weight @ ((nodes - middle) / half) / weight.sum())[:2]
-        direction = _beside(place, skin.turn, barrier_axes(result.scene.barrier)[1])
-    return direction
-
-
-def _beside(place: Floats, turn: Floats, out: Floats) -> Floats:
-    angle = np.arctan2(place[1], place[0])
-    aside = np.radians(_ASIDE) * (1.0 - abs(np.sin(2.0 * angle)))
-    looks = []
-    for sign in (1.0, -1.0):
-        look = turn @ np.array([np.cos(angle + sign * aside), np.sin(angle + sign * aside), 0.0])
-        look[2] = 0.0
-        looks.append(look / max(float(np.linalg.norm(look)), 1e-9))
-    left, right = looks
-    return np.asarray(left if left @ out >= right @ out - 1e-6 else right)
 
 
 def driver_camera(result: Result, skins: Sequence[Skin]) -> Camera:

@@ -15,9 +15,10 @@ import numpy.typing as npt
 from .. import units
 from ..barrier.surfaces import Surface, barrier_axes, barrier_surfaces
 from ..plotting.style import title
+from ..result.crushed_side import crushed_direction
 from ..result.skin import Skin, skins_at
 from ..vehicle.unit_shapes import unit_shapes
-from .camera import Camera, View, check_view, crushed_direction, driver_camera, outside_camera
+from .camera import Camera, View, check_view, driver_camera, outside_camera
 from .unit_on_stage import Color, UnitOnStage, polygons
 
 if TYPE_CHECKING:

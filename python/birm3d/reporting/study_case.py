@@ -130,12 +130,12 @@ def case_of(
         study=study,
         ratings=ratings,
         not_rated=reasons,
-        rating_study=None if study is None or not ratings else _rated_study(study, ratings[0].standard, asked),
+        rating_study=None
+        if study is None or not ratings
+        else _rated_study(study, ratings[0].standard, asked),
         risk=risk,
         design_loads=_loads(framed, draws) if design_loads is None else design_loads,
-        bands=class_bands(
-            result, prediction, draws, names, not isinstance(risk, str), asked.vehicle_class
-        ),
+        bands=class_bands(result, prediction, draws, names, not isinstance(risk, str), asked.vehicle_class),
         tests=[] if result.scene.barrier is None else nearest(result.scene),
         finer=_finer(result),
         warnings=list(dict.fromkeys(str(one.message) for one in told)),

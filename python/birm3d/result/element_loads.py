@@ -129,7 +129,9 @@ def overturning(moment: Floats, line: Floats | None = None) -> Floats:
     return np.abs(moment @ line)
 
 
-def resultant_height(force: Floats, moment: Floats, line: Floats | None = None) -> Floats:
+def resultant_height(
+    force: Floats, moment: Floats, line: Floats | None = None, least: float | None = None
+) -> Floats:
     """Return the height at which the horizontal force alone makes its overturning moment, shape (n,) [m].
 
     With F_h the horizontal force and z up: height = M . (z x F_h) / |F_h|^2. It is the height of the point of
@@ -143,6 +145,8 @@ def resultant_height(force: Floats, moment: Floats, line: Floats | None = None) 
         Shape (n, 3) [N, N m]; z up.
     line
         Of a wall: only the force across its line and the moment about it count, shape (3,).
+    least
+        Size of F_h below which a row is 0 [N], in place of the share.
     """
     if line is not None:
         across = np.array([line[1], -line[0], 0.0])
@@ -150,7 +154,7 @@ def resultant_height(force: Floats, moment: Floats, line: Floats | None = None) 
     x, y = force[:, 0], force[:, 1]
     size = np.hypot(x, y)
     height = np.zeros(len(force))
-    enough = size > LEAST_SHARE * size.max(initial=0.0)
+    enough = size > (LEAST_SHARE * size.max(initial=0.0) if least is None else least)
     turning = moment[:, 1] * x - moment[:, 0] * y
     height[enough] = turning[enough] / size[enough] ** 2
     return height
