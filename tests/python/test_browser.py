@@ -138,6 +138,15 @@ def test_page_of_a_wall_shows_the_load_by_cell(browser: Any, wall_page: Path) ->
     visit.close()
 
 
+def test_nothing_shines_through_what_is_half_transparent(browser: Any, wall_page: Path) -> None:
+    """The page below the picture is white: no colour of the scene is."""
+    visit = Visit(browser, wall_page, DESK)
+    assert visit.page.get_by_label("see through the barrier").is_checked()
+    read = "document.querySelector('.replay-canvas').getContext('webgl2').getContextAttributes().alpha"
+    assert visit.page.evaluate(read) is False
+    visit.close()
+
+
 def opens_offline_and_fits(browser: Any, path: Path, viewport: dict[str, int]) -> None:
     """Check that a page asks for nothing, complains of nothing, and is as wide as the screen at the most."""
     visit = Visit(browser, path, viewport)

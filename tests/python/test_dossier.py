@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Study, Vehicle, scenes
 from birm3d.reporting.given_tests import Facts, _facts, errors, given_tests, nearest
+from birm3d.reporting.page import _mark
 from birm3d.reporting.uncertainty import _bands
 from birm3d.result.skin import skins_at
 from birm3d.result.summary import element_rows, headline_rows
@@ -484,6 +485,39 @@ def test_other_kinds_of_runs(make: Any, tmp_path: Path, monkeypatch: pytest.Monk
         ]
         moved = np.array(data["barrier"][1]["foot"])
         assert np.abs(moved[-1] - result.segment_position[-1, 1]).max() < 1e-3
+
+
+def test_a_verdict_is_a_word_of_its_own() -> None:
+    """Vehicles and barriers whose names begin with one are no verdicts."""
+    assert _mark("passenger_car, 900.0 kg") == _mark("rightmost bollard") == _mark("NOTE") == ""
+    assert _mark("pass") == _mark("pass: class B") == _mark("right") == "good"
+    assert _mark("FAIL: beyond C") == _mark("WRONG") == _mark("NOT contained") == "bad"
+
+
+def test_vehicle_class_takes_the_place_of_kind_and_mass(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Callable[..., int]
+) -> None:
+    """A pickup of 2,045 kg is none of ASTM F2656: it is rated as PU where that is asked for."""
+    monkeypatch.setattr("birm3d.reporting.build.find_spec", lambda name: None)
+    monkeypatch.setattr("birm3d.reporting.study_case.nearest", lambda scene: nearest(scene, 1))
+    pickup = Vehicle.preset("pickup", mesh_density=0.1).with_gvw(2045.0)
+    result = Simulation(pickup, Barrier.bollards(count=1), 13.4).run()
+    with pytest.raises(ValueError, match="vehicle_class= takes its place"):
+        birm3d.dossier(result, tmp_path / "a", standards=["ASTM F2656"], draws=0)
+    page = Page(birm3d.dossier(result, tmp_path / "a", vehicle_class="PU", draws=0))
+    glance = dict(page.table("At a glance"))
+    rating = birm3d.rate(result, "ASTM F2656", vehicle_class="PU")
+    assert glance["Rating by ASTM F2656, indicative"].startswith(f"{rating.designation} (vehicle PU); ")
+    assert "IWA 14-1" in [row[0] for row in page.table("Standards that do not rate")]
+    place = tmp_path / "run.npz"
+    result.save(place)
+    options = ["-o", str(tmp_path / "b"), "--standard", "ASTM F2656", "--vehicle-class", "PU", "--draws", "0"]
+    assert command("report", str(place), *options) == 0
+    drawn = Page(
+        birm3d.dossier(result, tmp_path / "a", standards=["ASTM F2656"], vehicle_class="PU", draws=8)
+    )
+    assert "limit" in drawn.source
+    assert "no rating: mass" in dict(drawn.table("At a glance"))["Rating by ASTM F2656, indicative"]
 
 
 def test_command_line(

@@ -218,6 +218,32 @@ def test_mash_test_of_a_pickup(pickup_on_jersey: Result, body_to_world) -> None:
     assert 0.3 < rating.penetration <= bound + 0.02
 
 
+def test_mash_asks_for_its_least_impact_severity() -> None:
+    """Speed and angle within their own tolerances, together 17 % below the nominal severity: no rating."""
+    pickup = Vehicle.preset("mash_2270p", mesh_density=0.1)
+    barrier = Barrier.jersey(height=1.07)
+    weak = rate(Simulation(pickup, barrier, units.km_h(96.5), 23.6).run(), "MASH 3-11")
+    row = {one.name: one for one in weak.criteria}
+    lateral = units.km_h(96.5) * np.sin(np.radians(23.6))
+    nominal = 0.5 * 2270.0 * (units.km_h(100.0) * np.sin(np.radians(25.0))) ** 2
+    assert row["impact severity"].value == pytest.approx(0.5 * pickup.mass * lateral**2 / 1e3, rel=1e-3)
+    assert row["impact severity"].limit == f"at least {0.92 * nominal / 1e3:.1f} kJ"
+    assert [row[name].passed for name in ("mass", "impact speed", "impact angle")] == [True] * 3
+    assert weak.designation == "MASH 3-11: no rating: impact severity"
+    asked = rate(Simulation(pickup, barrier, units.km_h(100.0), 25.0).run(), "MASH 3-11")
+    assert "no rating" not in asked.designation
+
+
+def test_heavy_vehicles_carry_the_caution_of_their_springs() -> None:
+    barrier = Barrier.jersey(height=1.07)
+    truck = Vehicle.preset("mash_10000s", mesh_density=0.1)
+    heavy = rate(Simulation(truck, barrier, units.km_h(90.0), 15.0, duration=0.8).run(), "MASH 4-12")
+    assert "no suspension" in heavy.caution
+    car = Vehicle.preset("mash_1100c", mesh_density=0.1)
+    light = rate(Simulation(car, barrier, units.km_h(100.0), 25.0).run(), "MASH 3-10")
+    assert "no suspension" not in light.caution
+
+
 def test_exit_box_by_hand(pickup_on_jersey: Result, body_to_world) -> None:
     result = pickup_on_jersey
     vehicle = result.scene.vehicle

@@ -6,7 +6,7 @@ writes tests/validation/ratings.md, and
 
     python tests/validation/rating_page.py --dossiers FOLDER
 
-a dossier for each of three cases below the folder: one right, one wrong, one of a roadside barrier.
+a dossier for each of the published tests below the folder, its published verdict or value in the head.
 """
 
 from __future__ import annotations
@@ -34,19 +34,32 @@ CASES = tuple(test for test in given_tests() if test.quantity == "containment")
 """Published tests that come with the package, data/published_tests.csv."""
 
 
-DOSSIERS = ("DSC720-1M, fixed bollard", "8-in posts with a rail, 43.5 mph", "TB51, slipform STEP barrier")
-"""Cases that get a dossier."""
+_OTHERS = [test for test in given_tests() if test.quantity != "containment" and test.recipe[1] != "nhtsa"]
+DOSSIERS = (*CASES, *{test.recipe: test for test in reversed(_OTHERS)}.values())
+"""Tests that get a dossier, one a scene: those that were rated, and those with a scene of their own."""
 
 
-def write_dossier(case: GivenTest, folder: Path) -> Path:
-    """Write the dossier of a case below a folder, its published verdict in the head; return the page."""
+def write_dossier(case: GivenTest, folder: Path, *, draws: int = 16) -> Path:
+    """Write the dossier of a test below a folder, what was published in the head; return the page.
+
+    Parameters
+    ----------
+    draws
+        Of vehicles of the class, see :func:`birm3d.dossier`.
+    """
     name = re.sub(r"[^a-z0-9]+", "-", case.name.lower()).strip("-")
+    values = [
+        f"{one.quantity.replace('_', ' ')} {one.measured:g} {one.unit}".strip()
+        for one in _OTHERS
+        if one.recipe == case.recipe
+    ]
     return birm3d.dossier(
         case.simulation().run(),
         folder / name,
-        standards=[case.standard],
+        standards=[case.standard] if case.standard else None,
         vehicle_class=case.vehicle_class or None,
-        title=f"{case.name}: published {case.published}",
+        draws=draws,
+        title=f"{case.name}: published {case.published or ', '.join(values)}",
         project=f"Published test; {case.source}",
     )
 
@@ -126,7 +139,9 @@ TTI's 1975 sedan at 24 deg, T60-KIA and FOIL 03008 (neither rating nor outcome p
 
 ## Dossiers
 
-`python tests/validation/rating_page.py --dossiers FOLDER` writes those of: {"; ".join(DOSSIERS)}.
+`python tests/validation/rating_page.py --dossiers FOLDER` writes those of all these tests, and of
+{"; ".join(case.name for case in DOSSIERS if not case.standard)}.
+Their verdicts are those of this page.
 
 ## Sources
 
@@ -146,9 +161,8 @@ def main() -> None:
         print(f"written: {PAGE}")
         return
     folder.mkdir(parents=True, exist_ok=True)
-    for case in CASES:
-        if case.name in DOSSIERS:
-            print(f"written: {write_dossier(case, folder)}")
+    for case in DOSSIERS:
+        print(f"written: {write_dossier(case, folder)}", flush=True)
 
 
 if __name__ == "__main__":
