@@ -100,7 +100,7 @@ def test_label_of_a_flat_plan_is_within_the_figure(far: Result) -> None:
     figure.canvas.draw()
     (axes,) = figure.axes
     box = axes.yaxis.label.get_window_extent()
-    assert 0.0 <= box.y0
+    assert box.y0 >= 0.0
     assert box.y1 <= figure.bbox.height
     title = figure._suptitle
     assert title is not None
