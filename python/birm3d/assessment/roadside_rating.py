@@ -33,8 +33,8 @@ _TIPS = (
 )
 _NO_SPRINGS = (
     "Wheels have no suspension: computed vehicles roll too little. In a published 10000S test the truck "
-    "rolled over a New Jersey barrier of 0.81 m; computed, it stays upright. A heavy vehicle that is computed "
-    "upright may roll over in a test."
+    "rolled over a New Jersey barrier of 0.81 m; computed, it stays upright. A heavy vehicle that is "
+    "computed upright may roll over in a test."
 )
 _WIDTHS = (0.6, 0.8, 1.0, 1.3, 1.7, 2.1, 2.5, 3.5)
 """Greatest working width, and vehicle intrusion, of the classes 1 to 8 of EN 1317-2 [m]."""
