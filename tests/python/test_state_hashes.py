@@ -57,9 +57,9 @@ HASHES = {
     "car, Jersey": "ab9804f15eb8b94a",
     "semi, wall": "018159d0597c9a30",
     "truck, pole of triangles": "aa8e3b242bda3bae",
-    "free-standing": "485616a8cbd93c13",
+    "free-standing": "f002d90f6a8ee34b",
     "minivan on its side": "cec6d1fe57e20308",
-    "finite-element car, wall": "a489be2e82d272ae",
+    "finite-element car, wall": "7e7b592c736f8330",
     "finite-element truck, wall": "9ff13b851af5cf1d",
 }
 

@@ -24,6 +24,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+// Rounding of the gap of a tyre that stands on the ground (m).
+constexpr double rounding_gap = 1e-12;
+
 // Lists in memory.contacts every rigid contact that is possible within the step, and the constraints of joints.
 void find_rigid_contacts(const Scene& scene, const State& state, double dt, const StepOptions& options,
                          KickMemory& memory) {
@@ -71,7 +74,8 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
 // Sets the separation velocities that lasting contacts have to reach, and removes those that do not act.
 // Before the drift, a contact lets the body come to its surface and no further; after it, the contact stops the approach.
 // A joint closes its gap in the drift; after it, both bodies have the same velocity at the joint.
-void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpulses>& before_drift,
+void set_lasting_targets(Stage stage, double dt, double gravity,
+                         const std::vector<ContactImpulses>& before_drift,
                          std::span<const ContactBody> bodies, std::vector<RigidContact>& contacts) {
     if (stage == Stage::before_drift) {
         for (RigidContact& contact : contacts) {
@@ -83,13 +87,18 @@ void set_lasting_targets(Stage stage, double dt, const std::vector<ContactImpuls
         }
         return;
     }
+    // A tyre that did not carry load before the drift falls on if its weight would not bring it to the ground within
+    // a step. If this half of a step stopped it, short steps would keep it above the ground: their first halves would
+    // carry nothing, and their second ones twice the load.
+    const double tire_gap = std::clamp(0.5 * gravity * dt * dt, rounding_gap, tolerance::touching_gap);
     std::erase_if(contacts, [&](const RigidContact& contact) {
         if (contact.bilateral) return false;
+        const bool is_tire = contact.source == ContactSource::tire;
         // A tyre that carried load before the drift is still in contact after it, though rotation may have opened a
         // gap of rounding size. It makes an impact only if it approached before the forces of this step.
-        if (contact.source == ContactSource::tire && before_drift[contact.body].tire[contact.index] > 0.0)
-            return contact.is_impact;
-        return contact.gap > tolerance::touching_gap || approaches_hard(contact, bodies);
+        if (is_tire && before_drift[contact.body].tire[contact.index] > 0.0) return contact.is_impact;
+        return contact.gap > (is_tire ? tire_gap : tolerance::touching_gap) ||
+               approaches_hard(contact, bodies);
     });
 }
 
@@ -210,7 +219,8 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
         trial.impact_after = time_to_impact(tolerance::resting_approach * trial.dt, bodies, memory.contacts);
     if (trial.impact_within()) return;
     memory.kick.contacts = memory.contacts;
-    set_lasting_targets(stage, trial.dt, trial.impulses, bodies, memory.kick.contacts);
+    set_lasting_targets(stage, trial.dt, scene.settings.gravity, trial.impulses, bodies,
+                        memory.kick.contacts);
     // Tyre friction needs the velocity at that end of the step. For the end after the drift, the contacts' change of
     // velocity is taken to be the one before the drift.
     if (start) {
