@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
+import time
 
 import numpy as np
 import pytest
+import shapely
 from birm3d import Barrier, LoadMap, Result, Settings, Simulation, Vehicle, scenes
 from birm3d.barrier.surfaces import barrier_surfaces
 from birm3d.filters import cfc
@@ -14,8 +17,12 @@ from birm3d.html_page.replay import replay_data
 from birm3d.plotting.blows import readable_level
 from birm3d.result.crushed_side import crushed_direction
 from birm3d.result.skin import skins_at
+from birm3d.vehicle.raster_outline import CELL
+from birm3d.vehicle.silhouette import rings, silhouette
+from birm3d.vehicle.unit_shapes import unit_shapes
 from matplotlib.axes import Axes
 from matplotlib.text import Annotation
+from scipy.spatial.transform import Rotation
 
 INTERVAL = 1e-4
 
@@ -168,3 +175,37 @@ def test_replay_looks_at_the_crush() -> None:
     assert np.array([np.cos(around), np.sin(around)]) == pytest.approx(seen[:2], abs=1e-6)
     posts = Simulation(car, Barrier.bollards(), 12.0).run()
     assert replay_data(posts, 5)["seeThrough"] is False
+
+
+@pytest.mark.parametrize("angles", [(0.0, 0.0, 0.0), (5.0, -8.0, 33.0), (80.0, 10.0, 120.0)])
+def test_outline_by_cells_is_the_outline(angles: tuple[float, float, float]) -> None:
+    """Of a vehicle that a post has dented, in any pose: within a cell and a half, and of the same area."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.3)
+    result = Simulation(car, Barrier.pole(), 14.0).run()
+    (shape,) = unit_shapes(car)
+    turn = Rotation.from_euler("xyz", angles, degrees=True).as_matrix()
+    pose = (result.final_nodes(), np.array([3.0, -7.0, 1.0]), turn)
+    exact, cells = (rings(silhouette(shape, *pose, exact=exact))[0] for exact in (True, False))
+    own, given = shapely.Polygon(cells), shapely.Polygon(exact)
+    assert own.symmetric_difference(given).area < CELL * given.length
+    assert own.area == pytest.approx(given.area, rel=0.01)
+    assert own.buffer(2.0 * CELL).contains(given.buffer(-0.5 * CELL))
+    assert given.buffer(2.0 * CELL).contains(own)
+
+
+def test_outline_of_very_many_faces_is_by_cells() -> None:
+    """Of 45,000 crumpled faces the exact outline would take a minute, or end in an error of shapely's."""
+    random = np.random.default_rng(3)
+    n = 151
+    x, y = np.meshgrid(np.linspace(0.0, 4.0, n), np.linspace(0.0, 1.5, n), indexing="ij")
+    nodes = np.column_stack([x.ravel(), y.ravel(), np.zeros(n * n)])
+    inner = (nodes[:, 0] > 0.1) & (nodes[:, 0] < 3.9) & (nodes[:, 1] > 0.1) & (nodes[:, 1] < 1.4)
+    nodes[inner] += random.normal(0.0, 0.02, (int(inner.sum()), 3))
+    corner = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
+    quads = np.column_stack([corner, corner + n, corner + n + 1, corner + 1])
+    (car,) = unit_shapes(Vehicle.preset("passenger_car", mesh_density=0.1))
+    sheet = dataclasses.replace(car, nodes=nodes, quads=quads)
+    started = time.perf_counter()
+    (ring,) = rings(silhouette(sheet, nodes, np.zeros(3), np.eye(3)))
+    assert time.perf_counter() - started < 5.0
+    assert shapely.Polygon(ring).symmetric_difference(shapely.box(0.0, 0.0, 4.0, 1.5)).area < 11.0 * CELL

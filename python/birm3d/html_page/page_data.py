@@ -31,7 +31,6 @@ Floats = npt.NDArray[np.float64]
 Curves: TypeAlias = list[tuple[str, Floats]]
 
 _ROWS = 3000  # more than a screen has pixels across
-_ACCURACY = 1e-3  # of outlines, m
 _DIGITS = 6
 _BLOWS = ("kN", "g")  # units of what a blow may flatten
 _MARGIN = 0.05  # of a vertical range
@@ -154,7 +153,7 @@ def _plan(result: Result, frames: int) -> dict[str, Any]:
         return [
             [
                 axes.plan(ring)
-                for ring in rings(silhouette(shape, skin.nodes, skin.center, skin.turn).simplify(_ACCURACY))
+                for ring in rings(silhouette(shape, skin.nodes, skin.center, skin.turn, exact=False))
             ]
             for shape, skin in zip(shapes, one, strict=True)
         ]

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
+from .raster_outline import raster_outline
 from .unit_shapes import UnitShape
 
 __all__ = ["Outline", "rings", "silhouette"]
@@ -19,11 +20,15 @@ Outline: TypeAlias = Any
 
 # Triangles whose plan is smaller stand upright and cover nothing [m^2].
 _LEAST_AREA = 1e-12
+_MANY = 20_000  # faces of a skin; those of presets have up to 10,000
+_MOST_EDGES = 4000  # of a sheet: the time to cut the plane by them grows with their square
 # Points as near to each other are one [m].
 _PLACE = 1e-7
 
 
-def silhouette(shape: UnitShape, nodes: Floats, center: Floats, turn: Floats) -> Outline:
+def silhouette(
+    shape: UnitShape, nodes: Floats, center: Floats, turn: Floats, *, exact: bool = True
+) -> Outline:
     """Return the outline seen from above: the union of the faces of the skin, projected on the ground.
 
     A unit without a skin has the convex hull of its nodes and anchors.
@@ -36,15 +41,26 @@ def silhouette(shape: UnitShape, nodes: Floats, center: Floats, turn: Floats) ->
         Its shell nodes now, body axes, shape (n, 3) [m].
     center, turn
         Mass centre (3,) [m] and rotation body to world (3, 3).
+    exact
+        Otherwise accurate to 1 cm, in a tenth of the time: see :mod:`birm3d.vehicle.raster_outline`. So are
+        skins of very many faces or folds, as imported meshes have, in any case.
     """
     if len(shape.quads) == 0:
         points = (center + np.vstack([nodes, shape.anchors]) @ turn.T)[:, :2]
         return shapely.MultiPoint(points).convex_hull
+    if not exact or len(shape.quads) > _MANY:
+        faces = np.vstack([shape.quads[:, [0, 1, 2]], shape.quads[:, [0, 2, 3]]])
+        return raster_outline((center + nodes @ turn.T)[:, :2], faces)
     # Nodes at one place are one, so that panels that lie beside each other share their edges.
     places, which = _at_one_place((center + nodes @ turn.T)[:, :2])
     triangles = which[np.vstack([shape.quads[:, [0, 1, 2]], shape.quads[:, [0, 2, 3]]])]
     area = _areas(places[triangles])
-    return shapely.union_all([_sheet(places, triangles[side * area > _LEAST_AREA]) for side in (1.0, -1.0)])
+    sheets = [triangles[side * area > _LEAST_AREA] for side in (1.0, -1.0)]
+    borders = [_unshared_edges(sheet, len(places)) for sheet in sheets]
+    if max(map(len, borders)) > _MOST_EDGES:
+        return raster_outline(places, triangles)
+    outlines = (_sheet(places, sheet, border) for sheet, border in zip(sheets, borders, strict=True))
+    return shapely.union_all(list(outlines))
 
 
 def rings(outline: Outline) -> list[Floats]:
@@ -72,19 +88,21 @@ def _areas(triangles: Floats) -> Floats:
     return area
 
 
-def _sheet(places: Floats, triangles: Ints) -> Outline:
+def _sheet(places: Floats, triangles: Ints, border: Ints) -> Outline:
     """Return the union of triangles that all look up, or all down, and may lie above each other.
 
     How many triangles cover a point changes only across an edge that two of them do not share in opposite
     directions. These edges cut the plane into pieces, each of which is covered as a whole or not at all.
     There are far fewer edges than triangles, which makes it faster than the union of the triangles.
     """
-    border = _unshared_edges(triangles, len(places))
     noded = shapely.union_all(shapely.linestrings(places[border]))
     pieces = shapely.get_parts(shapely.polygonize(shapely.get_parts(noded)))
     tree = shapely.STRtree(shapely.polygons(places[triangles]))
     covered = np.unique(tree.query(shapely.point_on_surface(pieces), predicate="intersects")[0])
-    return shapely.coverage_union_all(pieces[covered])
+    try:
+        return shapely.coverage_union_all(pieces[covered])
+    except shapely.errors.GEOSException:  # rounding has left pieces that overlap by a little
+        return shapely.union_all(pieces[covered])
 
 
 def _unshared_edges(triangles: Ints, places: int) -> Ints:
