@@ -427,3 +427,24 @@ def test_command_line(command, capsys, tmp_path) -> None:
     assert command(*arguments, "--markdown", "--json") == 2
     assert command(*arguments[:-1], "0.5") == 2
     assert "ductility must be" in capsys.readouterr().err
+
+
+def test_direction_and_load_factor_have_bands(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Recomputed from the same vehicles, one by one."""
+    crash = Simulation(Vehicle.preset("passenger_car", mesh_density=0.1), Barrier.bollards(count=3), 14.0)
+    loads = birm3d.design_load(crash, natural_period=0.05, draws=8, progress=False)
+    drawn = birm3d.predict(crash, 8, progress=False).study
+    runs = [drawn.simulation(i).run() for i in range(len(drawn))]
+    each = [birm3d.design_load(run, natural_period=0.05, draws=0, progress=False) for run in runs]
+    for row in loads:
+        if not row.touched:
+            continue
+        for name in ("direction", "dynamic_load_factor"):
+            values = np.array([getattr(one[row.name], name) for one in each])
+            low, high = row.band[name]
+            assert low == pytest.approx(np.quantile(values, 0.1, method="hazen"), rel=1e-9, abs=1e-9)
+            assert high == pytest.approx(np.quantile(values, 0.9, method="hazen"), rel=1e-9, abs=1e-9)
+    table = loads.to_dataframe()
+    assert {"direction_low", "dynamic_load_factor_high"} <= set(table.columns)
+    (line,) = [line for line in loads.to_markdown().splitlines() if line.startswith("| bollard 2")]
+    assert line.endswith("] |")

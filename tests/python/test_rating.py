@@ -409,3 +409,21 @@ def test_every_standard_says_that_it_is_indicative(stopped: Result, pickup_on_je
         assert rating.to_dict()["standard"] == standard
         assert "<table>" in rating._repr_html_()
         assert vehicle_intrusion(result) >= 0.0
+
+
+def test_level_says_by_which_value_a_test_failed() -> None:
+    """And a standard that is a level is told where levels come from."""
+    car = Vehicle.preset("small_car", mesh_density=0.1)
+    wall = Barrier.rigid_wall(height=1.0, friction=0.6)
+    crash = Simulation(car, wall, units.km_h(100.0), 20.0).run()
+    test = rate(crash, "EN 1317 TB11")
+    failed = [one for one in test.criteria if one.passed is False]
+    assert failed
+    bus = Vehicle.preset("bus_13t", mesh_density=0.1)
+    other = Simulation(bus, Barrier.rigid_wall(height=2.0), units.km_h(70.0), 20.0).run()
+    level = rate([crash, other], "EN 1317 H2")
+    row = level.criteria[0]
+    assert row.name == "test TB11"
+    assert all(f"{one.name} ({one.shown})" in str(row.value) for one in failed)
+    with pytest.raises(ValueError, match="follow from the run"):
+        rate(crash, "M30")

@@ -14,13 +14,13 @@ from ..scene.scene import Scene
 from ..simulation.parameters import varied_scene
 from ..simulation.simulation import Simulation
 from ..study.predict import SHARE, check_draws, drawn_parameters, quantiles
-from .element_design import ENVELOPED, ElementDesign
+from .element_design import BANDED, ElementDesign
 
 __all__ = ["Bands", "ClassDraws", "class_draws", "governing_scenes", "with_bands"]
 
 _DRAWS = 16
-BANDED = (*ENVELOPED, "height")
-"""Values that have a band."""
+_OF_FORCE = ("height", "direction")  # values that belong to the greatest 50-ms force
+_ROUNDING = 1e-6  # SI and degrees: by less nothing is outside a band
 
 _BLOWS = (
     "With {n} of {all} vehicles of the class a crush zone is used up and the rigid body strikes: the upper "
@@ -141,7 +141,10 @@ def with_bands(
 
 
 def _is_outside(row: ElementDesign) -> bool:
-    return any(not low <= getattr(row, name) <= high for name, (low, high) in row.band.items())
+    return any(
+        not low - _ROUNDING <= getattr(row, name) <= high + _ROUNDING
+        for name, (low, high) in row.band.items()
+    )
 
 
 def _banded(row: ElementDesign, vehicles: Sequence[Sequence[ElementDesign]]) -> ElementDesign:
@@ -150,10 +153,16 @@ def _banded(row: ElementDesign, vehicles: Sequence[Sequence[ElementDesign]]) -> 
         return row
     bands = {}
     for name in BANDED:
-        values = []
-        for runs in vehicles:
-            most = max(runs, key=lambda one: abs(getattr(one, "force_50ms" if name == "height" else name)))
-            values.append(getattr(most, name))
-        low, _, high = quantiles(np.array(values), SHARE)
+        values = np.array([_enveloped(runs, name) for runs in vehicles])
+        low, _, high = quantiles(values, SHARE)
         bands[name] = (low, high)
     return replace(row, band=FrozenMapping(bands))
+
+
+def _enveloped(runs: Sequence[ElementDesign], name: str) -> float:
+    """Return the value of one vehicle over all scenes, as the row of an envelope has it."""
+    if name == "dynamic_load_factor":
+        peak = _enveloped(runs, "peak_force")
+        return _enveloped(runs, "equivalent_static_force") / peak if peak > 0.0 else 0.0
+    by = "force_50ms" if name in _OF_FORCE else name
+    return float(getattr(max(runs, key=lambda one: abs(getattr(one, by))), name))

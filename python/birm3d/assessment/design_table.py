@@ -18,7 +18,7 @@ from ..base.frozen_mapping import FrozenMapping
 from ..io.atomic_write import whole_file
 from ..scene.scene import Scene
 from .criteria import table_html, table_text
-from .element_design import ENVELOPED, ElementDesign, System, check_system, design_direction
+from .element_design import BANDED, ENVELOPED, ElementDesign, System, check_system, design_direction
 from .oscillator import resistance
 
 if TYPE_CHECKING:
@@ -234,10 +234,10 @@ class DesignLoad:
                 self._cell(row, "peak_force"),
                 self._cell(row, "force_50ms"),
                 f"{row.height:.2f}{_band(row, 'height', 1.0)}",
-                f"{round(row.direction)}",
+                f"{round(row.direction)}{_band(row, 'direction', 1.0)}",
                 self._cell(row, "moment"),
                 self._cell(row, "equivalent_static_force"),
-                f"{row.dynamic_load_factor:.2f}",
+                f"{row.dynamic_load_factor:.2f}{_band(row, 'dynamic_load_factor', 1.0)}",
             )
             if row.force_50ms >= 1e3 * _SHOWN
             else (row.name, "0", "0", "0", "", "", "0", "0", "")
@@ -322,7 +322,7 @@ class DesignLoad:
             record.update((name, getattr(row, name)) for name in _NUMBERS)
             record["dynamic_load_factor"] = row.dynamic_load_factor
             if self.draws:
-                for name in (*ENVELOPED, "height"):
+                for name in BANDED:
                     low, high = row.band.get(name, (0.0, 0.0))
                     record.update({f"{name}_low": low, f"{name}_high": high})
             record.update(zip(_VECTOR, row.impulse_vector.tolist(), strict=True))
@@ -386,7 +386,7 @@ _UNITS = {
     "direction": "deg",
     "moment": "N m",
 }
-_UNITS |= {f"{name}_{end}": _UNITS[name] for name in (*ENVELOPED, "height") for end in ("low", "high")}
+_UNITS |= {f"{name}_{end}": _UNITS[name] for name in BANDED if name in _UNITS for end in ("low", "high")}
 
 
 def _kilo(value: float) -> str:
@@ -397,7 +397,10 @@ def _band(row: ElementDesign, name: str, size: float) -> str:
     """Return the band of a value as text, " [low, high]"; "" where there is none."""
     if name not in row.band:
         return ""
-    low, high = (f"{end:.2f}" if name == "height" else _kilo(end / size) for end in row.band[name])
+    form = {"height": "{:.2f}", "dynamic_load_factor": "{:.2f}", "direction": "{:.0f}"}.get(name)
+    low, high = (_kilo(end / size) if form is None else form.format(end + 0.0) for end in row.band[name])
+    if name == "direction" and low == high:  # of walls it is that of the normal
+        return ""
     return f" [{low} to {high}]"
 
 

@@ -20,6 +20,7 @@ from ..simulation.simulation import run_scene
 from .oscillator import LEAST_INTERVALS, resistance
 
 __all__ = [
+    "BANDED",
     "ENVELOPED",
     "ElementDesign",
     "System",
@@ -36,6 +37,9 @@ Floats = npt.NDArray[np.float64]
 
 ENVELOPED = ("impulse", "peak_force", "force_50ms", "moment", "equivalent_static_force")
 """Values of which the greatest over all scenes counts, each from a scene of its own."""
+
+BANDED = (*ENVELOPED, "height", "direction", "dynamic_load_factor")
+"""Values that have a band over the vehicles of a class."""
 
 _CLASS = 60.0
 _MOST_DUCTILITY = 100.0
@@ -84,8 +88,8 @@ class ElementDesign:
     scene : mapping of str to int
         Each of the values above that are enveloped -> number of the scene that it comes from.
     band : mapping of str to (float, float)
-        Each enveloped value and the height -> what 10 % of the vehicles of the class stay below, and what
-        10 % exceed. Empty where none were drawn.
+        Each enveloped value, the height, the direction and the dynamic load factor -> what 10 % of the
+        vehicles of the class stay below, and what 10 % exceed. Empty where none were drawn.
     touched : bool
         Whether the scene of ``equivalent_static_force`` loads it.
     case : Result, Scene or None

@@ -99,7 +99,10 @@ def split_standard(standard: str) -> tuple[str, str | None]:
             return name, None
         if standard.startswith(f"{name} "):
             return name, standard.removeprefix(f"{name} ").strip()
-    raise ValueError(f"standard must be one of {', '.join(STANDARDS)}; got {standard!r}")
+    raise ValueError(
+        f"standard must be one of {', '.join(STANDARDS)}; got {standard!r}. Levels of security barriers "
+        "(M30, K12) follow from the run"
+    )
 
 
 def _of_run(

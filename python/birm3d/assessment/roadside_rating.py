@@ -333,7 +333,7 @@ def level_rating(standard: RoadsideStandard, level: str, ratings: Sequence[Ratin
 
 def _outcome_of(part: Rating) -> str:
     """Return what became of a test, and which criteria it failed."""
-    failed = [row.name for row in part.criteria if row.passed is False]
+    failed = [f"{row.name} ({row.shown})" for row in part.criteria if row.passed is False]
     verdict = part.designation.partition(": ")[2]
     return f"{verdict} by {', '.join(failed)}" if failed and verdict == "fail" else verdict
 

@@ -187,7 +187,7 @@ def _speed_row(speed: float, unit: str, windows: Sequence[_Window], level: str |
     texts = [
         f"{name}: {least:g} to {most:g}".replace(" to inf", " and above") for name, least, most in windows
     ]
-    limit = f"level {'; '.join(texts)} {unit}"
+    limit = f"level {'; '.join(texts)} [{unit}]"
     return Criterion("impact speed", speed, unit, limit, level is not None, level or "no level")
 
 

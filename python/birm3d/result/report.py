@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .. import units
+from ..barrier.text import barrier_text
 from ..scene.text import overlap_text
 from .core_contact import core_lines
 from .element_loads import touched_elements
@@ -82,9 +83,6 @@ def report(result: RunAnalysis) -> str:
 
 
 def _barrier(barrier: Barrier) -> str:
-    names = barrier.element_names
-    count = f"{len(names)} elements" if len(names) > 1 else names[0]
     segments = barrier.core.segments
-    if segments:
-        count += f", free-standing, {segments[0].mass:.0f} kg each"
-    return f"to the line of a {type(barrier).__name__} ({count}), friction {barrier.friction:g}"
+    each = f", {segments[0].mass:,.0f} kg each" if segments else ""
+    return f"to the line of the barrier: {barrier_text(barrier)}{each}, friction {barrier.friction:g}"
