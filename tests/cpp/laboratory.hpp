@@ -99,6 +99,15 @@ inline void run(Simulation& simulation) {
     simulation.run([] {});
 }
 
+// Greatest peak deflection of any truss of the first unit (m).
+inline double deepest(const Simulation& simulation) {
+    double most = 0.0;
+    for (const TrussBlockState& block : simulation.state().units[0].trusses.block)
+        for (const double d : block.peak_deflection)
+            most = std::max(most, d);
+    return most;
+}
+
 // What may be printed when Eigen vectors are compared with CHECK_CLOSE.
 inline double distance(const Vec3& a, const Vec3& b) {
     return (a - b).norm();

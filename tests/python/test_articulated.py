@@ -188,7 +188,7 @@ def test_a_parked_semi_shares_its_weight_as_springs_do() -> None:
 
 @pytest.mark.parametrize("kind", ["fifth_wheel", "welded"])
 @pytest.mark.parametrize("angle", [90.0, 40.0, 15.0])
-def test_ledgers_close_for_each_unit(angle: float, kind: str) -> None:
+def test_balances_close_for_each_unit(angle: float, kind: str) -> None:
     result = crash(angle, kind)
     assert result.momentum_residual < 1e-9
     assert result.metrics["energy_residual"] < 1e-3

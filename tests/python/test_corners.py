@@ -55,7 +55,7 @@ def test_what_the_wall_lets_go_is_stopped_by_the_ground() -> None:
 @pytest.mark.parametrize(
     ("name", "roll"), [("passenger_car", 90.0), ("passenger_car", 180.0), ("pickup", 90.0), ("pickup", -90.0)]
 )
-def test_a_low_wall_on_the_ground_closes_the_ledger_in_any_pose(
+def test_a_low_wall_on_the_ground_closes_the_balance_in_any_pose(
     name: str, roll: float, tolerance: float
 ) -> None:
     wall = Barrier.rigid_wall(width=2.0, height=0.27)
@@ -75,7 +75,7 @@ def test_a_low_wall_on_the_ground_closes_the_ledger_in_any_pose(
         ("passenger_car", Barrier.bollards(count=9, diameter=0.05, height=0.4, spacing=0.3), 180.0, 20.0),
     ],
 )
-def test_a_stricter_tolerance_closes_the_ledger_better(
+def test_a_stricter_tolerance_closes_the_balance_better(
     name: str, barrier: Barrier, roll: float, speed: float
 ) -> None:
     residual, speeds = [], []
@@ -91,7 +91,7 @@ def test_a_stricter_tolerance_closes_the_ledger_better(
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.4])
-def test_skin_that_a_pole_draws_in_along_the_ground_keeps_the_ledger_closed(offset: float) -> None:
+def test_skin_that_a_pole_draws_in_along_the_ground_keeps_the_balance_closed(offset: float) -> None:
     """The underside of this vehicle lies on the ground. Once 1.6 % of the energy were lost, in 2,300 steps.
 
     The bound is the default tolerance of a step, relative to the approach.

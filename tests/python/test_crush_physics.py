@@ -34,7 +34,7 @@ def test_rate_sensitivity_at_constant_speed() -> None:
 
 @pytest.mark.parametrize("rate", [0.0, 0.05])
 @pytest.mark.parametrize("angle", [90.0, 60.0])
-def test_ledgers_close_at_walls_and_poles(rate: float, angle: float) -> None:
+def test_balances_close_at_walls_and_poles(rate: float, angle: float) -> None:
     car = Vehicle.preset("passenger_car", mesh_density=0.3).with_rate_sensitivity(rate)
     for barrier in (Barrier.rigid_wall(friction=0.2), Barrier.pole(diameter=0.35, friction=0.2)):
         metrics = Simulation(car, barrier, 14.0, angle).run().metrics

@@ -61,7 +61,7 @@ def test_moments_of_posts_are_the_greatest_of_any_row_and_any_mean(pickup: Vehic
     assert result.metrics["peak_overturning_moment_50ms"] == pytest.approx(max(means), rel=1e-12)
 
 
-def test_ledgers_of_the_rows_are_those_of_the_metrics(pickup: Vehicle) -> None:
+def test_balances_of_the_rows_are_those_of_the_metrics(pickup: Vehicle) -> None:
     result = crash(pickup, Barrier.rigid_wall(), 40.0)
     residual = np.abs(result.energy["residual"]).max() / result.energy["kinetic"][0]
     assert result.metrics["energy_residual"] == pytest.approx(residual, rel=1e-9, abs=1e-15)

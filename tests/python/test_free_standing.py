@@ -139,7 +139,7 @@ def test_a_heavy_segment_is_a_fixed_barrier(car: Vehicle, angle: float) -> None:
     assert free.metrics["barrier_deflection"] < 1e-6
 
 
-def test_pinned_segments_keep_together_and_the_ledger_closes(pinned: birm3d.Result) -> None:
+def test_pinned_segments_keep_together_and_the_balance_closes(pinned: birm3d.Result) -> None:
     assert pinned.end_reason == "separated"
     assert pinned.metrics["energy_residual"] < 1e-3
     assert pinned.metrics["momentum_residual"] <= 1e-9

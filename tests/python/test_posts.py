@@ -111,7 +111,7 @@ def test_skin_that_a_post_takes_along_is_not_rubbed_by_it() -> None:
 
 @pytest.mark.parametrize("name", list(SPEED))
 @pytest.mark.parametrize("share", [0.3, 0.8, 1.0, 1.1])
-def test_the_ledger_closes_wherever_the_post_stands(name: str, share: float) -> None:
+def test_the_balance_closes_wherever_the_post_stands(name: str, share: float) -> None:
     for friction in (0.0, 0.3):
         result = crash(name, share * half_width(name), height=1.0, friction=friction)
         assert result.metrics["energy_residual"] < 2e-3

@@ -162,7 +162,7 @@ def test_head_on_the_front_is_all_there_is():
 
 @pytest.mark.parametrize("profile", ["new_jersey", "f_shape", "single_slope"])
 @pytest.mark.parametrize("name", ["passenger_car", "pickup"])
-def test_the_ledger_closes(name, profile):
+def test_the_balance_closes(name, profile):
     assert climb(name, profile).metrics["energy_residual"] < 1e-3
 
 

@@ -19,6 +19,7 @@ DOCS = ROOT / "docs/pages"
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.rglob("*.md"))]
 BOUNDED = [*PAGES, ROOT / "tests/README.md", ROOT / "tests/bench/README.md"]
 MOST_WORDS = 35
+MOST_WORDS_OF_A_COMMENT = 25
 
 # What a stranger could not understand without the author, and figures of speech in the place of a term.
 BANNED = (
@@ -348,6 +349,32 @@ def test_glossary_has_the_names_of_the_code() -> None:
     names = {name for row in rows for name in re.findall(r"`([^`]+)`", row.split("|")[-2])}
     assert len(names) > 80
     assert [name for name in sorted(names) if not set(IDENTIFIER.findall(name)) <= known] == []
+
+
+def sentences_of_comments(source: str) -> list[str]:
+    """Sentences of the comments of a C++ file; an indented line is a formula or a table, and ends one."""
+    text = ""
+    for line in source.splitlines():
+        code, _, comment = line.partition("//")
+        plain = not comment.startswith("  ") and not code.strip()
+        text += f"{comment}\n" if plain else "\n\n"
+    parts = [part for paragraph in re.split(r"\n\s*\n", text) for part in re.split(r"[.:;!?]\s", paragraph)]
+    return [" ".join(part.split()) for part in parts if part.strip()]
+
+
+def test_no_sentence_of_a_comment_is_too_long() -> None:
+    long = [
+        f"{path.relative_to(ROOT)}: {words(sentence)} words: {sentence}"
+        for path in CPP_FILES
+        for sentence in sentences_of_comments(path.read_text(encoding="utf-8"))
+        if words(sentence) > MOST_WORDS_OF_A_COMMENT
+    ]
+    assert not long, "\n".join(long)
+
+
+def test_sentences_of_comments_are_found() -> None:
+    source = "// One two\n// three. Four:\n//   x = y\n// five\nint x;  // six\n"
+    assert sentences_of_comments(source) == ["One two three", "Four:", "five"]
 
 
 @pytest.mark.slow

@@ -67,7 +67,7 @@ void apply_contact(const ContactPass& pass, std::size_t b, ContactState& state, 
 bool apply_contacts(const ContactPass& pass, Trial& trial) {
     trial.active[pass.unit_index].clear();
     const TrussState& trusses = pass.before.trusses;
-    if (pass.near.empty() && pass.before.contact_loads.empty() && !trusses.hangs_slack()) return true;
+    if (pass.near.empty() && pass.before.contact_loads.empty() && !trusses.has_slack()) return true;
     ContactState state(trial.skin);
     for (std::size_t g = 0; g < trusses.groups.size(); ++g)
         if (find_group_candidates(pass, g, trial.skin))

@@ -28,8 +28,8 @@ double rest_energy(const Scene& scene);
 // Has all come to rest?
 bool at_rest(const Scene& scene, const State& state);
 
-// The instant within a step of dt from which the outcome is decided (s), so that it does not depend on the length of
-// the step. The outcome is decided at the end of the step. `before`: the bodies at the start. No node pushes from
+// The instant within a step of dt from which the outcome is decided (s). It does not depend on the length of the
+// step. The outcome is decided at the end of the step. `before`: the bodies at the start. No node pushes from
 // `released` on (s after the start). `now`: the state at the end; its bodies are moved in the search and restored.
 double time_of_decision(const Scene& scene, std::span<const BodyState> before, double released, double dt,
                         State& now);

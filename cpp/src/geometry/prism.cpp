@@ -89,8 +89,8 @@ double twice_area(const Prism::Profile& p) {
     return sum;
 }
 
-// Least distance of two edges that look away from each other and are no neighbours (`all` in order, one entry
-// for each edge of the profile). A wedge has no such pair: the least depth of the profile behind an edge.
+// Least distance of two edges that look away from each other and are no neighbours. `all`: the edges of the profile
+// in order. A wedge has no such pair: the least depth of the profile behind an edge.
 double least_thickness(const std::vector<PrismEdge>& all, const std::vector<bool>& covered) {
     const std::size_t n = all.size();
     double pairs = infinity, wedge = infinity;

@@ -3,7 +3,7 @@
 // The tread slides with the motion of the body, u = v + w x r, and with the rotation of the wheel about its axle. Node i
 // of the tread slides with u_i + q t_i, t_i = (s x d_i)/R, where q is the rolling speed of the wheel. On the road
 // q = v_r. A wheel that pushes on a barrier soon loses that speed: a car's wheel has an angular momentum of some
-// 100 N m s at 30 m/s, and a friction of 30 kN takes it in 10 ms. Therefore the inertia of the wheel is neglected, and a
+// 100 N m s at 30 m/s, and a friction of 30 kN takes it in 10 ms. Therefore the inertia of the wheel is neglected. A
 // wheel that is free to rotate has the q at which friction has no torque about its axle:
 //     sum_i F_i . t_i = 0,   F_i = -mu N_i (u_i + q t_i)/|u_i + q t_i|.
 // The rest of the sliding is along the spokes: a tread that meets a barrier below and ahead of the axle is pushed up and

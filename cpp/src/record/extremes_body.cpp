@@ -51,8 +51,9 @@ double penetration_of(const UnitHistory& unit, const TrussMesh& mesh, const Vec3
                       double least) {
     Anchors anchors(mesh);
     double greatest = least;
-    // The last answer, and the orientation it is of. From one orientation to another the direction changes by no more than
-    // twice the distance of the two quaternions, and the answer by no more than the reach times that; and by rounding.
+    // The last answer, and the orientation it is of. From one orientation to another the direction changes by no more
+    // than twice the distance of the two quaternions. The answer changes by no more than the reach times that, and by
+    // rounding.
     std::optional<Eigen::Vector4d> known;
     double furthest = 0.0;
     const double twice_reach = 2.0 * anchors.reach(), rounding = 1e-13 * anchors.reach();

@@ -39,8 +39,8 @@ class CurveTarget:
 
     Residuals are :math:`r_i = \sqrt{w\,m/n}\;(f_i - y_i)/\sigma_i` for n points of which m are independent.
     If all of them are (m = n, w = 1), half their sum of squares is the negative logarithm of the likelihood.
-    Neighbouring points of a filtered curve carry the same news: counting them as independent makes every
-    interval too narrow by sqrt(n/m). m is the smaller of
+    Neighbouring points of a filtered curve are correlated. Counting them as independent makes every interval
+    too narrow by sqrt(n/m). m is the smaller of
 
     * the filter's: white noise through a filter of noise bandwidth B has m = 2 B T in a record of length T.
       Its integrated correlation time is 1/(2 B). A CFC is a two-pole Butterworth filter, run twice, with the

@@ -155,10 +155,9 @@ def independent_share(residual: Floats, free: int = 0) -> float:
     """Return 1 / (1 + 2 sum rho_k): the share of independent points in an evenly spaced sequence.
 
     The sum of autocorrelations ends at the first lag of five correlation times, these being 1/2 + sum rho_k
-    (A. D. Sokal, Monte Carlo methods in statistical mechanics, 1997, section 3); never more than 1. What
-    `free` fitted parameters took away is slow more often than not: each lowers the sum by (2 k + 1) / n for a
-    window of k lags, as subtracting the mean does (U. Wolff, Comput. Phys. Commun. 156, 2004, section 3.1);
-    this is put back.
+    (A. D. Sokal, Monte Carlo methods in statistical mechanics, 1997, section 3); never more than 1. Each of
+    the `free` fitted parameters lowers the sum by about (2 k + 1) / n for a window of k lags, as subtracting
+    the mean does (U. Wolff, Comput. Phys. Commun. 156, 2004, section 3.1). The sum is corrected for this.
     """
     n = len(residual)
     size = float(residual @ residual)

@@ -1,7 +1,7 @@
-"""Arrays of an npz file, with nothing believed that the file says of itself.
+"""Arrays of an npz file; what the file says of its sizes is checked, not trusted.
 
-``numpy.load`` makes room for what a header promises before it looks at what there is, and leaves a check of
-the archive's own checksum to chance. Here sizes are bounded first, and every byte is read and checked.
+``numpy.load`` allocates what a header promises before it reads the data. It may not check the archive's own
+checksum. Here sizes are bounded first, and every byte is read and checked.
 """
 
 from __future__ import annotations

@@ -107,8 +107,8 @@ def outside_camera(
 def driver_camera(result: Result, skins: Sequence[Skin]) -> Camera:
     """Return the camera of the driver's eyes, which moves with the first unit.
 
-    The eyes are 0.45 m behind the foremost point of the roof (of the zone ``cab`` where there is one), 0.25 m
-    below it and half way to the left side.
+    The eyes are 0.45 m behind the foremost point of the roof, 0.25 m below it and half way to the left side.
+    A zone ``cab`` counts as the roof if there is one.
     """
     shape = unit_shapes(result.scene.vehicle)[0]
     nodes = shape.nodes

@@ -20,8 +20,8 @@ __all__ = ["CoarseSkinWarning", "coarse_skins", "warn_if_coarse"]
 class CoarseSkinWarning(UserWarning):
     """A barrier is narrower than the distance between nodes of the skin, and can pass between them.
 
-    Nodes are points: what finds room between two of them meets nothing until it is at the rigid body, and how
-    many it meets is chance. The balances close all the same. Two lengths decide, both level:
+    Nodes are points. A barrier that fits between two of them meets nothing before the rigid body, and the
+    number of nodes that it meets is chance. The balances close all the same. Two lengths decide, both level:
 
     - the distance of a node from its nearest neighbour beside it (further to the side than up or down), of
       which the median over the skin is taken. Up and down there is no way through: what stands on the ground

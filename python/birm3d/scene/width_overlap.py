@@ -23,9 +23,9 @@ def offset_of_overlap(
 ) -> float:
     """Return the ``impact_offset`` [m] at which a share of the vehicle's width meets the barrier.
 
-    Seen along the path the barrier's end stands inside the vehicle's width: a share ``overlap`` of the width,
-    counted from ``side``, is in front of the barrier. The width is that of the skin (of the leading unit);
-    the end of the barrier is its outermost place, of a rounded edge that of the arc.
+    Seen along the path, the end of the barrier is inside the vehicle's width. A share ``overlap`` of the
+    width, counted from ``side``, meets the barrier. The width is that of the skin (of the leading unit); the
+    end of the barrier is its outermost place, of a rounded edge that of the arc.
 
     Parameters
     ----------

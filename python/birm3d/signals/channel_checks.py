@@ -19,8 +19,8 @@ __all__ = ["Finding", "Findings", "check_channel"]
 Floats = npt.NDArray[np.float64]
 Severity = Literal["error", "warning", "note"]
 
-# Change of velocity over the impact speed: from a bit less than a stop (a vehicle that just does not come to
-# rest, a cell that reads low) to a lively rebound.
+# Change of velocity over the impact speed: from a little less than 1 (a vehicle that hardly stops, a cell
+# that reads low) to a strong rebound.
 _PLAUSIBLE = (0.8, 1.6)
 _TYPICAL = 1.15
 # Units that get mixed up, by what the numbers are then too large, and how close to that they must be.

@@ -75,8 +75,9 @@ def w2_force(
 ) -> npt.NDArray[np.float64]:
     """Return the exact wall force of W2 [N] at times since the first touch [s], same shape.
 
-    One mass on one spring in each of three phases, w = sqrt(k / m): to the knee, to the turn, and off along
-    the unloading slope until the force is zero. Stiffnesses in N/m; the block must turn beyond the knee [m].
+    The block is one mass on one spring, w = sqrt(k / m), in three phases. These are to the knee, to the
+    greatest crush, and along the unloading slope until the force is zero. Stiffnesses in N/m; the greatest
+    crush must exceed the knee [m].
     """
     for name, value in (("k_initial", k_initial), ("k_hardening", k_hardening), ("k_unloading", k_unloading)):
         positive(name, value)

@@ -22,14 +22,6 @@ Simulation crash(const std::shared_ptr<const Vehicle>& vehicle, const Barrier& b
     return simulation;
 }
 
-double deepest(const Simulation& simulation) {
-    double most = 0.0;
-    for (const TrussBlockState& block : simulation.state().units[0].trusses.block)
-        for (const double d : block.peak_deflection)
-            most = std::max(most, d);
-    return most;
-}
-
 }  // namespace
 
 TEST("a wall makes no indentation: the same bits with and without") {
@@ -56,8 +48,8 @@ TEST("the balance closes with indentations, with and without friction, and bette
 
 TEST("an indentation makes a pole's force independent of the mesh, and greater") {
     const Barrier pole = Barrier::pole(0.0, Vec3::Zero(), 0.0, 0.15);
-    const double coarse = deepest(crash(indented(0.65, 24, 16), pole, 5.0));
-    const double fine = deepest(crash(indented(0.65, 48, 32), pole, 5.0));
+    const double coarse = laboratory::deepest(crash(indented(0.65, 24, 16), pole, 5.0));
+    const double fine = laboratory::deepest(crash(indented(0.65, 48, 32), pole, 5.0));
     // Nodes 0.1 m apart on a pole of 0.3 m: three of them or four are pressed.
     CHECK_CLOSE(coarse, fine, 0.005 * fine, "the mesh's resolution of the pole");
     // What the trusses take while the pole comes 0.2 m in: alone they slip round it to either side.
@@ -76,8 +68,9 @@ TEST("an indentation makes a pole's force independent of the mesh, and greater")
 
 TEST("a post that is as wide as the front presses it as a wall does") {
     const Barrier pole = Barrier::pole(0.0, Vec3::Zero(), 0.0, 1e5);
-    const double by_pole = deepest(crash(indented(0.65, 24, 16), pole, 5.0));
-    const double by_wall = deepest(crash(indented(0.65, 24, 16), Barrier::wall(0.0, Vec3::Zero(), 0.0), 5.0));
+    const double by_pole = laboratory::deepest(crash(indented(0.65, 24, 16), pole, 5.0));
+    const double by_wall =
+        laboratory::deepest(crash(indented(0.65, 24, 16), Barrier::wall(0.0, Vec3::Zero(), 0.0), 5.0));
     CHECK_CLOSE(by_pole, by_wall, 1e-4 * by_wall, "the post's curvature: 1.2^2 / 2e5 m");
 }
 
@@ -89,5 +82,5 @@ TEST("a post that comes from the side indents no front") {
     approach.yaw = 0.5 * laboratory::pi;
     Simulation simulation(Scene(vehicle, pole, approach, laboratory::weightless(), 0.4));
     laboratory::run(simulation);
-    CHECK(deepest(simulation) < 0.02);
+    CHECK(laboratory::deepest(simulation) < 0.02);
 }

@@ -10,14 +10,6 @@ using laboratory::pi;
 
 namespace {
 
-double deepest(const Simulation& simulation) {
-    double most = 0.0;
-    for (const TrussBlockState& block : simulation.state().units[0].trusses.block)
-        for (const double d : block.peak_deflection)
-            most = std::max(most, d);
-    return most;
-}
-
 double greatest_force(const Simulation& simulation) {
     const History history = simulation.recorder().resample(simulation.scene());
     double most = 0.0;
@@ -48,7 +40,8 @@ TEST("W1: an elastic impact has its exact answer, better with every tolerance") 
                                                 laboratory::wall(), laboratory::weightless(tolerance)));
         laboratory::run(simulation);
         CHECK(simulation.end_reason() == EndReason::separated);
-        CHECK_CLOSE(deepest(simulation) / (v * std::sqrt(m / k)), 1.0, tolerance, "the tolerance asked for");
+        CHECK_CLOSE(laboratory::deepest(simulation) / (v * std::sqrt(m / k)), 1.0, tolerance,
+                    "the tolerance asked for");
         CHECK_CLOSE(greatest_force(simulation) / (v * std::sqrt(m * k)), 1.0, tolerance,
                     "the tolerance asked for");
         CHECK_CLOSE(simulation.state().units[0].body.velocity.x() / v, -1.0, tolerance,
@@ -65,7 +58,7 @@ TEST("W2: crush, peak force and rebound are exact within the tolerance, for any 
         Simulation simulation(laboratory::scene(laboratory::block(laboratory::w2_curve(), columns, rows),
                                                 laboratory::wall(), laboratory::weightless()));
         laboratory::run(simulation);
-        CHECK_CLOSE(deepest(simulation) / (0.4 + x), 1.0, 1e-3, "default tolerance");
+        CHECK_CLOSE(laboratory::deepest(simulation) / (0.4 + x), 1.0, 1e-3, "default tolerance");
         CHECK_CLOSE(greatest_force(simulation) / F, 1.0, 1e-3, "default tolerance");
         CHECK_CLOSE(-simulation.state().units[0].body.velocity.x() / (F / std::sqrt(60e6 * m)), 1.0, 1e-3,
                     "default tolerance");
@@ -90,7 +83,7 @@ TEST("restitution falls with speed where a constant length is given back") {
             laboratory::run(simulation);
             const double deep = v * std::sqrt(m / k);
             CHECK(deep > recovery);
-            CHECK_CLOSE(deepest(simulation) / deep, 1.0, 1e-3, "default tolerance");
+            CHECK_CLOSE(laboratory::deepest(simulation) / deep, 1.0, 1e-3, "default tolerance");
             CHECK_CLOSE(-simulation.state().units[0].body.velocity.x() / v,
                         std::sqrt(recovery / deep * (1.0 - 0.5 * deep)), 1e-3, "default tolerance");
             const Energies& e = simulation.state().energies;
@@ -169,7 +162,7 @@ TEST("a scene turned about the vertical gives the same answer, turned") {
         const Vec3 way = back * (turned.scene().base + b.position - origin) -
                          (straight.scene().base + a.position - origin);
         CHECK_CLOSE(way.norm(), 0.0, 20.0 * 2e-4 + 1e-6, "the way of that step");
-        CHECK_CLOSE(deepest(turned), deepest(straight), 1e-8, "the same");
+        CHECK_CLOSE(laboratory::deepest(turned), laboratory::deepest(straight), 1e-8, "the same");
     }
 }
 

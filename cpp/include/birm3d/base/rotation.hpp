@@ -17,9 +17,9 @@ struct Angles {
 Angles roll_pitch_yaw(const Quat& q);
 Quat from_roll_pitch_yaw(const Angles& angles);
 
-// q turned by the body-axes rotation vector theta (rad) through the Cayley map,
-//   q' = q * normalise(1, theta/2),
-// which agrees with the exponential map to second order and needs no trigonometric function.
+// q rotated by the vector theta (body axes, rad) through the Cayley map,
+//   q' = q * normalise(1, theta/2).
+// It agrees with the exponential map to second order and needs no trigonometric function.
 Quat cayley(const Quat& q, const Vec3& theta);
 
 }  // namespace birm3d

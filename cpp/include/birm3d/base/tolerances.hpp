@@ -7,8 +7,8 @@ namespace birm3d::tolerance {
 // gives every resting tyre a small approach speed in each step. Large: light rebounds are lost.
 inline constexpr double restitution_speed = 0.1;
 
-// Share of a unit's inverse mass added to each of its tyres as compliance, so that tyres on a plane share the load
-// as equal springs would (the rigid problem has no unique answer). Large: tyres sink by a visible amount.
+// Compliance of each tyre, as a share of the inverse mass of its unit. Tyres on a plane then share the load as equal
+// springs would; without compliance the problem has no unique solution. Large: tyres sink by a visible amount.
 inline constexpr double tire_compliance = 1e-3;
 
 // The least of any rigid contact, as a share of its own inverse effective mass: at the barrier the number of
@@ -151,8 +151,9 @@ inline constexpr double edge_radius = 1e-12;
 // Squares of lengths below this have lost their digits to underflow (m^2).
 inline constexpr double least_square = 1e-280;
 
-// A point lies within a triangle if the three areas it spans with the edges exceed the triangle's by no more
-// than this share (paper Eq. 15). Zero: points on an internal edge belong to neither of its triangles.
+// A point and the edges of a triangle span three areas. It lies within the triangle if they exceed the triangle's
+// area by no more than this share (paper Eq. 15). Zero: points on an internal edge belong to neither of its
+// triangles.
 inline constexpr double triangle_area = 1e-9;
 
 // Neighbouring triangles belong to one flat face if all corners lie this near to its plane, relative to the

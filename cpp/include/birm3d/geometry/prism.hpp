@@ -2,9 +2,9 @@
 // barriers, curbs.
 //
 // Faces can be covered: they stand on the ground or abut a neighbour and are no surface. |gap| is the distance to the
-// faces that are not covered, negative inside the solid, so a point inside is never pushed out through a covered
-// face. Across a covered face the sign of the gap changes and its size does not. Points under a covered bottom are
-// outside: where points may get there, extend the profile below the ground.
+// faces that are not covered; the gap is negative inside the solid. So a point inside is never pushed out through a
+// covered face. Across a covered face the sign of the gap changes and its size does not. Points under a covered
+// bottom are outside: where points may get there, extend the profile below the ground.
 #pragma once
 
 #include <memory>
@@ -26,9 +26,9 @@ class Prism {
         bool low_end = false, high_end = false;
     };
 
-    // `profile`: x and z of the corners (m), either way round. The ends y_low < y_high may be infinite (m).
-    // Refuses fewer than 3 points, points that are not finite, edges without length, edges that touch or
-    // cross each other, an edge to cover that does not exist, and a cover that leaves no surface.
+    // `profile`: x and z of the corners (m), either way round. The ends y_low < y_high may be infinite (m). Refuses
+    // fewer than 3 points, points that are not finite, edges without length, and edges that touch or cross each
+    // other. Refuses to cover an edge that does not exist, or all of the surface.
     Prism(const Profile& profile, double y_low, double y_high, const Cover& cover);
 
     // A wall: traffic face at x = 0, body at 0 <= x <= thickness, middle at y = 0, -foot <= z <= height,

@@ -3,10 +3,10 @@
 // nearest: the exact signed distance. The sign comes from the pseudo-normal of the nearest face, edge or
 //   corner (J. A. Baerentzen, H. Aanaes, "Signed distance computation using the angle weighted pseudonormal",
 //   IEEE Transactions on Visualization and Computer Graphics 11 (2005) 243-253).
-// vertex_to_face: the paper's section 5.1, Eq. 8-15. Deviations: a face is all the neighbouring triangles of
-//   one plane, not each of them, so that no contact depends on how a flat face is divided; Eq. 12-14 as
-//   printed move away from the plane, P2 is p - gap n and P1 is p - (gap / X) r with X = r . n; Eq. 15 has a
-//   relative tolerance; of several faces that meet both conditions the nearest plane counts.
+// vertex_to_face: the paper's section 5.1, Eq. 8-15. Deviations:
+//   - A face is all the neighbouring triangles of one plane. So a contact does not depend on how a flat face is divided.
+//   - Eq. 12-14 as printed move away from the plane. P2 is p - gap n and P1 is p - (gap / X) r with X = r . n.
+//   - Eq. 15 has a relative tolerance. Of several faces that meet both conditions the nearest plane counts.
 //
 // A mesh may be open. Then its rim is no surface that one could be behind: points nearest to it are outside.
 #pragma once
@@ -29,11 +29,11 @@ class TriangleMesh {
   public:
     using Face = std::array<std::int64_t, 3>;
 
-    // `vertices` (n) in m; `faces` (m, 3): indices into them, counter-clockwise seen from outside. A closed
-    // mesh whose faces all run the other way is turned. Vertices at the same place are one. The surface must
-    // not cross itself, which is not checked. Refuses no faces, indices out of range, numbers that are not
-    // finite, triangles without area, edges of more than two faces, and neighbours that run along their common
-    // edge in the same direction.
+    // `vertices` (n) in m; `faces` (m, 3): indices into them, counter-clockwise seen from outside. A closed mesh
+    // whose faces all run the other way is turned. Vertices at the same place are one. The surface must not cross
+    // itself, which is not checked. Refuses a mesh without faces, indices out of range, numbers that are not finite,
+    // and triangles without area. Refuses edges of more than two faces, and neighbours that pass their common edge in
+    // the same direction.
     TriangleMesh(const std::vector<Vec3>& vertices, const std::vector<Face>& faces);
 
     // Of a point in own axes. `hint`: a triangle to begin with, then the nearest one; a good one saves time.

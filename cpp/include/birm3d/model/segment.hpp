@@ -30,8 +30,8 @@ struct Segment {
     std::array<Vec3, 4> corner;  // of its base, from the mass centre, own axes (m)
 };
 
-// Refuses a prism without ends or top, with nothing above z = 0, or whose mass centre does not stand above its own
-// origin (within 1e-9 m), and a density that is not > 0.
+// Refuses a density that is not > 0, and a prism without ends or top or with nothing above z = 0. The mass centre
+// must stand above the origin of the prism, within 1e-9 m.
 Segment segment_of(const Prism& prism, double density);
 
 }  // namespace birm3d

@@ -54,8 +54,8 @@ TrussCurve with_tail(const TrussCurve& curve, double depth, double slope);
 // Slope of unloading from a force.
 double unloading_slope(const TrussCurve& curve, double force);
 
-// Refuses a curve that is not a law: slopes not finite, forces below zero, a recovery that is not > 0, an envelope
-// steeper than unloading from there (which would give back more than loading took).
+// Refuses slopes that are not finite, forces below zero, and a recovery that is not > 0. Refuses an envelope that is
+// steeper than unloading from there, which would release more energy than loading stored.
 void require_valid(const TrussCurve& curve, const std::string& name);
 
 double envelope_force(const TrussCurve& curve, double deflection);

@@ -6,9 +6,9 @@
 // first. The last block is padded with trusses of no stiffness.
 //
 // A panel may also resist in its own plane. Each of its nodes then has a second truss along the vehicle, with a node
-// of its own at the same place. That node meets the same surfaces as the first one, but belongs to no panel: posts press
-// it, and do not draw it in. The anchor of a second truss is no part of the rigid body. The blocks of second trusses
-// follow those of the skin.
+// of its own at the same place. That node meets the same surfaces as the first one, but belongs to no panel: posts
+// push on it, but their indentations do not move it. The anchor of a second truss is no part of the rigid body. The
+// blocks of second trusses follow those of the skin.
 //
 // Tyres that meet a barrier have nodes too, on the tread's outer edge. The nodes of each wheel have padded blocks of
 // their own, after all others. Their anchors meet nothing, as they are no part of the rigid body. The wheels
@@ -105,8 +105,8 @@ struct alignas(64) Hinge {
     BlockColumn slope_change;  // N/m
 };
 
-// What a tire contact node has in addition. At a rolling speed v, the tread at d from the axle moves relative to the
-// body with v (s x d)/R.
+// What a tire contact node has in addition. At a rolling speed v, the tread at the place d from the axle moves with v
+// (s x d)/R relative to the body.
 struct TireNode {
     double tread_r = 0.0, tread_t = 0.0;  // (s x d)/R
     std::size_t wheel = 0;                // of the unit

@@ -51,9 +51,9 @@ struct Vehicle {
     std::vector<Joint> joints;
 };
 
-// Refuses joints of units that are not there or of one with itself, and joints whose two places are more than
-// tolerance::joint_fit apart in the position of rest; below that the trailing unit's place is moved to the
-// leading one's.
+// Refuses joints of units that do not exist or of a unit with itself. Refuses joints whose two places are more than
+// tolerance::joint_fit apart in the position of rest. Below that the trailing unit's place is moved to the leading
+// one's.
 Vehicle joined(std::vector<Unit> units, std::vector<Joint> joints);
 
 }  // namespace birm3d

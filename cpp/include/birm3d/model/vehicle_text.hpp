@@ -1,8 +1,9 @@
 // A prepared vehicle as text: what Python's Vehicle.export_core() writes, read without Python.
 //
-// The text holds what the core needs of each unit, meshed and with its mass properties, so that the vehicle that is read gives
-// the same bits as the one in Python. Words are separated by spaces or line ends. A number is hexadecimal as C's %a writes it
-// (0x1.8p+3), inf, or a whole number: no rounding and no locale come between. Lengths are in m; n rows follow each count.
+// The text holds what the core needs of each unit: its trusses and mass properties. So the vehicle that is read gives
+// the same bits as the one in Python. Words are separated by spaces or line ends. A number is hexadecimal as C's %a
+// writes it (0x1.8p+3), inf, or a whole number: no rounding and no locale come between. Lengths are in m; n rows
+// follow each count.
 //
 //   birm3d-vehicle 2
 //   units u

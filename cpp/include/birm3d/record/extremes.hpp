@@ -72,8 +72,8 @@ struct Extremes {
     struct Segments {
         // How far the furthest corner of any base moved square to the line, away from the traffic (m).
         double deflection = 0.0, residual_deflection = 0.0;
-        // Greatest of (|M| + F_z b) / (m b), b half the base: in means over 50 ms F_z is the vertical force on the
-        // segment and M the moment on it about its long axis, less that of its own inertia (m/s^2).
+        // Greatest of (|M| + F_z b) / (m b) in means over 50 ms (m/s^2). b is half the base and F_z the vertical
+        // force on the segment. M is the moment on it about its long axis, less that of its own inertia.
         double overturning = 0.0;
     };
     struct JointLoads {

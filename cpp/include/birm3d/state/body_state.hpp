@@ -1,5 +1,5 @@
-// Motion of one rigid body. Angular momentum rather than angular velocity: it is what torques change, and
-// free flight leaves it alone however the body tumbles.
+// Motion of one rigid body. It has the angular momentum rather than the angular velocity, because torques change the
+// momentum, and it is constant in free flight.
 #pragma once
 
 #include "birm3d/base/types.hpp"

@@ -79,7 +79,7 @@ struct TrussState {
     }
 
     // Does an obstacle hold any node beyond the free length of its truss? Such a node may return by itself.
-    bool hangs_slack() const {
+    bool has_slack() const {
         return std::any_of(groups.begin(), groups.end(), [](const BlockGroup& of) { return of.slack; });
     }
 

@@ -1,7 +1,7 @@
 """Channels of the NHTSA vehicle crash test database: the EV5 header and its x-y files.
 
-A test is a header such as ``v10146.EV5``, in sections of lines with fields between ``|``, and for each curve
-a file of two columns, time in s and value: ``v10146.001``, or ``v10146_001.tsv``. Fields are in the order of
+A test has a header such as ``v10146.EV5``, in sections of lines with fields between ``|``. Each curve is a
+file of two columns, time in s and value: ``v10146.001``, or ``v10146_001.tsv``. Fields are in the order of
 the headers of tests 7292 and 10146, version 5 of the format of the NHTSA Test Reference Guide, volume 1.
 
 The curves are as NHTSA has them. Axes are those of SAE J211, x forward, y to the right, z down, so a frontal
