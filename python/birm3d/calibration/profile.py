@@ -69,8 +69,8 @@ def profile(
 ) -> Profile:
     """Return the profile of parameter number `index` around an optimum.
 
-    The signed root of the rise is nearly a straight line (Bates and Watts, Nonlinear Regression
-    Analysis, 1988, section 6.1), so that a few points and a secant find where it meets the quantile.
+    The signed root of the rise is nearly a straight line (Bates and Watts, Nonlinear Regression Analysis,
+    1988, section 6.1). So a few points and a secant find where it meets the quantile.
 
     Parameters
     ----------

@@ -82,8 +82,9 @@ def plot_profiles(result: CalibrationResult) -> Figure:
 def smooth_profile(profile: Profile, points: int = 200) -> tuple[Floats, Floats]:
     """Return a smooth curve through the computed points of a profile, and nothing beyond them.
 
-    The signed root of the rise is nearly a straight line (Bates and Watts 1988, section 6.1): its piecewise
-    cubic (Fritsch and Carlson 1980) through the points, which makes no humps between them, is squared.
+    The signed root of the rise is nearly a straight line (Bates and Watts 1988, section 6.1). The curve is
+    the square of its piecewise cubic through the points, which is monotonic between them (Fritsch and Carlson
+    1980).
     """
     values, first = np.unique(profile.values, return_index=True)
     rise = np.maximum(profile.rise[first], 0.0)

@@ -18,8 +18,8 @@ _GAP = 1e-4
 def bottomed_out(result: RunAnalysis) -> dict[str, int]:
     """Return the zones whose trusses have bottomed out, and how many of them; vehicles of arrays have ``""``.
 
-    Behind such a truss nothing is left to crush: the rigid body stands against the barrier or the ground,
-    and loads are those of rigid bodies, far above what a structure carries.
+    Behind such a truss nothing is left to crush: the rigid body stands against the barrier or the ground.
+    Then loads are those of rigid bodies, far above what a structure carries.
     """
     if result.statistics.body_steps == 0:
         return {}

@@ -83,10 +83,11 @@ def _integral(values: Floats, time: Floats) -> float:
 def residuals(measured: npt.ArrayLike, computed: npt.ArrayLike) -> Residuals:
     """Return mean and standard deviation of the residuals over the measured peak.
 
-    The analysis of variance of M. H. Ray (Repeatability of full-scale crash tests and criteria for validating
-    simulation results, Transportation Research Record 1528, 1996) as NCHRP Web-Only Document 179 (2010) uses
-    it: residual measured less computed, divided by the greatest magnitude of the measured curve; the
-    deviation with n - 1. Limits there: 5 % of the peak for the mean, 35 % for the deviation.
+    The analysis of variance of M. H. Ray as NCHRP Web-Only Document 179 (2010) uses it. A residual is
+    measured less computed, divided by the greatest magnitude of the measured curve; the deviation is with
+    n - 1. Limits there: 5 % of the peak for the mean, 35 % for the deviation. Source: Repeatability of
+    full-scale crash tests and criteria for validating simulation results, Transportation Research Record
+    1528, 1996.
 
     Parameters
     ----------

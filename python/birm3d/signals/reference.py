@@ -75,8 +75,8 @@ def _rows(name: str) -> list[list[str]]:
 def nhtsa_tests() -> Mapping[str, NhtsaTest]:
     """Return the barrier tests of light vehicles, by their numbers: 49 frontal ones and 38 side poles.
 
-    The compartment's displacement is not that of the momentum centre, which a vehicle of one rigid body owns:
-    in test 10146, the only one with wall forces, they are 0.741 and 0.677 m. Where there is no wall force the
+    The compartment's displacement is not that of the momentum centre, which a vehicle of one rigid body has.
+    In test 10146, the only one with wall forces, they are 0.741 and 0.677 m. Where there is no wall force the
     compartment's is what there is.
     """
     head, *rows = _rows("nhtsa_tests.csv")

@@ -1,8 +1,9 @@
 """Masses of an LS-DYNA model from its own densities, thicknesses and added masses.
 
-Cards are those of the LS-DYNA keyword user's manual, volumes I and II: RO of ``*MAT``, T1 to T4 of
-``*SECTION_SHELL``, SECID and MID of ``*PART``, ``*PART_INERTIA``, ``*ELEMENT_MASS``, ``*ELEMENT_MASS_PART``,
-thicknesses of ``*ELEMENT_SHELL_THICKNESS``. Beams, rigid bodies of nodes and springs have no mass here.
+Cards are those of the LS-DYNA keyword user's manual, volumes I and II. Read are RO of ``*MAT``, T1 to T4 of
+``*SECTION_SHELL``, SECID and MID of ``*PART``, and the thicknesses of ``*ELEMENT_SHELL_THICKNESS``. So are
+``*PART_INERTIA``, ``*ELEMENT_MASS`` and ``*ELEMENT_MASS_PART``. Beams, rigid bodies of nodes and springs have
+no mass here.
 """
 
 from __future__ import annotations
