@@ -13,6 +13,7 @@ from statistics import median
 from typing import Any
 
 import birm3d
+import html_reader
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Study, Vehicle, scenes
@@ -21,13 +22,12 @@ from birm3d.reporting.page import _mark
 from birm3d.reporting.uncertainty import _bands
 from birm3d.result.skin import skins_at
 from birm3d.result.summary import element_rows, headline_rows
-from html_reader import Page
 from scipy import stats
 
 FACTS = {"project": "Plaza <north>", "client": "City", "author": "A. Engineer", "date": "2030-01-02"}
 
 
-class Dossier(Page):
+class Page(html_reader.Page):
     """The page of a dossier, with its tables by their captions."""
 
     def __init__(self, path: Path) -> None:
@@ -76,11 +76,11 @@ def folder(result: Result, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def page(folder: Path) -> Dossier:
-    return Dossier(folder / "index.html")
+def page(folder: Path) -> Page:
+    return Page(folder / "index.html")
 
 
-def test_verdict_comes_first(page: Dossier, result: Result) -> None:
+def test_verdict_comes_first(page: Page, result: Result) -> None:
     headings = page.texts["h2"]
     assert headings[0] == "1. Verdict"
     assert [re.sub(r"^\d+\. ", "", text) for text in headings[1:5]] == [
@@ -98,7 +98,7 @@ def test_verdict_comes_first(page: Dossier, result: Result) -> None:
     assert page.texts["dd"][:4] == list(FACTS.values())
 
 
-def test_ratings_and_risk_are_those_of_the_api(page: Dossier, result: Result) -> None:
+def test_ratings_and_risk_are_those_of_the_api(page: Page, result: Result) -> None:
     for standard in ("ASTM F2656", "SD-STD-02.01"):
         rating = birm3d.rate(result, standard)
         rows = [[one.name, tidy(one.shown), tidy(one.limit), one.verdict] for one in rating.criteria]
@@ -116,7 +116,7 @@ def test_ratings_and_risk_are_those_of_the_api(page: Dossier, result: Result) ->
     assert birm3d.rate(result, "ASTM F2656").caution.partition(" Indicative")[0] in cautions
 
 
-def test_numbers_are_those_of_the_api(page: Dossier, result: Result, folder: Path) -> None:
+def test_numbers_are_those_of_the_api(page: Page, result: Result, folder: Path) -> None:
     headlines = [list(map(tidy, row)) for row in headline_rows(result) if row[0]][1:]
     assert [[*row[:2], row[3]] for row in page.table("Headline numbers")] == headlines
     assert page.table("Loads on each element") == [list(row) for row in element_rows(result)]
@@ -141,7 +141,7 @@ def test_numbers_are_those_of_the_api(page: Dossier, result: Result, folder: Pat
     assert len(settings) == len(dataclasses.fields(Settings))
 
 
-def test_design_loads_are_those_of_the_api(page: Dossier, result: Result, folder: Path) -> None:
+def test_design_loads_are_those_of_the_api(page: Page, result: Result, folder: Path) -> None:
     loads = birm3d.design_load(result)
     rows = page.table("Design loads")
     assert [row[0] for row in rows] == [row.name for row in loads if row.touched]
@@ -156,7 +156,7 @@ def test_design_loads_are_those_of_the_api(page: Dossier, result: Result, folder
     assert (folder / "design_loads.csv").read_text(encoding="utf-8").count("bollard") == len(loads)
 
 
-def test_every_number_has_the_band_of_the_class(page: Dossier, result: Result) -> None:
+def test_every_number_has_the_band_of_the_class(page: Page, result: Result) -> None:
     """Headlines, ratings, design loads and occupant risk beside 16 vehicles, as the API has them."""
     predicted = birm3d.predict(Simulation.from_scene(result.scene), 16)
     headlines = {row[0]: row[2] for row in page.table("Headline numbers")}
@@ -188,7 +188,7 @@ def test_every_number_has_the_band_of_the_class(page: Dossier, result: Result) -
 
 def test_without_bands_the_page_says_why(tmp_path: Path) -> None:
     box = Simulation(Vehicle.preset("paper_pickup", mesh_density=0.1), Barrier.bollards(count=1), 10.0).run()
-    told = Dossier(birm3d.dossier(box, tmp_path / "box"))
+    told = Page(birm3d.dossier(box, tmp_path / "box"))
     reason = "the file of 'paper_pickup' does not say how its class scatters"
     assert f"There are no bands of the vehicle's class: {reason}." in told.texts["p"]
     assert {row[2] for row in told.table("Headline numbers")} == {"–"}
@@ -204,11 +204,11 @@ def test_occupants_are_judged_by_the_standard_that_rates(tmp_path: Path) -> None
     assert risk.passed("MASH")
     assert not risk.passed("EN 1317")
     predicted = birm3d.predict(Simulation.from_scene(run.scene), 8)
-    told = dict(Dossier(birm3d.dossier(predicted, tmp_path / "car")).table("At a glance"))
+    told = dict(Page(birm3d.dossier(predicted, tmp_path / "car")).table("At a glance"))
     assert told["Would occupants be at risk?"].startswith("the limits of MASH are met")
 
 
-def test_momentum_balance_closes(page: Dossier, result: Result) -> None:
+def test_momentum_balance_closes(page: Page, result: Result) -> None:
     rows = {row[0]: row[1:] for row in page.table("Momentum balance")}
     change = result.scene.vehicle.mass * (result.velocity[-1] - result.velocity[0]) / 1e3
     assert [float(cell.replace(",", "")) for cell in rows["change of momentum"]] == pytest.approx(
@@ -217,7 +217,7 @@ def test_momentum_balance_closes(page: Dossier, result: Result) -> None:
     assert all(abs(float(cell)) < 1e-9 for cell in rows["difference"])
 
 
-def test_verification_says_what_applies(page: Dossier, result: Result) -> None:
+def test_verification_says_what_applies(page: Page, result: Result) -> None:
     rows = {row[0]: row[1:] for row in page.table("Verification")}
     (energy,) = [row for name, row in rows.items() if "10 %" in name]
     assert energy == [f"{result.metrics['energy_residual']:.1e}", "10 %", "pass"]
@@ -225,7 +225,7 @@ def test_verification_says_what_applies(page: Dossier, result: Result) -> None:
     assert not any(row[-1].startswith("FAIL") for row in rows.values())
 
 
-def test_vehicle_has_its_sources_and_bands(page: Dossier, result: Result) -> None:
+def test_vehicle_has_its_sources_and_bands(page: Page, result: Result) -> None:
     file = result.scene.vehicle._file
     assert file is not None
     assert [row[0] for row in page.table("cargo_truck: sources")] == [source.id for source in file.sources]
@@ -236,7 +236,7 @@ def test_vehicle_has_its_sources_and_bands(page: Dossier, result: Result) -> Non
     assert zones == list(result.scene.vehicle.zones)
 
 
-def test_given_tests_are_computed_by_this_version(page: Dossier, result: Result) -> None:
+def test_given_tests_are_computed_by_this_version(page: Page, result: Result) -> None:
     found = nearest(result.scene)
     rows = page.table("Given tests nearest")
     assert [row[0] for row in rows] == [one.test.name for one in found]
@@ -279,7 +279,7 @@ def test_capsule_runs_again(folder: Path, result: Result) -> None:
     assert again.found_hash == result.state_hash
 
 
-def test_page_needs_no_network(page: Dossier, folder: Path) -> None:
+def test_page_needs_no_network(page: Page, folder: Path) -> None:
     for tag, attributes in page.attributes:
         assert (attributes.get("src") or "data:").startswith("data:"), tag
         link = attributes.get("href") or "#"
@@ -296,7 +296,7 @@ def test_page_needs_no_network(page: Dossier, folder: Path) -> None:
     assert len(ids) == len(set(ids))
 
 
-def test_replay_is_the_run(page: Dossier, result: Result) -> None:
+def test_replay_is_the_run(page: Page, result: Result) -> None:
     data = json.loads(page.texts["script"][0])
 
     def lengths(text: str) -> np.ndarray:
@@ -327,7 +327,7 @@ def test_the_same_run_gives_the_same_page(folder: Path, tmp_path: Path) -> None:
     birm3d.dossier(
         again, tmp_path, title="Other", standards=["ASTM F2656-07"], design_loads=loads, date="2030-01-03"
     )
-    other = Dossier(page)
+    other = Page(page)
     assert "ductility 3" in dict(other.table("At a glance"))["What does its foundation have to carry?"]
     assert other.texts["h1"] == ["Other"]
     assert len([caption for caption in other.tables if caption.startswith("Rating, ")]) == 1
@@ -405,7 +405,7 @@ def test_bands_of_a_drawn_study_and_load_on_a_wall(tmp_path: Path, monkeypatch: 
 
 def test_study(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("birm3d.reporting.build.find_spec", lambda name: None)  # no plotly: no second page
-    page = Dossier(birm3d.dossier(study, tmp_path / "a"))
+    page = Page(birm3d.dossier(study, tmp_path / "a"))
     summary = study.summary()
     rows = {row[0]: row[1:] for row in page.table("Percentiles of the study")}
     found = summary["dynamic_crush"]
@@ -450,7 +450,7 @@ def test_other_kinds_of_runs(make: Any, tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.setattr("birm3d.reporting.build.find_spec", lambda name: None)
     monkeypatch.setattr("birm3d.reporting.study_case.nearest", lambda scene: nearest(scene, 1))
     result = make().run()
-    page = Dossier(birm3d.dossier(result, tmp_path / "a"))
+    page = Page(birm3d.dossier(result, tmp_path / "a"))
     assert not (tmp_path / "a" / "histories.html").exists()
     assert dict(page.table("Reproduction"))["state hash"] == f"{result.state_hash:016x}"
     data = json.loads(page.texts["script"][0])
@@ -519,7 +519,7 @@ def test_command_line(
     options = ["-o", str(out), "--project", "Plaza", "--study", str(runs)]
     assert command("report", str(folder / "run.birm3d"), *options) == 0
     assert capsys.readouterr().out.strip() == str(out / "index.html")
-    page = Dossier(out / "index.html")
+    page = Page(out / "index.html")
     assert "Plaza" in page.texts["dd"]
     assert page.table("Outcomes of the study") == [["stopped", "3", "100.0%"]]
     assert command("rerun", str(out / "run.birm3d")) == 0
