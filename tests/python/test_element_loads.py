@@ -9,7 +9,9 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle
+from birm3d.filters import cfc
 from birm3d.result.element_loads import LEAST_SHARE, resultant_height
+from birm3d.result.summary import ELEMENT_COLUMNS, element_rows
 
 FREE = Settings(gravity=0.0, ground=False)
 
@@ -196,3 +198,15 @@ def test_without_a_touch_or_a_barrier(spring_body: Callable[..., Vehicle]) -> No
     for result in (missed, alone):
         with pytest.raises(ValueError, match="elements must have been touched"):
             result.plot_elements()
+
+
+def test_peaks_are_shown_after_cfc_60(row: Result) -> None:
+    """An unfiltered peak of one output interval says nothing of a load; tables have the filtered one."""
+    for load in row.element_loads:
+        if not load.touched:
+            continue
+        smooth = np.column_stack([cfc(load.force[:, i], 60, load.interval) for i in range(3)])
+        assert load.peak_force_cfc60 == pytest.approx(np.sqrt((smooth**2).sum(axis=1)).max(), rel=1e-12)
+    touched = [load for load in row.element_loads if load.touched]
+    shown = {cells[0]: cells[ELEMENT_COLUMNS.index("peak force, CFC 60 [kN]")] for cells in element_rows(row)}
+    assert shown == {load.name: f"{load.peak_force_cfc60 / 1e3:.0f}" for load in touched}

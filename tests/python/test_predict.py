@@ -104,6 +104,9 @@ def test_what_it_tells() -> None:
     text = prediction().summary()
     assert "80% bands of 64 vehicles of the class" in text
     assert "drawn: scatter.front" in text
+    (force,) = [line.split() for line in text.splitlines() if line.strip().startswith("peak_force_50ms")]
+    assert force[-1] == "kN"
+    assert float(force[1]) == pytest.approx(prediction().low["peak_force_50ms"] / 1e3, rel=1e-3)
     told = prediction().to_dict()["metrics"]["max_displacement"]
     assert told["low"] < told["median"] < told["high"]
     assert "<td>max_displacement</td>" in prediction()._repr_html_()

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from ..signals.filters import moving_average
+from ..signals.filters import cfc, moving_average
 from .record import RunRecord
 from .unit_result import read_only
 
@@ -27,6 +27,7 @@ Floats = npt.NDArray[np.float64]
 LEAST_SHARE = 0.01
 """Fraction of its greatest value below which the height of a horizontal force is not computed."""
 
+_CLASS, _LONGEST = 60.0, 0.1  # channel frequency class, and the longest interval that it takes, times it
 _WINDOW = 0.05  # s
 
 
@@ -86,6 +87,16 @@ class ElementLoad:
     def peak_force(self) -> float:
         """Greatest magnitude of the force, unfiltered [N]."""
         return float(np.linalg.norm(self.force, axis=1).max())
+
+    @cached_property
+    def peak_force_cfc60(self) -> float:
+        """Greatest magnitude of the force after CFC 60 (SAE J211-1), each component filtered [N].
+
+        Unfiltered where the output interval is too long for this class.
+        """
+        fits = self.interval * _CLASS <= _LONGEST
+        force = cfc(self.force, _CLASS, self.interval) if fits else self.force
+        return float(np.linalg.norm(force, axis=1).max())
 
     @cached_property
     def peak_force_50ms(self) -> float:

@@ -14,7 +14,7 @@ __all__ = ["ELEMENT_COLUMNS", "HEADLINES", "element_rows", "elements_in_si", "he
 
 ELEMENT_COLUMNS = (
     "element",
-    "peak force, unfiltered [kN]",
+    "peak force, CFC 60 [kN]",
     "50-ms mean [kN]",
     "height then [m]",
     "overturning moment, 50-ms mean [kN m]",
@@ -52,7 +52,7 @@ def element_rows(result: RunAnalysis) -> list[tuple[str, ...]]:
     return [
         (
             load.name,
-            f"{load.peak_force / 1e3:.0f}",
+            f"{load.peak_force_cfc60 / 1e3:.0f}",
             f"{load.peak_force_50ms / 1e3:.0f}",
             f"{load.height_at_peak:.2f}",
             f"{load.peak_overturning_moment_50ms / 1e3:.0f}",

@@ -35,6 +35,8 @@ _SMALL_OVERLAP = 0.4
 """Of the vehicle's width, as in the tests that the band was held beside."""
 _NO_ANSWERS = ("balance", "effort")
 """Kinds of metrics that say how a run was computed."""
+_KILO, _IN_KILO = 1e3, ("N", "N m", "J")  # of a summary: loads and energies in kN, kN m and kJ
+_LARGE = 1e4  # values from here on have no decimals
 _ROUNDING = 1e-9
 
 _CLASS = (
@@ -97,8 +99,10 @@ class Prediction:
         rows += [f"  {share:4.0%} {outcome}" for outcome, share in self.outcomes.items()]
         rows.append(f"  {'metric':<28}{'low':>13}{'median':>13}{'high':>13}")
         for name, *numbers in self._answers():
-            cells = "".join(f"{number:>13.5g}" for number in numbers)
-            rows.append(f"  {name:<28}{cells} {METRIC_UNITS.get(name, '')}".rstrip())
+            unit = METRIC_UNITS.get(name, "")
+            size = _KILO if unit in _IN_KILO else 1.0
+            cells = "".join(f"{_shown(number / size):>13}" for number in numbers)
+            rows.append(f"  {name:<28}{cells} {'k' if size > 1.0 else ''}{unit}".rstrip())
         rows.append(f"  drawn: {', '.join(self.drawn)}; mass, speed and barrier as given")
         rows.append(f"  Caution: {self.caution}")
         return "\n".join(rows)
@@ -224,6 +228,10 @@ def check_draws(name: str, n: int) -> int:
     if isinstance(n, bool) or n != 2**power or not 3 <= power <= _MOST:
         raise ValueError(f"{name} must be a power of 2 from 8 to {2**_MOST}, got {shown(n)}")
     return power
+
+
+def _shown(value: float) -> str:
+    return f"{value:,.0f}" if abs(value) >= _LARGE else f"{value:.4g}"
 
 
 def quantiles(values: Floats, share: float) -> tuple[float, float, float]:
