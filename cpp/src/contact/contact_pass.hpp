@@ -58,6 +58,7 @@ struct StoppedNode {
     std::size_t node_index;
     Vec3 place;
     double deflection, residual, peak_deflection, force;  // of its truss there
+    double unloading;                                     // see TrussBlockState
     double work;                                          // on its truss up to the release (J)
     MetFace released_by = {}, stopped_by = {};            // not set where an indentation has vanished
     bool stays = false;  // has the node been on `stopped_by` since the start of the step?

@@ -14,13 +14,17 @@ namespace {
 // Least distance between two tested points of a path (m): thinner surfaces may be missed.
 constexpr double least_stride = 2e-3;
 
-// How far the truss of any node that pushed has extended (m).
-BIRM3D_BLOCK_LOOP double greatest_extension(const TrussBlockState& last, const TrussBlockState& next) {
-    alignas(64) BlockColumn distance;
+// How far each node that pushed has followed a receding surface, or its truss has extended: the greater of both (m).
+BIRM3D_BLOCK_LOOP void find_recessions(const TrussBlockState& last, const TrussBlockState& next,
+                                       const BlockContact& contact, BlockColumn& recession) {
     BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < block_size; ++i)
-        distance[i] = last.force[i] > 0.0 ? last.deflection[i] - next.deflection[i] : 0.0;
-    return block_max(distance);
+    for (std::size_t i = 0; i < block_size; ++i) {
+        const double extension = last.deflection[i] - next.deflection[i];
+        const double motion = contact.nx[i] * (last.x[i] - next.x[i]) +
+                              contact.ny[i] * (last.y[i] - next.y[i]) +
+                              contact.nz[i] * (last.z[i] - next.z[i]);
+        recession[i] = last.force[i] > 0.0 ? (motion > extension ? motion : extension) : 0.0;
+    }
 }
 
 double gap_at(const ContactPass& pass, std::size_t k, const Vec3& place) {
@@ -93,32 +97,37 @@ std::optional<Vec3> first_stop(const ContactPass& pass, const DistantObstacles& 
     return path.at(outside);
 }
 
-// Has an indentation released the node, or vanished within this step, as when its post tips across the panel? If it
-// has vanished, the node moves outwards by more than the motions of the step allow.
-bool leaves_indentation(const ContactPass& pass, const ContactBlock& block, std::size_t i) {
-    if (!block.indentations.empty() && block.released[i] > 0.0) return true;
-    const TrussBlockState &last = *block.start, &next = *block.end;
-    if (!(last.force[i] > 0.0 && last.deflection[i] - next.deflection[i] > pass.greatest_following))
-        return false;
-    const double panel = pass.mesh.block[block.index].panel[i];
-    return panel >= 0.0 && (pass.indented_before >> static_cast<unsigned>(panel) & 1U) != 0;
-}
-
-// The same for any node of the block.
-bool any_leaves_indentation(const ContactPass& pass, const ContactBlock& block) {
-    if ((pass.mesh.panels_of[block.index] & pass.indented_before) == 0) return false;
-    alignas(64) BlockColumn released = block.released;
-    return (!block.indentations.empty() && block_max(released) > 0.0) ||
-           greatest_extension(*block.start, *block.end) > pass.greatest_following;
+// Marks the nodes that an indentation has released, or that it held when it vanished within this step, as when its post
+// tips across the panel (1, else 0). Such a node is far from the surface that it would follow now: further than the
+// motions of the step allow.
+void find_leaving(const ContactPass& pass, const ContactBlock& block, BlockColumn& leaves) {
+    leaves.fill(0.0);
+    if ((pass.mesh.panels_of[block.index] & pass.indented_before) == 0) return;
+    alignas(64) BlockColumn recession;
+    find_recessions(*block.start, *block.end, block.contact, recession);
+    for (std::size_t i = 0; i < block_size; ++i) {
+        const double panel = pass.mesh.block[block.index].panel[i];
+        const bool was_indented =
+            panel >= 0.0 && (pass.indented_before >> static_cast<unsigned>(panel) & 1U) != 0;
+        const bool released = !block.indentations.empty() && block.released[i] > 0.0;
+        leaves[i] = released || (was_indented && recession[i] > pass.greatest_following) ? 1.0 : 0.0;
+    }
 }
 
 double unloading_force(const TrussBlockState& nodes, std::size_t i, double deflection) {
     return std::max(0.0, nodes.unloading[i] * (deflection - nodes.residual[i]));
 }
 
-void set_truss(const StoppedNode& node, const TrussBlockState& end, TrussBlockState& nodes) {
+// The place to which the truss of a released node returns it.
+Vec3 free_place(const TrussBlock& truss, const TrussBlockState& nodes, std::size_t i) {
+    const Vec3 anchor = anchor_of(truss, i);
+    return anchor - (truss.length[i] - nodes.residual[i]) *
+                        (anchor - Vec3(nodes.x[i], nodes.y[i], nodes.z[i])).normalized();
+}
+
+void set_truss(const StoppedNode& node, TrussBlockState& nodes) {
     const std::size_t i = node.node_index;
-    nodes.unloading[i] = end.unloading[i];
+    nodes.unloading[i] = node.unloading;
     nodes.x[i] = node.place.x(), nodes.y[i] = node.place.y(), nodes.z[i] = node.place.z();
     nodes.deflection[i] = node.deflection;
     nodes.residual[i] = node.residual;
@@ -151,7 +160,7 @@ void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i,
     const double deflection = truss.length[i] - (*stop - anchor).norm();
     const double at_release = truss.length[i] - (held - anchor).norm();
     block.stopped.push_back({i, *stop, deflection, next.residual[i], next.peak_deflection[i],
-                             unloading_force(next, i, deflection),
+                             unloading_force(next, i, deflection), next.unloading[i],
                              0.5 * last.force[i] * (at_release - last.deflection[i])});
     StoppedNode& node = block.stopped.back();
     node.released_by = {block.reachable[plane != nullptr ? 0 : block.nearest[i]], n, n.dot(was - held)};
@@ -167,9 +176,7 @@ void snap_back(const ContactPass& pass, ContactBlock& block) {
     bool slack = false;
     for (std::size_t i = 0; i < block_size; ++i) {
         if (!is_slack(start, i)) continue;
-        const Vec3 anchor = anchor_of(truss, i);
-        const Vec3 place = anchor - (truss.length[i] - start.residual[i]) *
-                                        (anchor - Vec3(start.x[i], start.y[i], start.z[i])).normalized();
+        const Vec3 place = free_place(truss, start, i);
         bool free = true;
         for (std::size_t k = 0; k < pass.near.size() && free; ++k)
             free = !pass.meets(block.index, k) || gap_at(pass, k, place) >= 0.0;
@@ -195,18 +202,22 @@ bool is_solid_to(const ContactPass& pass, std::size_t b, std::size_t i, std::siz
 }
 
 bool may_release(const ContactPass& pass, const ContactBlock& block, bool ceased) {
-    return ceased || any_leaves_indentation(pass, block);
+    if (ceased) return true;
+    alignas(64) BlockColumn leaves;
+    find_leaving(pass, block, leaves);
+    return block_max(leaves) > 0.0;
 }
 
 bool find_stopped(const ContactPass& pass, const FlatContact* plane, ContactBlock& block,
                   DistantObstacles& distant) {
     block.stopped.clear();
-    const TrussBlockState& next = *block.end;
+    const TrussBlockState& last = *block.start;
+    alignas(64) BlockColumn leaves;
+    find_leaving(pass, block, leaves);
     for (std::size_t i = 0; i < block_size; ++i) {
-        if (pass.indented_before != 0 && leaves_indentation(pass, block, i))
-            block.stopped.push_back({i, Vec3(next.x[i], next.y[i], next.z[i]), next.deflection[i],
-                                     next.residual[i], next.peak_deflection[i],
-                                     unloading_force(next, i, next.deflection[i]), 0.0});
+        if (leaves[i] > 0.0)
+            block.stopped.push_back({i, free_place(pass.mesh.block[block.index], last, i), last.residual[i],
+                                     last.residual[i], last.peak_deflection[i], 0.0, last.unloading[i], 0.0});
         else
             find_stop(pass, plane, i, block, distant);
     }
@@ -219,7 +230,7 @@ void stop_nodes(const ContactPass& pass, ContactBlock& block, ContactSums& sums)
     nodes.touching = true;
     for (const StoppedNode& node : block.stopped) {
         if (!node.stays) {
-            set_truss(node, *block.end, nodes);
+            set_truss(node, nodes);
             sums.several.released_work += node.work;
         }
         for (std::size_t k = 0; k < pass.near.size(); ++k) {
