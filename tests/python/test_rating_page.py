@@ -72,6 +72,7 @@ def test_dossier_of_a_case_has_both_verdicts(module: ModuleType, tmp_path: Path)
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:core_contact_force must be")  # it is part of the dossier
 @pytest.mark.parametrize("place", range(16))
 def test_dossier_of_each_published_test(
     module: ModuleType, place: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

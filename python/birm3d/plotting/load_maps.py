@@ -24,7 +24,7 @@ _MOST_TEXTS = 120  # cells that are labelled with their numbers
 _NARROW = 0.6  # width over height of a map below which its panels stand side by side
 _FLAT, _FLAT_SIDE = 0.12, 0.4  # height over width, and width over height, below which scales are not equal
 _MOST_COLUMNS = 60  # whose cells have an edge
-_CROPPED = 0.01  # of the greatest peak: columns at the ends with less are not drawn
+_CROPPED = 0.05  # of the greatest peak: columns at the ends with less are not drawn
 _LEAST_CROP = 0.25  # of the columns; fewer that carry nothing are drawn
 _DARK = 0.55  # share of the greatest value from which on numbers are white
 
@@ -33,7 +33,7 @@ def plot_load_map(map_: LoadMap, time: float | None = None) -> Figure:
     """Return impulse and peak force of each cell; of an instant, the force then.
 
     The barrier is seen as the vehicle sees it: the place along the line, which is y, runs from right to left.
-    Of a long barrier the part is drawn where cells carry at least 1 % of the greatest peak; the title says
+    Of a long barrier the part is drawn where cells carry at least 5 % of the greatest peak; the title says
     so.
     """
     columns = _loaded(map_)
@@ -55,7 +55,7 @@ def plot_load_map(map_: LoadMap, time: float | None = None) -> Figure:
         panel.set_title(head, fontsize="medium")
     text = map_.title
     if columns != slice(0, len(map_.lateral) - 1):
-        text += f"\nfrom {lateral[0]:.1f} to {lateral[-1]:.1f} m; beyond, peaks are below 1 % of the greatest"
+        text += f"\nfrom {lateral[0]:.1f} to {lateral[-1]:.1f} m; beyond, peaks are below 5 % of the greatest"
     figure.suptitle(text, fontsize="medium")
     return figure
 
