@@ -97,9 +97,9 @@ std::optional<Vec3> first_stop(const ContactPass& pass, const DistantObstacles& 
     return path.at(outside);
 }
 
-// Marks the nodes that an indentation has released, or that it held when it vanished within this step, as when its post
-// tips across the panel (1, else 0). Such a node is far from the surface that it would follow now: further than the
-// motions of the step allow.
+// Marks with 1 the nodes that an indentation has released, and those that it held when it vanished within this step. It
+// vanishes as its post tips across the panel. Such a node is far from the surface that it would follow now: further
+// than the motions of the step allow.
 void find_leaving(const ContactPass& pass, const ContactBlock& block, BlockColumn& leaves) {
     leaves.fill(0.0);
     if ((pass.mesh.panels_of[block.index] & pass.indented_before) == 0) return;
