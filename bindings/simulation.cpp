@@ -89,6 +89,9 @@ void register_simulation(py::module_& m) {
         .def_readonly("free_time", &StepStatistics::free_time, "s, of these steps")
         .def_readonly("body_steps", &StepStatistics::body_steps,
                       "in which the rigid body stood against the barrier or the ground")
+        .def_readonly("core_contact_force", &StepStatistics::core_contact_force,
+                      "N, greatest mean over 50 ms of the barrier's force on the rigid core")
+        .def_readonly("core_contact_time", &StepStatistics::core_contact_time, "s")
         .def_readonly("wheels_given_way", &StepStatistics::wheels_given_way,
                       "wheels that were loaded beyond what they carry, and have given way")
         .def_readonly("wheels_on_ground", &StepStatistics::wheels_on_ground,

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from .pictures import plot_runs
     from .reporting import dossier
     from .result import Result, metrics
+    from .result.core_contact import CoreContactWarning
     from .result.element_loads import ElementLoad
     from .result.energy_balance import BalanceWarning
     from .result.load_map import LoadMap
@@ -73,6 +74,7 @@ __all__ = [
     "BusyError",
     "Channel",
     "CoarseSkinWarning",
+    "CoreContactWarning",
     "CurveComparison",
     "DesignLoad",
     "DesignLoadInterrupted",
@@ -149,6 +151,7 @@ _WHERE = {
     "BusyError": "_core:BusyError",
     "Channel": "signals.channel:Channel",
     "CoarseSkinWarning": "scene.mesh_check:CoarseSkinWarning",
+    "CoreContactWarning": "result.core_contact:CoreContactWarning",
     "CurveComparison": "signals.compare:CurveComparison",
     "DesignLoad": "assessment:DesignLoad",
     "DesignLoadInterrupted": "assessment:DesignLoadInterrupted",

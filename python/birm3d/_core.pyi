@@ -931,6 +931,16 @@ class StepStatistics:
         in which the rigid body stood against the barrier or the ground
         """
     @property
+    def core_contact_force(self) -> float:
+        """
+        N, greatest mean over 50 ms of the barrier's force on the rigid core
+        """
+    @property
+    def core_contact_time(self) -> float:
+        """
+        s
+        """
+    @property
     def deepest_point(self) -> float:
         """
         m, of the anchors of bottomed-out trusses inside a barrier

@@ -17,6 +17,26 @@ void count_near(const Scene& scene, std::size_t obstacle, State& state) {
     ++state.statistics.near_elements;
 }
 
+// The time over which forces on the rigid core are averaged: the force of one step says nothing (s).
+constexpr double core_mean = 0.05;
+
+void note_core_impulse(const Trial& accepted, State& state) {
+    double size = 0.0;
+    for (const auto* impulses : {&accepted.impulses, &accepted.at_start.impulses, &accepted.at_end.impulses})
+        for (const ContactImpulses& sum : *impulses)
+            size += sum.barrier_normal;
+    if (!(size > 0.0)) return;
+    std::vector<CoreImpulse>& recent = state.core_impulses;
+    std::erase_if(recent, [&](const CoreImpulse& one) { return one.time <= state.time - core_mean; });
+    recent.push_back({state.time, size});
+    double sum = 0.0;
+    for (const CoreImpulse& one : recent)
+        sum += one.size;
+    if (sum / core_mean <= state.statistics.core_contact_force) return;
+    state.statistics.core_contact_force = sum / core_mean;
+    state.statistics.core_contact_time = state.time;
+}
+
 }  // namespace
 
 void count_step(const Scene& scene, const Trial& accepted, State& state) {
@@ -43,6 +63,7 @@ void count_step(const Scene& scene, const Trial& accepted, State& state) {
                                                        [w](const auto* sum) { return sum->tire[w] > 0.0; });
     }
     statistics.body_steps += accepted.body_held();
+    note_core_impulse(accepted, state);
     statistics.wheels_given_way = 0;
     for (const UnitState& unit : state.units)
         statistics.wheels_given_way += static_cast<std::uint64_t>(std::popcount(unit.given_way));

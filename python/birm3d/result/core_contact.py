@@ -2,14 +2,48 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .. import units
+from ..base.complaints import Complaint
+
 if TYPE_CHECKING:
+    from .. import _core
+    from ..scene.scene import Scene
     from .analysis import RunAnalysis
 
-__all__ = ["bottomed_out", "core_lines"]
+__all__ = ["CoreContactWarning", "bottomed_out", "core_complaints", "core_lines"]
+
+
+class CoreContactWarning(UserWarning):
+    """The barrier met the rigid core with more than the vehicle's weight, as a mean over 50 ms.
+
+    Behind trusses that have bottomed out nothing is left to crush. Peaks of force and of deceleration are
+    then those of a blow between rigid bodies; a structure would go on to crush. Travel is too small by what
+    it would have crushed.
+    """
+
+
+def core_complaints(scene: Scene, statistics: _core.StepStatistics) -> Iterator[Complaint]:
+    """Yield a complaint if the barrier's force on the rigid core exceeded the vehicle's weight."""
+    force = statistics.core_contact_force
+    limit = scene.vehicle.mass * units.g(1.0)
+    if force > limit:
+        text = partial(_text, scene.vehicle.name, limit, force, statistics.core_contact_time)
+        yield Complaint(CoreContactWarning, "core_contact_force", force, text)
+
+
+def _text(name: str, limit: float, force: float, time: float) -> str:
+    return (
+        f"core_contact_force must be at most {1e-3 * limit:,.0f} kN, the weight of {name!r}, got "
+        f"{1e-3 * force:,.0f} kN as a mean over 50 ms until {time:.3f} s: nothing was left to crush, and "
+        "peaks of force and deceleration are those of a blow between rigid bodies"
+    )
+
 
 # A truss is bottomed out where its node is as near to its anchor [m].
 _GAP = 1e-4

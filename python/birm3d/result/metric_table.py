@@ -161,6 +161,15 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
             made.contact_overlap,
             error="balance",
         ),
+        "core_contact_force": Metric(
+            "N",
+            "crush",
+            "greatest mean over 50 ms of the barrier's force on the rigid core, where trusses had bottomed "
+            "out; 0 if the core was not met, see CoreContactWarning",
+            "end",
+            lambda run: run.statistics.core_contact_force,
+            shown=_kilo("50-ms force on the rigid core", "N"),
+        ),
         "barrier_deflection": Metric(
             "m",
             "barrier",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import chain
 from typing import TYPE_CHECKING
 
+from .core_contact import core_complaints
 from .energy_balance import open_accounts
 from .overlap import overlaps
 
@@ -21,17 +22,21 @@ __all__ = ["complaints_of_run", "warn_of_run"]
 def complaints_of_run(
     scene: Scene, statistics: _core.StepStatistics, balances: _core.Balances
 ) -> Iterator[Complaint]:
-    """Return complaints of an overlap of body and barrier, and of accounts that do not close."""
-    return chain(overlaps(scene, statistics), open_accounts(scene, balances))
+    """Return complaints of overlap of body and barrier, of blows on the core, and of open accounts."""
+    return chain(
+        overlaps(scene, statistics), core_complaints(scene, statistics), open_accounts(scene, balances)
+    )
 
 
 def warn_of_run(scene: Scene, statistics: _core.StepStatistics, balances: _core.Balances) -> None:
-    """Warn of an overlap of body and barrier, and of accounts that do not close.
+    """Warn of an overlap of body and barrier, of a blow on the core, and of accounts that do not close.
 
     Raises
     ------
     OverlapWarning
         As a warning, if the overlap was beyond :data:`birm3d.result.overlap.OVERLAP_LIMIT`.
+    CoreContactWarning
+        As a warning, if the barrier's force on the rigid core exceeded the vehicle's weight.
     BalanceWarning
         As a warning, see :func:`birm3d.result.energy_balance.warn_if_open`.
     """

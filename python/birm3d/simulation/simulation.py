@@ -163,6 +163,8 @@ class Simulation:
             If another thread uses the simulation.
         OverlapWarning
             As a warning, if the rigid body got into the barrier.
+        CoreContactWarning
+            As a warning, if the barrier pressed the rigid core with more than the vehicle's weight.
         BalanceWarning
             As a warning, if a balance of the run does not close: energy, momentum, or dissipation that falls;
             see :func:`birm3d.result.energy_balance.warn_if_open`.

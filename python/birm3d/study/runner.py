@@ -123,7 +123,7 @@ def run_study(
         runs are in its ``study``, and those before that in the store.
     StudyInterrupted
         A KeyboardInterrupt, with the finished runs in its ``study`` and in the store.
-    OverlapWarning, BalanceWarning, CoarseSkinWarning
+    OverlapWarning, CoreContactWarning, BalanceWarning, CoarseSkinWarning
         As warnings, each once for all runs that were run now: how many and which rows are not reliable, and
         what is wrong with the worst.
     """

@@ -83,8 +83,16 @@ struct StepStatistics {
     std::uint64_t free_steps = 0;     // steps in which no node was near anything
     double free_time = 0.0;           // their sum (s)
     std::uint64_t body_steps = 0;     // steps in which the rigid body stood against the barrier or the ground
+    double core_contact_force = 0.0;  // greatest mean over 50 ms of the barrier's force on the rigid core (N)
+    double core_contact_time = 0.0;   // when (s)
     std::uint64_t wheels_on_ground = 0;  // wheels that carried load, summed over the steps
     std::uint64_t wheels_given_way = 0;  // wheels that were loaded beyond what they carry
+};
+
+// An impulse of the barrier on the rigid core.
+struct CoreImpulse {
+    double time;  // s
+    double size;  // along the normals (N s)
 };
 
 // How far a run has come.
@@ -97,6 +105,7 @@ struct Progress {
     bool decided = false;     // is the outcome of the run known?
     double decided_at = 0.0;  // s
     StepStatistics statistics;
+    std::vector<CoreImpulse> core_impulses;  // of the last 50 ms
 };
 
 struct State : Progress {
