@@ -20,20 +20,22 @@ void count_near(const Scene& scene, std::size_t obstacle, State& state) {
 // The time over which forces on the rigid core are averaged: the force of one step says nothing (s).
 constexpr double core_mean = 0.05;
 
-void note_core_impulse(const Trial& accepted, State& state) {
-    double size = 0.0;
+void note_core_impulse(const Scene& scene, const Trial& accepted, State& state) {
+    Vec3 impulse = Vec3::Zero();
     for (const auto* impulses : {&accepted.impulses, &accepted.at_start.impulses, &accepted.at_end.impulses})
         for (const ContactImpulses& sum : *impulses)
-            size += sum.barrier_normal;
-    if (!(size > 0.0)) return;
+            for (const ObstacleImpulse& on : sum.obstacles)
+                if (on.obstacle != scene.ground) impulse += on.impulse;
+    if (impulse == Vec3::Zero()) return;
     std::vector<CoreImpulse>& recent = state.core_impulses;
     std::erase_if(recent, [&](const CoreImpulse& one) { return one.time <= state.time - core_mean; });
-    recent.push_back({state.time, size});
-    double sum = 0.0;
+    recent.push_back({state.time, impulse});
+    Vec3 sum = Vec3::Zero();
     for (const CoreImpulse& one : recent)
-        sum += one.size;
-    if (sum / core_mean <= state.statistics.core_contact_force) return;
-    state.statistics.core_contact_force = sum / core_mean;
+        sum += one.impulse;
+    const double force = sum.norm() / core_mean;
+    if (force <= state.statistics.core_contact_force) return;
+    state.statistics.core_contact_force = force;
     state.statistics.core_contact_time = state.time;
 }
 
@@ -63,7 +65,7 @@ void count_step(const Scene& scene, const Trial& accepted, State& state) {
                                                        [w](const auto* sum) { return sum->tire[w] > 0.0; });
     }
     statistics.body_steps += accepted.body_held();
-    note_core_impulse(accepted, state);
+    note_core_impulse(scene, accepted, state);
     statistics.wheels_given_way = 0;
     for (const UnitState& unit : state.units)
         statistics.wheels_given_way += static_cast<std::uint64_t>(std::popcount(unit.given_way));

@@ -254,11 +254,14 @@ class End(Strict):
     bow_m: how much further back the corners are than the centre line, a parabola in y.
     profile_m: setback over height, rows [z, setback]; setback 0 is the outermost line.
     blend_m: length over which both fade out along the body.
+    depth_m: of the structure before the compartment or the load; deflections are scaled with it. Without it,
+    up to the rigid core.
     """
 
     bow_m: NonNegative = 0.0
     profile_m: tuple[tuple[float, NonNegative], ...] = ()
     blend_m: Positive = 1.0
+    depth_m: Positive | None = None
 
     @model_validator(mode="after")
     def _check(self) -> End:

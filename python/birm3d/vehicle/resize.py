@@ -37,16 +37,22 @@ def extent_of(exterior: Exterior, wheels: Sequence[Wheel], core: Sequence[CoreBo
     half = [row[1] for row in exterior.stations_m] + [row[1] for row in roofs]
     half += [abs(wheel.center_m[1]) + 0.5 * wheel.width_m for wheel in wheels]
     axles = [wheel.center_m[0] for wheel in wheels]
+    ends = (min(x), max(x))
     return Extent(
-        rear=min(x),
-        front=max(x),
+        rear=ends[0],
+        front=ends[1],
         width=2.0 * max(half),
         top=max([row[3] for row in exterior.stations_m] + [row[2] for row in roofs]),
         axles=(max(axles), min(axles)) if len(set(axles)) > 1 else None,
-        core_rear=min(box.x_m[0] for box in core),
-        core_front=max(box.x_m[1] for box in core),
+        crushed_rear=_inner_end(ends[0], exterior.rear.depth_m, min(box.x_m[0] for box in core)),
+        crushed_front=_inner_end(ends[1], exterior.front.depth_m, max(box.x_m[1] for box in core), -1.0),
         wheel=max((wheel.radius_m for wheel in wheels), default=None),
     )
+
+
+def _inner_end(end: float, depth: float | None, core: float, inwards: float = 1.0) -> float:
+    """Return where the structure of an end is taken to begin: at its stated depth, or at the core."""
+    return core if depth is None else end + inwards * depth
 
 
 def _extent_of_mesh(
@@ -136,8 +142,8 @@ class Resize:
             "stations_m": tuple(
                 (to.x(x), to.y * half, to.z(low), to.z(high)) for x, half, low, high in stations
             ),
-            "front": self._end(exterior.front, at_front),
-            "rear": self._end(exterior.rear, at_rear),
+            "front": self._end(exterior.front, at_front, to.front_depth(self._extent)),
+            "rear": self._end(exterior.rear, at_rear, to.rear_depth(self._extent)),
             "upper": tuple(self._upper(upper) for upper in exterior.upper),
             "mesh": None if exterior.mesh is None else self._mesh(exterior.mesh),
         }
@@ -150,10 +156,15 @@ class Resize:
         roof = tuple((self._to.x(x), self._to.y * half, self._to.z(z)) for x, half, z in upper.roof_m)
         return upper.changed({"base_x_m": _both(self._to.x, upper.base_x_m), "roof_m": roof})
 
-    def _end(self, end: End, along: float) -> End:
-        profile = tuple((self._to.z(z), along * setback) for z, setback in end.profile_m)
-        changes = {"bow_m": along * end.bow_m, "profile_m": profile, "blend_m": along * end.blend_m}
-        return end.changed(changes)
+    def _end(self, end: End, along: float, deep: float) -> End:
+        return end.changed(
+            {
+                "bow_m": along * end.bow_m,
+                "profile_m": tuple((self._to.z(z), along * setback) for z, setback in end.profile_m),
+                "blend_m": along * end.blend_m,
+                "depth_m": None if end.depth_m is None else deep * end.depth_m,
+            }
+        )
 
     def zone(self, zone: Zone, mine: Factors, along: Factors) -> Zone:
         """Return a zone with the part of the exterior that it holds for, and its laws by their factors."""

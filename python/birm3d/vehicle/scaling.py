@@ -5,12 +5,13 @@ stretched with the structure that it is a part of, and its stress follows from t
 
     deflection' = s * deflection,    stress' = stress * (m' / m) / (a * s)
 
-m is the mass that the zones hold for, a the factor of a panel's area, and s that of the depth behind it. The
-depth is the distance from end to rigid core for front and rear, the width for sides, the height for roof and
-underside. So a similar vehicle at the same speed is crushed by the same fraction of its length. If its size
-stays, it is crushed by the same depth. NHTSA's tests at 56 km/h agree: within a class, displacement goes with
-length to the power 1.33 (+-0.50, 20 cars) and 0.87 (+-0.40, 12 sport utility vehicles); over all classes,
-with mass to the power 0.09 (+-0.08, 40 vehicles).
+m is the mass that the zones hold for, a the factor of a panel's area, and s that of the depth behind it.
+For front and rear it is the depth of the structure before the compartment or the load: ``depth_m`` of the
+file, or up to the rigid core. For sides it is the width, for roof and underside the height. So a similar
+vehicle at the same speed is crushed by the same fraction of its length. If its size stays, it is crushed by
+the same depth. NHTSA's tests at 56 km/h agree: within a class, displacement goes with length to the power
+1.33 (+-0.50, 20 cars) and 0.87 (+-0.40, 12 sport utility vehicles); over all classes, with mass to the
+power 0.09 (+-0.08, 40 vehicles).
 """
 
 from __future__ import annotations
@@ -77,6 +78,14 @@ class Scaling:
         """Return the factor of the overall length."""
         return self.x.stretch(extent.rear, extent.front)
 
+    def front_depth(self, extent: Extent) -> float:
+        """Return the factor of the depth of the front's structure."""
+        return self.x.stretch(*_depth(extent.crushed_front, extent.front, extent))
+
+    def rear_depth(self, extent: Extent) -> float:
+        """Return the factor of the depth of the rear's structure."""
+        return self.x.stretch(*_depth(extent.rear, extent.crushed_rear, extent))
+
     def height(self, extent: Extent) -> float:
         """Return the factor of the overall height."""
         return self.z.stretch(0.0, extent.top)
@@ -87,15 +96,15 @@ class Scaling:
 
 
 class Extent(NamedTuple):
-    """Where a vehicle's skin and wheels end, and its rigid core; file axes [m]."""
+    """Where a vehicle's skin and wheels end, and the structure of its ends; file axes [m]."""
 
     rear: float
     front: float
     width: float
     top: float
     axles: tuple[float, float] | None  # the first one's place and the last one's, where they differ
-    core_rear: float
-    core_front: float
+    crushed_rear: float  # inner end of the structure that is crushed from the rear
+    crushed_front: float
     wheel: float | None  # greatest radius
 
     @property
@@ -134,8 +143,7 @@ def sizes_given(**sizes: Quantity | None) -> dict[str, float | None]:
 def panel_factors(scaling: Scaling, extent: Extent, panel: str) -> Factors:
     """Return the factors of the law of a panel, by the one of its area and the one of the depth behind it."""
     along, up = scaling.length(extent), scaling.height(extent)
-    front = scaling.x.stretch(*_depth(extent.core_front, extent.front, extent))
-    rear = scaling.x.stretch(*_depth(extent.rear, extent.core_rear, extent))
+    front, rear = scaling.front_depth(extent), scaling.rear_depth(extent)
     radius = up if extent.wheel is None else scaling.z(extent.wheel) / extent.wheel
     area, depth = {
         "front": (scaling.y * up, front),

@@ -91,8 +91,8 @@ struct StepStatistics {
 
 // An impulse of the barrier on the rigid core.
 struct CoreImpulse {
-    double time;  // s
-    double size;  // along the normals (N s)
+    double time;   // s
+    Vec3 impulse;  // world axes (N s)
 };
 
 // How far a run has come.
