@@ -2,12 +2,12 @@
 
     python examples/fit_truck_front.py [--output FOLDER] [--mesh-density 0.25]
 
-Nobody has published a truck's wall force. How strong the front is follows from the pickup's by a rule that
-the truck's file states. How high it pushes, frame and engine against grille and hood, is fitted to the one
-thing that film has shown: a 15,000-lb truck at 50 mph pitches by 27 degrees. The mass centre stands above the
-force, so the nose goes down and the rear wheels rise. How far depends on more than this number: the table
-shows what the height of the load does. With it at the upper end of its band the fit asks for nearly all
-of the force in the lower zone; grille and hood are left 1 %.
+Nobody has published a real truck's wall force. How strong the front is was fitted to finite-element runs of
+another truck (tests/validation/fit_truck_preset.py). How high it pushes, frame and engine against grille
+and hood, is fitted to the one thing that film has shown: a 15,000-lb truck at 50 mph pitches by 27 degrees.
+The mass centre stands above the force, so the nose goes down and the rear wheels rise. How far depends on
+more than this number: the table shows what the height of the load does. With it at the upper end of its
+band the fit asks for nearly all of the force in the lower zone; grille and hood are left 1 %.
 """
 
 import argparse
@@ -19,13 +19,16 @@ from birm3d.calibration import Parameter, ScalarTarget
 from birm3d.scene_parameters import varied
 from matplotlib.figure import Figure
 
-LOW, HIGH = "bumper", "grille"
+LOW, HIGH = ("bumper", "bumper_end"), ("grille",)
 PITCH = ScalarTarget("max_pitch", 27.0, 1.0)
 
 
 def share_below(vehicle: birm3d.Vehicle) -> float:
     """Share of the front's force that its lower zone carries, at equal deflection."""
-    low, high = (area(vehicle, zone) * vehicle.zones[zone].envelope[1][1] for zone in (LOW, HIGH))
+    low, high = (
+        sum(area(vehicle, zone) * vehicle.zones[zone].envelope[1][1] for zone in zones)
+        for zones in (LOW, HIGH)
+    )
     return low / (low + high)
 
 
@@ -37,10 +40,8 @@ def with_share(simulation: birm3d.Simulation, share: float) -> birm3d.Simulation
     """Move force between the zones of the front; their sum at equal deflection stays."""
     vehicle = simulation.scene.vehicle
     now = share_below(vehicle)
-    zones = {
-        LOW: vehicle.zones[LOW].scaled(share / now),
-        HIGH: vehicle.zones[HIGH].scaled((1.0 - share) / (1.0 - now)),
-    }
+    factors = {LOW: share / now, HIGH: (1.0 - share) / (1.0 - now)}
+    zones = {zone: vehicle.zones[zone].scaled(factor) for names, factor in factors.items() for zone in names}
     return varied(simulation, {"vehicle": vehicle.with_zones(zones)})
 
 

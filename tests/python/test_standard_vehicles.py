@@ -147,7 +147,10 @@ def test_front_is_crushed_as_those_of_tests(name: str) -> None:
 def test_bollards_and_barrier(name: str) -> None:
     row, along = run(name, "bollards"), run(name, "jersey")
     assert row.outcome == "stopped"
-    assert along.outcome == "redirected"
+    # A truck that leans on the barrier may slide along it until it stands, seconds after the impact.
+    assert along.outcome == "redirected" or (name in TRUCKS and along.outcome == "stopped")
+    after = along.velocity[np.searchsorted(along.time, 0.8)]
+    assert np.linalg.norm(after) > 0.6 * along.scene.impact_speed
     for result in (row, along):
         assert result.metrics["energy_residual"] < 1e-3
         assert result.metrics["momentum_residual"] < 1e-6

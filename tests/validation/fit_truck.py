@@ -5,7 +5,7 @@
 
 Eleven numbers (truck_front.py) are fitted to five runs together, then each run is left out in turn. The same
 is done with fewer numbers: the errors of the runs left out say what they are worth. The table has the preset
-`cargo_truck` beside: its front and its law know nothing of these runs.
+`cargo_truck` beside, three of whose numbers are fitted to these runs (fit_truck_preset.py).
 
 --save writes tests/data/finite_element/truck_fits.csv and fitted_truck.toml, and tests/validation/truck.md.
 """
