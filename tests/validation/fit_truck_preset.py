@@ -1,4 +1,4 @@
-"""Where the stresses of `cargo_truck`'s front come from: three numbers fitted to finite-element runs of a truck.
+"""Where the front of `cargo_truck` comes from: three stresses fitted to finite-element runs of a truck.
 
     python tests/validation/fit_truck_preset.py [--mesh-density 0.5]
 

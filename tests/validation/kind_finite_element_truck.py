@@ -12,10 +12,11 @@ from truck_runs import FITTED, Run, figures, runs, scene
 
 NAME = "finite_element_truck"
 TITLE = "Finite-element truck: walls and bollards"
-TEXT = """Vehicles: `tests/data/finite_element/fitted_truck.toml`, eleven numbers of which are fitted to all five
-runs; and the preset `cargo_truck`, another truck (its mass, height and length are its own). Three stresses
-of its front are fitted to travel and force of the runs (`fit_truck_preset.py`, which leaves each run out in
-turn, too). Marks: travel 12 %, force over 50 ms 15 %, impulse sideways on each post 20 kN s, pitch 5
+TEXT = """Vehicles: `tests/data/finite_element/fitted_truck.toml`, eleven numbers of which are fitted to all
+five runs; and the preset `cargo_truck`, another truck (its mass, height and length are its own). Three
+stresses of its front are fitted to travel and force of the runs (`fit_truck_preset.py`, which leaves
+each run out in turn, too).
+Marks: travel 12 %, force over 50 ms 15 %, impulse sideways on each post 20 kN s, pitch 5
 degrees.
 
 What the model can not do here: the engine stops in a post while the frame goes on, the bed slides by up to
