@@ -459,12 +459,17 @@ class Indentation(Block):
 
 
 class CoreBox(Block):
-    """A box of the rigid core, symmetric about y = 0; trusses run from it to the exterior."""
+    """A box of the rigid core, symmetric about y = 0; trusses run from it to the exterior.
+
+    gives_way: a barrier may pass through the box, for structure is crushed there. Its trusses end at it all
+    the same. Such a box is no part of the rigid body whose overlap with the barrier is measured.
+    """
 
     name: Name
     x_m: Range
     half_width_m: Positive
     z_m: Range
+    gives_way: bool = False
 
     @model_validator(mode="after")
     def _check(self) -> CoreBox:

@@ -77,13 +77,16 @@ def _solids(same: _Same) -> tuple[Floats, npt.NDArray[np.bool_], Floats, Floats]
 
 @lru_cache(maxsize=16)
 def _core_ranges(same: _Same) -> Floats:
-    boxes = same.file.core
+    boxes = [box for box in same.file.core if not box.gives_way]
     ranges = np.array([(box.x_m, (-box.half_width_m, box.half_width_m), box.z_m) for box in boxes])
     return ranges.reshape(-1, 3, 2)
 
 
 def core_ranges(file: VehicleFile) -> Floats:
-    """Return where the rigid body's boxes begin and end along each axis of the file, shape (k, 3, 2) [m]."""
+    """Return where the rigid body's boxes begin and end along each axis of the file, shape (k, 3, 2) [m].
+
+    Boxes that give way are no part of it.
+    """
     return _core_ranges(_Same(file))
 
 
