@@ -152,8 +152,9 @@ def test_the_error_of_the_area_falls_with_the_element_area(preset):
 
 ELEMENTS = {
     **{"semi_tractor": 4570, "semi_trailer": 1440},
-    # A bollard meets three columns of nodes.
-    **{"cabover_7500": 7694, "bus_13t": 11652, "heavy_truck_29500": 7770},
+    # A bollard meets three columns of nodes. Trucks have a line of nodes where the front's middle ends.
+    "cargo_truck": 5752,
+    **{"cabover_7500": 7694, "bus_13t": 11652, "heavy_truck_29500": 7330},
 }
 
 
