@@ -106,7 +106,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     asked = parser.parse_args(arguments)
     try:
         if asked.quick:
-            rows = run(("passenger_car", "cargo_truck"), (25.0, 90.0), (15.0, 40.0), 0.25)
+            rows = run(("passenger_car", "cargo_truck"), (25.0, 90.0), (15.0, 36.0), 0.25)
         else:
             rows = run(Vehicle.presets(), ANGLES, SPEEDS, asked.mesh_density)
     except KeyboardInterrupt:

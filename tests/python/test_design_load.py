@@ -17,6 +17,9 @@ from birm3d import Barrier, DesignLoad, DesignLoadInterrupted, Settings, Simulat
 from one_truss import one_truss
 from scipy.signal import butter, filtfilt
 
+# Scenes of these tests strike the rigid core.
+pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+
 NUMBERS = ("impulse", "peak_force", "force_50ms", "height", "moment", "equivalent_static_force")
 
 
@@ -308,7 +311,7 @@ def test_what_is_written(envelope: DesignLoad, tmp_path: Path) -> None:
 
 def test_cautions_are_said_where_they_matter() -> None:
     free = birm3d.design_load(
-        Simulation(car(), Barrier.jersey(length=9.0, segments=3, free_standing=True), 14.0, 40.0),
+        Simulation(car(), Barrier.jersey(length=9.0, segments=3, free_standing=True), 14.0, 30.0),
         natural_period=0.1,
     )
     assert "stand free" in free.caution

@@ -8,7 +8,11 @@ from birm3d import Barrier, Result, Settings, Simulation, Vehicle
 
 DISSIPATED = ("crushed", "barrier_friction", "tire_friction", "ground_friction", "impacts")
 
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoarseSkinWarning")
+# Scenes of these tests strike the rigid core.
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::birm3d.CoarseSkinWarning"),
+    pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning"),
+]
 
 
 def greatest_fall(run: Result) -> dict[str, float]:

@@ -25,7 +25,7 @@ _COLUMNS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
 @pytest.fixture(scope="module")
 def run() -> Result:
     car = Vehicle.preset("passenger_car", mesh_density=0.1)
-    return Simulation(car, Barrier.rigid_wall(friction=0.2), 15.0, 60.0).run()
+    return Simulation(car, Barrier.rigid_wall(friction=0.2), 15.0, 60.0, duration=0.4).run()
 
 
 @pytest.fixture(scope="module")

@@ -176,7 +176,9 @@ def test_penetration_of_a_turned_body_is_its_corner() -> None:
     result = Simulation(car, post, 30.0, 90.0, 0.85, duration=0.6, impact_roll=8.0).run()
     assert np.abs(result.yaw).max() > 5.0
     centers, turns = result.pose(result.time)
-    anchors = centers[:, None, :] + np.einsum("kij,nj->kni", turns, car.anchors[car.wheel_of_node < 0])
+    anchors = centers[:, None, :] + np.einsum(
+        "kij,nj->kni", turns, car.anchors[(car.wheel_of_node < 0) & (car.along_of_node < 0)]
+    )
     expected = max(0.0, float((anchors[..., 0]).max()))
     assert result.metrics["vehicle_penetration"] == pytest.approx(expected, abs=1e-9)
     assert expected > 0.5  # it got by

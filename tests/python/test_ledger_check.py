@@ -28,7 +28,11 @@ from birm3d.study.runner import StudyInterrupted
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoarseSkinWarning")
+# Scenes of these tests strike the rigid core.
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::birm3d.CoarseSkinWarning"),
+    pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning"),
+]
 
 PLACE = r" at t = [0-9.e+-]+ s, mass centre at \(.+, .+, .+\) m: "
 

@@ -230,7 +230,7 @@ def test_trusses_are_long_enough_and_run_into_the_vehicle(preset_name):
     middle = front & (np.abs(mesh.nodes[:, 1]) < 0.3)
     # A 60-mph head-on crash of a car crushes about 1.2 m.
     assert length[middle].min() > 1.2
-    assert length[middle].max() < 1.5
+    assert length[middle].max() < 2.2  # poles at 50 mph crush the fire wall, too
     assert (truss[front, 0] > 0.9 * length[front]).all()
     door = name == "door"
     assert (np.abs(truss[door, 1]) > 0.7 * length[door]).all()

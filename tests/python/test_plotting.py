@@ -27,6 +27,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from scipy.spatial import ConvexHull
 
+# Scenes of these tests strike the rigid core.
+pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+
 
 @pytest.fixture(scope="module")
 def head_on() -> Result:

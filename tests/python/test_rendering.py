@@ -15,6 +15,9 @@ from birm3d.rendering.stills import with_slider
 from birm3d.result.skin import skins_at
 from PIL import Image
 
+# Scenes of these tests strike the rigid core.
+pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+
 SIZE = (240, 136)
 
 

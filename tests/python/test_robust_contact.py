@@ -121,8 +121,8 @@ def test_gliding_along_a_wall_costs_few_steps() -> None:
 )
 def test_left_and_right_mirror_each_other(name: str, barrier: Barrier) -> None:
     """To 1e-9 of the speed: rounding, which a crash makes grow."""
-    right = Simulation(car(name), barrier, 25.0, 40.0, 0.1, duration=0.2).run()
-    left = Simulation(car(name), barrier, 25.0, 140.0, -0.1, duration=0.2).run()
+    right = Simulation(car(name), barrier, 25.0, 40.0, 0.1, duration=0.1).run()
+    left = Simulation(car(name), barrier, 25.0, 140.0, -0.1, duration=0.1).run()
     np.testing.assert_allclose(left.velocity, right.velocity * [1.0, -1.0, 1.0], rtol=0.0, atol=25.0 * 1e-9)
 
 

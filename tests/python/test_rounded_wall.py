@@ -41,9 +41,6 @@ def test_left_and_right_are_mirror_images(car: Vehicle) -> None:
 
 def test_impulse_does_not_hang_on_a_small_radius(car: Vehicle) -> None:
     """Rounded edges draw in the skin beside them, however small they are; a sharp edge (0 m) cuts it."""
-    report = crash(car, Barrier.rigid_wall(width=4.0)).report()
-    assert "rigid core was met" in report
-    assert "the wall's sharp edges pass between nodes" in report
     thin, nearly, small = (
         change(crash(car, Barrier.rigid_wall(width=4.0, edge_radius=radius)))
         for radius in (0.001, 0.005, 0.02)

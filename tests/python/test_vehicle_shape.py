@@ -86,7 +86,8 @@ def test_other_nodes_or_areas_are_not_lost(truck: Vehicle) -> None:
         assert not other._is_shape()
         found = answers(other, Barrier.rigid_wall(), 90.0)
         assert found == answers(made_alone(other), Barrier.rigid_wall(), 90.0)
-        assert abs(found["dynamic_crush"] - usual["dynamic_crush"]) > 1e-3
+        # A truck of constant stress is crushed by the same depth, a longer one later.
+        assert max(abs(found[name] / usual[name] - 1.0) for name in found if usual[name]) > 1e-2
 
 
 def test_the_last_laws_are_remembered_and_no_more(truck: Vehicle) -> None:

@@ -103,8 +103,8 @@ def _draw(axes: Axes, unit: Vehicle, view: _View, colors: npt.NDArray[Any]) -> N
     for box in () if unit._file is None else unit._file.core:
         limits = (box.x_m, (-box.half_width_m, box.half_width_m), box.z_m)
         (a, b), (c, d) = (sorted(sign * v for v in limits[view.right])), limits[view.up]
-        style = {"ls": ":" if box.gives_way else "--", "ec": "k", "lw": 1.0}
-        axes.add_patch(Rectangle((a, c), b - a, d - c, fill=False, zorder=4.0, **style))
+        line = ":" if box.gives_way else "--"
+        axes.add_patch(Rectangle((a, c), b - a, d - c, fill=False, ls=line, ec="k", lw=1.0, zorder=4.0))
     _draw_wheels(axes, unit, view, sign)
     center = unit.center_of_mass[columns] * (sign, 1.0)
     axes.plot(*center, marker="P", ms=9, color=RED, mec="w", zorder=5.0)
