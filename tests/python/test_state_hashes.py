@@ -59,7 +59,7 @@ HASHES = {
     "truck, pole of triangles": "f311c951ddbad6f0",
     "free-standing": "765fc0df3e217cb0",
     "minivan on its side": "f7eb8b6d67dab135",
-    "finite-element car, wall": "7e7b592c736f8330",
+    "finite-element car, wall": "4ac5cd4b810eee3d",
     "finite-element truck, wall": "9ff13b851af5cf1d",
 }
 
