@@ -505,7 +505,7 @@ def test_hidden_faces_are_not_in_the_crush_map() -> None:
     polygons = shapely.polygons(plane)
     # Only those that are half hidden overlap; with the hidden ones it would be a third.
     covered = shapely.union_all(polygons).area
-    assert shapely.area(polygons).sum() < 1.08 * covered
+    assert shapely.area(polygons).sum() < 1.09 * covered
 
 
 def test_bad_sides_and_heights(head_on: Result) -> None:
