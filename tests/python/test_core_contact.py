@@ -80,9 +80,14 @@ def test_presets_do_not_meet_their_core_at_a_post(name: str, speed: float) -> No
 
 
 def test_zones_are_stretched_with_the_depth_that_the_file_states() -> None:
-    """A longer front of the same structure: its deflections grow with it, wherever the rigid core begins."""
-    van, long = Vehicle.preset("van_3500"), Vehicle.preset("van_3500").scaled_to(3500.0, length=7.1)
-    stretch = long.length / van.length
+    """A longer front overhang stretches what lies before the axle, and so the part of the depth before it."""
+    van = Vehicle.preset("van_3500")
+    assert van.length is not None
+    assert van.wheelbase is not None
+    long = van.scaled_to(3500.0, length=van.length + 0.5, wheelbase=van.wheelbase)
+    overhang, depth = 1.02, 1.17  # of the file, before the axle and `depth_m` of the front [m]
+    beyond = van.length - van.wheelbase
+    stretch = (overhang * (beyond + 0.5) / beyond + depth - overhang) / depth
     for zone in ("bumper", "engine_bay"):
         now, then = van.zones[zone].envelope, long.zones[zone].envelope
-        assert [depth for depth, _ in then] == pytest.approx([stretch * depth for depth, _ in now], rel=1e-9)
+        assert [at for at, _ in then] == pytest.approx([stretch * at for at, _ in now], rel=1e-6)

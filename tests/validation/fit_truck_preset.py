@@ -24,7 +24,7 @@ from truck_runs import Figures, Run, figures, runs, scene
 
 Floats = npt.NDArray[np.float64]
 
-# Zones that have a number in common, and what it is called. Grille and hood keep their share of the force.
+# Zones that have a number in common, and what it is called. The hood is not fitted.
 NUMBERS: Mapping[str, tuple[str, ...]] = {
     "rails and engine": ("bumper", "grille"),
     "ends of the bumper": ("bumper_end",),

@@ -22,9 +22,9 @@ __all__ = ["CoreContactWarning", "bottomed_out", "core_complaints", "core_lines"
 class CoreContactWarning(UserWarning):
     """The barrier met the rigid core with more than the vehicle's weight, as a mean over 50 ms.
 
-    Behind trusses that have bottomed out nothing is left to crush. Peaks of force and of deceleration are
-    then those of a blow between rigid bodies; a structure would go on to crush. Travel is too small by what
-    it would have crushed.
+    Behind trusses that have bottomed out nothing is left to crush; a sharp edge can also meet the core
+    between trusses. The report says which. Peaks of force and of deceleration are then those of a blow between rigid
+    bodies; a structure would go on to crush. Travel is too small by what it would have crushed.
     """
 
 
@@ -40,8 +40,8 @@ def core_complaints(scene: Scene, statistics: _core.StepStatistics) -> Iterator[
 def _text(name: str, limit: float, force: float, time: float) -> str:
     return (
         f"core_contact_force must be at most {1e-3 * limit:,.0f} kN, the weight of {name!r}, got "
-        f"{1e-3 * force:,.0f} kN as a mean over 50 ms until {time:.3f} s: nothing was left to crush, and "
-        "peaks of force and deceleration are those of a blow between rigid bodies"
+        f"{1e-3 * force:,.0f} kN as a mean over 50 ms until {time:.3f} s: the barrier met what "
+        "is not crushed, and peaks of force and deceleration are those of a blow between rigid bodies"
     )
 
 

@@ -164,8 +164,8 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
         "core_contact_force": Metric(
             "N",
             "crush",
-            "greatest mean over 50 ms of the barrier's force on the rigid core, where trusses had bottomed "
-            "out; 0 if the core was not met, see CoreContactWarning",
+            "greatest mean over 50 ms of the barrier's force on the rigid core; 0 if the core was not met, "
+            "see CoreContactWarning",
             "end",
             lambda run: run.statistics.core_contact_force,
             shown=_kilo("50-ms force on the rigid core", "N"),
