@@ -23,8 +23,8 @@ class CoreContactWarning(UserWarning):
     """The barrier met the rigid core with more than the vehicle's weight, as a mean over 50 ms.
 
     Behind trusses that have bottomed out nothing is left to crush; a sharp edge can also meet the core
-    between trusses. The report says which. Peaks of force and of deceleration are then those of a blow between rigid
-    bodies; a structure would go on to crush. Travel is too small by what it would have crushed.
+    between trusses. The report says which. Peaks of force and of deceleration are then those of a blow
+    between rigid bodies. A structure would go on to crush: travel is too small by what it would have crushed.
     """
 
 
