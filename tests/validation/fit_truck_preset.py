@@ -20,17 +20,18 @@ import numpy.typing as npt
 from birm3d import scenes
 from birm3d.scene_parameters import varied
 from scipy.optimize import least_squares
-from truck_runs import Figures, Run, figures, runs, scene
+from truck_page import MARKS, computed
+from truck_runs import Run, runs
 
 Floats = npt.NDArray[np.float64]
 
-# Zones that have a number in common, and what it is called. The hood is not fitted.
+# Each fitted number and the zones that it scales. The hood is not fitted.
 NUMBERS: Mapping[str, tuple[str, ...]] = {
     "rails and engine": ("bumper", "grille"),
     "ends of the bumper": ("bumper_end",),
     "sheet of the fenders": ("fender",),
 }
-TRAVEL, FORCE = 0.12, 0.15  # marks that an error is measured by, shares
+FITTED = ("travel", "force")  # of truck_page.MARKS
 
 
 def front(vehicle: birm3d.Vehicle, factors: Iterable[float]) -> birm3d.Vehicle:
@@ -43,15 +44,10 @@ def front(vehicle: birm3d.Vehicle, factors: Iterable[float]) -> birm3d.Vehicle:
     return vehicle.with_zones(zones)
 
 
-def errors(own: Figures, run: Run) -> tuple[float, float]:
-    """Shares by which travel and force over 50 ms are too large."""
-    return own.travel / run.travel - 1.0, own.force_50ms / run.force_50ms - 1.0
-
-
 def residuals(vehicle: birm3d.Vehicle, against: Iterable[Run]) -> Floats:
     """Errors over their marks."""
-    found = [errors(figures(scene(vehicle, run).run()), run) for run in against]
-    return np.ravel(np.array(found) / (TRAVEL, FORCE))
+    rows = computed(vehicle, list(against))
+    return np.array([row.errors[name] / MARKS[name] for row in rows for name in FITTED])
 
 
 def fit(vehicle: birm3d.Vehicle, against: Iterable[Run]) -> Floats:
@@ -64,14 +60,14 @@ def fit(vehicle: birm3d.Vehicle, against: Iterable[Run]) -> Floats:
     return np.exp(least_squares(of, np.zeros(len(NUMBERS)), diff_step=0.03, max_nfev=25).x)
 
 
-def row(name: str, vehicle: birm3d.Vehicle, run: Run) -> str:
+def line(name: str, vehicle: birm3d.Vehicle, run: Run) -> str:
     """One line of a table: what is computed (and what the run has)."""
-    own = figures(scene(vehicle, run).run())
-    travel, force = errors(own, run)
+    (row,) = computed(vehicle, [run])
+    travel, force = (row.errors[what] for what in FITTED)
     return (
-        f"{name:22s}{own.travel:6.2f} ({run.travel:.2f}) {travel:+5.0%}"
-        f"{1e-3 * own.force_50ms:7.0f} ({1e-3 * run.force_50ms:.0f}) {force:+5.0%}"
-        f"{own.pitch:7.1f} ({run.pitch:.1f})"
+        f"{name:22s}{row.own.travel:6.2f} ({run.travel:.2f}) {travel:+5.0%}"
+        f"{1e-3 * row.own.force_50ms:7.0f} ({1e-3 * run.force_50ms:.0f}) {force:+5.0%}"
+        f"{row.own.pitch:7.1f} ({run.pitch:.1f})"
     )
 
 
@@ -89,15 +85,15 @@ def main() -> None:
     print("run                   travel [m]         force over 50 ms [kN]  pitch [deg]")
     print("in the file")
     for name, run in every.items():
-        print(row(name, truck, run))
+        print(line(name, truck, run))
     print("fitted")
     for name, run in every.items():
-        print(row(name, front(truck, found), run))
+        print(line(name, front(truck, found), run))
     print("each run left out in turn")
     spread = []
     for name, run in every.items():
         spread.append(fit(truck, [other for key, other in every.items() if key != name]))
-        print(row(name, front(truck, spread[-1]), run))
+        print(line(name, front(truck, spread[-1]), run))
 
     print("\nstress [MPa]           in the file  fitted  with a run left out")
     for (what, zones), factor, others in zip(NUMBERS.items(), found, np.array(spread).T, strict=True):
