@@ -8,11 +8,11 @@ A node at the wall is free to slide along it. The paper lets its truss push the 
 the run must stay as it was: what is left over is made or lost by the rule alone.
 """
 
-import argparse
 import warnings
 from pathlib import Path
 
 import birm3d
+import click
 from birm3d import Settings, scenes
 from matplotlib.figure import Figure
 
@@ -35,13 +35,9 @@ def figure(results: dict[tuple[str, float], birm3d.Result]) -> Figure:
     return fig
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--output", type=Path, help="folder for the figure")
-    options = parser.parse_args()
-
+@click.command(help=__doc__)
+@click.option("--output", type=click.Path(path_type=Path), help="folder for the figure")
+def main(output: Path | None) -> None:
     # That the paper's rule makes energy is what is shown here.
     warnings.filterwarnings("ignore", "energy_residual.*along_truss", birm3d.BalanceWarning)
     results = {
@@ -63,9 +59,9 @@ def main() -> None:
         speeds = " / ".join(f"{results[model, angle].metrics['exit_speed']:.2f}" for model in MODELS)
         print(f"{line}{speeds:>24s}")
 
-    if options.output:
-        options.output.mkdir(parents=True, exist_ok=True)
-        figure(results).savefig(options.output / "contact_models.png", dpi=150)
+    if output:
+        output.mkdir(parents=True, exist_ok=True)
+        figure(results).savefig(output / "contact_models.png", dpi=150)
 
 
 if __name__ == "__main__":

@@ -8,10 +8,10 @@ is fitted to that displacement. The pickup has two tests; its stresses grow with
 everywhere (Vehicle.scaled_to). What the structure gives back is a length, that of the passenger car.
 """
 
-import argparse
 from pathlib import Path
 
 import birm3d
+import click
 import numpy as np
 from birm3d import scenes
 from birm3d.calibration import CalibrationResult, Parameter, ScalarTarget
@@ -54,22 +54,18 @@ def figure(fitted: dict[str, birm3d.Vehicle]) -> Figure:
     return fig
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--output", type=Path, help="folder for the figure")
-    parser.add_argument("--mesh-density", type=float, default=0.25, help="relative to the presets'")
-    options = parser.parse_args()
-
+@click.command(help=__doc__)
+@click.option("--output", type=click.Path(path_type=Path), help="folder for the figure")
+@click.option("--mesh-density", default=0.25, show_default=True, help="relative to the presets'")
+def main(output: Path | None, mesh_density: float) -> None:
     vehicles = {"passenger_car": scenes.nhtsa_frontal("10146", mesh_density=0.1).scene.vehicle}
     for name in TESTS:
-        fitted = fit(name, options.mesh_density)
+        fitted = fit(name, mesh_density)
         print(f"{name}\n{fitted.summary()}")
         print(f"\n{'test':8s}{'mass [kg]':>10s}{'measured [m]':>14s}{'in the file':>12s}{'fitted':>10s}")
         for number, crash in zip(TESTS[name], fitted.simulations, strict=True):
             test = nhtsa_tests()[number]
-            before = scenes.nhtsa_frontal(number, mesh_density=options.mesh_density)
+            before = scenes.nhtsa_frontal(number, mesh_density=mesh_density)
             ways = [run.run().metrics["max_displacement"] for run in (before, crash)]
             print(
                 f"{number:8s}{test.mass:10.0f}{test.dynamic_displacement:14.3f}{ways[0]:12.3f}{ways[1]:10.3f}"
@@ -81,9 +77,9 @@ def main() -> None:
             print(f"{depth:8.3f} m {1e-6 * stress:8.4f} MPa")
         print()
 
-    if options.output:
-        options.output.mkdir(parents=True, exist_ok=True)
-        figure(vehicles).savefig(options.output / "fit_fronts.png", dpi=150)
+    if output:
+        output.mkdir(parents=True, exist_ok=True)
+        figure(vehicles).savefig(output / "fit_fronts.png", dpi=150)
 
 
 if __name__ == "__main__":

@@ -13,11 +13,11 @@ table has restitution against speed for three lengths. One test would take more,
 better at 8 m/s than at 4.
 """
 
-import argparse
 import dataclasses
 from pathlib import Path
 
 import birm3d
+import click
 import numpy as np
 from birm3d import reference, scenes
 from birm3d.calibration import CurveTarget, Parameter, ScalarTarget
@@ -89,15 +89,11 @@ def unknowns(car: birm3d.Vehicle) -> list[Parameter]:
     ]
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--output", type=Path, help="folder for the figure")
-    parser.add_argument("--mesh-density", type=float, default=0.25, help="relative to the preset's")
-    options = parser.parse_args()
-
-    crash = scenes.nhtsa_10146(mesh_density=options.mesh_density)
+@click.command(help=__doc__)
+@click.option("--output", type=click.Path(path_type=Path), help="folder for the figure")
+@click.option("--mesh-density", default=0.25, show_default=True, help="relative to the preset's")
+def main(output: Path | None, mesh_density: float) -> None:
+    crash = scenes.nhtsa_10146(mesh_density=mesh_density)
     car = crash.scene.vehicle
     # Stress levels change before the unloading slope follows them; until then it must not be the lower one.
     steep = varied(crash, dict.fromkeys(front("k_unloading"), 1e9))
@@ -121,9 +117,9 @@ def main() -> None:
         rebound = [varied(other, {"impact_speed": v}).run().metrics["restitution"] for v in SPEEDS]
         print(f"{1e3 * length:6.1f} mm given back  " + "".join(f"{value:7.3f}" for value in rebound))
 
-    if options.output:
-        options.output.mkdir(parents=True, exist_ok=True)
-        fit.plot_fit().savefig(options.output / "fit_sedan_front.png", dpi=150)
+    if output:
+        output.mkdir(parents=True, exist_ok=True)
+        fit.plot_fit().savefig(output / "fit_sedan_front.png", dpi=150)
 
 
 if __name__ == "__main__":

@@ -10,10 +10,10 @@ more than this number: the table shows what the height of the load does. With it
 band the fit asks for nearly all of the force in the lower zone; grille and hood are left 1 %.
 """
 
-import argparse
 from pathlib import Path
 
 import birm3d
+import click
 from birm3d import scenes
 from birm3d.calibration import Parameter, ScalarTarget
 from birm3d.scene_parameters import varied
@@ -56,15 +56,11 @@ def figure(fitted: birm3d.Result) -> Figure:
     return fig
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--output", type=Path, help="folder for the figure")
-    parser.add_argument("--mesh-density", type=float, default=0.25, help="relative to the preset's")
-    options = parser.parse_args()
-
-    crash = scenes.truck_at_wall(mesh_density=options.mesh_density)
+@click.command(help=__doc__)
+@click.option("--output", type=click.Path(path_type=Path), help="folder for the figure")
+@click.option("--mesh-density", default=0.25, show_default=True, help="relative to the preset's")
+def main(output: Path | None, mesh_density: float) -> None:
+    crash = scenes.truck_at_wall(mesh_density=mesh_density)
     truck = crash.scene.vehicle
     start = share_below(truck)
     share = Parameter(name="share below 0.78 m", apply=with_share, lower=0.5, upper=0.99, start=start)
@@ -82,9 +78,9 @@ def main() -> None:
         pitch = varied(crash, {"vehicle": loaded}).run().metrics["max_pitch"]
         print(f"{density:14.0f}{loaded.mass_center_height:17.3f}{pitch:13.1f}")
 
-    if options.output:
-        options.output.mkdir(parents=True, exist_ok=True)
-        figure(result).savefig(options.output / "fit_truck_front.png", dpi=150)
+    if output:
+        output.mkdir(parents=True, exist_ok=True)
+        figure(result).savefig(output / "fit_truck_front.png", dpi=150)
 
 
 if __name__ == "__main__":

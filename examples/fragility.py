@@ -3,10 +3,10 @@
 python examples/fragility.py [--output FOLDER]
 """
 
-import argparse
 from pathlib import Path
 
 import birm3d
+import click
 from birm3d import Barrier, Simulation, Vehicle, units
 from scipy import stats
 
@@ -23,18 +23,14 @@ UNCERTAIN = {
 }
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--output", type=Path, help="folder for the figures")
-    parser.add_argument("--runs", type=int, default=100, help="for each speed")
-    options = parser.parse_args()
-
+@click.command(help=__doc__)
+@click.option("--output", type=click.Path(path_type=Path), help="folder for the figures")
+@click.option("--runs", default=100, show_default=True, help="for each speed")
+def main(output: Path | None, runs: int) -> None:
     car = Vehicle.preset("passenger_car", mesh_density=0.2)  # coarse: many runs in a short time
     simulation = Simulation(car, Barrier.rigid_wall(), units.mph(35))
     speeds = [units.mph(v) for v in (31, 33, 35, 37, 39, 41)]
-    curve = birm3d.fragility(simulation, speeds, UNCERTAIN, options.runs, exceeds={"dynamic_crush": LIMIT})
+    curve = birm3d.fragility(simulation, speeds, UNCERTAIN, runs, exceeds={"dynamic_crush": LIMIT})
 
     print(f"probability of {curve.event}, {curve.runs.sum()} runs")
     print("speed [mph]   counted          95 % interval (Wilson)")
@@ -54,11 +50,11 @@ def main() -> None:
         crush = study["dynamic_crush"][study["impact_speed"] == speed]
         print(f"{speed / units.mph:11.0f} mph" + "".join(f"{value:12.3f}" for value in crush))
 
-    if options.output:
-        options.output.mkdir(parents=True, exist_ok=True)
-        curve.plot().savefig(options.output / "fragility.png", dpi=100)
+    if output:
+        output.mkdir(parents=True, exist_ok=True)
+        curve.plot().savefig(output / "fragility.png", dpi=100)
         figure = study.plot("impact_angle", "dynamic_crush", by="impact_speed")
-        figure.savefig(options.output / "sweep.png", dpi=100)
+        figure.savefig(output / "sweep.png", dpi=100)
 
 
 if __name__ == "__main__":

@@ -7,11 +7,11 @@ varied over what concrete on asphalt may have; beside them the same segments wit
 model lets segments slide and turn but not tip: the last column says when one would begin to.
 """
 
-import argparse
 import warnings
 from pathlib import Path
 
 import birm3d
+import click
 from birm3d import Barrier, CoreContactWarning, FreeStanding, Simulation, Vehicle, units
 from birm3d.result.segment_motion import lateral_movement
 from matplotlib.figure import Figure
@@ -38,13 +38,9 @@ def figure(results: dict[str, birm3d.Result]) -> Figure:
     return fig
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--output", type=Path, help="folder for the figures")
-    options = parser.parse_args()
-
+@click.command(help=__doc__)
+@click.option("--output", type=click.Path(path_type=Path), help="folder for the figures")
+def main(output: Path | None) -> None:
     # Between loose segments the car meets an end face with its rigid core: the last column has the force.
     warnings.simplefilter("ignore", CoreContactWarning)
     car = Vehicle.preset("passenger_car", mesh_density=0.5)
@@ -69,11 +65,11 @@ def main() -> None:
         )
     print("\nabove an overturning ratio of 1 a segment would begin to tip, which the model leaves out")
 
-    if options.output:
-        options.output.mkdir(parents=True, exist_ok=True)
-        figure(results).savefig(options.output / "free_standing_jersey.png", dpi=150)
+    if output:
+        output.mkdir(parents=True, exist_ok=True)
+        figure(results).savefig(output / "free_standing_jersey.png", dpi=150)
         plan = results["pinned, friction 0.5"].plot_plan()
-        plan.savefig(options.output / "free_standing_jersey_plan.png", dpi=150)
+        plan.savefig(output / "free_standing_jersey_plan.png", dpi=150)
 
 
 if __name__ == "__main__":

@@ -6,10 +6,10 @@ The shortest way from a preset to an answer that can be checked: a scene, a run,
 the measured wall force under the computed one.
 """
 
-import argparse
 from pathlib import Path
 
 import birm3d
+import click
 import numpy as np
 from birm3d.filters import cfc
 from birm3d.reference import nhtsa_10146
@@ -45,13 +45,9 @@ def figure(result: birm3d.Result, test: dict[str, np.ndarray]) -> Figure:
     return fig
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--output", type=Path, help="folder for the figures")
-    options = parser.parse_args()
-
+@click.command(help=__doc__)
+@click.option("--output", type=click.Path(path_type=Path), help="folder for the figures")
+def main(output: Path | None) -> None:
     # birm3d/simulation/presets.py has the scene: a preset at its test mass, a rigid wall, 57.09 km/h.
     simulation = birm3d.scenes.nhtsa_10146()
     result = simulation.run()
@@ -67,10 +63,10 @@ def main() -> None:
     print(f"\nenergy residual   {result.metrics['energy_residual']:.1e} of the initial kinetic energy")
     print(f"momentum residual {result.metrics['momentum_residual']:.1e} of the greatest force")
 
-    if options.output:
-        options.output.mkdir(parents=True, exist_ok=True)
-        figure(result, test).savefig(options.output / "head_on_sedan.png", dpi=150)
-        result.plot().savefig(options.output / "head_on_sedan_overview.png", dpi=100)
+    if output:
+        output.mkdir(parents=True, exist_ok=True)
+        figure(result, test).savefig(output / "head_on_sedan.png", dpi=150)
+        result.plot().savefig(output / "head_on_sedan_overview.png", dpi=100)
 
 
 if __name__ == "__main__":

@@ -7,10 +7,10 @@ numbers; roll, pitch and yaw are a figure. So the load is set beside closed form
 friction that the paper gives as a range is varied over it. The sides of the car are estimates.
 """
 
-import argparse
 from pathlib import Path
 
 import birm3d
+import click
 import numpy as np
 from birm3d import lateral_load, scenes, units
 from birm3d.filters import moving_average
@@ -49,13 +49,9 @@ def figure(result: birm3d.Result) -> Figure:
     return fig
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--output", type=Path, help="folder for the figures")
-    options = parser.parse_args()
-
+@click.command(help=__doc__)
+@click.option("--output", type=click.Path(path_type=Path), help="folder for the figures")
+def main(output: Path | None) -> None:
     results = {friction: scenes.oblique_car(friction).run() for friction in FRICTION}
     result = results[0.175]
     scene, metrics = result.scene, result.metrics
@@ -92,10 +88,10 @@ def main() -> None:
     slowed = (results[0.15].metrics["exit_speed"] - results[0.20].metrics["exit_speed"]) / units.mph
     print(f"from the lowest to the highest friction: {slowed:.1f} mph of exit speed")
 
-    if options.output:
-        options.output.mkdir(parents=True, exist_ok=True)
-        figure(result).savefig(options.output / "oblique_car.png", dpi=150)
-        result.plot_plan().savefig(options.output / "oblique_car_plan.png", dpi=100)
+    if output:
+        output.mkdir(parents=True, exist_ok=True)
+        figure(result).savefig(output / "oblique_car.png", dpi=150)
+        result.plot_plan().savefig(output / "oblique_car_plan.png", dpi=100)
 
 
 if __name__ == "__main__":

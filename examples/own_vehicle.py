@@ -3,9 +3,9 @@
 python examples/own_vehicle.py [--output FOLDER]
 """
 
-import argparse
 from pathlib import Path
 
+import click
 import numpy as np
 from birm3d import Barrier, Simulation, Vehicle, units
 
@@ -29,13 +29,9 @@ def trolley() -> Vehicle:
     )
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--output", type=Path, help="folder for the figure")
-    options = parser.parse_args()
-
+@click.command(help=__doc__)
+@click.option("--output", type=click.Path(path_type=Path), help="folder for the figure")
+def main(output: Path | None) -> None:
     car = Vehicle.preset("passenger_car")
     # Vehicles are immutable: each of these is a new one.
     loaded = car.with_gvw(1.25 * car.mass)
@@ -56,9 +52,9 @@ def main() -> None:
             f"{metrics['peak_normal_force'] / 1e3:17.0f}{metrics['exit_speed']:15.2f}"
         )
 
-    if options.output:
-        options.output.mkdir(parents=True, exist_ok=True)
-        results["trolley"].plot().savefig(options.output / "own_vehicle.png", dpi=100)
+    if output:
+        output.mkdir(parents=True, exist_ok=True)
+        results["trolley"].plot().savefig(output / "own_vehicle.png", dpi=100)
 
 
 if __name__ == "__main__":

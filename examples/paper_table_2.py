@@ -6,10 +6,10 @@ The paper compares the peak wall force with mass times peak deceleration, which 
 head-on crash; its two columns differ by 4 to 8 %. Here they are two readings of one balance.
 """
 
-import argparse
 from pathlib import Path
 
 import birm3d
+import click
 from birm3d import scenes, units
 from matplotlib.figure import Figure
 
@@ -30,13 +30,9 @@ def figure(results: dict[int, birm3d.Result]) -> Figure:
     return fig
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--output", type=Path, help="folder for the figure")
-    options = parser.parse_args()
-
+@click.command(help=__doc__)
+@click.option("--output", type=click.Path(path_type=Path), help="folder for the figure")
+def main(output: Path | None) -> None:
     results = {mph: scenes.paper_table_2(mph).run() for mph in scenes.TABLE_2}
     print(f"{'':8s}{'deceleration [g]':>18s}{'peak force [kN]':>20s}{'m a [kN]':>10s}{'force / (m a)':>22s}")
     print(
@@ -58,9 +54,9 @@ def main() -> None:
     worst = max(result.metrics["momentum_residual"] for result in results.values())
     print(f"\nmomentum residual, worst of all rows of all runs: {worst:.1e}")
 
-    if options.output:
-        options.output.mkdir(parents=True, exist_ok=True)
-        figure(results).savefig(options.output / "paper_table_2.png", dpi=150)
+    if output:
+        output.mkdir(parents=True, exist_ok=True)
+        figure(results).savefig(output / "paper_table_2.png", dpi=150)
 
 
 if __name__ == "__main__":

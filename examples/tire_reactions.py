@@ -3,10 +3,10 @@
 python examples/tire_reactions.py [--output FOLDER]
 """
 
-import argparse
 from pathlib import Path
 
 import birm3d
+import click
 import numpy as np
 from birm3d import scenes, units
 from matplotlib.figure import Figure
@@ -24,15 +24,11 @@ def figure(result: birm3d.Result) -> Figure:
     return fig
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--output", type=Path, help="folder for the figure")
-    parser.add_argument("--duration", type=float, default=2.0, help="seconds to roll (default: %(default)s)")
-    options = parser.parse_args()
-
-    result = scenes.rolling(options.duration).run()
+@click.command(help=__doc__)
+@click.option("--output", type=click.Path(path_type=Path), help="folder for the figure")
+@click.option("--duration", default=2.0, show_default=True, help="seconds to roll")
+def main(output: Path | None, duration: float) -> None:
+    result = scenes.rolling(duration).run()
     vehicle = result.scene.vehicle
     weight = vehicle.mass * units.g
     mean = result.tire_reaction.mean(axis=0)
@@ -51,9 +47,9 @@ def main() -> None:
     bounce = np.ptp(result.position[:, 2])
     print(f"\ngreatest unrest of a reaction: {unrest:.1e} N; of the height: {bounce:.1e} m")
 
-    if options.output:
-        options.output.mkdir(parents=True, exist_ok=True)
-        figure(result).savefig(options.output / "tire_reactions.png", dpi=150)
+    if output:
+        output.mkdir(parents=True, exist_ok=True)
+        figure(result).savefig(output / "tire_reactions.png", dpi=150)
 
 
 if __name__ == "__main__":

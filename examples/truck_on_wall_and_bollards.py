@@ -8,10 +8,10 @@ number was touched for them. The sizes of the tested array were not found publis
 varied.
 """
 
-import argparse
 from pathlib import Path
 
 import birm3d
+import click
 from birm3d import scenes
 from matplotlib.figure import Figure
 
@@ -45,19 +45,16 @@ def figure(results: dict[str, birm3d.Result]) -> Figure:
     return fig
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--output", type=Path, help="folder for the figure")
-    parser.add_argument("--mesh-density", type=float, default=1.0, help="relative to the preset's")
-    options = parser.parse_args()
-    density = options.mesh_density
+@click.command(help=__doc__)
+@click.option("--output", type=click.Path(path_type=Path), help="folder for the figure")
+@click.option("--mesh-density", default=1.0, show_default=True, help="relative to the preset's")
+def main(output: Path | None, mesh_density: float) -> None:
 
     rows = [
-        (changes, scenes.truck_at_bollards(mesh_density=density, **changes).run()) for changes in VARIANTS
+        (changes, scenes.truck_at_bollards(mesh_density=mesh_density, **changes).run())
+        for changes in VARIANTS
     ]
-    results = {"wall": scenes.truck_at_wall(mesh_density=density).run(), "bollards": rows[0][1]}
+    results = {"wall": scenes.truck_at_wall(mesh_density=mesh_density).run(), "bollards": rows[0][1]}
     print(f"{'greatest pitch [deg]':22s}{'film':>8s}{'paper':>8s}{'here':>8s}{'here - film':>13s}")
     for name, result in results.items():
         pitch = result.metrics["max_pitch"]
@@ -86,9 +83,9 @@ def main() -> None:
         f"mass centre of the truck: {results['wall'].scene.vehicle.mass_center_height:.2f} m above the ground"
     )
 
-    if options.output:
-        options.output.mkdir(parents=True, exist_ok=True)
-        figure(results).savefig(options.output / "truck_on_wall_and_bollards.png", dpi=150)
+    if output:
+        output.mkdir(parents=True, exist_ok=True)
+        figure(results).savefig(output / "truck_on_wall_and_bollards.png", dpi=150)
 
 
 if __name__ == "__main__":

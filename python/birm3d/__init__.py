@@ -41,8 +41,7 @@ if TYPE_CHECKING:
     from .result.result import load, write_capsule
     from .scene.mesh_check import CoarseSkinWarning
     from .scene.settings import Settings
-    from .signals import filters, reference
-    from .signals import readers as test_data
+    from .signals import filters, readers, reference
     from .signals.channel import Channel
     from .signals.channel_checks import check_channel
     from .signals.compare import CurveComparison, compare_curves
@@ -130,6 +129,7 @@ __all__ = [
     "read_csv_channels",
     "read_iso_mme",
     "read_nhtsa",
+    "readers",
     "reference",
     "rerun",
     "scene_parameters",
@@ -137,7 +137,6 @@ __all__ = [
     "sobol",
     "study",
     "sweep",
-    "test_data",
     "test_matrix",
     "units",
     "worst_offset",
@@ -207,6 +206,7 @@ _WHERE = {
     "read_csv_channels": "signals.readers:read_csv_channels",
     "read_iso_mme": "signals.readers:read_iso_mme",
     "read_nhtsa": "signals.readers:read_nhtsa",
+    "readers": "signals.readers",
     "reference": "signals.reference",
     "rerun": "simulation.rerun:rerun",
     "scene_parameters": "simulation.parameters",
@@ -214,7 +214,6 @@ _WHERE = {
     "sobol": "study.sobol:sobol",
     "study": "study",
     "sweep": "study.sweep:sweep",
-    "test_data": "signals.readers",
     "test_matrix": "assessment:test_matrix",
     "units": "units",
     "worst_offset": "study.worst_offset:worst_offset",

@@ -188,7 +188,7 @@ def print_indices(found: SobolIndices) -> None:
                 for index in (found.metrics[name] for name in SHOWN if name in found.metrics)
             )
             print(f"{label:28s}" + "".join(f"{cell:>25s}" for cell in cells))
-    for name, reason in found.left_out.items():
+    for name, reason in found.omitted.items():
         print(f"{name}: no indices, {reason}")
 
 

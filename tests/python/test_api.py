@@ -24,9 +24,6 @@ from birm3d import Barrier, Result, Settings, Simulation, Vehicle, Zone, _moved,
 from birm3d.metrics import METRIC_UNITS, compute_metrics
 from matplotlib.figure import Figure
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 
 def test_names() -> None:
     assert {"Barrier", "Result", "Settings", "Simulation", "UnstableError", "Vehicle", "units"} <= set(

@@ -15,9 +15,6 @@ from birm3d.base.fingerprint import fingerprint
 from birm3d.scene_parameters import parameter_names, value_of, varied
 from birm3d.vehicle import build
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 G = 9.80665
 
 

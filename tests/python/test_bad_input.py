@@ -16,9 +16,6 @@ import numpy as np
 import pytest
 from birm3d import BalanceWarning, Barrier, Result, Settings, Simulation, UnstableError, Vehicle, Zone, scenes
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 NAN, INF = math.nan, math.inf
 
 

@@ -13,9 +13,6 @@ from birm3d.assessment import RiskStudy
 from birm3d.scene_parameters import varied
 from scipy import stats
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 BANDED = ("impulse", "peak_force", "force_50ms", "moment", "equivalent_static_force", "height")
 POSTS = Barrier.bollards(count=3, spacing=1.2)
 CRASH = Simulation(Vehicle.preset("passenger_car", mesh_density=0.1), POSTS, 14.0)

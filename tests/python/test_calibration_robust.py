@@ -99,7 +99,8 @@ class TestExecutors:
         assert not np.array_equal(start_point(7, 1, 2), start_point(7, 2, 2))
 
     def test_an_executor_that_dies(self) -> None:
-        with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as processes:
+        # One process: Python 3.11 itself fails where it starts a second one while it counts those that broke.
+        with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as processes:
             with pytest.raises(CalibrationError, match=r"ProcessPoolExecutor failed after .* runs") as caught:
                 calibrate(block(), force(), knee_by(dies_elsewhere), executor=processes, starts=1)
             assert [run.values for run in caught.value.history] == [(0.5,)]

@@ -9,9 +9,6 @@ from typing import Any
 import pytest
 from birm3d import Barrier, Simulation, Vehicle, units
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 CAR = ("run", "--vehicle", "passenger_car", "--mesh-density", "0.1", "--speed", "30mph")
 
 

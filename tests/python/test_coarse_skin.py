@@ -16,9 +16,6 @@ from birm3d.study.verification.triangulated import triangulated
 from birm3d.study.verification.watched import LIMITS
 from birm3d.vehicle.node_spacing import node_spacing
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 WEIGHTLESS = Settings(gravity=0.0, ground=False)
 BLOCK = scenes.laboratory_block(100, k_initial=3e6, knee=0.4, k_hardening=6e6, k_unloading=60e6)
 APART = 2.4 / 9  # m, of its columns of nodes

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
 
@@ -10,6 +11,7 @@ from birm3d import Barrier, CoreContactWarning, Settings, Simulation, Vehicle, s
 from birm3d._core import StepStatistics
 from birm3d.result.core_contact import core_complaints
 from birm3d.vehicle.test_bodies import laboratory_block
+from conftest import STRIKE_THE_CORE
 
 G = units.g(1.0)
 
@@ -91,3 +93,9 @@ def test_zones_are_stretched_with_the_depth_that_the_file_states() -> None:
     for zone in ("bumper", "engine_bay"):
         now, then = van.zones[zone].envelope, long.zones[zone].envelope
         assert [at for at, _ in then] == pytest.approx([stretch * at for at, _ in now], rel=1e-6)
+
+
+def test_the_warning_is_an_error_here_and_in_all_files_but_those_listed() -> None:
+    here = Path(__file__)
+    assert here.name not in STRIKE_THE_CORE
+    assert {path.name for path in here.parent.glob("test_*.py")} >= STRIKE_THE_CORE

@@ -9,9 +9,6 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 FITTED = Path(__file__).parents[1] / "data/finite_element"
 
 

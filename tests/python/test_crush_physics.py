@@ -9,9 +9,6 @@ import pytest
 from birm3d import Barrier, Settings, Simulation, Vehicle, scenes
 from birm3d.scene_parameters import value_of, varied
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 FREE = Settings(gravity=0.0, ground=False)
 FINE = Settings(gravity=0.0, ground=False, tolerance=1e-5)
 

@@ -17,9 +17,6 @@ from birm3d import Barrier, DesignLoad, DesignLoadInterrupted, Settings, Simulat
 from one_truss import one_truss
 from scipy.signal import butter, filtfilt
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 NUMBERS = ("impulse", "peak_force", "force_50ms", "height", "moment", "equivalent_static_force")
 
 

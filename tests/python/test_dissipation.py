@@ -8,11 +8,7 @@ from birm3d import Barrier, Result, Settings, Simulation, Vehicle
 
 DISSIPATED = ("crushed", "barrier_friction", "tire_friction", "ground_friction", "impacts")
 
-# Scenes of these tests strike the rigid core.
-pytestmark = [
-    pytest.mark.filterwarnings("ignore::birm3d.CoarseSkinWarning"),
-    pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning"),
-]
+pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoarseSkinWarning")
 
 
 def greatest_fall(run: Result) -> dict[str, float]:

@@ -311,9 +311,9 @@ def test_replay_is_the_run(page: Page, result: Result) -> None:
     nodes[moving] += lengths(unit["moved"]).reshape(len(data["time"]), -1, 3)[k]
     assert np.abs(nodes - skin.nodes).max() < 2e-3
     assert unit["center"][k] == pytest.approx(skin.center, abs=1e-3)
-    w, x, y, z = unit["turn"][k]
+    w, x, y, z = unit["rotation"][k]
     first_axis = [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)]
-    assert first_axis == pytest.approx(skin.turn[:, 0], abs=1e-5)
+    assert first_axis == pytest.approx(skin.rotation[:, 0], abs=1e-5)
     assert data["time"][0] <= data["instant"] <= data["time"][-1]
     assert len(data["barrier"]) == 5
 

@@ -13,9 +13,6 @@ from birm3d.filters import cfc
 from birm3d.result.element_loads import LEAST_SHARE, resultant_height
 from birm3d.result.summary import ELEMENT_COLUMNS, element_rows
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 FREE = Settings(gravity=0.0, ground=False)
 
 

@@ -32,9 +32,6 @@ from birm3d.metrics import METRIC_UNITS
 from birm3d.result.segment_motion import lateral_movement
 from birm3d.vehicle.test_bodies import elastic_block
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 METRICS = ["dynamic_crush", "exit_speed"]
 WEIGHTLESS = Settings(gravity=0.0, ground=False)
 # run_time is never the same.

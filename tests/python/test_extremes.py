@@ -9,9 +9,6 @@ import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Vehicle, monte_carlo, sweep
 from scipy import stats
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 WINDOW = 0.05  # s, of the means
 
 

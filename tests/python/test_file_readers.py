@@ -23,9 +23,6 @@ from birm3d.io.file_format import depth
 from birm3d.io.toml import Document
 from birm3d.study.store import RunStore
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 FUZZ = Path(__file__).resolve().parents[1] / "fuzz"
 NAMES = [
     "result", "result, repacked", "capsule", "capsule, repacked", "study table", "calibration",

@@ -15,9 +15,6 @@ import pytest
 from birm3d import Barrier, FreeStanding, Settings, Simulation, Vehicle, scenes, units
 from birm3d.result.segment_motion import base_corners
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 MASS, SPEED = 6804.0, 10.0  # of the laboratory block
 BOX = ((0.3, 0.0), (0.3, 2.0))  # vertical faces: nothing is pushed down
 GRAVITY = 9.80665

@@ -10,7 +10,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from birm3d import Barrier, Simulation, Vehicle, scene_parameters
+from birm3d.result.skin import Skin
 from birm3d.scene.codec import decode, encode
+from birm3d.study.sobol import SobolDesign, SobolIndices
 from birm3d.vehicle.vehicle_file import VehicleFileError
 
 CAR = Vehicle.preset("passenger_car", mesh_density=0.05)
@@ -147,3 +149,15 @@ def test_a_scene_in_a_result_of_an_earlier_version(name: str) -> None:
     assert '"dent_reach"' in (text := repr(plain).replace("'", '"'))
     assert '"indentation' not in text.replace('"indentation-length"', "")
     assert decode(plain, arrays) == scene  # a warning would be an error: a user can not rewrite a result
+
+
+def test_parts_of_results_by_their_old_names() -> None:
+    skin = Skin(*(np.full((3, 3), float(k)) for k in range(4)))
+    indices = SobolIndices(
+        SobolDesign({}, 2), birm3d.sweep(SIMULATION, impact_speed=[5.0]), {}, {"delta_v": "constant"}
+    )
+    for part, old, new in ((skin, "turn", "rotation"), (indices, "left_out", "omitted")):
+        with pytest.warns(DeprecationWarning, match=f"^{old} has a new name: write {new}$") as told:
+            assert getattr(part, old) is getattr(part, new)
+        assert told[0].filename == __file__
+    assert indices.omitted == {"delta_v": "constant"}

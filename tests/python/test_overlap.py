@@ -8,9 +8,6 @@ import pytest
 from birm3d import Barrier, CoarseSkinWarning, OverlapWarning, Simulation, Vehicle
 from birm3d.result.overlap import OVERLAP_LIMIT
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 
 def test_a_pole_that_passes_between_nodes_is_warned_of() -> None:
     """Trusses hold the body at their anchors only; here a pole finds room between them."""

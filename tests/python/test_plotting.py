@@ -27,9 +27,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from scipy.spatial import ConvexHull
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 
 @pytest.fixture(scope="module")
 def head_on() -> Result:
@@ -231,7 +228,7 @@ def test_silhouette_is_the_union_of_the_crushed_skin() -> None:
     result = Simulation(car, Barrier.bollards(count=2, spacing=1.1), 17.0, 70.0).run()
     (shape,) = unit_shapes(car)
     ((skin,),) = skins_at(result, [result.time[-1]])
-    outline = silhouette(shape, skin.nodes, skin.center, skin.turn)
+    outline = silhouette(shape, skin.nodes, skin.center, skin.rotation)
     corners = skin.world[np.vstack([shape.quads[:, [0, 1, 2]], shape.quads[:, [0, 2, 3]]]), :2]
     whole = shapely.union_all([one for one in map(shapely.Polygon, corners) if one.area > 1e-12])
     assert shapely.area(shapely.symmetric_difference(outline, whole)) < 1e-8
@@ -241,7 +238,7 @@ def test_silhouette_without_a_skin() -> None:
     result = scenes.w2(16).run()
     (skin,) = skins_at(result, 0.0)[0]
     (shape,) = unit_shapes(result.scene.vehicle)
-    (ring,) = rings(silhouette(shape, skin.nodes, skin.center, skin.turn))
+    (ring,) = rings(silhouette(shape, skin.nodes, skin.center, skin.rotation))
     assert np.ptp(ring, axis=0) == pytest.approx([2.0, 2.4], abs=1e-9)
 
 

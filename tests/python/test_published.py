@@ -155,7 +155,7 @@ def test_olson_of_the_fury() -> None:
     mean = lateral_load.olson_mean_force(2041.2, 26.733, 24.0, **size)
     assert mean / (2041.2 * units.g) == pytest.approx(6.1, abs=0.1)
     assert lateral_load.olson_peak_force(2041.2, 26.733, 24.0, **size) == pytest.approx(np.pi / 2 * mean)
-    with pytest.raises(ValueError, match=r"way .* must be > 0 m"):
+    with pytest.raises(ValueError, match=r"distance .* must be > 0 m"):
         lateral_load.olson_mean_force(2041.2, 26.733, 24.0, front=0.1, half_width=0.99)
 
 

@@ -6,9 +6,6 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Simulation, Vehicle
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 CARS = [Vehicle.preset(name, mesh_density=0.2) for name in ("passenger_car", "pickup", "paper_pickup")]
 
 

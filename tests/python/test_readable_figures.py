@@ -24,9 +24,6 @@ from matplotlib.axes import Axes
 from matplotlib.text import Annotation
 from scipy.spatial.transform import Rotation
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 INTERVAL = 1e-4
 
 

@@ -15,9 +15,6 @@ from birm3d.rendering.stills import with_slider
 from birm3d.result.skin import skins_at
 from PIL import Image
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 SIZE = (240, 136)
 
 
@@ -148,7 +145,7 @@ def test_camera_sees_the_crushed_side(
     result = Simulation(car, barrier, 12.0, angle, impact_yaw=yaw).run()
     with rendering.Stage(result, [result.time[-1]], size=SIZE) as stage:
         place = np.array(stage.plotter.camera.position) - np.array(stage.plotter.camera.focal_point)
-        forward, left = stage._skins[-1][0].turn[:2, 0], stage._skins[-1][0].turn[:2, 1]
+        forward, left = stage._skins[-1][0].rotation[:2, 0], stage._skins[-1][0].rotation[:2, 1]
         look = place[:2] / np.linalg.norm(place[:2])
         assert look @ (seen[0] * forward + seen[1] * left) / np.hypot(*seen) > np.cos(np.radians(50.0))
         # One looks through a barrier that is in the way, and not through posts.
@@ -176,7 +173,7 @@ def test_posts_are_seen_whole() -> None:
 
 def test_driver_moves_with_the_vehicle(result: Result) -> None:
     (start,), (end,) = skins_at(result, [0.0, 0.29])
-    eyes = [skin.turn.T @ (driver_camera(result, [skin]).place - skin.center) for skin in (start, end)]
+    eyes = [skin.rotation.T @ (driver_camera(result, [skin]).place - skin.center) for skin in (start, end)]
     assert eyes[0] == pytest.approx(eyes[1])
     car = result.scene.vehicle
     assert (car.nodes.min(axis=0) < eyes[0]).all()

@@ -10,9 +10,6 @@ import pytest
 from birm3d import Barrier, Settings, Simulation, Vehicle, scenes
 from scipy.spatial.transform import Rotation
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 SoftScene = Callable[..., Simulation]
 FREE = {"gravity": 0.0, "ground": False}
 STEPS = pytest.mark.parametrize("time_step", [None, 1e-3, 2e-4])

@@ -8,9 +8,6 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Settings, Simulation, Vehicle
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 # Depth in which a node may be left where three faces meet (m).
 DEPTH = 5e-3
 

@@ -13,9 +13,6 @@ import pytest
 from birm3d import Barrier, Simulation, Vehicle, scenes
 from birm3d.study.verification.triangulated import triangulated
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 FITTED = Path(__file__).parents[1] / "data/finite_element"
 
 

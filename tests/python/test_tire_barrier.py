@@ -12,9 +12,6 @@ from birm3d.vehicle.mesher import build_mesh
 from birm3d.vehicle.tire_nodes import build_tread
 from birm3d.vehicle.vehicle_file import VehicleFile, VehicleFileError, read_vehicle_file, unit_paths
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 
 @pytest.fixture(scope="module", params=unit_paths())
 def preset(request) -> VehicleFile:

@@ -80,7 +80,9 @@ def test_the_joint_is_one_point_of_both_units(result: Result) -> None:
     )
     assert np.abs(result.articulation_angle).max() > 1.0
     for skins in skins_at(result, np.linspace(0.0, result.time[-1], 5)):
-        first, second = (skin.center + skin.turn @ place for skin, place in zip(skins, places, strict=True))
+        first, second = (
+            skin.center + skin.rotation @ place for skin, place in zip(skins, places, strict=True)
+        )
         # Between two steps the path of each unit is interpolated by itself; at the steps the gap is rounding.
         # Measured over all rows: 1.4e-5 m.
         assert first == pytest.approx(second, abs=1e-4)

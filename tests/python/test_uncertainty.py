@@ -143,10 +143,10 @@ def test_sobol_indices_of_the_crush(block: Simulation) -> None:
 def test_a_constant_metric_has_no_indices_and_says_so(block: Simulation) -> None:
     indices = birm3d.sobol(block, INPUTS, n=4, metrics=["dynamic_crush", "vehicle_penetration"])
     assert list(indices.metrics) == ["dynamic_crush"]
-    assert indices.left_out == {"vehicle_penetration": "constant, 0: no variance to share"}
+    assert indices.omitted == {"vehicle_penetration": "constant, 0: no variance to share"}
     assert "no variance to share" in repr(indices)
     short = birm3d.scene_parameters.varied(block, {"duration": 0.05})
-    missing = birm3d.sobol(short, INPUTS, n=4, metrics=["exit_angle", "delta_v"]).left_out
+    missing = birm3d.sobol(short, INPUTS, n=4, metrics=["exit_angle", "delta_v"]).omitted
     assert missing == {"exit_angle": "missing from 20 of 20 runs"}
 
 

@@ -27,9 +27,6 @@ from birm3d.calibration import Parameter
 from birm3d.scene_parameters import parameter_names, quantity_of, value_of, varied
 from scipy import stats
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 WALL = Barrier.rigid_wall()
 BLOCK = scenes.laboratory_block(20, k_initial=3e6, k_unloading=3e6)
 

@@ -56,8 +56,8 @@ def flail_space(pulse: Pulse) -> FlailSpace:
     strikes = []
     for axis, flight in ((0, FORWARD), (1, LATERAL)):
         for sign in (1.0, -1.0):
-            way, rate = sign * pulse.displacement[:, axis], sign * velocity[:, axis]
-            strikes.append(crossing(time, way, rate, flight))
+            moved, rate = sign * pulse.displacement[:, axis], sign * velocity[:, axis]
+            strikes.append(crossing(time, moved, rate, flight))
     found = [strike for strike in strikes if strike is not None]
     if not found:
         pulse.require(np.inf, "the flight of the occupant")
@@ -81,14 +81,14 @@ def head_impact(pulse: Pulse, head_x: float) -> HeadImpact:
     time, _ = pulse.since_zero()
     rate = pulse.yaw_rate[pulse.zero :]
     steps = np.diff(pulse.velocity[pulse.zero :, :2], axis=0)
-    turns = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time))])
-    middle = 0.5 * (turns[1:] + turns[:-1])
+    yaw = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time))])
+    middle = 0.5 * (yaw[1:] + yaw[:-1])
     gained = _turned(steps, middle)  # in axes that move on as the vehicle did at time zero
     motion = np.concatenate([np.zeros((1, 2)), np.cumsum(gained, axis=0)])
     areas = 0.5 * (motion[1:] + motion[:-1]) * np.diff(time)[:, None]
-    way = np.concatenate([np.zeros((1, 2)), np.cumsum(areas, axis=0)])
-    place = _turned(np.array([head_x, 0.0]) - way, -turns)
-    speed = _turned(-motion, -turns) - rate[:, None] * np.column_stack([-place[:, 1], place[:, 0]])
+    displacement = np.concatenate([np.zeros((1, 2)), np.cumsum(areas, axis=0)])
+    place = _turned(np.array([head_x, 0.0]) - displacement, -yaw)
+    speed = _turned(-motion, -yaw) - rate[:, None] * np.column_stack([-place[:, 1], place[:, 0]])
     strikes = [
         crossing(time, sign * (place[:, axis] - start), sign * speed[:, axis], flight)
         for axis, start, flight in ((0, head_x, FORWARD), (1, 0.0, LATERAL))

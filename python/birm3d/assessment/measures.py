@@ -103,11 +103,11 @@ def vehicle_intrusion(result: Result) -> float:
     across = np.asarray(_barrier_of(result)._past)
     furthest = 0.0
     for unit, shape in enumerate(unit_shapes(result.scene.vehicle)):
-        centers, turns = _poses(result, unit, rows)
+        centers, rotations = _poses(result, unit, rows)
         start = across_barrier(result, centers) - extent.front
         for k in range(len(frames)):
             nodes = shape.nodes + frames.displacement[unit][k]
-            furthest = max(furthest, float(start[k] + (nodes @ (turns[k].T @ across)).max()))
+            furthest = max(furthest, float(start[k] + (nodes @ (rotations[k].T @ across)).max()))
     return furthest
 
 
@@ -170,9 +170,9 @@ def _poses(result: Result, unit: int, rows: Any) -> tuple[Floats, Floats]:
 
 def _wheel_tracks(result: Result, unit: int, rows: slice) -> Floats:
     """Return where the wheels of a unit are, shape (wheels, rows, 3) [m]."""
-    centers, turns = _poses(result, unit, rows)
+    centers, rotations = _poses(result, unit, rows)
     wheels = result.scene.vehicle.units[unit].wheels[:, :3]
-    tracks: Floats = centers[None] + np.einsum("nij,wj->wni", turns, wheels)
+    tracks: Floats = centers[None] + np.einsum("nij,wj->wni", rotations, wheels)
     return tracks
 
 

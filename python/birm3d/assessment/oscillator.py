@@ -39,7 +39,7 @@ def elastic_force(load: Floats, interval: float, period: float, damping: float =
     """Return the greatest force in the spring of an elastic system, [N] for a load in N.
 
     The state is one complex number s (the integral of Duhamel): s' = L s + p, L = -z w + i w_d, and m w_d u =
-    Im s. Between two turns of the velocity, Im(L s + p) = 0, no displacement is greater.
+    Im s. Between two reversals of the velocity, Im(L s + p) = 0, no displacement is greater.
 
     Parameters
     ----------
@@ -62,9 +62,9 @@ def elastic_force(load: Floats, interval: float, period: float, damping: float =
     loads = np.concatenate([load, [0.0]])
     # w = L s + p is the complex velocity: w(t) = w(0) exp(L t) while the load does not change.
     velocity = pole * starts + loads
-    turn = np.mod(-np.angle(velocity), math.pi) / free
-    turn[:-1] = np.minimum(turn[:-1], interval)  # the last one has all the time it needs
-    greatest = np.abs((starts + (np.exp(pole * turn) - 1.0) / pole * velocity).imag).max(initial=0.0)
+    reversal = np.mod(-np.angle(velocity), math.pi) / free
+    reversal[:-1] = np.minimum(reversal[:-1], interval)  # the last one has all the time it needs
+    greatest = np.abs((starts + (np.exp(pole * reversal) - 1.0) / pole * velocity).imag).max(initial=0.0)
     return float(max(greatest, np.abs(ends.imag).max(initial=0.0)) * omega * omega / free)
 
 
@@ -206,11 +206,11 @@ class _SoftSystem:
         drag, velocity = self.drag, self.velocity
         if drag > 0.0:
             last = push / drag  # velocity that it tends to
-            turns = last * velocity < 0.0
-            stop = math.log1p(-velocity / last) / drag if turns else math.inf
+            reverses = last * velocity < 0.0
+            stop = math.log1p(-velocity / last) / drag if reverses else math.inf
         else:
-            turns = push * velocity < 0.0
-            stop = -velocity / push if turns else math.inf
+            reverses = push * velocity < 0.0
+            stop = -velocity / push if reverses else math.inf
         lasting = min(time, stop)
         if drag > 0.0:
             gone = -math.expm1(-drag * lasting)

@@ -52,8 +52,8 @@ class Front(ABC):
 
     def places(self, world: Floats) -> tuple[Floats, Floats, Floats]:
         """Return depth behind the line, place along it, and height, each of shape (n,) [m]."""
-        way = world - self.origin
-        return way @ self.across, way @ self.line, way[:, 2]
+        place = world - self.origin
+        return place @ self.across, place @ self.line, place[:, 2]
 
 
 @dataclass(frozen=True)

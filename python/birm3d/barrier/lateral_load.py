@@ -55,13 +55,13 @@ def olson_mean_force(
     Raises
     ------
     ValueError
-        If the numbers leave no way for the mass centre.
+        If the numbers leave no distance for the mass centre.
     """
     a = math.radians(angle)
-    way = front * math.sin(a) - half_width * (1.0 - math.cos(a)) + deflection
-    if not way > 0.0:
-        raise ValueError(f"the lateral way of the mass centre must be > 0 m, got {way:g}")
-    return normal_momentum(mass, speed, angle) ** 2 / (2.0 * mass * way)
+    distance = front * math.sin(a) - half_width * (1.0 - math.cos(a)) + deflection
+    if not distance > 0.0:
+        raise ValueError(f"the lateral distance of the mass centre must be > 0 m, got {distance:g}")
+    return normal_momentum(mass, speed, angle) ** 2 / (2.0 * mass * distance)
 
 
 def olson_peak_force(

@@ -151,12 +151,12 @@ def _curve(path: Path, curve: _Curve) -> CurveTarget:
     }
     if curve.against_column is None:
         return CurveTarget.from_channel(channel.shifted(curve.time_zero_s), curve.quantity, **options)
-    way = channels[curve.against_column]
-    if way.quantity != "length":
-        raise ValueError(f"unit of {way.name!r} must measure length, got {way.unit!r}")
+    displacement = channels[curve.against_column]
+    if displacement.quantity != "length":
+        raise ValueError(f"unit of {displacement.name!r} must measure length, got {displacement.unit!r}")
     target = CurveTarget.from_channel(channel, curve.quantity)  # checks the unit
     return CurveTarget(
-        way.to_si().values,
+        displacement.to_si().values,
         target.y,
         curve.quantity,
         against="displacement",

@@ -129,11 +129,11 @@ def analyse(search: Search, *, confidence: float, uncertainty: str, profiled: bo
 
     for k, (step, failure) in channel.blocked(point).items():
         # Downhill past the value, by a tenth of what its own standard error would bring.
-        way = "above" if step > 0.0 else "below"
+        beyond = "above" if step > 0.0 else "below"
         if k not in reasons and -gradient[k] * np.sign(step) > _PUSH * lengths[k]:
-            reasons[k] = f"held where runs fail: the data would go on {way}, but {failure}"
+            reasons[k] = f"held where runs fail: the data would go on {beyond}, but {failure}"
         elif k not in reasons:
-            notes.append(f"runs fail just {way} the value of {labels[k]}: {failure}")
+            notes.append(f"runs fail just {beyond} the value of {labels[k]}: {failure}")
 
     free = np.array([k for k in range(len(labels)) if k not in reasons], int)
     spread = _spread(search, residual, len(free), confidence, uncertainty)
@@ -255,16 +255,16 @@ def _other_optima(analysis: Analysis, search: Search) -> None:
             continue
         if descent.chi_square - best.chi_square > spread.quantile**2 * spread.factor:
             continue
-        way = descent.end - best.end
+        chord = descent.end - best.end
         apart = [
             k
-            for k in range(len(way))
-            if k not in analysis.reasons and abs(way[k]) > max(_APART * errors[k], _APART_SHARE)
+            for k in range(len(chord))
+            if k not in analysis.reasons and abs(chord[k]) > max(_APART * errors[k], _APART_SHARE)
         ]
         if not apart:
             continue
         between = [
-            best.channel.chi_square(best.end + share * way) for share in np.linspace(0, 1, _ALONG)[1:-1]
+            best.channel.chi_square(best.end + share * chord) for share in np.linspace(0, 1, _ALONG)[1:-1]
         ]
         climbed = max(between) - max(descent.chi_square, best.chi_square)
         here, there = problem.parameters.from_unit(best.end), problem.parameters.from_unit(descent.end)

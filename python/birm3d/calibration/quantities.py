@@ -105,12 +105,12 @@ def computed_curve(
     if channel_class is not None:
         values = cfc(values, channel_class, interval)
     if against == "displacement":
-        way = _rows(result, "displacement_normal")
-        end = int(np.argmax(way)) + 1
+        displacement = _rows(result, "displacement_normal")
+        end = int(np.argmax(displacement)) + 1
         if kind.interval_mean:
-            middle = 0.5 * (way[1:end] + way[: end - 1])
+            middle = 0.5 * (displacement[1:end] + displacement[: end - 1])
             return np.interp(at, middle, values[1:end])
-        return np.interp(at, way[:end], values[:end])
+        return np.interp(at, displacement[:end], values[:end])
     if kind.interval_mean:
         # Row 0 repeats the mean of the first interval.
         time, values = time[1:] - 0.5 * np.diff(time), values[1:]

@@ -78,10 +78,10 @@ def _unit(writer: GltfWriter, root: int, time: int, name: str, shape: UnitShape,
     from scipy.spatial.transform import Rotation
 
     centers = np.stack([skin.center for skin in skins])
-    turns = _continuous(Rotation.from_matrix(np.stack([skin.turn for skin in skins])).as_quat())
-    body = writer.node(name, parent=root, translation=centers[0], rotation=turns[0])
+    quaternions = _continuous(Rotation.from_matrix(np.stack([skin.rotation for skin in skins])).as_quat())
+    body = writer.node(name, parent=root, translation=centers[0], rotation=quaternions[0])
     writer.animate(body, "translation", time, centers)
-    writer.animate(body, "rotation", time, turns)
+    writer.animate(body, "rotation", time, quaternions)
     if len(shape.quads):
         used, faces = _triangles(shape.quads)
         moved = np.stack([skin.displacement[used] for skin in skins])
@@ -108,7 +108,7 @@ def _barrier(writer: GltfWriter, root: int, time: int, run: Instants) -> None:
         mesh = writer.mesh(f"barrier {element + 1}", corners - foot, faces, _BARRIER)
         node = writer.node(f"barrier {element + 1}", parent=root, mesh=mesh, translation=foot)
         if free:
-            half = 0.5 * run.turn[:, element]
+            half = 0.5 * run.yaw[:, element]
             none = np.zeros_like(half)
             shift = np.column_stack([run.shift[:, element], none])
             writer.animate(node, "translation", time, foot + shift)
@@ -128,7 +128,7 @@ def _colors(crush: Floats) -> Floats:
     return np.asarray((1.0 - share) + share * np.array(_DEEP) / np.array(_SKIN[:3]))
 
 
-def _continuous(turns: Floats) -> Floats:
+def _continuous(quaternions: Floats) -> Floats:
     """Return quaternions (k, 4) of which each goes the shorter way to the next."""
-    signs = np.where(np.einsum("ij,ij->i", turns[1:], turns[:-1]) < 0.0, -1.0, 1.0)
-    return np.asarray(turns * np.cumprod(np.append(1.0, signs))[:, None])
+    signs = np.where(np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) < 0.0, -1.0, 1.0)
+    return np.asarray(quaternions * np.cumprod(np.append(1.0, signs))[:, None])

@@ -34,7 +34,7 @@ class Instants(NamedTuple):
         For each instant the skin of each unit, nodes as in `shapes`.
     surfaces
         Elements of the barrier where they stood at first: corners (n, 3) [m], triangles (m, 3).
-    shift, turn
+    shift, yaw
         Of the first elements, those that stand free: from where they stood, shape (k, e, 2) [m], and about
         the upright axis there, (k, e) [rad].
     foot
@@ -46,7 +46,7 @@ class Instants(NamedTuple):
     skins: list[tuple[Skin, ...]]
     surfaces: list[Surface]
     shift: Floats
-    turn: Floats
+    yaw: Floats
     foot: Floats
 
     def surface_at(self, k: int, element: int) -> Floats:
@@ -54,7 +54,7 @@ class Instants(NamedTuple):
         corners = self.surfaces[element][0]
         if element >= self.shift.shape[1]:
             return corners
-        c, s = np.cos(self.turn[k, element]), np.sin(self.turn[k, element])
+        c, s = np.cos(self.yaw[k, element]), np.sin(self.yaw[k, element])
         foot = self.foot[element]
         moved = np.array(corners, float)
         moved[:, :2] = (corners[:, :2] - foot) @ np.array([[c, s], [-s, c]]) + foot + self.shift[k, element]
@@ -76,17 +76,17 @@ def instants_of(result: Result, frames: int) -> Instants:
     place = result.segment_position
     parts = range(place.shape[1])
     at = [[np.interp(time, result.time, place[:, i, axis]) for axis in (0, 1)] for i in parts]
-    turn = [np.radians(np.interp(time, result.time, result.segment_yaw[:, i])) for i in parts]
+    yaw = [np.radians(np.interp(time, result.time, result.segment_yaw[:, i])) for i in parts]
     now = np.array(at, float).reshape(len(parts), 2, len(time)).transpose(2, 0, 1)
     foot = np.array(place[0, :, :2], float).reshape(-1, 2)
-    angle = np.array(turn, float).reshape(len(parts), len(time)).T
+    angle = np.array(yaw, float).reshape(len(parts), len(time)).T
     return Instants(
         time=time,
         shapes=shapes,
         skins=skins,
         surfaces=barrier_surfaces(result.scene.barrier, world),
         shift=now - foot,
-        turn=angle - angle[:1],
+        yaw=angle - angle[:1],
         foot=foot,
     )
 

@@ -107,12 +107,12 @@ def _parts(pyvista: Any, run: Instants, forces: tuple[Floats, ...], k: int) -> l
             n = len(shape.nodes)
             mesh = pyvista.PolyData(skin.world)
         mesh.point_data["crush"] = skin.crush[:n]
-        mesh.point_data["displacement"] = skin.displacement[:n] @ skin.turn.T
+        mesh.point_data["displacement"] = skin.displacement[:n] @ skin.rotation.T
         mesh.point_data["truss_force"] = forces[unit][:n]
         mesh.point_data["contact"] = (forces[unit][:n] > 0.0).astype(np.uint8)
         found.append((name, mesh))
         if len(shape.wheels):
-            found.append((f"wheels_{unit + 1}", _wheels(pyvista, shape.wheels, skin.center, skin.turn)))
+            found.append((f"wheels_{unit + 1}", _wheels(pyvista, shape.wheels, skin.center, skin.rotation)))
     if run.surfaces:
         count = [len(corners) for corners, _ in run.surfaces]
         first = np.cumsum([0, *count[:-1]])
@@ -131,12 +131,12 @@ def _polygons(corners: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
     return np.column_stack([np.full(len(corners), corners.shape[1]), corners]).reshape(-1)
 
 
-def _wheels(pyvista: Any, wheels: Floats, center: Floats, turn: Floats) -> Any:
+def _wheels(pyvista: Any, wheels: Floats, center: Floats, rotation: Floats) -> Any:
     shapes = []
     for x, y, z, radius in wheels.tolist():
         size = {"radius": radius, "height": _WHEEL_WIDTH * radius, "resolution": 36}
         shapes.append(pyvista.Cylinder(center=(x, y, z), direction=(0.0, 1.0, 0.0), **size))
     mesh = pyvista.merge(shapes).extract_surface(algorithm=None) if len(shapes) > 1 else shapes[0]
-    mesh.points = center + np.asarray(mesh.points, float) @ turn.T
+    mesh.points = center + np.asarray(mesh.points, float) @ rotation.T
     mesh.clear_data()
     return mesh

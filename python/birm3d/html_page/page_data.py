@@ -153,7 +153,7 @@ def _plan(result: Result, frames: int) -> dict[str, Any]:
         return [
             [
                 axes.plan(ring)
-                for ring in rings(silhouette(shape, skin.nodes, skin.center, skin.turn, exact=False))
+                for ring in rings(silhouette(shape, skin.nodes, skin.center, skin.rotation, exact=False))
             ]
             for shape, skin in zip(shapes, one, strict=True)
         ]

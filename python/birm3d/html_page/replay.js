@@ -51,7 +51,7 @@ function makeReplay(box, data) {
     moving: new Uint32Array(bytes(unit.moving)),
     moved: lengths(unit.moved),
     center: unit.center,
-    turn: unit.turn,
+    rotation: unit.rotation,
     wheels: unit.wheels,
   }));
 
@@ -213,7 +213,7 @@ function makeReplay(box, data) {
     gl.bufferSubData(gl.ARRAY_BUFFER, 0, unit.now);
     gl.bindBuffer(gl.ARRAY_BUFFER, unit.skin.crushes);
     gl.bufferSubData(gl.ARRAY_BUFFER, 0, unit.crush);
-    unit.pose = poseOf(mixed(unit.turn[i], unit.turn[j], share), mixed(unit.center[i], unit.center[j], share));
+    unit.pose = poseOf(mixed(unit.rotation[i], unit.rotation[j], share), mixed(unit.center[i], unit.center[j], share));
   }
   function poseOfSegment(part, [i, j, share]) {
     if (!part.foot) return still;

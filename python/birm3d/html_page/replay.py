@@ -113,8 +113,8 @@ def _unit(shape: UnitShape, skins: list[Skin]) -> dict[str, Any]:
 
     moved = np.stack([skin.displacement for skin in skins])
     moving = np.flatnonzero(np.abs(moved).max(axis=(0, 2)) > _MOVES)
-    turns = Rotation.from_matrix(np.stack([skin.turn for skin in skins])).as_quat()[:, [3, 0, 1, 2]]
-    for before, after in itertools.pairwise(turns):  # the shorter way between two frames
+    quaternions = Rotation.from_matrix(np.stack([skin.rotation for skin in skins])).as_quat()[:, [3, 0, 1, 2]]
+    for before, after in itertools.pairwise(quaternions):  # the shorter way between two frames
         after *= math.copysign(1.0, float(before @ after))
     faces = np.vstack([shape.quads[:, [0, 1, 2]], shape.quads[:, [0, 2, 3]]])
     return {
@@ -123,7 +123,7 @@ def _unit(shape: UnitShape, skins: list[Skin]) -> dict[str, Any]:
         "moving": _text(moving.astype("<u4")),
         "moved": _packed(moved[:, moving]),
         "center": np.round([skin.center for skin in skins], 4).tolist(),
-        "turn": np.round(turns, 6).tolist(),
+        "rotation": np.round(quaternions, 6).tolist(),
         "wheels": np.round(shape.wheels, 4).tolist(),
     }
 

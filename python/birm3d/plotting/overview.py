@@ -64,8 +64,8 @@ def plot_result(result: Result) -> Figure:
     heading = result.velocity[0] / speed[0] if speed[0] > 0.0 else np.array([1.0, 0.0, 0.0])
     motion.plot(ms, result.velocity @ heading, color=BLUE, ls=SOLID, lw=2.2, label="velocity along the path")
     right = motion.twinx()
-    way = (result.position - result.position[0]) @ heading
-    right.plot(ms, way, color=GREEN, ls=DASHED, lw=1.6, label="displacement along the path")
+    displacement = (result.position - result.position[0]) @ heading
+    right.plot(ms, displacement, color=GREEN, ls=DASHED, lw=1.6, label="displacement along the path")
     motion.set_ylabel("velocity [m/s]")
     right.set_ylabel("displacement [m]")
     motion.set_title("Motion of the mass centre")

@@ -113,11 +113,11 @@ def _spread(times: Floats) -> list[Instant]:
 
 def _usual_instants(result: Result) -> list[Instant]:
     """Return five instants evenly spread; of a vehicle that comes back start, greatest travel and end."""
-    way = result.position[:, :2] - result.position[0, :2]
+    displacement = result.position[:, :2] - result.position[0, :2]
     path = result.velocity[0, :2]
-    travel = way @ path
+    travel = displacement @ path
     farthest, end = int(np.argmax(travel)), len(travel) - 1
-    aside = np.abs(way @ np.array([-path[1], path[0]])).max()
+    aside = np.abs(displacement @ np.array([-path[1], path[0]])).max()
     if farthest == end or aside > 0.25 * travel[farthest]:
         return _spread(np.linspace(0.0, result.time[-1], _INSTANTS))
 
@@ -142,7 +142,7 @@ def draw_vehicle(
 ) -> list[Floats]:
     """Draw the outline around all units at an instant, and thin that of each; returns the points."""
     outlines = [
-        silhouette(shape, skin.nodes, skin.center, skin.turn)
+        silhouette(shape, skin.nodes, skin.center, skin.rotation)
         for shape, skin in zip(shapes, units, strict=True)
     ]
     color = mpl.colors.to_rgb(instant.color)
@@ -199,16 +199,16 @@ def _exit_box(axes: Axes, result: Result, plan: Callable[[Floats], Floats]) -> F
     depth = a + width + 0.16 * length
     last = int(np.flatnonzero(result.sum_of_contact_forces > 0.0)[-1])
     leaving = result.position[last]
-    way = result.final_velocity / np.linalg.norm(result.final_velocity[:2])
+    direction = result.final_velocity / np.linalg.norm(result.final_velocity[:2])
     start = plan(leaving)[0]
-    forward = float(np.sign(plan(leaving + way)[0] - start))
+    forward = float(np.sign(plan(leaving + direction)[0] - start))
     end = start + forward * b
     box = np.array([[start, 0.0], [start, depth], [end, depth], [end, 0.0]])
     name = f"exit box (EN 1317-2, MASH): {depth:.1f} m by {b:g} m"
     axes.plot(*box.T, color=RED, ls="--", lw=1.2, label=name, zorder=2.0)
     here = result.position[-1]
-    reach = max(0.0, forward * (end - plan(here)[0]) / abs(plan(here + way)[0] - plan(here)[0]))
-    on = plan(np.stack([here, here + reach * way]))
+    reach = max(0.0, forward * (end - plan(here)[0]) / abs(plan(here + direction)[0] - plan(here)[0]))
+    on = plan(np.stack([here, here + reach * direction]))
     axes.plot(*on.T, color="k", ls=":", lw=1.2, label="straight on", zorder=4.0)
     return np.vstack([box, on])
 

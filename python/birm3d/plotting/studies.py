@@ -147,8 +147,8 @@ def _plot_scatter(study: Study, x: str, y: str) -> Figure:
     axes.set_ylabel(y_label)
     top.set_ylabel("runs")
     right.set_xlabel("runs")
-    left_out = len(study) - len(x_values)
-    rest = f", {left_out:,} without a value left out" if left_out else ""
+    omitted = len(study) - len(x_values)
+    rest = f", {omitted:,} without a value left out" if omitted else ""
     figure.suptitle(f"{study.title}\n{len(x_values):,} runs{rest}", fontsize="medium")
     return figure
 

@@ -37,9 +37,9 @@ def plot_thumbnail(result: Result) -> Figure:
     for k, instant in enumerate(instants):
         units = []
         for unit, shape in enumerate(shapes):
-            center, turn = (values[0] for values in result.pose([instant.time], unit))
+            center, rotation = (values[0] for values in result.pose([instant.time], unit))
             nodes = result.final_nodes(unit) if k else shape.nodes
-            units.append(Skin(nodes, nodes - shape.nodes, center, turn))
+            units.append(Skin(nodes, nodes - shape.nodes, center, rotation))
         drawn += draw_vehicle(axes, view.plan, shapes, units, instant, 3.0 + k)
         world += [skin.world for skin in units]
     path = view.plan(result.position)

@@ -46,7 +46,7 @@ def plot_sobol(indices: SobolIndices, metrics: Sequence[str] | None = None) -> F
     names = list(indices.metrics)[:_PANELS] if metrics is None else list(metrics)
     for name in names:
         if name not in indices.metrics:
-            reason = indices.left_out.get(name, "it is not among the study's metrics")
+            reason = indices.omitted.get(name, "it is not among the study's metrics")
             raise ValueError(f"metrics must have indices, got {name!r}: {reason}")
     if not names:
         raise ValueError("metrics must be at least one that has indices, got none")

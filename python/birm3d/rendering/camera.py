@@ -118,9 +118,9 @@ def driver_camera(result: Result, skins: Sequence[Skin]) -> Camera:
     roof = nodes[nodes[:, 2] >= bottom + 0.9 * (top - bottom)]
     eyes = np.array([roof[:, 0].max() - 0.45, 0.4 * roof[:, 1].max(), top - 0.25])
     skin = skins[0]
-    place = skin.center + skin.turn @ eyes
-    forward = skin.turn @ np.array([1.0, 0.0, -0.2])
-    return Camera(place, place + 10.0 * forward, skin.turn @ _UP, _DRIVER_LENS)
+    place = skin.center + skin.rotation @ eyes
+    forward = skin.rotation @ np.array([1.0, 0.0, -0.2])
+    return Camera(place, place + 10.0 * forward, skin.rotation @ _UP, _DRIVER_LENS)
 
 
 def _path(result: Result) -> Floats:

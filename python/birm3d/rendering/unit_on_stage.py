@@ -105,11 +105,11 @@ class UnitOnStage:
     def move(self, skin: Skin) -> None:
         """Put the unit where it is at an instant."""
         pose = np.eye(4)
-        pose[:3, :3], pose[:3, 3] = skin.turn, skin.center
+        pose[:3, :3], pose[:3, 3] = skin.rotation, skin.center
         for wheel in self._wheels:
             wheel.user_matrix = pose
         if len(self._shape.quads) == 0:
-            self._mesh.points = skin.center + np.vstack([skin.nodes, self._shape.anchors]) @ skin.turn.T
+            self._mesh.points = skin.center + np.vstack([skin.nodes, self._shape.anchors]) @ skin.rotation.T
             return
         self._mesh.points = skin.world
         if "crush" in self._mesh.point_data:

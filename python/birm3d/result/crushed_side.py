@@ -54,16 +54,16 @@ def crushed_direction(result: Result, skins: Sequence[Skin]) -> Floats | None:
         middle, half = 0.5 * (nodes.max(axis=0) + nodes.min(axis=0)), 0.5 * np.ptp(nodes, axis=0)
         weight = np.where(crush > _CRUSHED * best, crush, 0.0)
         place = (weight @ ((nodes - middle) / half) / weight.sum())[:2]
-        direction = _beside(place, skin.turn, barrier_axes(result.scene.barrier)[1])
+        direction = _beside(place, skin.rotation, barrier_axes(result.scene.barrier)[1])
     return direction
 
 
-def _beside(place: Floats, turn: Floats, out: Floats) -> Floats:
+def _beside(place: Floats, rotation: Floats, out: Floats) -> Floats:
     angle = np.arctan2(place[1], place[0])
     aside = np.radians(_ASIDE) * (1.0 - abs(np.sin(2.0 * angle)))
     looks = []
     for sign in (1.0, -1.0):
-        look = turn @ np.array([np.cos(angle + sign * aside), np.sin(angle + sign * aside), 0.0])
+        look = rotation @ np.array([np.cos(angle + sign * aside), np.sin(angle + sign * aside), 0.0])
         look[2] = 0.0
         looks.append(look / max(float(np.linalg.norm(look)), 1e-9))
     left, right = looks

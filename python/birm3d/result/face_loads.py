@@ -61,7 +61,7 @@ def _pressed(
     if len(pushing) == 0:
         return np.empty(0), np.empty(0), np.empty(0)
     nodes = core.nodes(unit)[pushing]
-    center, turn = core.pose(unit)
+    center, rotation = core.pose(unit)
     truss = nodes - shape.anchors[pushing]
-    truss = truss / np.linalg.norm(truss, axis=1)[:, None] @ turn.T
-    return front.pressed(center + nodes @ turn.T, force[pushing, None] * truss)
+    truss = truss / np.linalg.norm(truss, axis=1)[:, None] @ rotation.T
+    return front.pressed(center + nodes @ rotation.T, force[pushing, None] * truss)

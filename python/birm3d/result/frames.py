@@ -112,6 +112,6 @@ def pose(
             f"time must be within {time[0]:g} to {time[-1]:g} s, got {np.asarray(instants).tolist()}"
         )
     centers = np.column_stack([np.interp(at, time, position[:, i]) for i in range(3)])
-    turns = Rotation.from_euler("ZYX", roll_pitch_yaw[:, ::-1])
-    turned = turns[np.zeros(len(at), int)] if len(time) == 1 else Slerp(time, turns)(at)
+    rotations = Rotation.from_euler("ZYX", roll_pitch_yaw[:, ::-1])
+    turned = rotations[np.zeros(len(at), int)] if len(time) == 1 else Slerp(time, rotations)(at)
     return centers, np.asarray(turned.as_matrix())

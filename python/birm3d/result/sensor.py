@@ -200,11 +200,11 @@ def _unit_of(units: Sequence[Vehicle], part: str | int) -> int:
 def _rotations(roll_pitch_yaw: Floats) -> Floats:
     """Return rotations from body to world axes (k, 3, 3) of angles (k, 3) [rad]: yaw, pitch, roll in turn."""
     (cr, cp, cy), (sr, sp, sy) = np.cos(roll_pitch_yaw).T, np.sin(roll_pitch_yaw).T
-    turn = np.empty((len(roll_pitch_yaw), 3, 3))
-    turn[:, 0, 0], turn[:, 0, 1], turn[:, 0, 2] = cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr
-    turn[:, 1, 0], turn[:, 1, 1], turn[:, 1, 2] = sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr
-    turn[:, 2, 0], turn[:, 2, 1], turn[:, 2, 2] = -sp, cp * sr, cp * cr
-    return turn
+    axes = np.empty((len(roll_pitch_yaw), 3, 3))
+    axes[:, 0, 0], axes[:, 0, 1], axes[:, 0, 2] = cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr
+    axes[:, 1, 0], axes[:, 1, 1], axes[:, 1, 2] = sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr
+    axes[:, 2, 0], axes[:, 2, 1], axes[:, 2, 2] = -sp, cp * sr, cp * cr
+    return axes
 
 
 def _turned(rotation: Floats, vectors: Floats) -> Floats:

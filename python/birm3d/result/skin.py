@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ..base.deprecated import warn_renamed
 from ..vehicle.unit_shapes import unit_shapes
 from .capture import capture
 
@@ -27,19 +28,25 @@ class Skin(NamedTuple):
         Body axes, shape (n, 3) [m].
     displacement
         The same less the uncrushed ones, shape (n, 3) [m].
-    center, turn
+    center, rotation
         Mass centre (3,) [m] and rotation body to world (3, 3).
     """
 
     nodes: Floats
     displacement: Floats
     center: Floats
-    turn: Floats
+    rotation: Floats
 
     @property
     def world(self) -> Floats:
         """Shell nodes in world axes, shape (n, 3) [m]."""
-        return np.asarray(self.center + self.nodes @ self.turn.T)
+        return np.asarray(self.center + self.nodes @ self.rotation.T)
+
+    @property
+    def turn(self) -> Floats:
+        """Old name of ``rotation``."""
+        warn_renamed("turn", "rotation")
+        return self.rotation
 
     @property
     def crush(self) -> Floats:
@@ -66,8 +73,8 @@ def skins_at(result: RunRecord, instants: npt.ArrayLike) -> list[tuple[Skin, ...
     skins = []
     for k, time in enumerate(times):
         units = []
-        for unit, (shape, (centers, turns)) in enumerate(zip(shapes, poses, strict=True)):
+        for unit, (shape, (centers, rotations)) in enumerate(zip(shapes, poses, strict=True)):
             moved = frames.displacement_at(float(time), unit)
-            units.append(Skin(shape.nodes + moved, moved, centers[k], turns[k]))
+            units.append(Skin(shape.nodes + moved, moved, centers[k], rotations[k]))
         skins.append(tuple(units))
     return skins

@@ -176,18 +176,18 @@ def warping_path(x: Floats, y: Floats, band: int) -> tuple[npt.NDArray[np.intp],
             cost[1] = (x[0] - y[0]) ** 2
             steps.append((0, np.zeros(1, np.uint8)))
         else:
-            ways = np.stack([last[low : high + 1], last[here], before[low : high + 1]])
-            step = ways.argmin(axis=0)
+            costs = np.stack([last[low : high + 1], last[here], before[low : high + 1]])
+            step = costs.argmin(axis=0)
             i = np.arange(low, high + 1)
-            cost[here] = ways[step, np.arange(len(i))] + (x[i] - y[s - i]) ** 2
+            cost[here] = costs[step, np.arange(len(i))] + (x[i] - y[s - i]) ** 2
             steps.append((low, step.astype(np.uint8)))
         last, before = cost, last
     row, column = n - 1, n - 1
     path = [(row, column)]
     while row > 0 or column > 0:
         low, step = steps[row + column]
-        way = int(step[row - low])
-        row, column = row - (way != 1), column - (way != 0)
+        kind = int(step[row - low])
+        row, column = row - (kind != 1), column - (kind != 0)
         path.append((row, column))
     rows, columns = np.array(path[::-1]).T
     return rows, columns

@@ -89,15 +89,15 @@ def w2_force(
     at_knee = math.asin(knee * w1 / speed) / w1
     knee_force = k_initial * knee
     rise = speed * math.cos(w1 * at_knee) * k_hardening / w2
-    turn = at_knee + math.atan2(rise, knee_force) / w2
+    reversal = at_knee + math.atan2(rise, knee_force) / w2
     crushing = knee_force * np.cos(w2 * (t - at_knee)) + rise * np.sin(w2 * (t - at_knee))
     return np.select(
-        [t < 0.0, t < at_knee, t < turn, t < turn + 0.5 * math.pi / w3],
+        [t < 0.0, t < at_knee, t < reversal, t < reversal + 0.5 * math.pi / w3],
         [
             np.zeros_like(t),
             k_initial * speed / w1 * np.sin(w1 * t),
             crushing,
-            math.hypot(knee_force, rise) * np.cos(w3 * (t - turn)),
+            math.hypot(knee_force, rise) * np.cos(w3 * (t - reversal)),
         ],
         0.0,
     )

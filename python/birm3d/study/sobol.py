@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from .. import pictures
 from ..base.arguments import checked
+from ..base.deprecated import warn_renamed
 from ..base.frozen_mapping import FrozenMapping
 from ..simulation.simulation import Simulation
 from .distributions import check_count, check_distributions, check_seed, quantiles, spread
@@ -102,7 +103,7 @@ class SobolIndices:
     parameters : tuple of str
     metrics : mapping of str to SobolIndex
         Of every metric that has indices.
-    left_out : mapping of str to str
+    omitted : mapping of str to str
         Metric -> why it has none: constant, or missing from some runs.
     design : SobolDesign
     study : Study
@@ -114,13 +115,19 @@ class SobolIndices:
         design: SobolDesign,
         study: Study,
         metrics: Mapping[str, SobolIndex],
-        left_out: Mapping[str, str],
+        omitted: Mapping[str, str],
     ) -> None:
         self.parameters = tuple(design.distributions)
         self.design = design
         self.study = study
         self.metrics = FrozenMapping(dict(metrics))
-        self.left_out = FrozenMapping(dict(left_out))
+        self.omitted = FrozenMapping(dict(omitted))
+
+    @property
+    def left_out(self) -> Mapping[str, str]:
+        """Old name of ``omitted``."""
+        warn_renamed("left_out", "omitted")
+        return self.omitted
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return a table: a row for each metric and parameter; first and total order with half widths."""
@@ -145,10 +152,10 @@ class SobolIndices:
         return pictures.text_html(repr(self), self.plot() if self.metrics else None, "Sobol indices")
 
     def __repr__(self) -> str:
-        left_out = "".join(f"; {name}: {reason}" for name, reason in self.left_out.items())
+        omitted = "".join(f"; {name}: {reason}" for name, reason in self.omitted.items())
         return (
             f"SobolIndices({len(self.study)} runs over {', '.join(self.parameters)}; "
-            f"metrics: {', '.join(self.metrics) or 'none'}{left_out})"
+            f"metrics: {', '.join(self.metrics) or 'none'}{omitted})"
         )
 
 
@@ -190,7 +197,7 @@ def sobol(
     Returns
     -------
     SobolIndices
-        A metric that is constant, or that some runs do not have, is in ``left_out`` with the reason.
+        A metric that is constant, or that some runs do not have, is in ``omitted`` with the reason.
 
     Raises
     ------
@@ -218,16 +225,16 @@ def sobol(
             f"{len(study.failed)} of {len(study)} failed ({listed})"
         )
     indices: dict[str, SobolIndex] = {}
-    left_out: dict[str, str] = {}
+    omitted: dict[str, str] = {}
     for name, values in study.metrics.items():
         missing = int(np.isnan(values).sum())
         if missing:
-            left_out[name] = f"missing from {missing} of {len(study)} runs"
+            omitted[name] = f"missing from {missing} of {len(study)} runs"
         elif spread(values) < _ROUNDING:
-            left_out[name] = f"constant, {values[0]:g}: no variance to share"
+            omitted[name] = f"constant, {values[0]:g}: no variance to share"
         else:
             indices[name] = design.analyze(values)
-    return SobolIndices(design, study, indices, left_out)
+    return SobolIndices(design, study, indices, omitted)
 
 
 def _salib(module: str) -> Any:

@@ -59,5 +59,5 @@ def build_along(file: VehicleFile, mesh: ExteriorMesh) -> AlongPanel:
             law[index] = names.index(zone.along_name)
     of = np.flatnonzero(law[mesh.zone] >= 0)
     nodes = mesh.nodes[of]
-    way = np.where(nodes[:, :1] > rear, -_LENGTH, _LENGTH) * np.array([1.0, 0.0, 0.0])
-    return AlongPanel(nodes, nodes + way, mesh.area[of], law[mesh.zone[of]], of)
+    offset = np.where(nodes[:, :1] > rear, -_LENGTH, _LENGTH) * np.array([1.0, 0.0, 0.0])
+    return AlongPanel(nodes, nodes + offset, mesh.area[of], law[mesh.zone[of]], of)

@@ -28,6 +28,6 @@ def node_spacing(nodes: Floats) -> float:
         return math.inf
     some = nodes[:: max(1, len(nodes) // _SAMPLE)]
     distance, which = cKDTree(nodes).query(some, k=min(len(nodes), _NEIGHBOURS + 1))
-    way = np.abs(nodes[which] - some[:, None])
-    beside = np.hypot(way[..., 0], way[..., 1]) > way[..., 2]
+    apart = np.abs(nodes[which] - some[:, None])
+    beside = np.hypot(apart[..., 0], apart[..., 1]) > apart[..., 2]
     return float(np.median(np.where(beside, distance, np.inf).min(axis=1)))

@@ -176,5 +176,5 @@ class Resize:
         return zone.scaled(*mine, along).changed(changes)
 
 
-def _both(way: Callable[[float], float], limits: Range) -> Range:
-    return (way(limits[0]), way(limits[1]))
+def _both(change: Callable[[float], float], limits: Range) -> Range:
+    return (change(limits[0]), change(limits[1]))

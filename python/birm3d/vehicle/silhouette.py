@@ -27,7 +27,7 @@ _PLACE = 1e-7
 
 
 def silhouette(
-    shape: UnitShape, nodes: Floats, center: Floats, turn: Floats, *, exact: bool = True
+    shape: UnitShape, nodes: Floats, center: Floats, rotation: Floats, *, exact: bool = True
 ) -> Outline:
     """Return the outline seen from above: the union of the faces of the skin, projected on the ground.
 
@@ -39,20 +39,20 @@ def silhouette(
         The unit.
     nodes
         Its shell nodes now, body axes, shape (n, 3) [m].
-    center, turn
+    center, rotation
         Mass centre (3,) [m] and rotation body to world (3, 3).
     exact
         Otherwise accurate to 1 cm, in a tenth of the time: see :mod:`birm3d.vehicle.raster_outline`. So are
         skins of very many faces or folds, as imported meshes have, in any case.
     """
     if len(shape.quads) == 0:
-        points = (center + np.vstack([nodes, shape.anchors]) @ turn.T)[:, :2]
+        points = (center + np.vstack([nodes, shape.anchors]) @ rotation.T)[:, :2]
         return shapely.MultiPoint(points).convex_hull
     if not exact or len(shape.quads) > _MANY:
         faces = np.vstack([shape.quads[:, [0, 1, 2]], shape.quads[:, [0, 2, 3]]])
-        return raster_outline((center + nodes @ turn.T)[:, :2], faces)
+        return raster_outline((center + nodes @ rotation.T)[:, :2], faces)
     # Nodes at one place are one, so that panels that lie beside each other share their edges.
-    places, which = _at_one_place((center + nodes @ turn.T)[:, :2])
+    places, which = _at_one_place((center + nodes @ rotation.T)[:, :2])
     triangles = which[np.vstack([shape.quads[:, [0, 1, 2]], shape.quads[:, [0, 2, 3]]])]
     area = _areas(places[triangles])
     sheets = [triangles[side * area > _LEAST_AREA] for side in (1.0, -1.0)]

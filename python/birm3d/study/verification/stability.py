@@ -162,10 +162,10 @@ def _missed(case: Case, simulation: Simulation, touched: bool) -> list[str]:
         if turns < case.turns:
             faults.append(f"{turns:.1f} turns instead of {case.turns:g} or more")
     if not case.moves:
-        way = float(np.linalg.norm(result.position - result.position[0], axis=1).max())
+        distance = float(np.linalg.norm(result.position - result.position[0], axis=1).max())
         speed = float(np.linalg.norm(result.velocity, axis=1).max())
-        if way > _STILL or speed > _STILL_SPEED:
-            faults.append(f"moved by {way:.2g} m at up to {speed:.2g} m/s")
+        if distance > _STILL or speed > _STILL_SPEED:
+            faults.append(f"moved by {distance:.2g} m at up to {speed:.2g} m/s")
     return faults
 
 

@@ -86,13 +86,13 @@ def mass_of_deck(mesh: RawMesh, points: Floats, facts: MeshFacts, told: list[str
     scale = float(
         np.linalg.norm(points[high] - points[low]) / np.linalg.norm(mesh.points[high] - mesh.points[low])
     )
-    turn = rotation(facts.forward, facts.up)
+    axes = rotation(facts.forward, facts.up)
     total, center, inertia = lumps.properties()
-    place = points[low] + scale * turn @ (center - mesh.points[low])
+    place = points[low] + scale * axes @ (center - mesh.points[low])
     silent = f"; without a known mass: parts {', '.join(map(str, lumps.silent[:8]))}" if lumps.silent else ""
     more = f" and {len(lumps.silent) - 8} more" if len(lumps.silent) > 8 else ""
     told.append(
         f"mass centre and inertia by densities and thicknesses of the file, {total:.5g} in its unit of mass, "
         f"brought to {facts.mass:,.5g} kg; beams, springs and rigid bodies of nodes have none{silent}{more}"
     )
-    return OwnMass(place, turn @ inertia @ turn.T * scale**2 * facts.mass / total)
+    return OwnMass(place, axes @ inertia @ axes.T * scale**2 * facts.mass / total)

@@ -91,9 +91,9 @@ class Enclosure:
         y = y[(low <= y) & (y <= high)]
         return float(y.min()), float(y.max())
 
-    def moved(self, way: Floats) -> Enclosure:
+    def moved(self, offset: Floats) -> Enclosure:
         """Return the same elsewhere, by (3,) [m]."""
-        return Enclosure(self.solid, self.origin + way, self.size, self.samples + way)
+        return Enclosure(self.solid, self.origin + offset, self.size, self.samples + offset)
 
     def skin(self, underside: Floats | None, wheels: Sequence[WheelSpace]) -> tuple[Floats, Ints]:
         """Return a closed skin: points (n, 3) [m], triangles (m, 3).
@@ -188,6 +188,6 @@ def fitted_to(points: Floats, triangles: Ints, samples: Floats, reach: float) ->
     distance, nearest = cKDTree(samples).query(points, distance_upper_bound=reach, workers=1)
     found = np.isfinite(distance)
     moved = points.copy()
-    way = np.einsum("ij,ij->i", samples[nearest[found]] - points[found], normals[found])
-    moved[found] += way[:, None] * normals[found]
+    depth = np.einsum("ij,ij->i", samples[nearest[found]] - points[found], normals[found])
+    moved[found] += depth[:, None] * normals[found]
     return moved

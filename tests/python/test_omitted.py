@@ -11,9 +11,6 @@ import numpy as np
 import pytest
 from birm3d import Barrier, FreeStanding, Result, Settings, Simulation, Vehicle, _core, scenes
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 WEIGHTLESS = Settings(gravity=0.0, ground=False)
 COUNTS = [name for name, value in vars(_core.StepStatistics).items() if isinstance(value, property)]
 
@@ -43,7 +40,7 @@ def run(vehicle: Vehicle, barrier: Barrier | None, speed: float = 10.0, **more: 
     return Simulation(vehicle, barrier, speed, **more).run()
 
 
-def left_out(result: Result) -> str:
+def omitted(result: Result) -> str:
     return result.report().split("\nleft out\n")[1]
 
 
@@ -54,7 +51,7 @@ def test_nodes_that_nothing_came_near() -> None:
     """Of two plates only the one in front meets the wall."""
     result = run(plates(), Barrier.rigid_wall(), settings=WEIGHTLESS)
     assert result.statistics.skin_nodes == 64
-    text = left_out(result)
+    text = omitted(result)
     assert "64 of 128 nodes of the skin (never met by the barrier)" in text
     pressed = int((result.peak_deflection > 0.0).sum())
     assert f"the crush of {128 - pressed} of 128 trusses (never pressed)" in text
@@ -67,8 +64,8 @@ def test_nodes_that_nothing_came_near() -> None:
 def test_no_line_where_no_node_was_left_out() -> None:
     result = scenes.w2(64).run()
     assert result.statistics.skin_nodes == 64
-    assert "nodes of the skin" not in left_out(result)
-    assert "trusses" not in left_out(result)
+    assert "nodes of the skin" not in omitted(result)
+    assert "trusses" not in omitted(result)
 
 
 def test_nodes_that_are_pressed_are_among_those_looked_at() -> None:
@@ -79,7 +76,7 @@ def test_nodes_that_are_pressed_are_among_those_looked_at() -> None:
         pressed = int((result.peak_deflection[of] > 0.0).sum())
         assert 0 < pressed <= looked_at <= int(of.sum())
         if looked_at < int(of.sum()):
-            assert f"{int(of.sum()) - looked_at} of {int(of.sum())} nodes of" in left_out(result)
+            assert f"{int(of.sum()) - looked_at} of {int(of.sum())} nodes of" in omitted(result)
 
 
 @pytest.mark.parametrize("count", [3, 41])
@@ -87,10 +84,10 @@ def test_elements_that_nothing_came_near(count: int) -> None:
     """Posts 5 m apart: the one in the middle is all that a car between its neighbours can reach."""
     result = run(car(), Barrier.bollards(count=count, spacing=5.0), duration=0.1)
     assert result.statistics.near_elements == 1
-    text = left_out(result)
+    text = omitted(result)
     assert f"{count - 1} of {count} elements (never within reach of the vehicle)" in text
     assert f"histories of {count - 1} of {count} elements (never touched)" in text
-    alone = left_out(run(car(), Barrier.bollards(count=1), duration=0.1))
+    alone = omitted(run(car(), Barrier.bollards(count=1), duration=0.1))
     assert "elements (never" not in alone
     assert "its motion (fixed: 1 element)" in alone
 
@@ -101,14 +98,14 @@ def test_steps_before_the_barrier_is_reached() -> None:
     steps = far.statistics.steps
     assert far.statistics.free_steps == steps
     assert far.statistics.free_time == pytest.approx(0.09, rel=1e-12)
-    assert f"all its forces in all {steps} steps, 0.09 s (no node within reach" in left_out(far)
-    assert "all 128 nodes of the skin" in left_out(far)
+    assert f"all its forces in all {steps} steps, 0.09 s (no node within reach" in omitted(far)
+    assert "all 128 nodes of the skin" in omitted(far)
     met = run(plates(), Barrier.rigid_wall(), standoff=1.0, duration=0.12, settings=WEIGHTLESS)
     assert 0 < met.statistics.free_steps < met.statistics.steps
     assert 0.095 < met.statistics.free_time <= 0.1 + 5e-3  # the longest step
     at_once = run(plates(), Barrier.rigid_wall(), duration=0.02, settings=WEIGHTLESS)
     assert at_once.statistics.free_steps == 0
-    assert "all its forces" not in left_out(at_once)
+    assert "all its forces" not in omitted(at_once)
 
 
 def test_steps_without_contact_of_the_rigid_body() -> None:
@@ -116,26 +113,26 @@ def test_steps_without_contact_of_the_rigid_body() -> None:
     soft = run(plates(), Barrier.rigid_wall(), 5.0, settings=WEIGHTLESS)
     steps = soft.statistics.steps
     assert soft.statistics.body_steps == 0
-    assert f"their own contact in all {steps:,} steps (no truss was closed)" in left_out(soft)
+    assert f"their own contact in all {steps:,} steps (no truss was closed)" in omitted(soft)
     hard = run(plates(), Barrier.rigid_wall(), 60.0, settings=WEIGHTLESS)
     steps, held = hard.statistics.steps, hard.statistics.body_steps
     assert 0 < held < steps
-    assert f"their own contact in {steps - held:,} of {steps:,} steps" in left_out(hard)
+    assert f"their own contact in {steps - held:,} of {steps:,} steps" in omitted(hard)
 
 
 def test_wheels_in_the_air() -> None:
     rolls = run(plates(wheels=True), None, duration=0.05)
     assert rolls.statistics.wheels_on_ground == 4 * rolls.statistics.steps
-    assert "in the air" not in left_out(rolls)
+    assert "in the air" not in omitted(rolls)
     floats = run(plates(wheels=True), None, duration=0.05, settings=Settings(gravity=0.0))
     assert floats.statistics.wheels_on_ground == 0
     steps = floats.statistics.steps
-    assert f"forces of tyres in all {4 * steps:,} wheel steps (in the air)" in left_out(floats)
+    assert f"forces of tyres in all {4 * steps:,} wheel steps (in the air)" in omitted(floats)
     # Half of them: a car that is rolled so far that it falls back on its wheels.
     tips = run(car(), None, 0.0, impact_roll=30.0, duration=0.1)
     steps, loaded = tips.statistics.steps, tips.statistics.wheels_on_ground
     assert 0 < loaded < 4 * steps
-    assert f"forces of tyres in {4 * steps - loaded:,} of {4 * steps:,} wheel steps" in left_out(tips)
+    assert f"forces of tyres in {4 * steps - loaded:,} of {4 * steps:,} wheel steps" in omitted(tips)
 
 
 def test_counts_are_part_of_a_checkpoint() -> None:
@@ -240,7 +237,7 @@ LOOSE = FreeStanding(joint="loose", ground_friction=0.0)
 )
 def test_what_the_scene_does_not_need(line: str, without: tuple[Any, ...], with_it: tuple[Any, ...]) -> None:
     def told(vehicle: Vehicle, barrier: Barrier | None, settings: Settings | None = None) -> str:
-        return "\n" + left_out(run(vehicle, barrier, duration=0.01, settings=settings))
+        return "\n" + omitted(run(vehicle, barrier, duration=0.01, settings=settings))
 
     assert told(*without).count(line) == 1
     assert line not in told(*with_it)
@@ -260,16 +257,16 @@ def test_skin_below_the_ground_does_not_meet_it() -> None:
         mass_center_height=1.0,
         wheels=low.wheels.tolist(),
     )
-    assert "ground under the skin of all 1 units" in left_out(run(sunk, None, duration=0.01))
-    assert "ground under the skin" not in left_out(run(low, None, duration=0.01))
+    assert "ground under the skin of all 1 units" in omitted(run(sunk, None, duration=0.01))
+    assert "ground under the skin" not in omitted(run(low, None, duration=0.01))
 
 
 def test_what_was_not_asked_for() -> None:
     simulation = Simulation(car(), Barrier.pole(), 10.0, duration=0.05)
-    assert "places of the skin over time (no frames were asked for)" in left_out(simulation.run())
-    assert "no frames" not in left_out(simulation.run(frames=3))
+    assert "places of the skin over time (no frames were asked for)" in omitted(simulation.run())
+    assert "no frames" not in omitted(simulation.run(frames=3))
     result = simulation.run()
-    (line,) = (line for line in left_out(result).splitlines() if "metrics (the run" in line)
+    (line,) = (line for line in omitted(result).splitlines() if "metrics (the run" in line)
     count, names = line.split(" metrics (the run does not have them): ")
     absent = names.split(", ")
     assert "barrier_deflection" in absent
@@ -282,7 +279,7 @@ def test_what_was_not_asked_for() -> None:
 )
 def test_how_the_run_ended(duration: float | None, reason: str) -> None:
     result = run(car(), Barrier.rigid_wall(), duration=duration)
-    (line,) = (line for line in left_out(result).splitlines() if "all that comes after" in line)
+    (line,) = (line for line in omitted(result).splitlines() if "all that comes after" in line)
     assert f"after {result.time[-1]:.4f} s" in line
     assert reason in line
     if duration is None:  # the wall pushed until then

@@ -12,9 +12,6 @@ from birm3d import Barrier, Result, Settings, Simulation, Vehicle, scenes
 from birm3d.barrier.kinds import RigidWall
 from scipy.spatial.transform import Rotation
 
-# Scenes of these tests strike the rigid core.
-pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
-
 Orientation = Callable[[Result], Rotation]
 
 TERMS = (

@@ -28,11 +28,7 @@ from birm3d.study.runner import StudyInterrupted
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-# Scenes of these tests strike the rigid core.
-pytestmark = [
-    pytest.mark.filterwarnings("ignore::birm3d.CoarseSkinWarning"),
-    pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning"),
-]
+pytestmark = pytest.mark.filterwarnings("ignore::birm3d.CoarseSkinWarning")
 
 PLACE = r" at t = [0-9.e+-]+ s, mass centre at \(.+, .+, .+\) m: "
 
