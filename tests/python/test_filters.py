@@ -136,3 +136,23 @@ def test_the_corner_is_that_of_sae_j211_and_not_of_iso_6487() -> None:
     # J211-1: 2.0775 CFC; ISO 6487: 1.25 CFC / 0.6, 0.28 % higher. At the corner the two passes give 1/2.
     assert gain(100_000, 60, 60 * 2.0775) == pytest.approx(0.5, rel=1e-5)
     assert abs(gain(100_000, 60, 60 / 0.6 * 1.25) / 0.5 - 1.0) > 2e-3
+
+
+@pytest.mark.parametrize("channel_class", [60, 180])
+@pytest.mark.parametrize("n", [1, 9, 300, 400, 2000])
+def test_the_peak_by_gains_is_that_of_the_filtered_rows(channel_class: float, n: int) -> None:
+    noise = np.cumsum(np.random.default_rng(n).normal(size=(n, 3)), axis=0)
+    pulse = np.sin(np.linspace(0.0, 3.0, n))[:, None] * [3.0, -2.0, 0.5]
+    for signal in (noise, pulse, 1e6 * pulse[:, 0]):
+        rows = filters.cfc(signal, channel_class, 1e-4).reshape(n, -1)
+        peak = np.linalg.norm(rows, axis=1).max()
+        assert filters.peak_of_cfc(signal, channel_class, 1e-4) == pytest.approx(peak, rel=1e-9)
+
+
+def test_the_peak_by_gains_refuses_what_the_filter_refuses() -> None:
+    for arguments in (([], 60, 1e-4), ([1.0], 0.0, 1e-4), ([1.0], 60, 1e-2), ([math.nan], 60, 1e-4)):
+        with pytest.raises(ValueError, match=r"must (be|have)") as first:
+            filters.cfc(*arguments)
+        with pytest.raises(ValueError, match=r"must (be|have)") as second:
+            filters.peak_of_cfc(*arguments)
+        assert str(first.value) == str(second.value)

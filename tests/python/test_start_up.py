@@ -36,10 +36,11 @@ def test_help_loads_no_command() -> None:
     assert not modules & {*SCIENCE, *(f"birm3d.cli.{place.module}" for place in COMMANDS.values())}
 
 
-def test_a_run_loads_no_study_and_no_picture() -> None:
+@pytest.mark.parametrize("form", [[], ["--json"]])
+def test_a_run_loads_no_study_and_no_picture(form: list[str]) -> None:
     program = (
         "from birm3d.cli.commands import _cli\n"
-        "_cli(['run', '--vehicle', 'pickup', '--speed', '20mph', '--json'], standalone_mode=False)"
+        f"_cli(['run', '--vehicle', 'pickup', '--speed', '20mph', *{form}], standalone_mode=False)"
     )
     modules = loaded_after(program)
     assert "birm3d._core" in modules

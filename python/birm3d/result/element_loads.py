@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from ..signals.filters import cfc, moving_average
+from ..signals.filters import moving_average, peak_of_cfc
 from .record import RunRecord
 from .unit_result import read_only
 
@@ -95,8 +95,7 @@ class ElementLoad:
         Unfiltered where the output interval is too long for this class.
         """
         fits = self.interval * _CLASS <= _LONGEST
-        force = cfc(self.force, _CLASS, self.interval) if fits else self.force
-        return float(np.linalg.norm(force, axis=1).max())
+        return peak_of_cfc(self.force, _CLASS, self.interval) if fits else self.peak_force
 
     @cached_property
     def peak_force_50ms(self) -> float:
