@@ -16,7 +16,10 @@ from ..simulation.simulation import Simulation
 from ..study.predict import SHARE, check_draws, drawn_parameters, quantiles
 from .element_design import BANDED, ElementDesign
 
-__all__ = ["Bands", "ClassDraws", "class_draws", "governing_scenes", "with_bands"]
+__all__ = ["Bands", "ClassDraws", "Seen", "bands_of", "class_draws", "governing_scenes", "with_bands"]
+
+Seen = tuple[list[ElementDesign], bool]
+"""What each element carries in a run, and whether the rigid body strikes one."""
 
 _DRAWS = 16
 _OF_FORCE = ("height", "direction")  # values that belong to the greatest 50-ms force
@@ -90,7 +93,7 @@ def with_bands(
     rows: Sequence[ElementDesign],
     scenes: Mapping[int, Scene],
     power: int,
-    look: Callable[[Result], tuple[list[ElementDesign], bool]],
+    look: Callable[[Result], Seen],
     **how: Any,
 ) -> Bands:
     """Return rows of an envelope with the bands of their values over vehicles of the class.
@@ -118,24 +121,40 @@ def with_bands(
         columns = drawn_parameters(Simulation.from_scene(scene), power)
         for j in range(2**power):
             drawn.append(varied_scene(scene, {name: float(values[j]) for name, values in columns.items()}))
+    seen: list[tuple[int, Seen | None]] = [
+        (one.run % 2**power, one.found)
+        for one in look_at_runs(drawn, look, title="bands of design loads", **how)
+    ]
+    return bands_of(rows, seen, 2**power)
+
+
+def bands_of(rows: Sequence[ElementDesign], seen: Iterable[tuple[int, Seen | None]], vehicles: int) -> Bands:
+    """Return rows of an envelope with the bands of what vehicles of the class were seen to do.
+
+    Parameters
+    ----------
+    rows
+        Of the envelope.
+    seen
+        Number of the vehicle, and what each element carries in a run of it; ``None``: the run failed.
+    vehicles
+        How many were drawn.
+    """
     found: dict[int, list[list[ElementDesign]]] = {}
     failed: set[int] = set()
     struck: set[int] = set()
-    for seen in look_at_runs(drawn, look, title="bands of design loads", **how):
-        vehicle = seen.run % 2**power
-        if seen.found is None:
+    for vehicle, one in seen:
+        if one is None:
             failed.add(vehicle)
             continue
-        designs, blow = seen.found
+        designs, blow = one
         found.setdefault(vehicle, []).append(designs)
         if blow:
             struck.add(vehicle)
-    vehicles = [runs for vehicle, runs in found.items() if vehicle not in failed]
-    banded = tuple(
-        _banded(row, [[run[i] for run in runs] for runs in vehicles]) for i, row in enumerate(rows)
-    )
+    whole = [runs for vehicle, runs in found.items() if vehicle not in failed]
+    banded = tuple(_banded(row, [[run[i] for run in runs] for runs in whole]) for i, row in enumerate(rows))
     counts = ((_BLOWS, len(struck)), (_FAILED, len(failed)))
-    cautions = [text.format(n=n, all=2**power) for text, n in counts if n]
+    cautions = [text.format(n=n, all=vehicles) for text, n in counts if n]
     outside = [row.name for row in banded if _is_outside(row)]
     return Bands(banded, cautions + ([_OUTSIDE.format(elements=", ".join(outside))] if outside else []))
 

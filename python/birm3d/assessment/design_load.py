@@ -1,10 +1,11 @@
 """Design loads: what each element of a barrier has to carry, over all impacts that it is designed for."""
 
+# Longer than 300 lines: the envelope over all scenes, and its bands over the vehicles of the class.
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -22,16 +23,17 @@ from ..study.predict import Prediction
 from ..study.table import Study
 from ..unit_check import warn_if_any_unusual
 from ..units import Quantity, si
-from .class_bands import class_draws, governing_scenes, with_bands
+from .class_bands import Bands, Seen, bands_of, class_draws, governing_scenes, with_bands
 from .design_caution import barrier_caution, has_blow, merged, run_cautions
 from .design_table import DesignLoad, LoadScene
 from .element_design import ElementDesign, System, check_system, element_design, envelope, peak_filter
 
-__all__ = ["DesignLoadInterrupted", "design_load"]
+__all__ = ["DesignLoadInterrupted", "design_load", "looker", "with_vehicles"]
 
 Floats = npt.NDArray[np.float64]
 
 _ASSUMED_PERIOD = 0.1  # s
+_NO_BAND = " No band: "
 _MOST_OF_ONE_PULSE = 2.0  # dynamic load factor of any single pulse, at the most
 
 
@@ -188,14 +190,12 @@ def design_load(
 
     def banded(load: DesignLoad) -> DesignLoad:
         if drawn.power is None:
-            load.caution += f" No band: {drawn.reason}."
+            load.caution += f"{_NO_BAND}{drawn.reason}."
             return load
         scenes = {number: plan[number][1] for number in governing_scenes(load)}
         rows = partial(_rows_and_blow, normal=load.normal, system=system)
         bands = with_bands(load.rows, scenes, drawn.power, rows, executor=executor, progress=progress)
-        load.rows, load.draws = bands.rows, drawn.vehicles
-        load.caution = " ".join([load.caution, *bands.cautions])
-        return load
+        return _with(load, bands, drawn.vehicles)
 
     try:
         for run, result in enumerate(case for case, _ in plan):
@@ -244,8 +244,34 @@ def _rows_of(result: Result, normal: Floats, system: System) -> list[ElementDesi
     return [element_design(load, normal, system) for load in result.element_loads]
 
 
-def _rows_and_blow(result: Result, normal: Floats, system: System) -> tuple[list[ElementDesign], bool]:
+def _rows_and_blow(result: Result, normal: Floats, system: System) -> Seen:
     return _rows_of(result, normal, system), has_blow(result)
+
+
+def looker(load: DesignLoad) -> Callable[[Result], Seen]:
+    """Return what tells of a run what each element carries, and whether the rigid body strikes one."""
+    system = System(load.natural_period, load.ductility, load.damping)
+    return partial(_rows_and_blow, normal=load.normal, system=system)
+
+
+def with_vehicles(load: DesignLoad, seen: Iterable[tuple[int, Seen | None]], vehicles: int) -> DesignLoad:
+    """Return the design loads of one scene, made without draws, with the bands of vehicles that were run.
+
+    Parameters
+    ----------
+    load
+        Changed, too.
+    seen, vehicles
+        See :func:`birm3d.assessment.class_bands.bands_of`.
+    """
+    load.caution = load.caution.partition(_NO_BAND)[0]  # it was the last sentence
+    return _with(load, bands_of(load.rows, seen, vehicles), vehicles)
+
+
+def _with(load: DesignLoad, bands: Bands, vehicles: int) -> DesignLoad:
+    load.rows, load.draws = bands.rows, vehicles
+    load.caution = " ".join([load.caution, *bands.cautions])
+    return load
 
 
 def _values(name: str, values: Iterable[Quantity]) -> list[float]:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
-from ..assessment import OccupantRisk, Rating, RatingStudy, RiskStudy, occupant_risk, rate
+from ..assessment import DesignLoad, OccupantRisk, Rating, RatingStudy, RiskStudy, occupant_risk, rate
+from ..assessment.class_bands import Seen
+from ..assessment.design_load import looker, with_vehicles
 from ..assessment.probability import rating_study
 from ..assessment.risk_study import risk_of_study
 from ..plotting.style import shown_unit
@@ -17,7 +20,8 @@ from ..result.metrics import METRIC_UNITS
 from ..result.result import Result
 from ..result.summary import HEADLINES
 from ..simulation import Simulation
-from ..study.predict import Prediction, predict
+from ..study.predict import Prediction
+from ..study.predict_and_look import predict_and_look
 from ..study.whole_runs import look_at_study
 from ..vehicle.class_scatter import joined
 from .blocks import Block, Caution, Table, Text
@@ -62,8 +66,9 @@ def class_bands(
     standards: Sequence[str],
     with_risk: bool,
     vehicle_class: str | None = None,
+    loads: DesignLoad | None = None,
 ) -> ClassBands | str:
-    """Return the bands of a run, or why there are none.
+    """Return the bands of a run, or why there are none; each vehicle is run once.
 
     Parameters
     ----------
@@ -77,34 +82,52 @@ def class_bands(
         Whether the run has occupant risk.
     vehicle_class
         What the standards call the vehicle; ``None``: by its kind and mass.
+    loads
+        Design loads of the run without bands, which are given them.
     """
     if prediction is None and draws == 0:
         return "no vehicles of its class were drawn (draws=0)"
+    rows = None if loads is None else looker(loads)
+    look = partial(_look, standards=standards, with_risk=with_risk, vehicle_class=vehicle_class, loads=rows)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of vehicles that are not this one; the caution counts them
         if prediction is None:
-            try:
-                prediction = predict(Simulation.from_scene(result.scene), draws, progress=False)
-            except ValueError as reason:
-                if "[[scatter]]" not in str(reason):
-                    raise
+            if not any(unit.scatter for unit in result.scene.vehicle.units):
                 return f"the file of {result.scene.vehicle.name!r} does not say how its class scatters"
-        look = partial(_look, standards=standards, with_risk=with_risk, vehicle_class=vehicle_class)
-        found, failed = look_at_study(prediction.study, look, progress=False)
+            simulation = Simulation.from_scene(result.scene)
+            prediction, found, failed = predict_and_look(simulation, draws, look)
+        else:
+            found, failed = look_at_study(prediction.study, look, progress=False)
     ratings = {}
     for standard in standards:
-        of = {run: one[0][standard] for run, one in found.items() if standard in one[0]}
+        of = {run: one.ratings[standard] for run, one in found.items() if standard in one.ratings}
         if of:
             missing = {run: "no rating" for run in found if run not in of}
             ratings[standard] = rating_study(of, {**failed, **missing})
-    risks = {run: risk for run, (_, risk) in found.items() if risk is not None}
+    risks = {run: one.risk for run, one in found.items() if one.risk is not None}
+    if loads is not None:
+        seen = [(run, one.loads) for run, one in found.items()] + [(run, None) for run in failed]
+        with_vehicles(loads, seen, len(prediction.study))
     return ClassBands(prediction, ratings, risk_of_study(risks, failed) if risks else None)
 
 
+class _Seen(NamedTuple):
+    """What was seen of one vehicle of the class, as far as it has it."""
+
+    ratings: dict[str, Rating]
+    risk: OccupantRisk | None
+    loads: Seen | None
+
+
 def _look(
-    run: Result, standards: Sequence[str], with_risk: bool, vehicle_class: str | None
-) -> tuple[dict[str, Rating], OccupantRisk | None]:
-    """Return the ratings and the occupant risk of one vehicle of the class, as far as it has them."""
+    run: Result,
+    standards: Sequence[str],
+    with_risk: bool,
+    vehicle_class: str | None,
+    loads: Callable[[Result], Seen] | None,
+) -> _Seen:
+    """Return the ratings, the occupant risk and the loads of one vehicle of the class."""
+    carried = None if loads is None else loads(run)
     ratings = {}
     for standard in standards:
         try:
@@ -112,9 +135,9 @@ def _look(
         except ValueError:  # its outcome is not decided; the share of the others is shown
             continue
     try:
-        return ratings, occupant_risk(run) if with_risk else None
+        return _Seen(ratings, occupant_risk(run) if with_risk else None, carried)
     except ValueError:  # it touches nothing
-        return ratings, None
+        return _Seen(ratings, None, carried)
 
 
 def band_of(bands: ClassBands | str, name: str, size: float = 1.0, form: str = ".4g") -> str:

@@ -124,6 +124,9 @@ def case_of(
     ratings, reasons = _rated(framed, asked)
     risk = _risk(framed)
     names = [rating.standard for rating in ratings if "no rating" not in rating.designation]
+    loads = _loads(framed) if design_loads is None else design_loads
+    own = loads if design_loads is None and isinstance(loads, DesignLoad) else None
+    with_risk = not isinstance(risk, str)
     return Case(
         run=result,
         result=framed,
@@ -134,8 +137,8 @@ def case_of(
         if study is None or not ratings
         else _rated_study(study, ratings[0].standard, asked),
         risk=risk,
-        design_loads=_loads(framed, draws) if design_loads is None else design_loads,
-        bands=class_bands(result, prediction, draws, names, not isinstance(risk, str), asked.vehicle_class),
+        design_loads=loads,
+        bands=class_bands(result, prediction, draws, names, with_risk, asked.vehicle_class, own),
         tests=[] if result.scene.barrier is None else nearest(result.scene),
         finer=_finer(result),
         warnings=list(dict.fromkeys(str(one.message) for one in told)),
@@ -178,14 +181,11 @@ def _risk(result: Result) -> OccupantRisk | str:
     return risk
 
 
-def _loads(result: Result, draws: int) -> DesignLoad | str:
+def _loads(result: Result) -> DesignLoad | str:
     if result.scene.barrier is None:
         return "there is no barrier"
     try:
-        drawn = any(unit.scatter for unit in result.scene.vehicle.units)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of other vehicles of the class
-            return design_load(result, draws=draws if drawn else 0, progress=False)
+        return design_load(result, draws=0, progress=False)  # bands come with those of the class
     except ValueError as reason:  # rows too far apart for the assumed period
         return str(reason)
 
