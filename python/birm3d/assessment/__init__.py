@@ -6,6 +6,7 @@ from .criteria import Criterion
 from .design_load import DesignLoadInterrupted, design_load
 from .design_table import DesignLoad, LoadScene
 from .element_design import ElementDesign
+from .level_study import LevelStudy
 from .matrix import Matrix, test_matrix
 from .occupant import OccupantRisk, occupant_risk
 from .probability import RatingStudy
@@ -19,6 +20,7 @@ __all__ = [
     "DesignLoad",
     "DesignLoadInterrupted",
     "ElementDesign",
+    "LevelStudy",
     "LoadScene",
     "Matrix",
     "OccupantRisk",

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 
-__all__ = ["Criterion", "criteria_html", "criteria_text", "table_html", "table_text"]
+__all__ = ["Criterion", "criteria_html", "criteria_text", "foot_html", "table_html", "table_text"]
 
 _LARGE = 1000.0  # from here on one decimal is shown
 _HEAD = ("criterion", "value", "limit", "verdict")
@@ -84,9 +84,18 @@ def table_html(title: str, head: Sequence[str], rows: Iterable[Sequence[str]], f
         return "<tr>" + "".join(f"<{tag} {style}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>"
 
     body = "".join(line(row, "td") for row in rows)
-    below = "<br>".join(map(escape, foot.split("\n")))
-    end = f'<div style="max-width:48em;opacity:0.8">{below}</div>' if foot else ""
+    end = _below(foot) if foot else ""
     return (
         f'<div><div style="font-weight:600;margin-bottom:4px">{escape(title)}</div>'
         f"<table><thead>{line(head, 'th')}</thead><tbody>{body}</tbody></table>{end}</div>"
     )
+
+
+def foot_html(caution: str) -> str:
+    """Return a caution below tables that notebooks show."""
+    return _below(f"Caution: {caution}")
+
+
+def _below(text: str) -> str:
+    lines = "<br>".join(map(escape, text.split("\n")))
+    return f'<div style="max-width:48em;opacity:0.8">{lines}</div>'

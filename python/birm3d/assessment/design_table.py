@@ -398,10 +398,15 @@ def _band(row: ElementDesign, name: str, size: float) -> str:
     if name not in row.band:
         return ""
     form = {"height": "{:.2f}", "dynamic_load_factor": "{:.2f}", "direction": "{:.0f}"}.get(name)
-    low, high = (_kilo(end / size) if form is None else form.format(end + 0.0) for end in row.band[name])
+    low, high = (_kilo(end / size) if form is None else _unsigned(form.format(end)) for end in row.band[name])
     if name == "direction" and low == high:  # of walls it is that of the normal
         return ""
     return f" [{low} to {high}]"
+
+
+def _unsigned(text: str) -> str:
+    """Return a number as text, without the sign of a zero."""
+    return text.removeprefix("-") if not text.strip("-0.") else text
 
 
 def _pipes(cells: tuple[str, ...] | list[str]) -> str:

@@ -12,17 +12,34 @@ import numpy.typing as npt
 
 from ..base.arguments import checked
 from ..base.frozen_mapping import FrozenMapping
+from ..study.predict import SHARE, quantiles
 from ..study.whole_runs import look_at_study, require_found
-from .criteria import Criterion, criteria_html, criteria_text
+from .criteria import Criterion, criteria_html, criteria_text, foot_html, table_html, table_text
 from .rating import Rating
+from .rating_bands import BAND_HEAD, band_rows
 
 if TYPE_CHECKING:
     from ..result import Result
     from ..study import Study
 
-__all__ = ["RatingStudy", "rate_study", "rating_study"]
+__all__ = ["RatingStudy", "rate_study", "rating_study", "wilson"]
 
 _Z = 1.959964  # of the normal distribution, 95 %, two sides
+
+
+def wilson(share: float, n: int) -> tuple[float, float]:
+    """Return the 95 % interval of a probability by its share of n runs (Wilson).
+
+    Raises
+    ------
+    ValueError
+        If the share is not from 0 to 1.
+    """
+    if not 0.0 <= share <= 1.0:
+        raise ValueError(f"share must be >= 0 and <= 1, got {share}")
+    middle = (share + _Z**2 / (2 * n)) / (1 + _Z**2 / n)
+    half = _Z / (1 + _Z**2 / n) * math.sqrt(share * (1 - share) / n + _Z**2 / (4 * n**2))
+    return max(0.0, middle - half), min(1.0, middle + half)
 
 
 class RatingStudy:
@@ -70,12 +87,17 @@ class RatingStudy:
         ValueError
             If the share is not from 0 to 1.
         """
-        if not 0.0 <= share <= 1.0:
-            raise ValueError(f"share must be >= 0 and <= 1, got {share}")
-        n = len(self.ratings)
-        middle = (share + _Z**2 / (2 * n)) / (1 + _Z**2 / n)
-        half = _Z / (1 + _Z**2 / n) * math.sqrt(share * (1 - share) / n + _Z**2 / (4 * n**2))
-        return max(0.0, middle - half), min(1.0, middle + half)
+        return wilson(share, len(self.ratings))
+
+    @property
+    def test(self) -> str:
+        """What the first run is rated as, as ``"3-11"``; "" of a security barrier."""
+        return self.ratings[0].test
+
+    @property
+    def rows(self) -> list[tuple[str, str, str, str, str]]:
+        """Name, median, 80 % band, limit and share of the runs within it of each criterion, as text."""
+        return band_rows(self.ratings)
 
     def _rows(self) -> list[Criterion]:
         rows = []
@@ -83,7 +105,7 @@ class RatingStudy:
             low, high = self.interval(share)
             limit = f"{low:.1%} to {high:.1%} by {len(self.ratings)} runs"
             rows.append(Criterion(name, f"{share:.1%}", "", limit, None))
-        low, median, high = np.quantile(self.penetration, [0.1, 0.5, 0.9])
+        low, median, high = quantiles(self.penetration, SHARE)
         rows.append(
             Criterion("penetration, median", float(median), "m", f"80 %: {low:.2f} to {high:.2f} m", None)
         )
@@ -97,8 +119,9 @@ class RatingStudy:
         return f"{first.standard}, {what} (vehicle {first.vehicle_class}){without}"
 
     def summary(self) -> str:
-        """Return the probabilities, their sampling errors and the caution as text."""
-        return "\n".join([self._title, criteria_text(self._rows()), f"Caution: {self.ratings[0].caution}"])
+        """Return the probabilities with their sampling errors, each criterion's band, and the caution."""
+        tables = [criteria_text(self._rows()), "", table_text(BAND_HEAD, self.rows)]
+        return "\n".join([self._title, *tables, f"Caution: {self.ratings[0].caution}"])
 
     __str__ = summary
 
@@ -109,11 +132,14 @@ class RatingStudy:
             "probability": dict(self.probability),
             "contained": self.contained,
             "penetration": self.penetration.tolist(),
+            "criteria": [dict(zip(BAND_HEAD, row, strict=True)) for row in self.rows],
             "failed": {str(run): reason for run, reason in self.failed.items()},
+            "caution": self.ratings[0].caution,
         }
 
     def _repr_html_(self) -> str:
-        return criteria_html(self._title, self._rows(), f"Caution: {self.ratings[0].caution}")
+        bands = table_html("Each criterion over the runs", BAND_HEAD, self.rows)
+        return criteria_html(self._title, self._rows()) + bands + foot_html(self.ratings[0].caution)
 
     def __repr__(self) -> str:
         return f"RatingStudy({len(self.ratings)} runs, {dict(self.probability)})"

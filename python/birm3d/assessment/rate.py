@@ -10,6 +10,7 @@ from ..result import Result
 from ..study import Study
 from ..study.predict import Prediction
 from ..units import Quantity
+from .level_study import LevelStudy, level_study
 from .probability import RatingStudy, rate_study
 from .rating import Rating
 from .roadside import EN_1317, MASH
@@ -45,22 +46,34 @@ def rate(
 ) -> RatingStudy: ...
 
 
-@checked
+@overload
 def rate(
-    result: Result | Sequence[Result] | Study | Prediction,
+    result: Sequence[Study | Prediction],
     standard: str,
     *,
     vehicle_class: str | None = None,
     reference_point: str | Sequence[Quantity] | None = None,
     part: str | int | None = None,
-) -> Rating | RatingStudy:
+) -> LevelStudy: ...
+
+
+@checked
+def rate(
+    result: Result | Study | Prediction | Sequence[Result] | Sequence[Study | Prediction],
+    standard: str,
+    *,
+    vehicle_class: str | None = None,
+    reference_point: str | Sequence[Quantity] | None = None,
+    part: str | int | None = None,
+) -> Rating | RatingStudy | LevelStudy:
     """Return what a standard would call a run. Always indicative: a rating needs a test.
 
     Parameters
     ----------
     result
-        A run until its outcome is decided. Several: one for each test of a level. A study or a prediction:
-        every run of it is rated, and each class has its share of the runs as a probability.
+        A run until its outcome is decided. A study or a prediction: every run of it is rated, and each class
+        has its share of the runs as a probability. Several runs, or several predictions: one for each test of
+        a level.
     standard
         ``"ASTM F2656"``, ``"ASTM F2656-07"``, ``"SD-STD-02.01"``, ``"IWA 14-1"``, ``"ISO 22343-1"``,
         ``"PAS 68"``, ``"MASH"`` or ``"EN 1317"``. The last two may name a level or test, as
@@ -75,7 +88,7 @@ def rate(
     ------
     ValueError
         If the standard or the vehicle is not known, or the vehicle has no such point. If the run has no
-        barrier, has a path along it, or is not over.
+        barrier, has a path along it, or is not over. If runs and predictions are mixed.
     """
     name, rest = split_standard(standard)
     if isinstance(result, Prediction):
@@ -88,7 +101,14 @@ def rate(
         raise ValueError(
             f"standard must name a level, as 'MASH TL-3', where several runs are given; got {standard!r}"
         )
-    of = [_of_run(run, name, rest, vehicle_class, reference_point, part) for run in result]
+    given = list(result)
+    runs = [one for one in given if isinstance(one, Result)]
+    if not runs:
+        named = [rate(one, standard, vehicle_class=vehicle_class) for one in given]
+        return level_study(_ROADSIDE[name], rest, named)
+    if len(runs) < len(given):
+        raise ValueError("result must be all runs or all studies where several are given, got both")
+    of = [_of_run(run, name, rest, vehicle_class, reference_point, part) for run in runs]
     return level_rating(_ROADSIDE[name], rest, of)
 
 

@@ -64,6 +64,12 @@ class Rating:
     __str__ = summary
 
     @property
+    def test(self) -> str:
+        """Test or level of a roadside standard that the run is rated as, as ``"3-11"``; "" of others."""
+        of, colon, _ = self.designation.removeprefix(f"{self.standard} ").partition(": ")
+        return of if colon and self.designation.startswith(f"{self.standard} ") else ""
+
+    @property
     def title(self) -> str:
         """Standard, designation and vehicle in one line."""
         return f"{self.standard}, indicative: {self.designation} (vehicle {self.vehicle_class})"

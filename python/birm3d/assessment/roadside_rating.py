@@ -26,6 +26,7 @@ __all__ = ["rate_roadside"]
 _STILL = 0.5  # m/s into the barrier, of a vehicle that slides along it
 _MOST_ROLL = 75.0  # deg; MASH criterion F
 _LIGHT_KG = 3500.0  # below it vehicles are cars and pickups
+_SLACK = 1e-9  # rounding of the units
 _LEAST_SEVERITY = 0.92  # of the nominal impact severity, MASH
 _TIPS = (
     "The overturning moment of a segment is {ratio:.1f} times its restoring one: it would begin to tip, "
@@ -111,7 +112,6 @@ def _conditions(result: Result, standard: RoadsideStandard, test: RoadsideTest) 
     least, most = standard.speed(test.speed)
     below, above = standard.angle
     angle = _angle(result)
-    slack = 1e-9  # rounding of the units
     return (
         Criterion(
             "mass",
@@ -125,16 +125,38 @@ def _conditions(result: Result, standard: RoadsideStandard, test: RoadsideTest) 
             speed,
             "km/h",
             f"{least:.4g} to {most:.4g} km/h",
-            least - slack <= speed <= most + slack,
+            least - _SLACK <= speed <= most + _SLACK,
         ),
         Criterion(
             "impact angle",
             angle,
             "deg",
             f"{test.angle - below:g} to {test.angle + above:g} deg",
-            test.angle - below - slack <= angle <= test.angle + above + slack,
+            test.angle - below - _SLACK <= angle <= test.angle + above + _SLACK,
         ),
         *([_severity(result, test)] if standard.name == "MASH" else []),
+        *([_together(speed, angle, standard, test)] if standard.together else []),
+    )
+
+
+def _even(value: float) -> float:
+    """Return a number without its rounding error, which may be the sign of a zero."""
+    return round(float(value), 6) + 0.0
+
+
+def _together(speed: float, angle: float, standard: RoadsideStandard, test: RoadsideTest) -> Criterion:
+    """Return whether speed and angle are accepted together: no corner of both tolerances at once."""
+    place = np.array([speed / test.speed - 1.0, angle - test.angle])
+    corners = np.array(standard.together)
+    sides = np.roll(corners, -1, axis=0) - corners
+    way = place - corners
+    inside = bool((sides[:, 0] * way[:, 1] - sides[:, 1] * way[:, 0] >= -_SLACK).all())
+    return Criterion(
+        "speed and angle together",
+        f"{_even(place[0]):+.1%}, {_even(place[1]):+.1f} deg",
+        "",
+        "at 0 % from -0.5 to 1.5 deg, at 2 to 5 % from -1 to 1.5 deg, at 7 % from -1 to 1 deg",
+        inside,
     )
 
 
@@ -304,9 +326,7 @@ def level_rating(standard: RoadsideStandard, level: str, ratings: Sequence[Ratin
             f"standard must name a level of {standard.name} ({', '.join(standard.levels)}) for several runs, "
             f"got {level!r}"
         )
-    by_test = {
-        rating.designation.removeprefix(f"{standard.name} ").partition(":")[0]: rating for rating in ratings
-    }
+    by_test = {rating.test: rating for rating in ratings}
     missing = [name for name in standard.levels[level] if name not in by_test]
     if missing:
         raise ValueError(

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .scene import scene_options, simulation_of
+from .scene import barrier_of, scene_options, simulation_of
 
 if TYPE_CHECKING:
-    from ..assessment import OccupantRisk, Rating, RatingStudy, RiskStudy
+    from ..assessment import LevelStudy, OccupantRisk, Rating, RatingStudy, RiskStudy
     from ..result.result import Result
     from ..study.predict import Prediction
 
-    Ratings = Sequence[Rating | RatingStudy]
+    Ratings = Sequence[Rating | RatingStudy | LevelStudy]
     Risk = OccupantRisk | RiskStudy | None
 
 __all__ = ["STANDARD_HELP", "assessed", "assessments_as_json", "print_assessments", "rate", "result_of"]
@@ -43,6 +43,11 @@ STANDARD_HELP = (
     show_default=True,
     help="Vehicles of the class, a power of 2 from 8: probabilities and 80 % bands in place of one run.",
 )
+@click.option(
+    "--level",
+    is_flag=True,
+    help="All tests of the level that --standard names, with its vehicles, at the --barrier.",
+)
 @click.option("--json", "as_json", is_flag=True, help="As JSON on stdout.")
 def rate(
     scene: Path | None,
@@ -51,14 +56,27 @@ def rate(
     reference_point: str | None,
     with_risk: bool,
     draws: int,
+    level: bool,
     as_json: bool,
     **options: Any,
 ) -> None:
     """Rate one crash by standards: a SCENE file, a result (.npz, .birm3d), or --vehicle and --speed.
 
-    Always indicative: a rating needs a test.
+    With --level all crashes of a level of MASH or EN 1317 at one barrier. Always indicative: a rating needs a
+    test.
     """
     result: Result | Prediction
+    if level:
+        if scene is not None or options["vehicle"] is not None or options["speed"] is not None:
+            raise click.UsageError("--level has the standard's vehicles and speeds: give --barrier alone")
+        if vehicle_class or reference_point or with_risk:
+            raise click.UsageError("--level takes no --vehicle-class, --reference-point or --occupant-risk")
+        levels = [_of_level(standard, draws, options) for standard in standards]
+        if as_json:
+            click.echo(json.dumps(assessments_as_json(levels, None), indent=2))
+        else:
+            print_assessments(levels, None)
+        return
     if draws:
         from ..study.predict import predict
 
@@ -70,6 +88,27 @@ def rate(
         click.echo(json.dumps(assessments_as_json(ratings, risk), indent=2))
     else:
         print_assessments(ratings, risk)
+
+
+def _of_level(standard: str, draws: int, options: dict[str, Any]) -> Rating | LevelStudy:
+    """Return the rating of a level: all its tests at the barrier of the options."""
+    from ..assessment import rate as rate_results
+    from ..assessment import test_matrix
+    from ..study.predict import predict
+
+    barrier = barrier_of(options)
+    if barrier is None:
+        raise click.UsageError("--level needs a --barrier, got none")
+    tests = test_matrix(
+        standard,
+        barrier=barrier,
+        impact_offset=options["offset"],
+        mesh_density=options["mesh_density"],
+        duration=options["duration"],
+    )
+    if draws:
+        return rate_results([predict(test, draws, progress=True) for test in tests], standard)
+    return rate_results([test.run(progress=True) for test in tests], standard)
 
 
 def result_of(scene: Path | None, options: dict[str, Any]) -> Result:

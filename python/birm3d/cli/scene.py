@@ -12,9 +12,10 @@ from .. import units
 from ..barrier.kinds import KINDS
 
 if TYPE_CHECKING:
+    from ..barrier.base import Barrier
     from ..simulation.simulation import Simulation
 
-__all__ = ["QuantityOption", "scene_options", "simulation_of"]
+__all__ = ["QuantityOption", "barrier_of", "scene_options", "simulation_of"]
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -134,7 +135,6 @@ def scene_options(command: Command) -> Command:
 
 def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
     """Return the simulation of a scene file, or of the options of :func:`scene_options`."""
-    from ..barrier.base import Barrier
     from ..scene.settings import Settings
     from ..simulation.simulation import Simulation
     from ..vehicle.vehicle import Vehicle
@@ -156,17 +156,7 @@ def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
             raise click.UsageError(f"give a scene file, or --vehicle and --speed: --{name} is missing")
     make = Vehicle.from_file if options["vehicle"].endswith(".toml") else Vehicle.preset
     vehicle = make(options["vehicle"], gvw=options["gvw"], mesh_density=options["mesh_density"])
-    kind = options["barrier"]
-    names_of = {name: [size.name for size in made.sizes] for name, made in KINDS.items()}
-    known = dict.fromkeys(name for names in names_of.values() for name in names)
-    sizes = {name: options[name] for name in known if options[name] is not None}
-    for name in sizes:
-        if name not in names_of.get(kind, ()):
-            kinds = " or ".join(other for other, names in names_of.items() if name in names)
-            raise click.UsageError(f"--{name.replace('_', '-')}: of {kinds}, not of {kind}")
-    barrier = None
-    if kind != "none":
-        barrier = getattr(Barrier, kind)(friction=options["friction"], **sizes)
+    barrier = barrier_of(options)
     settings = {
         name: options[name]
         for name in ("tolerance", "time_step", "output_interval")
@@ -185,3 +175,18 @@ def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
         overlap=options["overlap"],
         overlap_side=options["overlap_side"],
     )
+
+
+def barrier_of(options: dict[str, Any]) -> Barrier | None:
+    """Return the barrier of the options of :func:`scene_options`."""
+    from ..barrier.base import Barrier
+
+    kind = options["barrier"]
+    names_of = {name: [size.name for size in made.sizes] for name, made in KINDS.items()}
+    known = dict.fromkeys(name for names in names_of.values() for name in names)
+    sizes = {name: options[name] for name in known if options[name] is not None}
+    for name in sizes:
+        if name not in names_of.get(kind, ()):
+            kinds = " or ".join(other for other, names in names_of.items() if name in names)
+            raise click.UsageError(f"--{name.replace('_', '-')}: of {kinds}, not of {kind}")
+    return None if kind == "none" else getattr(Barrier, kind)(friction=options["friction"], **sizes)

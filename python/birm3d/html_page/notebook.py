@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..result.summary import HEADLINES, headline_rows
+from ..result.summary import HEADLINES, headline_rows, shown_as
 from ..scene.text import scene_text
 
 if TYPE_CHECKING:
@@ -77,18 +77,14 @@ def text_html(text: str, figure: Any, name: str) -> str:
 
 
 def _spread_table(study: Study) -> str:
-    from ..plotting.style import shown_unit
-
     summary = study.summary()
     names = [name for name in HEADLINES if name in summary] or list(summary)
     rows = []
     for name in names[:_MOST_METRICS]:
         found = summary[name]
-        size, unit = shown_unit(study.units.get(name, ""))
+        label, size, unit = shown_as(name)
         numbers = (found.mean, found.standard_deviation, found.p05, found.median, found.p95)
-        rows.append(
-            (f"{_words(name)}{_in(unit)}", *("" if x is None else f"{x / size:.4g}" for x in numbers))
-        )
+        rows.append((f"{label}{_in(unit)}", *("" if x is None else f"{x / size:.4g}" for x in numbers)))
     return table_html(("metric", "mean", "st. dev.", "5 %", "median", "95 %"), rows) if rows else ""
 
 

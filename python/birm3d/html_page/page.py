@@ -13,7 +13,7 @@ from .. import units
 from ..barrier.rigid_wall import RigidWall
 from ..barrier.text import barrier_text
 from ..io.atomic_write import whole_file
-from ..result.crush_profile import Side, crushed_sides
+from ..result.crush_profile import Side, crushed_sides, side_words
 from ..result.element_loads import touched_elements
 from ..result.metrics import METRIC_UNITS
 from ..result.report import END_REASONS
@@ -181,4 +181,6 @@ def _crush_pictures(result: Result) -> str:
 
 
 def _crush_picture(result: Result, side: Side, unit: int) -> str:
-    return figure_html(result.plot_crush(side, unit=unit), f"residual crush of the {side}", dpi=90.0)
+    return figure_html(
+        result.plot_crush(side, unit=unit), f"residual crush of the {side_words(side)}", dpi=90.0
+    )

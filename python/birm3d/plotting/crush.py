@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..result.crush_profile import CrushProfile, Side, crush_map, crush_profile
+from ..result.crush_profile import CrushProfile, Side, crush_map, crush_profile, side_words
 from .figure import new_figure
 from .style import BLUE, prepare, title
 
@@ -89,7 +89,9 @@ def plot_crush(
     above.set_ylabel("height above the ground [m]")
     above.set_aspect("equal")
     part = "" if len(result.scene.vehicle.units) == 1 else f"{_UNITS[unit]}: "
-    above.set_title(f"{part}Residual crush of the {side}, greatest {float(shown[nodes].max()):.3f} m")
+    above.set_title(
+        f"{part}Residual crush of the {side_words(side)}, greatest {float(shown[nodes].max()):.3f} m"
+    )
     bar = figure.colorbar(colors, ax=[above, below], label="residual crush [m]", pad=0.02)
     if lines is not None:
         bar.add_lines(lines)

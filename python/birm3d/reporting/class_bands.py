@@ -14,11 +14,9 @@ from ..assessment.class_bands import Seen
 from ..assessment.design_load import looker, with_vehicles
 from ..assessment.probability import rating_study
 from ..assessment.risk_study import risk_of_study
-from ..plotting.style import shown_unit
 from ..result.metric_table import METRICS
-from ..result.metrics import METRIC_UNITS
 from ..result.result import Result
-from ..result.summary import HEADLINES
+from ..result.summary import HEADLINES, shown_as
 from ..simulation import Simulation
 from ..study.predict import Prediction
 from ..study.predict_and_look import predict_and_look
@@ -168,10 +166,10 @@ def class_blocks(result: Result, bands: ClassBands | str) -> Iterator[Block]:
     yield Table("What differs between vehicles of the class", head, rows, numbers=True)
     cells = []
     for name, *ends in predicted._answers():
-        size, unit = shown_unit(METRIC_UNITS.get(name, ""))
+        label, size, unit = shown_as(name)
         own = result.metrics.get(name) if name in result.metrics else None
         numbers = ("–" if number is None else _number(number / size) for number in (own, *ends))
-        cells.append((name.replace("_", " "), *numbers, unit))
+        cells.append((label, *numbers, unit))
     yield Table(
         f"This run beside {predicted.share:.0%} of the vehicles of its class",
         ("quantity", "this run", "low", "median", "high", "unit"),

@@ -8,8 +8,9 @@ import numpy as np
 
 from ..plotting.energies import plot_energies
 from ..plotting.figure import new_figure
-from ..plotting.style import prepare, shown_unit
+from ..plotting.style import prepare
 from ..result.energy_balance import ENERGY_LIMIT, MOMENTUM_LIMIT
+from ..result.summary import shown_as
 from .blocks import Block, Caution, Section, Table, Text
 from .figures import figure
 from .given_tests import Compared
@@ -75,9 +76,9 @@ def _row(one: Compared) -> tuple[str, ...]:
             verdict,
             fitted,
         )
-    size, unit = shown_unit(test.unit)
+    label, size, unit = shown_as(test.quantity)
     values = [f"{value / size:.3g} {unit}".strip() for value in (test.measured, one.computed)]
-    return test.name, alike, test.quantity.replace("_", " "), *values, f"{one.error:+.0%}", fitted
+    return test.name, alike, label, *values, f"{one.error:+.0%}", fitted
 
 
 def _not_alike(tests: list[Compared]) -> str:
@@ -210,7 +211,12 @@ def _energies(case: Case) -> Iterator[tuple[str, ...]]:
             share = f"{(last - first) / start:+.1e}" if start > 0.0 else "–"
             yield name, f"{first / 1e3:.2e}", f"{last / 1e3:.2e}", share
         else:
-            yield name.replace("_", " "), f"{first / 1e3:,.2f}", f"{last / 1e3:,.2f}", share
+            yield name.replace("_", " "), _signed(f"{first / 1e3:,.2f}"), _signed(f"{last / 1e3:,.2f}"), share
+
+
+def _signed(text: str) -> str:
+    """Return a number as text, without the sign of what is rounded to zero."""
+    return text.removeprefix("-") if not text.strip("-0.") else text
 
 
 def _momenta(case: Case) -> Iterator[tuple[str, ...]]:
@@ -237,5 +243,5 @@ def _momenta(case: Case) -> Iterator[tuple[str, ...]]:
     )
     rows = {**terms, "sum of impulses": total, "change of momentum": change}
     for name, value in rows.items():
-        yield name, *(f"{x / 1e3 + 0.0:,.3f}" for x in value)
+        yield name, *(_signed(f"{x / 1e3:,.3f}") for x in value)
     yield "difference", *(f"{x / 1e3:.1e}" for x in total - change)

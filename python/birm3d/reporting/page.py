@@ -87,12 +87,12 @@ def _motion_section(case: Case, interactive: bool) -> Section:
 
 
 def _crush(case: Case) -> list[Block]:
-    from ..result.crush_profile import crushed_sides
+    from ..result.crush_profile import crushed_sides, side_words
 
     result = case.result
     units = range(len(result.scene.vehicle.units))
     return [
-        figure(result.plot_crush(side, unit=unit), f"Residual crush of the {side}", raster=True)
+        figure(result.plot_crush(side, unit=unit), f"Residual crush of the {side_words(side)}", raster=True)
         for unit in units
         for side in crushed_sides(result, unit=unit)
     ]

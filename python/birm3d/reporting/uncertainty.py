@@ -8,7 +8,7 @@ import numpy as np
 
 from ..plotting.style import shown_unit
 from ..result.metrics import METRIC_UNITS
-from ..result.summary import HEADLINES
+from ..result.summary import HEADLINES, shown_as
 from ..study import Study
 from ..study.history_bands import history_bands
 from .blocks import Block, Caution, Section, Table, Text
@@ -49,9 +49,9 @@ def uncertainty_section(case: Case) -> Section:
     )
     rows = []
     for name, value, better, error in computing_error(case):
-        size, unit = shown_unit(METRIC_UNITS.get(name, ""))
+        label, size, unit = shown_as(name)
         difference = "below 1e-6" if error is None else f"{error:.1e}"
-        rows.append((name.replace("_", " "), f"{value / size:.5g}", f"{better / size:.5g}", unit, difference))
+        rows.append((label, f"{value / size:.5g}", f"{better / size:.5g}", unit, difference))
     blocks: list[Block] = [
         Text(
             f"Computing error: the run has {how}. The same scene was run once more with a tolerance of "
@@ -132,11 +132,11 @@ def _percentiles(case: Case, study: Study) -> Table:
     for name, found in study.summary().items():
         if name not in HEADLINES:
             continue
-        size, unit = shown_unit(study.units.get(name, ""))
+        label, size, unit = shown_as(name)
         own = case.result.metrics.get(name) if name in case.result.metrics else None
         numbers = (own, found.p05, found.median, found.p95, found.mean, found.standard_deviation)
         cells = ("–" if number is None else f"{number / size:.4g}" for number in numbers)
-        rows.append((name.replace("_", " "), *cells, unit, f"{found.n:,}"))
+        rows.append((label, *cells, unit, f"{found.n:,}"))
     return Table(
         "Percentiles of the study beside this run",
         ("quantity", "this run", "5 %", "median", "95 %", "mean", "st. dev.", "unit", "runs"),

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from statistics import median
 
-from ..assessment import DesignLoad, ElementDesign, OccupantRisk
+from ..assessment import DesignLoad, ElementDesign, OccupantRisk, Rating
 from ..assessment.criteria import Criterion
 from ..assessment.rating import MODEL_CAUTION
 from ..result.element_loads import touched_elements
+from ..result.summary import shown_as
 from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import band_of, headline_table
-from .given_tests import errors
+from .given_tests import Compared, errors
 from .study_case import Case, is_oblique
 from .uncertainty import computing_error
 
 __all__ = ["criteria_table", "risk_section", "verdict_section"]
 
+_ALL_ALIKE = 4  # vehicle, barrier, speed, angle
+_HEAVY = 3500.0  # kg; from here on MASH and EN 1317 do not judge what occupants undergo
 _NO_BARRIER = "There is no barrier in this scene: nothing is rated."
 
 
@@ -34,7 +37,7 @@ def verdict_section(case: Case) -> Section:
     if result.scene.barrier is None:
         blocks.append(Text(_NO_BARRIER))
     for rating in case.ratings:
-        blocks.append(criteria_table(f"Rating, {rating.title}", rating.criteria))
+        blocks.append(_rating_table(case, rating))
     if case.not_rated:
         rows = [(name, reason.partition("; got ")[0]) for name, reason in case.not_rated.items()]
         blocks.append(Table("Standards that do not rate this run", ("standard", "why"), rows))
@@ -48,6 +51,23 @@ def criteria_table(caption: str, criteria: tuple[Criterion, ...]) -> Table:
     """Return values beside their limits."""
     rows = [(one.name, one.shown, one.limit, one.verdict) for one in criteria]
     return Table(caption, ("criterion", "value", "limit", "verdict"), rows)
+
+
+def _rating_table(case: Case, rating: Rating) -> Table:
+    """Return the criteria of a rating, with the bands of the class where there are some."""
+    table = criteria_table(f"Rating, {rating.title}", rating.criteria)
+    if isinstance(case.bands, str) or rating.standard not in case.bands.ratings:
+        return table
+    return _with_bands(table, case.bands.ratings[rating.standard].rows)
+
+
+def _with_bands(table: Table, bands: Sequence[tuple[str, str, str, str, str]]) -> Table:
+    """Return a table of criteria with the band of each, and the share of the vehicles that meets it."""
+    found = {name: (band, share) for name, _, band, _, share in bands}
+    rows = [(*row, *found.get(row[0], ("–", "–"))) for row in table.rows]
+    return dataclasses.replace(
+        table, head=(*table.head, "80 % of the class", "of it within the limit"), rows=rows
+    )
 
 
 def _glance(case: Case) -> Iterator[tuple[str, str]]:
@@ -83,11 +103,26 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
     rights = [one.right for one in case.tests if one.right is not None]
     told = []
     if rights:
-        told.append(f"containment as in {sum(rights)} of {len(rights)} tests")
+        wrong = [one.test.name for one in case.tests if one.right is False]
+        names = f" (WRONG: {'; '.join(wrong)})" if wrong else ""
+        told.append(f"containment as in {sum(rights)} of {len(rights)} tests{names}")
     if found:
-        told.append(f"median error {median(map(abs, found)):.0%} in {len(found)} values that were not fitted")
+        values = "1 value that was" if len(found) == 1 else f"{len(found)} values that were"
+        told.append(f"median error {median(map(abs, found)):.0%} in {values} not fitted")
+        told += [f"{one.test.name}, {_quantity(one)}: {one.error:+.0%}" for one in _twins(case.tests)]
     if told:
         yield "How well does the model do in given tests nearby?", "; ".join(told)
+
+
+def _twins(tests: Sequence[Compared]) -> list[Compared]:
+    """Return the values of tests that are like the scene in all that is compared, and were not fitted."""
+    return [
+        one for one in tests if len(one.alike) == _ALL_ALIKE and one.error is not None and not one.test.fitted
+    ]
+
+
+def _quantity(one: Compared) -> str:
+    return shown_as(one.test.quantity)[0]
 
 
 def _penetration(distance: float) -> str:
@@ -130,6 +165,11 @@ def _risk_line(case: Case) -> str:
     if not isinstance(case.bands, str) and case.bands.risk is not None:
         found = case.bands.risk
         others = f"; met by {found.passed(standard):.0%} of {len(found.risks)} vehicles of the class"
+    if standard in ("MASH", "EN 1317") and asked and case.result.scene.vehicle.mass >= _HEAVY:
+        return (
+            f"{standard} does not judge this for so heavy a vehicle; every value is in the section on "
+            "occupants"
+        )
     if not failed:
         met = f"the limits of {standard} are met; severity and every value are in the section on occupants"
         return f"{met}{others}"
@@ -172,8 +212,4 @@ def _risk_table(case: Case, risk: OccupantRisk) -> Table:
     table = criteria_table("Occupant risk, each value beside its limit", risk.criteria)
     if isinstance(case.bands, str) or case.bands.risk is None:
         return table
-    bands = {name: (band, share) for name, _, band, _, share in case.bands.risk.rows}
-    rows = [(*row, *bands[row[0]]) for row in table.rows]
-    return dataclasses.replace(
-        table, head=(*table.head, "80 % of the class", "of it within the limit"), rows=rows
-    )
+    return _with_bands(table, case.bands.risk.rows)

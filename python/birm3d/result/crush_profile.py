@@ -16,7 +16,7 @@ from ..vehicle.unit_shapes import UnitShape, unit_shapes
 if TYPE_CHECKING:
     from .record import RunRecord
 
-__all__ = ["CrushMap", "CrushProfile", "Side", "crush_map", "crush_profile", "crushed_sides"]
+__all__ = ["CrushMap", "CrushProfile", "Side", "crush_map", "crush_profile", "crushed_sides", "side_words"]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -168,6 +168,11 @@ def crush_profile(
         width=float(lateral[-1] - lateral[0]),
         mean=float(weights @ points),
     )
+
+
+def side_words(side: str) -> str:
+    """Return what a side is called in a title, as "right side"."""
+    return f"{side} side" if side in ("left", "right") else side
 
 
 def crushed_sides(result: RunRecord, least: float = 0.01, *, unit: int = 0) -> tuple[Side, ...]:

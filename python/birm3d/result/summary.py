@@ -4,13 +4,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from .. import units
 from .element_loads import touched_elements
 from .metric_table import GROUPS, METRICS
 
 if TYPE_CHECKING:
     from .analysis import RunAnalysis
 
-__all__ = ["ELEMENT_COLUMNS", "HEADLINES", "element_rows", "elements_in_si", "headline_rows", "outcome_rows"]
+__all__ = [
+    "ELEMENT_COLUMNS",
+    "HEADLINES",
+    "element_rows",
+    "elements_in_si",
+    "headline_rows",
+    "outcome_rows",
+    "shown_as",
+]
 
 ELEMENT_COLUMNS = (
     "element",
@@ -31,6 +40,29 @@ _ROWS = {
 
 HEADLINES = tuple(name for name, shown in _ROWS.items() if shown.headline)
 """Metrics by which a run or a study is judged first."""
+
+
+# Words and units of metrics that no headline table has.
+_OTHERS = {
+    "peak_deceleration": ("peak deceleration along r, unfiltered", units.g, "g"),
+    "peak_normal_force": ("peak barrier force along the normal, unfiltered", 1e3, "kN"),
+    "peak_element_force": ("peak force (vector) on one element, unfiltered", 1e3, "kN"),
+    "peak_overturning_moment": ("peak overturning moment of one element, unfiltered", 1e3, "kN m"),
+    "contact_overlap": ("overlap of rigid body and barrier", 1.0, "m"),
+    "impact_severity": ("impact severity, m (v sin angle)² / 2", 1e3, "kJ"),
+    "wheel_climb": ("greatest height of a wheel above the ground", 1.0, "m"),
+    "max_articulation_angle": ("greatest angle between the units", 1.0, "deg"),
+    "peak_joint_force": ("peak force of the joint", 1e3, "kN"),
+}
+
+
+def shown_as(name: str) -> tuple[str, float, str]:
+    """Return what tables call a metric, by what its SI value is divided there, and its unit then."""
+    shown = METRICS[name].shown if name in METRICS else None
+    if shown is not None:
+        return shown.label, shown.size, shown.unit
+    unit = METRICS[name].unit if name in METRICS else ""
+    return _OTHERS.get(name, (name.replace("_", " "), 1.0, unit))
 
 
 def outcome_rows(result: RunAnalysis) -> list[tuple[str, str, str]]:

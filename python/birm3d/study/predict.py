@@ -14,7 +14,7 @@ from ..base.arguments import checked
 from ..base.checks import shown
 from ..base.frozen_mapping import FrozenMapping
 from ..result.metric_table import METRICS
-from ..result.metrics import METRIC_UNITS
+from ..result.summary import shown_as
 from ..simulation.parameters import parameter_names, value_of
 from ..simulation.simulation import Simulation
 from ..vehicle.class_scatter import QUANTITIES, joined
@@ -35,7 +35,6 @@ _SMALL_OVERLAP = 0.4
 """Of the vehicle's width, as in the tests that the band was held beside."""
 _NO_ANSWERS = ("balance", "effort")
 """Kinds of metrics that say how a run was computed."""
-_KILO, _IN_KILO = 1e3, ("N", "N m", "J")  # of a summary: loads and energies in kN, kN m and kJ
 _LARGE = 1e4  # values from here on have no decimals
 _ROUNDING = 1e-9
 
@@ -99,10 +98,9 @@ class Prediction:
         rows += [f"  {share:4.0%} {outcome}" for outcome, share in self.outcomes.items()]
         rows.append(f"  {'metric':<28}{'low':>13}{'median':>13}{'high':>13}")
         for name, *numbers in self._answers():
-            unit = METRIC_UNITS.get(name, "")
-            size = _KILO if unit in _IN_KILO else 1.0
+            _, size, unit = shown_as(name)
             cells = "".join(f"{_shown(number / size):>13}" for number in numbers)
-            rows.append(f"  {name:<28}{cells} {'k' if size > 1.0 else ''}{unit}".rstrip())
+            rows.append(f"  {name:<28}{cells} {unit}".rstrip())
         rows.append(f"  drawn: {', '.join(self.drawn)}; mass, speed and barrier as given")
         rows.append(f"  Caution: {self.caution}")
         return "\n".join(rows)
@@ -150,14 +148,16 @@ class Prediction:
         }
 
     def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td>{name}</td>"
-            + "".join(f"<td>{number:.5g}</td>" for number in numbers)
-            + f"<td>{METRIC_UNITS.get(name, '')}</td></tr>"
-            for name, *numbers in self._answers()
-        )
-        head = "<tr><th>metric</th><th>low</th><th>median</th><th>high</th><th>unit</th></tr>"
-        return f"<table>{head}{rows}</table><div>{escape(self.caution)}</div>"
+        """Return what notebooks show: shares of outcomes, bands in the units of other tables, caution."""
+        from ..html_page.notebook import table_html
+
+        rows = [(outcome, "", f"{share:.0%}", "", "") for outcome, share in self.outcomes.items()]
+        for name, *numbers in self._answers():
+            label, size, unit = shown_as(name)
+            rows.append((label, *(_shown(number / size) for number in numbers), unit))
+        title = f"{self.study.vehicle}: {self.share:.0%} bands of {len(self.study)} vehicles of the class"
+        table = table_html(("metric", "low", "median", "high", "unit"), rows)
+        return f"<div><b>{escape(title)}</b>{table}<div>Caution: {escape(self.caution)}</div></div>"
 
     def __repr__(self) -> str:
         return f"Prediction({len(self.study)} runs, {self.share:.0%} bands, {dict(self.outcomes)})"

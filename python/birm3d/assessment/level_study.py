@@ -1,0 +1,145 @@
+"""Probability of the classes of a whole level: each of its tests is run with many vehicles."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ..base.arguments import checked
+from ..base.frozen_mapping import FrozenMapping
+from .criteria import Criterion, criteria_html, criteria_text
+from .probability import RatingStudy, wilson
+from .rating import Rating
+from .roadside import RoadsideStandard
+from .roadside_rating import level_rating
+
+__all__ = ["LevelStudy", "level_study"]
+
+
+class LevelStudy:
+    """Ratings of a level over the vehicles of each of its tests; made by :func:`birm3d.rate`.
+
+    Vehicles of different tests are taken as independent: a stiff small car says nothing of the pickup.
+
+    Attributes
+    ----------
+    standard, level : str
+    tests : mapping of str to RatingStudy
+        Each test of the level -> ratings of its runs.
+    probability : mapping of str to float
+        Each designation of the level -> its probability, the greatest first.
+    contained : float
+        Probability that the vehicles of all tests are contained.
+    caution : str
+    """
+
+    def __init__(self, standard: RoadsideStandard, level: str, studies: Sequence[RatingStudy]) -> None:
+        self.standard, self.level = standard.name, level
+        kinds = [_kinds(study) for study in studies]
+        found: dict[str, float] = {}
+        self.contained, self.caution = 0.0, ""
+        for combined in itertools.product(*kinds):
+            share = 1.0
+            for _, part in combined:
+                share *= part
+            rating = level_rating(standard, level, [one for one, _ in combined])
+            found[rating.designation] = found.get(rating.designation, 0.0) + share
+            self.contained += share * rating.contained
+            self.caution = max(self.caution, rating.caution, key=len)
+        self.probability: Mapping[str, float] = FrozenMapping(
+            dict(sorted(found.items(), key=lambda one: -one[1]))
+        )
+        self.tests = FrozenMapping({study.test: study for study in studies})
+
+    @checked
+    def interval(self, share: float) -> tuple[float, float]:
+        """Return the 95 % interval of a probability (Wilson), by the runs of the test with the fewest.
+
+        The error of a product is smaller than that of a share of so many runs.
+
+        Raises
+        ------
+        ValueError
+            If the share is not from 0 to 1.
+        """
+        return wilson(share, self._runs)
+
+    @property
+    def _runs(self) -> int:
+        return min(len(study.ratings) for study in self.tests.values())
+
+    @property
+    def _rows(self) -> list[Criterion]:
+        rows = []
+        for name, share in self.probability.items():
+            low, high = self.interval(min(share, 1.0))
+            rows.append(Criterion(name, f"{share:.1%}", "", f"{low:.1%} to {high:.1%}", None))
+        for name, study in self.tests.items():
+            good = sum(rating.passed for rating in study.ratings) / len(study.ratings)
+            low, high = study.interval(good)
+            rows.append(Criterion(f"test {name}: pass", f"{good:.1%}", "", f"{low:.1%} to {high:.1%}", None))
+        return rows
+
+    @property
+    def _title(self) -> str:
+        return (
+            f"{self.standard} {self.level}, indicative: probability of each class, 95 % interval by "
+            f"{self._runs} runs of each test"
+        )
+
+    def summary(self) -> str:
+        """Return the probabilities, and the bands of each test, as text."""
+        parts = [study.summary() for study in self.tests.values()]
+        return "\n\n".join([f"{self._title}\n{criteria_text(self._rows)}\nCaution: {self.caution}", *parts])
+
+    __str__ = summary
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all of it as plain values."""
+        return {
+            "standard": self.standard,
+            "level": self.level,
+            "probability": dict(self.probability),
+            "contained": self.contained,
+            "tests": {name: study.to_dict() for name, study in self.tests.items()},
+            "caution": self.caution,
+        }
+
+    def _repr_html_(self) -> str:
+        head = criteria_html(self._title, self._rows, f"Caution: {self.caution}")
+        return head + "".join(study._repr_html_() for study in self.tests.values())
+
+    def __repr__(self) -> str:
+        return f"LevelStudy({self.standard} {self.level!r}, {dict(self.probability)})"
+
+
+def _kinds(study: RatingStudy) -> list[tuple[Rating, float]]:
+    """Return one rating of each kind that the runs of a test have, and the share of the runs with it."""
+    kinds: dict[tuple[str, bool, bool], list[Rating]] = {}
+    for rating in study.ratings:
+        kinds.setdefault((rating.designation, rating.contained, rating.passed), []).append(rating)
+    return [(of[0], len(of) / len(study.ratings)) for of in kinds.values()]
+
+
+def level_study(standard: RoadsideStandard, level: str, studies: Sequence[RatingStudy]) -> LevelStudy:
+    """Return the probabilities of a level.
+
+    Raises
+    ------
+    ValueError
+        If a test of the level is missing, is there twice, or one study has runs of several tests.
+    """
+    for study in studies:
+        names = dict.fromkeys(rating.test for rating in study.ratings)
+        if len(names) > 1:
+            raise ValueError(
+                f"results must hold one study for each test of {standard.name} {level}, got one with runs "
+                f"of {', '.join(names)}"
+            )
+    named = [study.test for study in studies]
+    if len(set(named)) < len(named):
+        raise ValueError(
+            f"results must hold one study for each test of {standard.name} {level}, got {', '.join(named)}"
+        )
+    return LevelStudy(standard, level, studies)
