@@ -108,9 +108,9 @@ def test_study_card(drawn: Study) -> None:
     card = Cells(drawn._repr_html_())
     assert card.images == 1
     crush = drawn.summary()["dynamic_crush"]
-    place = card.cells.index("dynamic crush [m]")
+    place = card.cells.index("dynamic crush (greatest truss shortening) [m]")
     assert card.cells[place + 1] == f"{crush.mean:.4g}"
-    force = card.cells.index("peak normal force cfc60 [kN]")
+    force = card.cells.index("peak barrier force along the normal, CFC 60 [kN]")
     assert float(card.cells[force + 1]) == pytest.approx(
         drawn["peak_normal_force_cfc60"].mean() / 1e3, rel=1e-3
     )

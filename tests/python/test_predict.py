@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -109,7 +110,10 @@ def test_what_it_tells() -> None:
     assert float(force[1]) == pytest.approx(prediction().low["peak_force_50ms"] / 1e3, rel=1e-3)
     told = prediction().to_dict()["metrics"]["max_displacement"]
     assert told["low"] < told["median"] < told["high"]
-    assert "<td>max_displacement</td>" in prediction()._repr_html_()
+    cells = re.findall(r"<td[^>]*>(.*?)</td>", prediction()._repr_html_())
+    place = cells.index("peak 50-ms mean of the force along the normal")  # words and units of other tables
+    assert cells[place + 1 : place + 5] == [*force[1:4], "kN"]
+    assert cells[cells.index("peak deceleration along r, CFC 60") + 4] == "g"
 
 
 def test_saved_vehicles_keep_their_scatter(tmp_path: Path) -> None:

@@ -71,6 +71,24 @@ def test_dossier_of_a_case_has_both_verdicts(module: ModuleType, tmp_path: Path)
     assert {path.name for path in tmp_path.iterdir()} == {"8-in-posts-with-a-rail-43-5-mph"}
 
 
+def test_both_pages_run_the_same_scenes(module: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is named alike here and on the page of all tests is one scene."""
+    monkeypatch.syspath_prepend(str(FOLDER))
+    monkeypatch.syspath_prepend(str(FOLDER.parent / "bench"))
+    redirection = importlib.import_module("kind_redirection")
+    side_pole = importlib.import_module("kind_side_pole")
+    facts = {fact["test"]: fact for fact in redirection.facts("redirections")}
+    pairs = {
+        "MASH 4-11, 32-in New Jersey": redirection.simulation(facts["NJ32-4-11"]),
+        "TL5CMB-2, 42-in median barrier": redirection.simulation(facts["TL5CMB-2"]),
+        "TTI 7069-13, 42-in vertical parapet": redirection.simulation(facts["TTI 7069-13"]),
+        "FHWA FOIL, C2500 broadside into a pole": side_pole.broadside(),
+    }
+    for name, other in pairs.items():
+        (case,) = [case for case in module.DOSSIERS if case.name == name]
+        assert case.simulation().scene == other.scene
+
+
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:core_contact_force must be")  # it is part of the dossier
 @pytest.mark.parametrize("place", range(16))

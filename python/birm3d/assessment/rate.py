@@ -88,7 +88,7 @@ def rate(
     ------
     ValueError
         If the standard or the vehicle is not known, or the vehicle has no such point. If the run has no
-        barrier, has a path along it, or is not over. If runs and predictions are mixed.
+        barrier, has a path along it, or is not over.
     """
     name, rest = split_standard(standard)
     if isinstance(result, Prediction):
@@ -106,8 +106,6 @@ def rate(
     if not runs:
         named = [rate(one, standard, vehicle_class=vehicle_class) for one in given]
         return level_study(_ROADSIDE[name], rest, named)
-    if len(runs) < len(given):
-        raise ValueError("result must be all runs or all studies where several are given, got both")
     of = [_of_run(run, name, rest, vehicle_class, reference_point, part) for run in runs]
     return level_rating(_ROADSIDE[name], rest, of)
 

@@ -117,7 +117,7 @@ def _conditions(result: Result, standard: RoadsideStandard, test: RoadsideTest) 
             "mass",
             result.scene.vehicle.mass,
             "kg",
-            f"{vehicle.mass:g} +-{vehicle.tolerance:g} kg",
+            f"{vehicle.mass:,.0f} +-{vehicle.tolerance:g} kg",
             vehicle.weighs(result.scene.vehicle),
         ),
         Criterion(
@@ -145,18 +145,22 @@ def _even(value: float) -> float:
 
 
 def _together(speed: float, angle: float, standard: RoadsideStandard, test: RoadsideTest) -> Criterion:
-    """Return whether speed and angle are accepted together: no corner of both tolerances at once."""
+    """Return whether speed and angle are accepted together; not judged where one of them alone is not."""
     place = np.array([speed / test.speed - 1.0, angle - test.angle])
     corners = np.array(standard.together)
     sides = np.roll(corners, -1, axis=0) - corners
     way = place - corners
     inside = bool((sides[:, 0] * way[:, 1] - sides[:, 1] * way[:, 0] >= -_SLACK).all())
+    alone = bool(
+        (corners.min(axis=0) - _SLACK <= place).all() and (place <= corners.max(axis=0) + _SLACK).all()
+    )
     return Criterion(
         "speed and angle together",
         f"{_even(place[0]):+.1%}, {_even(place[1]):+.1f} deg",
         "",
         "at 0 % from -0.5 to 1.5 deg, at 2 to 5 % from -1 to 1.5 deg, at 7 % from -1 to 1 deg",
-        inside,
+        inside if alone else None,
+        "" if alone else "not judged",
     )
 
 

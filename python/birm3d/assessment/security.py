@@ -141,7 +141,7 @@ def rate_security(
         "mass",
         result.scene.vehicle.mass,
         "kg",
-        f"{vehicle.mass:g} +-{vehicle.tolerance:g} kg",
+        f"{vehicle.mass:,.0f} +-{vehicle.tolerance:g} kg",
         vehicle.weighs(result.scene.vehicle),
     )
     became = Criterion("outcome", result.outcome, "", "", None, result.outcome_detail)

@@ -35,7 +35,7 @@ _PARTS = {
     "barrier_friction": "friction of vehicle on barrier",
     "tire_friction": "friction of tyres on the ground",
 }
-_ROUNDING = 1e-9  # values below are rounding errors
+_ROUNDING = 1e-6  # SI and degrees: values below are rounding errors
 _Z = 1.2816  # of the normal distribution, 80 %, two sides
 
 
@@ -171,7 +171,7 @@ def class_blocks(result: Result, bands: ClassBands | str) -> Iterator[Block]:
         numbers = ("–" if number is None else _number(number / size) for number in (own, *ends))
         cells.append((label, *numbers, unit))
     yield Table(
-        f"This run beside {predicted.share:.0%} of the vehicles of its class",
+        f"This run beside {100.0 * predicted.share:g} % of the vehicles of its class",
         ("quantity", "this run", "low", "median", "high", "unit"),
         cells,
         numbers=True,

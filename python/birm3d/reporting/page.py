@@ -28,6 +28,7 @@ from .verdict import risk_section, verdict_section
 
 __all__ = ["page"]
 
+_PERCENT = re.compile(r"(\d) ?%")
 _VERDICT = re.compile(r"(pass|right)\b|(FAIL|WRONG|NOT)\b")
 
 
@@ -104,8 +105,9 @@ def _json(data: dict[str, Any]) -> str:
 
 
 def _tidy(text: str) -> str:
-    """Return a text with the signs of print."""
-    return text.replace("+-", "±").replace("<=", "≤").replace(">=", "≥").replace("^2", "²")
+    """Return a text with the signs of print; no line begins with a sign of percent."""
+    text = text.replace("+-", "±").replace("<=", "≤").replace(">=", "≥").replace("^2", "²")
+    return _PERCENT.sub("\\1\u00a0%", text)
 
 
 def _mark(cell: str) -> str:
