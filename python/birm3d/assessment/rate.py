@@ -101,11 +101,12 @@ def rate(
         raise ValueError(
             f"standard must name a level, as 'MASH TL-3', where several runs are given; got {standard!r}"
         )
-    given = list(result)
-    runs = [one for one in given if isinstance(one, Result)]
-    if not runs:
-        named = [rate(one, standard, vehicle_class=vehicle_class) for one in given]
-        return level_study(_ROADSIDE[name], rest, named)
+    studies = [one for one in result if isinstance(one, (Study, Prediction))]
+    if studies:
+        return level_study(
+            _ROADSIDE[name], rest, [rate(one, standard, vehicle_class=vehicle_class) for one in studies]
+        )
+    runs = [one for one in result if isinstance(one, Result)]
     of = [_of_run(run, name, rest, vehicle_class, reference_point, part) for run in runs]
     return level_rating(_ROADSIDE[name], rest, of)
 

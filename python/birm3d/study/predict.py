@@ -151,7 +151,8 @@ class Prediction:
         """Return what notebooks show: shares of outcomes, bands in the units of other tables, caution."""
         from ..html_page.notebook import table_html
 
-        rows = [(outcome, "", f"{share:.0%}", "", "") for outcome, share in self.outcomes.items()]
+        rows: list[tuple[str, ...]] = []
+        rows += [(outcome, "", f"{share:.0%}", "", "") for outcome, share in self.outcomes.items()]
         for name, *numbers in self._answers():
             label, size, unit = shown_as(name)
             rows.append((label, *(_shown(number / size) for number in numbers), unit))
