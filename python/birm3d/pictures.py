@@ -7,7 +7,7 @@ test holds this. Only what a picture needs is loaded, and only when it is made.
 # Longer than 300 lines: a function of a few lines for each picture.
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
@@ -66,6 +66,7 @@ __all__ = [
     "result_html",
     "show",
     "study_html",
+    "table_html",
     "text_html",
     "write_gltf",
     "write_html",
@@ -364,6 +365,13 @@ def study_html(study: Study) -> str:
     from .html_page.notebook import study_html
 
     return study_html(study)
+
+
+def table_html(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return what notebooks show of a table."""
+    from .html_page.notebook import table_html
+
+    return table_html(head, rows)
 
 
 def text_html(text: str, figure: Figure | None, name: str) -> str:

@@ -169,6 +169,7 @@ def calls(folder: Path) -> dict[str, Call]:
         "check_channel": (birm3d.check_channel, {"channel": force}),
         "compare_curves": (birm3d.compare_curves, {"measured": force, "computed": force}),
         "cfc": (filters.cfc, {"signal": TIME, "channel_class": 60.0, "interval": 1e-3}),
+        "peak_of_cfc": (filters.peak_of_cfc, {"signal": TIME, "channel_class": 60.0, "interval": 1e-3}),
         "moving_average": (filters.moving_average, {"signal": TIME, "width": 0.01, "interval": 1e-3}),
         "Study": (
             birm3d.Study,

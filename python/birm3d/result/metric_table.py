@@ -33,6 +33,7 @@ class Shown(NamedTuple):
     unit: str = ""
     size: float = 1.0
     headline: bool = False  # whether a run or a study is judged by it first
+    listed: bool = True  # whether the tables of a run list it; others show it where it is asked for
 
 
 class Metric(NamedTuple):
@@ -55,7 +56,7 @@ class Metric(NamedTuple):
     error
         "answer": it has an error; "balance": it is one itself; "effort": it says how an answer was found.
     shown
-        ``None``: tables do not show it.
+        ``None``: tables show it by its name only, where it is asked for.
     """
 
     unit: str
@@ -76,11 +77,16 @@ def _metres(label: str, headline: bool = False) -> Shown:
     return Shown(label, ".3f", "m", headline=headline)
 
 
+def _asked(label: str, unit: str, size: float = 1.0) -> Shown:
+    return Shown(label, ".4g", unit, size, listed=False)
+
+
 METRICS: Mapping[str, Metric] = MappingProxyType(
     {
         "peak_deceleration": Metric(
             *("m/s^2", "motion", "greatest deceleration along r, unfiltered", "motion"),
             *(lambda run: run.motion.deceleration, "run"),
+            shown=_asked("peak deceleration along r, unfiltered", "g", units.g),
         ),
         "peak_deceleration_cfc60": Metric(
             *("m/s^2", "motion", "the same after CFC 60", "filtered_deceleration"),
@@ -94,6 +100,7 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
             "positive, see Result.barrier_normal_force",
             "normal_force",
             lambda run: run.normal_force.peak,
+            shown=_asked("peak barrier force along the normal, unfiltered", "kN", 1e3),
         ),
         "peak_normal_force_cfc60": Metric(
             *("N", "load", "the same after CFC 60", "filtered_force", lambda run: run.filtered_force.cfc60),
@@ -107,6 +114,7 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
         "peak_element_force": Metric(
             *("N", "load", "greatest magnitude of the force vector on any element", "element_loads"),
             lambda run: run.element_loads.force,
+            shown=_asked("peak force (vector) on one element, unfiltered", "kN", 1e3),
         ),
         "peak_element_force_50ms": Metric(
             *("N", "load", "of its mean over 50 ms", "element_loads"),
@@ -116,6 +124,7 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
         "peak_overturning_moment": Metric(
             *("N m", "load", "greatest overturning moment of any element, see ElementLoad", "element_loads"),
             lambda run: run.element_loads.moment,
+            shown=_asked("peak overturning moment of one element, unfiltered", "kN m", 1e3),
         ),
         "peak_overturning_moment_50ms": Metric(
             *("N m", "load", "of its mean over 50 ms", "element_loads"),
@@ -160,6 +169,7 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
             "end",
             made.contact_overlap,
             error="balance",
+            shown=_asked("overlap of rigid body and barrier", "m"),
         ),
         "core_contact_force": Metric(
             "N",
@@ -224,7 +234,10 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
             lambda run: run.motion.velocity_change,
             shown=Shown("change of velocity", ".2f", "m/s", headline=True),
         ),
-        "impact_severity": Metric("J", "motion", "1/2 m (v sin angle)^2", "end", made.impact_severity),
+        "impact_severity": Metric(
+            *("J", "motion", "1/2 m (v sin angle)^2", "end", made.impact_severity),
+            shown=_asked("impact severity, m (v sin angle)² / 2", "kJ", 1e3),
+        ),
         "exit_speed": Metric(
             *("m/s", "departure", "of the mass centre along the ground at separation", "end"),
             made.exit_speed,
@@ -274,14 +287,17 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
             "wheel_climb",
             made.wheel_climb,
             "run",
+            shown=_asked("greatest height of a wheel above the ground", "m"),
         ),
         "max_articulation_angle": Metric(
             *("deg", "joint", "greatest magnitude of the angle between two units", "joint"),
             *(lambda run: math.degrees(run.extremes.joint.angle), "joint"),
+            shown=_asked("greatest angle between the units", "deg"),
         ),
         "peak_joint_force": Metric(
             *("N", "joint", "greatest magnitude of the force between two units", "joint"),
             *(lambda run: run.extremes.joint.force, "joint"),
+            shown=_asked("peak force of the joint", "kN", 1e3),
         ),
         "energy_residual": Metric(
             "",

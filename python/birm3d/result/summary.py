@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .. import units
 from .element_loads import touched_elements
 from .metric_table import GROUPS, METRICS
 
@@ -35,25 +34,11 @@ _ROWS = {
     name: metric.shown
     for group in GROUPS
     for name, metric in METRICS.items()
-    if metric.group == group and metric.shown is not None
+    if metric.group == group and metric.shown is not None and metric.shown.listed
 }
 
 HEADLINES = tuple(name for name, shown in _ROWS.items() if shown.headline)
 """Metrics by which a run or a study is judged first."""
-
-
-# Words and units of metrics that no headline table has.
-_OTHERS = {
-    "peak_deceleration": ("peak deceleration along r, unfiltered", units.g, "g"),
-    "peak_normal_force": ("peak barrier force along the normal, unfiltered", 1e3, "kN"),
-    "peak_element_force": ("peak force (vector) on one element, unfiltered", 1e3, "kN"),
-    "peak_overturning_moment": ("peak overturning moment of one element, unfiltered", 1e3, "kN m"),
-    "contact_overlap": ("overlap of rigid body and barrier", 1.0, "m"),
-    "impact_severity": ("impact severity, m (v sin angle)² / 2", 1e3, "kJ"),
-    "wheel_climb": ("greatest height of a wheel above the ground", 1.0, "m"),
-    "max_articulation_angle": ("greatest angle between the units", 1.0, "deg"),
-    "peak_joint_force": ("peak force of the joint", 1e3, "kN"),
-}
 
 
 def shown_as(name: str) -> tuple[str, float, str]:
@@ -62,7 +47,7 @@ def shown_as(name: str) -> tuple[str, float, str]:
     if shown is not None:
         return shown.label, shown.size, shown.unit
     unit = METRICS[name].unit if name in METRICS else ""
-    return _OTHERS.get(name, (name.replace("_", " "), 1.0, unit))
+    return name.replace("_", " "), 1.0, unit
 
 
 def outcome_rows(result: RunAnalysis) -> list[tuple[str, str, str]]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .. import pictures
 from ..base.arguments import checked
 from ..base.checks import shown
 from ..base.frozen_mapping import FrozenMapping
@@ -149,15 +150,13 @@ class Prediction:
 
     def _repr_html_(self) -> str:
         """Return what notebooks show: shares of outcomes, bands in the units of other tables, caution."""
-        from ..html_page.notebook import table_html
-
         rows: list[tuple[str, ...]] = []
         rows += [(outcome, "", f"{share:.0%}", "", "") for outcome, share in self.outcomes.items()]
         for name, *numbers in self._answers():
             label, size, unit = shown_as(name)
             rows.append((label, *(_shown(number / size) for number in numbers), unit))
         title = f"{self.study.vehicle}: {self.share:.0%} bands of {len(self.study)} vehicles of the class"
-        table = table_html(("metric", "low", "median", "high", "unit"), rows)
+        table = pictures.table_html(("metric", "low", "median", "high", "unit"), rows)
         return f"<div><b>{escape(title)}</b>{table}<div>Caution: {escape(self.caution)}</div></div>"
 
     def __repr__(self) -> str:
