@@ -93,6 +93,16 @@ def test_example_uses_the_installed_library(prefix: Path, tmp_path: Path) -> Non
         assert f"state hash {ours.state_hash:016x}" in printed
 
 
+@pytest.mark.skipif(shutil.which("doxygen") is None, reason="doxygen is no package of Python's")
+def test_doxygen_reads_the_public_headers(tmp_path: Path) -> None:
+    """A warning is an error."""
+    settings = (ROOT / "docs/Doxyfile").read_text(encoding="utf-8")
+    (tmp_path / "Doxyfile").write_text(f"{settings}OUTPUT_DIRECTORY = {tmp_path}\n", encoding="utf-8")
+    assert run("sh", "-c", f"cd '{ROOT}' && doxygen '{tmp_path / 'Doxyfile'}'") == ""
+    page = (tmp_path / "html/structbirm3d_1_1Settings.html").read_text(encoding="utf-8")
+    assert "tyre-pavement friction coefficient" in page  # a comment behind a member
+
+
 def test_library_inside_another_project_brings_no_tests(tmp_path: Path) -> None:
     (tmp_path / "CMakeLists.txt").write_text(
         "cmake_minimum_required(VERSION 3.24)\n"

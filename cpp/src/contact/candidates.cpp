@@ -62,9 +62,10 @@ void find_relative_motions(const Scene& scene, std::size_t u, const State& from,
     trial.state.segments = drifted;
 }
 
-// Can nodes within a box meet the obstacle itself? `of`: their panels, one bit each.
-bool can_meet(const ContactPass& pass, std::uint8_t of, std::size_t k, const Box& box, double margin) {
-    return !only_indented(pass, of, k) && within_reach(pass.shape(k), pass.near[k].now, box, margin);
+// Can nodes within a box meet the obstacle itself? `panel_bits`: their panels.
+bool can_meet(const ContactPass& pass, std::uint8_t panel_bits, std::size_t k, const Box& box,
+              double margin) {
+    return !only_indented(pass, panel_bits, k) && within_reach(pass.shape(k), pass.near[k].now, box, margin);
 }
 
 }  // namespace
@@ -99,14 +100,14 @@ ContactPass prepare_pass(const Scene& scene, std::size_t u, const State& from, R
 
 bool find_group_candidates(const ContactPass& pass, std::size_t g, ContactMemory& memory) {
     const BlockGroup& group = pass.before.trusses.groups[g];
-    const std::uint8_t of = pass.mesh.panels_of_group[g];
+    const std::uint8_t panel_bits = pass.mesh.panels_of_group[g];
     const double margin = group.touching ? pass.margin : 0.0;
     memory.group_near.clear();
     for (std::size_t k = 0; k < pass.near.size(); ++k)
-        if (can_meet(pass, of, k, group.box, margin)) memory.group_near.push_back(k);
+        if (can_meet(pass, panel_bits, k, group.box, margin)) memory.group_near.push_back(k);
     memory.group_indentations.clear();
     for (std::size_t d = 0; d < pass.indentations.size(); ++d)
-        if (gap_to_indentation(pass.indentations[d], of, group.box, group.touching) < infinity)
+        if (gap_to_indentation(pass.indentations[d], panel_bits, group.box, group.touching) < infinity)
             memory.group_indentations.push_back(d);
     return group.touching || group.slack || !memory.group_near.empty() || !memory.group_indentations.empty();
 }

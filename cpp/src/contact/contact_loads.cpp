@@ -15,11 +15,11 @@ Wrench rotated(const Wrench& w, const Mat3& R) {
     return {R * w.force, R * w.torque};
 }
 
-Mat6 rotated(const Mat6& of, const Mat3& R) {
+Mat6 rotated(const Mat6& matrix, const Mat3& R) {
     Mat6 rotated;
     for (const int i : {0, 3})
         for (const int j : {0, 3})
-            rotated.block<3, 3>(i, j) = R * of.block<3, 3>(i, j) * R.transpose();
+            rotated.block<3, 3>(i, j) = R * matrix.block<3, 3>(i, j) * R.transpose();
     return rotated;
 }
 
@@ -141,11 +141,11 @@ void distribute_loads(const ContactPass& pass, ContactBlock& block, ContactSums&
     if (!block.corners.empty()) distribute_corner_forces(pass, block, sums);
     BlockContact part = block.contact;
     for (std::size_t k = 0; k < block.reachable.size(); ++k) {
-        const NodeLoads of = select_loads(block.nearest, k, block.contact, part.normal_force);
-        if (!(of.normal_force > 0.0)) continue;
+        const NodeLoads loads = select_loads(block.nearest, k, block.contact, part.normal_force);
+        if (!(loads.normal_force > 0.0)) continue;
         ObstacleSums& to = sums.obstacles[block.reachable[k]];
-        to.contact += {Vec3(of.x, of.y, of.z), Vec3(of.tx, of.ty, of.tz)};
-        to.normal_force += of.normal_force;
+        to.contact += {Vec3(loads.x, loads.y, loads.z), Vec3(loads.tx, loads.ty, loads.tz)};
+        to.normal_force += loads.normal_force;
         apply_friction(pass, block.reachable[k], block.contact.places(), part, block, sums);
     }
 }

@@ -16,9 +16,9 @@ constexpr std::array<unsigned, 7> subsets{7, 3, 5, 6, 1, 2, 4};
 
 // The faces of a subset, one after the other.
 struct Faces {
-    explicit Faces(unsigned of) {
+    explicit Faces(unsigned subset) {
         for (std::size_t k = 0; k < Corner::most; ++k)
-            if ((of >> k & 1U) != 0) at[count++] = k;
+            if ((subset >> k & 1U) != 0) at[count++] = k;
     }
     std::array<std::size_t, Corner::most> at{};
     std::size_t count = 0;
@@ -59,14 +59,14 @@ bool Corner::add(const CornerFace& further) {
 }
 
 unsigned Corner::pushing() const {
-    unsigned of = 0;
+    unsigned subset = 0;
     for (std::size_t k = 0; k < count; ++k)
-        if (face[k].weight > 0.0) of |= 1U << k;
-    return of;
+        if (face[k].weight > 0.0) subset |= 1U << k;
+    return subset;
 }
 
-Vec3 Corner::displacement_onto(unsigned of) const {
-    const Faces faces(of);
+Vec3 Corner::displacement_onto(unsigned subset) const {
+    const Faces faces(subset);
     if (faces.count == 0) return Vec3::Zero();
     Vec3 gaps = Vec3::Zero();
     for (std::size_t k = 0; k < faces.count; ++k)
@@ -80,8 +80,8 @@ Vec3 Corner::displacement_onto(unsigned of) const {
 }
 
 // Can the faces of a subset carry the truss's force with positive weights, so that it presses on no other face?
-bool Corner::try_weights(unsigned of, const Vec3& b) {
-    const Faces faces(of);
+bool Corner::try_weights(unsigned subset, const Vec3& b) {
+    const Faces faces(subset);
     Vec3 required = Vec3::Zero();
     for (std::size_t k = 0; k < faces.count; ++k)
         required[static_cast<Eigen::Index>(k)] = b.dot(face[faces.at[k]].direction);
@@ -93,17 +93,18 @@ bool Corner::try_weights(unsigned of, const Vec3& b) {
         taken += weights[static_cast<Eigen::Index>(k)] * face[faces.at[k]].gradient;
     }
     for (std::size_t k = 0; k < count; ++k)
-        if ((of >> k & 1U) == 0 && (b - taken).dot(face[k].direction) > 0.0) return false;
+        if ((subset >> k & 1U) == 0 && (b - taken).dot(face[k].direction) > 0.0) return false;
     for (std::size_t k = 0; k < faces.count; ++k)
         face[faces.at[k]].weight = weights[static_cast<Eigen::Index>(k)];
     return true;
 }
 
 std::size_t Corner::distribute(const Vec3& b) {
-    for (CornerFace& of : face)
-        of.weight = 0.0;
-    for (const unsigned of : subsets)
-        if ((of >> count) == 0 && try_weights(of, b)) return static_cast<std::size_t>(std::popcount(of));
+    for (CornerFace& each : face)
+        each.weight = 0.0;
+    for (const unsigned subset : subsets)
+        if ((subset >> count) == 0 && try_weights(subset, b))
+            return static_cast<std::size_t>(std::popcount(subset));
     return 0;
 }
 

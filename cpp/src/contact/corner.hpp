@@ -56,8 +56,8 @@ struct Corner {
 
   private:
     unsigned pushing() const;
-    Vec3 displacement_onto(unsigned of) const;
-    bool try_weights(unsigned of, const Vec3& b);
+    Vec3 displacement_onto(unsigned subset) const;
+    bool try_weights(unsigned subset, const Vec3& b);
 };
 
 }  // namespace birm3d

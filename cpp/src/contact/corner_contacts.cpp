@@ -182,16 +182,17 @@ void resolve_corner(const ContactPass& pass, std::size_t i, ContactBlock& block)
     place_in_corner(pass, corner, to, block);
 }
 
-// Adds the forces of the `of`-th faces of all corners on the k-th reachable obstacle. `part`: working memory.
-void add_corner_forces(const ContactPass& pass, const std::vector<double>& force, std::size_t of,
+// Adds the forces of the faces number `face_index` of all corners on the k-th reachable obstacle. `part`: working memory.
+void add_corner_forces(const ContactPass& pass, const std::vector<double>& force, std::size_t face_index,
                        std::size_t k, const ContactBlock& block, BlockContact& part, ContactSums& sums) {
     ObstacleSums& to = sums.obstacles[block.reachable[k]];
     part.normal_force.fill(0.0);
     double sum = 0.0;
     for (std::size_t c = 0; c < block.corners.size(); ++c) {
-        const CornerFace& face = block.corners[c].face[of];
+        const CornerFace& face = block.corners[c].face[face_index];
         const std::size_t i = block.corners[c].node_index;
-        if (of >= block.corners[c].count || face.reachable_index != k || !(face.weight * force[c] > 0.0))
+        if (face_index >= block.corners[c].count || face.reachable_index != k ||
+            !(face.weight * force[c] > 0.0))
             continue;
         const Vec3 node(block.end->x[i], block.end->y[i], block.end->z[i]);
         const Vec3 at = face.indented ? face.place : node;
@@ -248,9 +249,9 @@ void distribute_corner_forces(const ContactPass& pass, ContactBlock& block, Cont
         block.contact.normal_force[corner.node_index] = 0.0;
     }
     BlockContact part = block.contact;
-    for (std::size_t of = 0; of < Corner::most; ++of)
+    for (std::size_t face_index = 0; face_index < Corner::most; ++face_index)
         for (std::size_t k = 0; k < block.reachable.size(); ++k)
-            add_corner_forces(pass, force, of, k, block, part, sums);
+            add_corner_forces(pass, force, face_index, k, block, part, sums);
 }
 
 }  // namespace birm3d

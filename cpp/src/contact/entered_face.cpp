@@ -78,8 +78,8 @@ std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const Near
     const Vec3 back = place - depth * at.now.direction_from_own(n);
     const At face = nearest_of_all(
         scene, near, reachable, [&back](const NearObstacle& obstacle) { return obstacle.now.to_own(back); });
-    const NearObstacle& of = near[reachable[face.reachable_index]];
-    const Vec3 normal = of.now.direction_from_own(face.nearest.normal);
+    const NearObstacle& obstacle = near[reachable[face.reachable_index]];
+    const Vec3 normal = obstacle.now.direction_from_own(face.nearest.normal);
     if (face.nearest.gap < -shallow) return std::nullopt;
     const bool flat = std::abs(face.nearest.gap) <= tolerance::touching_gap;
     if (flat)
@@ -95,7 +95,7 @@ std::optional<EnteredFace> entered_face(const Scene& scene, std::span<const Near
     }
     return EnteredFace{face.reachable_index,
                        {normal.dot(place - surface), normal},
-                       of.before.direction_from_own(face.nearest.normal)};
+                       obstacle.before.direction_from_own(face.nearest.normal)};
 }
 
 }  // namespace birm3d

@@ -94,8 +94,9 @@ void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list,
         pass.greatest_following = std::max(pass.greatest_following, indented.growth);
 }
 
-double gap_to_indentation(const IndentedPanel& indented, std::uint8_t of, const Box& box, bool touching) {
-    if ((of >> indented.panel & 1U) == 0) return infinity;
+double gap_to_indentation(const IndentedPanel& indented, std::uint8_t panel_bits, const Box& box,
+                          bool touching) {
+    if ((panel_bits >> indented.panel & 1U) == 0) return infinity;
     const double gap = -most_inside(indented.indentation, box);
     if (touching && spans(indented.indentation, box)) return -infinity;
     return gap <= (touching ? indented.growth : 0.0) ? gap : infinity;
@@ -121,10 +122,11 @@ void find_block_indentations(const ContactPass& pass, const std::vector<std::siz
               });
 }
 
-bool only_indented(const ContactPass& pass, std::uint8_t of, std::size_t k) {
-    return std::any_of(
-        pass.indentations.begin(), pass.indentations.end(),
-        [&](const IndentedPanel& indented) { return indented.near == k && of == 1U << indented.panel; });
+bool only_indented(const ContactPass& pass, std::uint8_t panel_bits, std::size_t k) {
+    return std::any_of(pass.indentations.begin(), pass.indentations.end(),
+                       [&](const IndentedPanel& indented) {
+                           return indented.near == k && panel_bits == 1U << indented.panel;
+                       });
 }
 
 namespace {

@@ -9,15 +9,16 @@ namespace birm3d {
 void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list, std::vector<IndentedPanels>& now);
 
 // Lower bound of the gaps of the nodes within a box to an indentation (m); infinite where it can not reach them.
-// `of`: panels of the nodes, one bit each. A block that pushes stays at its indentation until it is released.
-double gap_to_indentation(const IndentedPanel& indented, std::uint8_t of, const Box& box, bool touching);
+// `panel_bits`: panels of the nodes. A block that pushes stays at its indentation until it is released.
+double gap_to_indentation(const IndentedPanel& indented, std::uint8_t panel_bits, const Box& box,
+                          bool touching);
 
 // Sets the block's indentations, the nearest first, and adds their posts to its reachable obstacles.
 void find_block_indentations(const ContactPass& pass, const std::vector<std::size_t>& of_group,
                              ContactBlock& block);
 
-// Are all nodes on one panel that the obstacle indents? `of`: panels of the nodes, one bit each.
-bool only_indented(const ContactPass& pass, std::uint8_t of, std::size_t k);
+// Are all nodes on one panel that the obstacle indents? `panel_bits`: panels of the nodes.
+bool only_indented(const ContactPass& pass, std::uint8_t panel_bits, std::size_t k);
 
 // Nodes of a panel that a post indents follow the indentation instead of meeting the post: their gaps become infinite.
 void omit_indented(const ContactPass& pass, std::size_t block, std::size_t k, NearestOfBlock& found);

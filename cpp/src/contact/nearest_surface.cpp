@@ -223,9 +223,9 @@ void find_nearest_surface(const ContactPass& pass, ContactBlock& block) {
     set_nothing_met(block.faces, block.contact, block.nearest);
     block.flat_normal.reset();
     block.corners.clear();
-    const std::uint8_t of = pass.mesh.panels_of[block.index];
+    const std::uint8_t panel_bits = pass.mesh.panels_of[block.index];
     const bool all_indented = std::all_of(block.reachable.begin(), block.reachable.end(),
-                                          [&](std::size_t k) { return only_indented(pass, of, k); });
+                                          [&](std::size_t k) { return only_indented(pass, panel_bits, k); });
     const bool changed = !all_indented && find_surfaces(pass, block);
     follow_indentations(pass, block);
     // The nearest point of a single obstacle is in no corner.

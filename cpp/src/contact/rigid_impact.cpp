@@ -16,8 +16,8 @@ namespace {
 constexpr double rounding = 1e-9;
 
 // Greatest approach speed of any contact that touches within `reach` (s); zero if none does (m/s).
-double hardest_impact(double reach, std::span<const ContactBody> bodies,
-                      const std::vector<RigidContact>& contacts) {
+double fastest_approach(double reach, std::span<const ContactBody> bodies,
+                        const std::vector<RigidContact>& contacts) {
     double fastest = 0.0;
     for (const RigidContact& contact : contacts) {
         const double v = separation_velocity(contact, bodies);
@@ -67,10 +67,10 @@ void keep(const Scene& scene, const State& state, Impact& impact) {
 }
 
 // One impact, tried with less restitution and less friction until no part of it increases the energy.
-class Attempts {
+class ImpactAttempts {
   public:
-    Attempts(const Scene& scene, double reach, double fastest, const std::vector<Twist>& before,
-             std::vector<Twist>& after, Trial& trial)
+    ImpactAttempts(const Scene& scene, double reach, double fastest, const std::vector<Twist>& before,
+                   std::vector<Twist>& after, Trial& trial)
         : scene_(scene),
           reach_(reach),
           fastest_(fastest),
@@ -88,22 +88,22 @@ class Attempts {
     void settle(double restitution) {
         attempt(restitution);
         constexpr int most_passes = 6;
-        for (int pass = 0; pass < most_passes && drives(); ++pass) {
+        for (int pass = 0; pass < most_passes && friction_adds_energy(); ++pass) {
             redirect_friction();
             attempt(restitution);
         }
         // Each round leaves out the friction of one point or more.
-        while (leave_out_driving())
+        while (remove_driving_friction())
             attempt(restitution);
-        if (takes()) return;
+        if (dissipates()) return;
         attempt(0.0);
-        if (leave_out_driving() || !takes()) leave_out_all();
+        if (remove_driving_friction() || !dissipates()) remove_all_friction();
         double enough = 0.0, too_much = restitution;
         constexpr int halvings = 12;
         for (int i = 0; i < halvings; ++i) {
             const double middle = 0.5 * (enough + too_much);
             attempt(middle);
-            (takes() && !drives() ? enough : too_much) = middle;
+            (dissipates() && !friction_adds_energy() ? enough : too_much) = middle;
         }
         attempt(enough);
     }
@@ -126,7 +126,7 @@ class Attempts {
     }
 
     // Do all normal impulses together dissipate energy?
-    bool takes() const {
+    bool dissipates() const {
         double loss = 0.0;
         for (const RigidContact& contact : memory_.kick.contacts)
             if (!contact.bilateral) loss += loss_of(contact, before_, after_);
@@ -141,7 +141,7 @@ class Attempts {
         return -power(memory_.kick.on_ground[u], mean(before_[u], after_[u]));
     }
 
-    bool drives() const {
+    bool friction_adds_energy() const {
         for (std::size_t u = 0; u < memory_.kick.on_ground.size(); ++u)
             if (loss_by_tires(u) < least_) return true;
         return std::any_of(
@@ -161,7 +161,7 @@ class Attempts {
     }
 
     // Removes friction from points that it accelerates. Were there any?
-    bool leave_out_driving() {
+    bool remove_driving_friction() {
         bool any = false;
         for (std::size_t u = 0; u < memory_.kick.on_ground.size(); ++u)
             if (loss_by_tires(u) < least_) memory_.kick.rolls_freely[u] = 1, any = true;
@@ -176,7 +176,7 @@ class Attempts {
         return any;
     }
 
-    void leave_out_all() {
+    void remove_all_friction() {
         memory_.kick.rolls_freely.assign(state_.units.size(), 1);
         for (RigidContact& contact : contacts_)
             contact.friction = 0.0;
@@ -203,12 +203,12 @@ void impact_at_once(const Scene& scene, Stage stage, double reach, const std::ve
                     std::vector<Twist>& after, Trial& trial) {
     State& state = trial.state;
     KickMemory& memory = trial.memory;
-    const double fastest = hardest_impact(reach, memory.bodies, memory.contacts);
+    const double fastest = fastest_approach(reach, memory.bodies, memory.contacts);
     if (fastest == 0.0) return;
     const bool start = stage == Stage::before_drift;
     Impact& impact = start ? trial.at_start : trial.at_end;
     if (!start) keep(scene, state, impact);
-    Attempts(scene, reach, fastest, before, after, trial).settle(scene.settings.restitution);
+    ImpactAttempts(scene, reach, fastest, before, after, trial).settle(scene.settings.restitution);
     memory.kick.rolls_freely.clear();
     memory.sliding.clear();
     add_impulses(scene, state, memory.kick, impact.impulses, impact.joint_impulses);

@@ -40,15 +40,16 @@ double separation_speed(const Scene& scene, const State& state, const Impact& im
         const Twist motion = twist(scene.vehicle->units[u].body, body_within(impact, state, u));
         power += unit.skin.contact.force.dot(motion.velocity) +
                  unit.skin.contact.torque.dot(motion.angular_velocity);
-        for (const ContactLoad& touch : unit.contact_loads) {
-            const int other = body_of_obstacle(scene, touch.obstacle);
+        for (const ContactLoad& load : unit.contact_loads) {
+            const int other = body_of_obstacle(scene, load.obstacle);
             if (other < 0) continue;
             const auto b = static_cast<std::size_t>(other);
             const BodyState& segment = body_within(impact, state, b);
-            const Twist of = twist(rigid_body(scene, b), segment);
+            const Twist segment_motion = twist(rigid_body(scene, b), segment);
             const Vec3 arm = unit.body.position - segment.position;
-            power -= touch.contact.force.dot(of.velocity + of.angular_velocity.cross(arm)) +
-                     touch.contact.torque.dot(of.angular_velocity);
+            power -=
+                load.contact.force.dot(segment_motion.velocity + segment_motion.angular_velocity.cross(arm)) +
+                load.contact.torque.dot(segment_motion.angular_velocity);
         }
         force += unit.skin.normal_force;
     }

@@ -121,16 +121,16 @@ struct Unloading {
 };
 
 // Fig. 3: the slope is constant.
-BIRM3D_INLINE Packet load_one_slope(const PressColumns& truss, Unloading& of, const Packet& d,
+BIRM3D_INLINE Packet load_one_slope(const PressColumns& truss, Unloading& unloading, const Packet& d,
                                     const Packet& line, const Packet& envelope, std::size_t i) {
     const Packet compliance = Packet::load(truss.compliance + i);
-    of.residual = where_above(line, envelope, d - envelope * compliance, of.residual);
+    unloading.residual = where_above(line, envelope, d - envelope * compliance, unloading.residual);
     return compliance;
 }
 
 // Elastic recovery is a constant fraction of the remaining length of the truss (truss_law.hpp). At first a truss may
 // load and unload along one slope.
-BIRM3D_INLINE Packet load_recovery(const PressColumns& truss, Unloading& of, const Packet& d,
+BIRM3D_INLINE Packet load_recovery(const PressColumns& truss, Unloading& unloading, const Packet& d,
                                    const Packet& line, const Packet& envelope, std::size_t i) {
     const Packet zero = 0.0, one = 1.0;
     const auto where_loading = [&](const Packet& now, const Packet& else_) {
@@ -139,9 +139,9 @@ BIRM3D_INLINE Packet load_recovery(const PressColumns& truss, Unloading& of, con
     const Packet least = tolerance::truss_length, length = Packet::load(truss.length + i);
     const Packet per_recovery = Packet::load(truss.per_recovery + i) * length / greater(length - d, least);
     const Packet steepest = greater(envelope * per_recovery, Packet::load(truss.k_unloading + i));
-    of.slope = where_loading(steepest, of.slope);
-    const Packet compliance = where_above(of.slope, zero, one / of.slope, zero);
-    of.residual = where_loading(d - envelope * compliance, of.residual);
+    unloading.slope = where_loading(steepest, unloading.slope);
+    const Packet compliance = where_above(unloading.slope, zero, one / unloading.slope, zero);
+    unloading.residual = where_loading(d - envelope * compliance, unloading.residual);
     return compliance;
 }
 

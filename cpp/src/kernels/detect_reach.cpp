@@ -56,7 +56,7 @@ bool reaches(const TriangleMesh& mesh, const Placement& now, const Box& box, dou
 }  // namespace
 
 bool within_reach(const Shape& shape, const Placement& now, const Box& box, double margin) {
-    return std::visit([&](const auto& of) { return reaches(of, now, box, margin); }, shape);
+    return std::visit([&](const auto& of_kind) { return reaches(of_kind, now, box, margin); }, shape);
 }
 
 }  // namespace birm3d

@@ -15,14 +15,14 @@ Mat3 crossing(const Vec3& a) {
 }
 
 Mat6 on_surface(const BlockColumn& slow, const SlidingNodes& nodes) {
-    const ResistanceSums of = simd.find_resistance(slow.data(), nodes);
+    const ResistanceSums sums = simd.find_resistance(slow.data(), nodes);
     Mat6 resistance;
-    resistance << of.xx, of.xy, of.xz, of.rxx, of.ryx, of.rzx,  //
-        of.xy, of.yy, of.yz, of.rxy, of.ryy, of.rzy,            //
-        of.xz, of.yz, of.zz, of.rxz, of.ryz, of.rzz,            //
-        of.rxx, of.rxy, of.rxz, of.rrxx, of.rrxy, of.rrxz,      //
-        of.ryx, of.ryy, of.ryz, of.rrxy, of.rryy, of.rryz,      //
-        of.rzx, of.rzy, of.rzz, of.rrxz, of.rryz, of.rrzz;
+    resistance << sums.xx, sums.xy, sums.xz, sums.rxx, sums.ryx, sums.rzx,  //
+        sums.xy, sums.yy, sums.yz, sums.rxy, sums.ryy, sums.rzy,            //
+        sums.xz, sums.yz, sums.zz, sums.rxz, sums.ryz, sums.rzz,            //
+        sums.rxx, sums.rxy, sums.rxz, sums.rrxx, sums.rrxy, sums.rrxz,      //
+        sums.ryx, sums.ryy, sums.ryz, sums.rrxy, sums.rryy, sums.rryz,      //
+        sums.rzx, sums.rzy, sums.rzz, sums.rrxz, sums.rryz, sums.rrzz;
     return resistance;
 }
 
@@ -35,10 +35,10 @@ Mat6 on_plane(double q, const Vec3& qr, const Mat3& qrr, const Vec3& normal) {
 }
 
 Mat6 on_plane(const BlockColumn& slow, const SlidingNodes& nodes, const Vec3& normal) {
-    const Moments of = simd.find_moments(slow.data(), nodes);
+    const Moments sums = simd.find_moments(slow.data(), nodes);
     Mat3 qrr;
-    qrr << of.xx, of.xy, of.xz, of.xy, of.yy, of.yz, of.xz, of.yz, of.zz;
-    return on_plane(of.q, {of.x, of.y, of.z}, qrr, normal);
+    qrr << sums.xx, sums.xy, sums.xz, sums.xy, sums.yy, sums.yz, sums.xz, sums.yz, sums.zz;
+    return on_plane(sums.q, {sums.x, sums.y, sums.z}, qrr, normal);
 }
 
 Vec6 column(const Twist& twist) {

@@ -9,12 +9,12 @@ namespace birm3d::BIRM3D_INSTRUCTION_SET {
 namespace {
 
 // A row of zeros adds nothing to any sum.
-BIRM3D_INLINE bool is_zero(const Packet& of) {
-    return !any_above(of, 0.0);
+BIRM3D_INLINE bool is_zero(const Packet& row) {
+    return !any_above(row, 0.0);
 }
 
-BIRM3D_INLINE void add(Packet& sum, const Packet& of) {
-    sum = sum + of;
+BIRM3D_INLINE void add(Packet& sum, const Packet& row) {
+    sum = sum + row;
 }
 
 }  // namespace
@@ -62,15 +62,15 @@ ResistanceSums find_resistance(const double* q, const SlidingNodes& nodes) {
            rzz = zero;
     Packet rrxx = zero, rrxy = zero, rrxz = zero, rryy = zero, rryz = zero, rrzz = zero;
     for (std::size_t i = 0; i < block_size; i += packet_length) {
-        const Packet of = Packet::load(q + i);
-        if (is_zero(of)) continue;
+        const Packet per_speed = Packet::load(q + i);
+        if (is_zero(per_speed)) continue;
         const Packet x = Packet::load(nodes.x + i), y = Packet::load(nodes.y + i),
                      z = Packet::load(nodes.z + i);
         const Packet nx = Packet::load(nodes.nx + i), ny = Packet::load(nodes.ny + i),
                      nz = Packet::load(nodes.nz + i);
-        const Packet qx = of * nx, qy = of * ny;
-        const Packet pxx = of - qx * nx, pxy = -1.0 * qx * ny, pxz = -1.0 * qx * nz, pyy = of - qy * ny,
-                     pyz = -1.0 * qy * nz, pzz = of - of * nz * nz;
+        const Packet qx = per_speed * nx, qy = per_speed * ny;
+        const Packet pxx = per_speed - qx * nx, pxy = -1.0 * qx * ny, pxz = -1.0 * qx * nz,
+                     pyy = per_speed - qy * ny, pyz = -1.0 * qy * nz, pzz = per_speed - per_speed * nz * nz;
         add(xx, pxx), add(xy, pxy), add(xz, pxz), add(yy, pyy), add(yz, pyz), add(zz, pzz);
         const Packet cxx = y * pxz - z * pxy, cxy = y * pyz - z * pyy, cxz = y * pzz - z * pyz;
         const Packet cyx = z * pxx - x * pxz, cyy = z * pxy - x * pyz, cyz = z * pxz - x * pzz;
@@ -91,12 +91,12 @@ Moments find_moments(const double* q, const SlidingNodes& nodes) {
     Packet sum = zero, sx = zero, sy = zero, sz = zero, xx = zero, yy = zero, zz = zero, xy = zero, xz = zero,
            yz = zero;
     for (std::size_t i = 0; i < block_size; i += packet_length) {
-        const Packet of = Packet::load(q + i);
-        if (is_zero(of)) continue;
+        const Packet per_speed = Packet::load(q + i);
+        if (is_zero(per_speed)) continue;
         const Packet x = Packet::load(nodes.x + i), y = Packet::load(nodes.y + i),
                      z = Packet::load(nodes.z + i);
-        const Packet qx = of * x, qy = of * y, qz = of * z;
-        add(sum, of), add(sx, qx), add(sy, qy), add(sz, qz);
+        const Packet qx = per_speed * x, qy = per_speed * y, qz = per_speed * z;
+        add(sum, per_speed), add(sx, qx), add(sy, qy), add(sz, qz);
         add(xx, qx * x), add(yy, qy * y), add(zz, qz * z);
         add(xy, qx * y), add(xz, qx * z), add(yz, qy * z);
     }

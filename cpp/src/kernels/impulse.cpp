@@ -43,7 +43,7 @@ double separation_velocity(const RigidContact& contact, std::span<const ContactB
 }
 
 double inverse_effective_mass(const RigidContact& contact, std::span<const ContactBody> bodies) {
-    const auto of = [&contact](const ContactBody& body, const Vec3& arm) {
+    const auto of_body = [&contact](const ContactBody& body, const Vec3& arm) {
         const Wrench wrench = unit_wrench(contact, arm);
         if (body.planar)
             return body.inverse_mass * along_ground(wrench.force).squaredNorm() +
@@ -51,8 +51,9 @@ double inverse_effective_mass(const RigidContact& contact, std::span<const Conta
         return body.inverse_mass * wrench.force.squaredNorm() +
                wrench.torque.dot(body.inverse_inertia * wrench.torque);
     };
-    double sum = of(bodies[contact.body], contact.arm);
-    if (contact.other >= 0) sum += of(bodies[static_cast<std::size_t>(contact.other)], contact.other_arm);
+    double sum = of_body(bodies[contact.body], contact.arm);
+    if (contact.other >= 0)
+        sum += of_body(bodies[static_cast<std::size_t>(contact.other)], contact.other_arm);
     return sum;
 }
 

@@ -86,7 +86,7 @@ BIRM3D_INLINE FollowedPlace find_followed(const IndentationNumbers& d, const Sta
 
 // `yes` for nodes of the panel, else `no`.
 BIRM3D_INLINE Packet where_on(const PanelNodes& nodes, const Packet& yes, const Packet& no, std::size_t i) {
-    const Packet zero = 0.0, off = Packet::load(nodes.panel + i) - nodes.of;
+    const Packet zero = 0.0, off = Packet::load(nodes.panel + i) - nodes.number;
     return where_above(off * off, zero, no, yes);
 }
 

@@ -30,7 +30,7 @@ BIRM3D_INLINE Slope<Number> slope_at(const Number& depth, double per_reach) {
 // The nodes of a block that are on one panel.
 struct PanelNodes {
     const double *x, *y, *z, *force, *panel;
-    double of;
+    double number;  // of the panel
 };
 
 // Their faces so far (NodeFaces, BlockContact). `rank`: of several indentations, that of lowest rank holds a pushing

@@ -21,10 +21,10 @@ Vec2 at(const BlockColumn& x, const BlockColumn& y, std::size_t slab) {
     return {x[slab % block_size], y[slab % block_size]};
 }
 
-Mat2 at(const SlabResponse& of, std::size_t slab) {
+Mat2 at(const SlabResponse& responses, std::size_t slab) {
     const std::size_t i = slab % block_size;
     Mat2 response;
-    response << of.xx[i], of.xy[i], of.yx[i], of.yy[i];
+    response << responses.xx[i], responses.xy[i], responses.yx[i], responses.yy[i];
     return response;
 }
 

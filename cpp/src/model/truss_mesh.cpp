@@ -39,14 +39,14 @@ void require_valid(const TrussInput& input, std::size_t wheels) {
                    static_cast<double>(input.wheel_of[i]));
 
     for (std::size_t i = 0; i < input.along_of.size(); ++i) {
-        const int of = input.along_of[i];
-        if (of == -1) continue;
-        const bool is_skin = of >= 0 && of < static_cast<int>(n) && is_of_skin(input, i) &&
-                             is_of_skin(input, static_cast<std::size_t>(of)) &&
-                             input.along_of[static_cast<std::size_t>(of)] == -1;
+        const int skin_node = input.along_of[i];
+        if (skin_node == -1) continue;
+        const bool is_skin = skin_node >= 0 && skin_node < static_cast<int>(n) && is_of_skin(input, i) &&
+                             is_of_skin(input, static_cast<std::size_t>(skin_node)) &&
+                             input.along_of[static_cast<std::size_t>(skin_node)] == -1;
         if (!is_skin)
             refuse("along_of[" + std::to_string(i) + "]", "-1 or the number of a node of the skin",
-                   static_cast<double>(of));
+                   static_cast<double>(skin_node));
     }
 
     for (std::size_t c = 0; c < input.curve.size(); ++c)

@@ -24,8 +24,8 @@ constexpr double upright = 0.7;
 
 bool touches_barrier(const Scene& scene, const State& state) {
     for (const UnitState& unit : state.units)
-        for (const ContactLoad& touch : unit.contact_loads)
-            if (touch.obstacle != scene.ground && touch.normal_force > 0.0) return true;
+        for (const ContactLoad& load : unit.contact_loads)
+            if (load.obstacle != scene.ground && load.normal_force > 0.0) return true;
     return false;
 }
 

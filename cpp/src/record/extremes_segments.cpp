@@ -77,7 +77,7 @@ Extremes::Segments greatest_movement(const History& history, const Barrier& barr
         }
         if (count < 2) continue;
         const auto load = std::find_if(history.obstacles.begin(), history.obstacles.end(),
-                                       [i](const ObstacleHistory& of) { return of.obstacle == i; });
+                                       [i](const ObstacleHistory& known) { return known.obstacle == i; });
         found.overturning =
             std::max(found.overturning,
                      overturning(segment, motion, load == history.obstacles.end() ? nullptr : &*load,

@@ -55,7 +55,7 @@ using ObstacleNumbers = std::array<double, obstacle_width>;
 
 // Means over the output intervals of the force and torque on one obstacle. `loads`: of each row, null where there is none.
 void add_means(const OutputInstants& output, const std::vector<const ObstacleNumbers*>& loads,
-               ObstacleHistory& of) {
+               ObstacleHistory& means) {
     static constexpr ObstacleNumbers nothing{};
     const auto view = [&](std::size_t r) {
         const auto values = [&](std::size_t i) { return loads[i] ? loads[i]->data() : nothing.data(); };
@@ -88,7 +88,7 @@ void add_means(const OutputInstants& output, const std::vector<const ObstacleNum
             mean[0] = (sum[0] - previous[i]) / interval[0];
             for (std::size_t k = 1; k < n; ++k)
                 mean[k] = (sum[k] - sum[k - 1]) / interval[k];
-            Vec3* to = (i < 3 ? of.force : of.moment).data() + span.first;
+            Vec3* to = (i < 3 ? means.force : means.moment).data() + span.first;
             for (std::size_t k = skipped; k < n; ++k)
                 to[k][static_cast<Eigen::Index>(i % 3)] = mean[k];
             previous[i] = sum[n - 1];
@@ -108,14 +108,14 @@ void Recorder::resample_obstacles(const Scene& scene, const OutputInstants& outp
     }
     const std::size_t count = history.time.size();
     for (const auto& [obstacle, rows_of] : touched) {
-        ObstacleHistory of{obstacle, std::vector<Vec3>(count, Vec3::Zero()),
-                           std::vector<Vec3>(count, Vec3::Zero())};
+        ObstacleHistory means{obstacle, std::vector<Vec3>(count, Vec3::Zero()),
+                              std::vector<Vec3>(count, Vec3::Zero())};
         const auto& loads = rows_of;  // lambdas take no structured bindings
-        run_wide([&] { add_means(output, loads, of); });
+        run_wide([&] { add_means(output, loads, means); });
         for (std::size_t k = 0; k < count; ++k)
-            of.moment[k] += scene.from_origin.cross(of.force[k]);
-        if (count > 1) of.force[0] = of.force[1], of.moment[0] = of.moment[1];
-        history.obstacles.push_back(std::move(of));
+            means.moment[k] += scene.from_origin.cross(means.force[k]);
+        if (count > 1) means.force[0] = means.force[1], means.moment[0] = means.moment[1];
+        history.obstacles.push_back(std::move(means));
     }
 }
 

@@ -12,14 +12,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-}  // namespace
-
-namespace {
-
 // A block or a group of blocks with a lower bound of its gaps.
 struct Bound {
     double gap;
-    std::size_t of;
+    std::size_t number;  // of the block or group
 
     bool operator<(const Bound& other) const { return gap < other.gap; }
 };
@@ -46,7 +42,7 @@ double gap_of_panel(const Indentation& indentation, std::size_t panel, const Tru
     for (const Bound& group : groups_by_gap(indentation, panel, mesh, unit, far)) {
         if (group.gap > least) break;
         blocks.clear();
-        for (std::size_t b = group.of * TrussMesh::group_size; b < mesh.end_of_group(group.of); ++b) {
+        for (std::size_t b = group.number * TrussMesh::group_size; b < mesh.end_of_group(group.number); ++b) {
             if ((mesh.panels_of[b] >> panel & 1U) == 0) continue;
             const double bound = -most_inside(indentation, unit.trusses.block[b].box);
             if (bound <= std::min(far, least)) blocks.push_back({bound, b});
@@ -54,8 +50,8 @@ double gap_of_panel(const Indentation& indentation, std::size_t panel, const Tru
         std::sort(blocks.begin(), blocks.end());
         for (const Bound& block : blocks) {
             if (block.gap > least) break;
-            least = std::min(
-                least, gap_of(indentation, unit.trusses.block[block.of], mesh.block[block.of].panel, panel));
+            least = std::min(least, gap_of(indentation, unit.trusses.block[block.number],
+                                           mesh.block[block.number].panel, panel));
             if (least <= enough) return least;
         }
     }

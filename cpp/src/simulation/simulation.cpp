@@ -127,12 +127,12 @@ double Simulation::remaining() const {
     return rest > tolerance::shortest_step ? rest : 0.0;  // no step for a remainder of rounding
 }
 
-void Simulation::take() {
+void Simulation::accept_trial() {
     Trial& trial = work_->trial;
-    const bool open = scene_.barrier && !state_.decided;
-    if (open) list_body_states(state_, work_->before);
+    const bool undecided = scene_.barrier && !state_.decided;
+    if (undecided) list_body_states(state_, work_->before);
     const double released =
-        open || event_.touching ? std::min(time_to_release(scene_, state_), trial.dt) : 0.0;
+        undecided || event_.touching ? std::min(time_to_release(scene_, state_), trial.dt) : 0.0;
     const double begin = state_.time;
     if (!std::isfinite(trial.state.energies.total()))
         throw std::runtime_error("the state is no longer finite at t = " + to_text(trial.state.time) +
@@ -143,7 +143,7 @@ void Simulation::take() {
     note_overlap(scene_, work_->about, state_);
     recorder_.add(scene_, trial);
     follow_event(scene_, state_, {begin, released, trial.body_held_by_barrier()}, event_);
-    if (open && is_decided(scene_, state_, event_)) {
+    if (undecided && is_decided(scene_, state_, event_)) {
         state_.decided = true;
         state_.decided_at = time_of_decision(scene_, work_->before, released, trial.dt, trial.state);
     }
@@ -168,7 +168,7 @@ void Simulation::fixed_step() {
         }
     }
     if (dt > critical) refuse_step(dt, critical);
-    take();
+    accept_trial();
 }
 
 void Simulation::refuse_step(double dt, double critical) const {
@@ -197,7 +197,7 @@ void Simulation::adaptive_step() {
         state_.statistics.node_evaluations = work_->trial.state.statistics.node_evaluations;
     }
     const double next = step_after(scene_, work_->trial, search);
-    take();
+    accept_trial();
     state_.next_step = next;
 }
 

@@ -70,9 +70,10 @@ double joint_error(const Scene& scene, const State& state, double dt) {
     double most = 0.0;
     for (const Joint& joint : scene.joints) {
         const auto spin = [&](std::size_t body) {
-            const BodyState& of = body_state(state, body);
-            return of.angular_momentum.isZero(0.0) ? 0.0
-                                                   : angular_velocity(rigid_body(scene, body), of).norm();
+            const BodyState& state_of_body = body_state(state, body);
+            return state_of_body.angular_momentum.isZero(0.0)
+                       ? 0.0
+                       : angular_velocity(rigid_body(scene, body), state_of_body).norm();
         };
         const double omega = std::max(spin(joint.leading), spin(joint.trailing));
         const double lever = joint.place_on_leading.norm() + joint.place_on_trailing.norm();

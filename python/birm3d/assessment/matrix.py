@@ -147,47 +147,47 @@ def _tests(name: str, rest: str | None, standard: str) -> list[_Test]:
     return [reader(SECURITY[name], rest or "", standard)]
 
 
-def _roadside(of: RoadsideStandard, rest: str | None, standard: str) -> list[_Test]:
-    if rest is None or (rest not in of.levels and rest not in of.tests):
+def _roadside(rules: RoadsideStandard, rest: str | None, standard: str) -> list[_Test]:
+    if rest is None or (rest not in rules.levels and rest not in rules.tests):
         raise ValueError(
-            f"standard must name a level ({', '.join(of.levels)}) or a test ({', '.join(of.tests)}) of "
-            f"{of.name}, got {standard!r}"
+            f"standard must name a level ({', '.join(rules.levels)}) or a test ({', '.join(rules.tests)}) of "
+            f"{rules.name}, got {standard!r}"
         )
-    names = of.levels.get(rest, (rest,))
-    tests = (of.tests[name] for name in names)
+    names = rules.levels.get(rest, (rest,))
+    tests = (rules.tests[name] for name in names)
     return [_Test(test.name, test.vehicle, units.km_h(test.speed), test.angle) for test in tests]
 
 
-def _astm(of: SecurityStandard, rest: str, standard: str) -> _Test:
+def _astm(rules: SecurityStandard, rest: str, standard: str) -> _Test:
     found = _LEVEL.fullmatch(rest)
-    known = {one.code: one for one in of.vehicles}
+    known = {one.code: one for one in rules.vehicles}
     light = found is not None and found["code"] not in ("M", "C7", "H")
     if found is None or found["code"] not in known or (found["speed"] == "60" and not light):
         raise ValueError(
             f"standard must name one of {', '.join(known)} with 30, 40 or 50 (60 for cars and pickups), as "
-            f"'{of.name} M50'; got {standard!r}"
+            f"'{rules.name} M50'; got {standard!r}"
         )
     return _Test(rest, known[found["code"]], units.mph(float(found["speed"])), _ANGLE)
 
 
-def _dos(of: SecurityStandard, rest: str, standard: str) -> _Test:
+def _dos(rules: SecurityStandard, rest: str, standard: str) -> _Test:
     level = rest.partition("-")[0]
     if level not in _K_MPH:
         raise ValueError(
-            f"standard must name one of {', '.join(_K_MPH)}, as '{of.name} K12'; got {standard!r}"
+            f"standard must name one of {', '.join(_K_MPH)}, as '{rules.name} K12'; got {standard!r}"
         )
-    return _Test(rest, of.vehicles[0], units.mph(_K_MPH[level]), _ANGLE)
+    return _Test(rest, rules.vehicles[0], units.mph(_K_MPH[level]), _ANGLE)
 
 
-def _coded(of: SecurityStandard, rest: str, standard: str) -> _Test:
+def _coded(rules: SecurityStandard, rest: str, standard: str) -> _Test:
     found = _CODE.fullmatch(rest)
     if found is not None:
-        for one in of.vehicles:
+        for one in rules.vehicles:
             if (one.code, f"{one.mass:.0f}") == (found["code"], found["mass"]):
                 return _Test(rest, one, units.km_h(float(found["speed"])), float(found["angle"]))
-    known = ", ".join(f"V/{one.mass:.0f}[{one.code}]" for one in of.vehicles)
+    known = ", ".join(f"V/{one.mass:.0f}[{one.code}]" for one in rules.vehicles)
     raise ValueError(
-        f"standard must have a code such as '{of.name} V/1500[M1]/48/90', with one of {known}; "
+        f"standard must have a code such as '{rules.name} V/1500[M1]/48/90', with one of {known}; "
         f"got {standard!r}"
     )
 

@@ -107,8 +107,8 @@ def rate(
             _ROADSIDE[name], rest, [rate(one, standard, vehicle_class=vehicle_class) for one in studies]
         )
     runs = [one for one in result if isinstance(one, Result)]
-    of = [_of_run(run, name, rest, vehicle_class, reference_point, part) for run in runs]
-    return level_rating(_ROADSIDE[name], rest, of)
+    ratings = [_of_run(run, name, rest, vehicle_class, reference_point, part) for run in runs]
+    return level_rating(_ROADSIDE[name], rest, ratings)
 
 
 def split_standard(standard: str) -> tuple[str, str | None]:

@@ -1,6 +1,6 @@
 """Searches that a designer asks for by name: greatest gap, least height, least mass of a segment."""
 
-# Longer than 300 lines: four searches with arguments explained for users.
+# Longer than 300 lines: three searches with arguments explained for users.
 from __future__ import annotations
 
 import dataclasses
@@ -92,16 +92,16 @@ def greatest_gap(
     """
     row = _row(simulation)
     question = Question(
-        "clear gap",
-        "gaps",
-        "m",
-        True,
-        "barrier.spacing",
-        lambda gap: gap + row.diameter,
-        _along_row(row, offset_shares, lambda gap: gap + row.diameter),
-        "vehicle_penetration",
-        _at_most("penetration", penetration),
-        _SKIN,
+        name="clear gap",
+        argument="gaps",
+        unit="m",
+        greatest=True,
+        parameter="barrier.spacing",
+        of_value=lambda gap: gap + row.diameter,
+        offsets=_along_row(row, offset_shares, lambda gap: gap + row.diameter),
+        measure="vehicle_penetration",
+        most=_at_most("penetration", penetration),
+        caution=_SKIN,
     )
     limits = [si("gaps", gap, "length") for gap in gaps]
     _check_width(simulation, row, limits)
@@ -166,16 +166,16 @@ def least_height(
     if isinstance(barrier, Jersey) and not isinstance(barrier.profile, str):
         raise ValueError("simulation must have a barrier of a named profile, got one of points")
     question = Question(
-        "height",
-        "heights",
-        "m",
-        False,
-        "barrier.height",
-        float,
-        _usual_offsets(simulation, barrier, offsets),
-        "vehicle_penetration",
-        _at_most("penetration", penetration),
-        _OVER,
+        name="height",
+        argument="heights",
+        unit="m",
+        greatest=False,
+        parameter="barrier.height",
+        of_value=float,
+        offsets=_usual_offsets(simulation, barrier, offsets),
+        measure="vehicle_penetration",
+        most=_at_most("penetration", penetration),
+        caution=_OVER,
     )
     return search_limit(
         simulation,
@@ -235,18 +235,18 @@ def least_segment_mass(
     free = barrier.free_standing
     length = barrier.length / barrier.segments
     question = Question(
-        "segment mass",
-        "masses",
-        "kg",
-        False,
-        "barrier.free_standing",
-        lambda mass: dataclasses.replace(free, density=None, mass_per_length=mass / length),
-        _usual_offsets(simulation, barrier, offsets),
-        "barrier_deflection",
-        _at_most("deflection", deflection),
-        _SLIDES,
+        name="segment mass",
+        argument="masses",
+        unit="kg",
+        greatest=False,
+        parameter="barrier.free_standing",
+        of_value=lambda mass: dataclasses.replace(free, density=None, mass_per_length=mass / length),
+        offsets=_usual_offsets(simulation, barrier, offsets),
+        measure="barrier_deflection",
+        most=_at_most("deflection", deflection),
+        caution=_SLIDES,
         # Between pinned segments nothing passes: who is past the barrier and not over it has slid to its end.
-        (*CONTAINED, "passed") if barrier.is_pinned else CONTAINED,
+        outcomes=(*CONTAINED, "passed") if barrier.is_pinned else CONTAINED,
     )
     return search_limit(
         simulation,

@@ -9,7 +9,8 @@
 
 namespace laboratory {
 
-// The same numbers on every machine: the standard fixes the engine, not its distributions.
+// The same numbers on every machine: the standard fixes the engine, not its distributions. It does not fix either in
+// which order the arguments of a function are computed, so that one expression draws once.
 class Random {
   public:
     explicit Random(unsigned seed) : engine_(seed) {}
@@ -26,7 +27,10 @@ class Random {
             if (d.norm() > 0.1 && d.norm() < 1.0) return d.normalized();
         }
     }
-    birm3d::Mat3 rotation() { return Eigen::AngleAxisd(within(0.0, 6.3), direction()).toRotationMatrix(); }
+    birm3d::Mat3 rotation() {
+        const birm3d::Vec3 axis = direction();
+        return Eigen::AngleAxisd(within(0.0, 6.3), axis).toRotationMatrix();
+    }
     birm3d::Placement placement(double far) {
         const birm3d::Mat3 turned = rotation();
         return {turned, point(birm3d::Vec3::Constant(-far), birm3d::Vec3::Constant(far))};

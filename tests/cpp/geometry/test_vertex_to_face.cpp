@@ -28,7 +28,8 @@ Counts random_vertices(const TriangleMesh& mesh, double step, unsigned seed) {
     while (n.inside < 4000) {
         const Vec3 before =
             random.point(bounds.center - 1.3 * bounds.half, bounds.center + 1.3 * bounds.half);
-        const Vec3 way = random.within(0.0, step) * random.direction();
+        const Vec3 direction = random.direction();
+        const Vec3 way = random.within(0.0, step) * direction;
         const Vec3 p = before + way;
         const Nearest exact = mesh.nearest(p);
         if (mesh.nearest(before).gap <= 0.0 || exact.gap >= 0.0) continue;

@@ -27,8 +27,8 @@ TEST("every instruction set finds the same friction, and rows without normal for
         fill(random, normal_force, 0.0, 1e4);
         for (std::size_t i = 0; i < block_size; ++i) {
             normal_force[i] = i / 8 % 3 == 0 ? 0.0 : std::max(normal_force[i], 0.0);
-            const Vec3 n =
-                Vec3(-1.0, 0.4 * random.within(-1.0, 1.0), 0.4 * random.within(-1.0, 1.0)).normalized();
+            const double nz = 0.4 * random.within(-1.0, 1.0), ny = 0.4 * random.within(-1.0, 1.0);
+            const Vec3 n = Vec3(-1.0, ny, nz).normalized();
             contact.nx[i] = n.x(), contact.ny[i] = n.y(), contact.nz[i] = n.z();
         }
         // Some nodes slide slowly, others fast.

@@ -187,8 +187,9 @@ TEST("a chain of pinned bodies that are pushed keeps together, and its momentum 
         std::vector<ContactBody> bodies;
         std::vector<Vec3> place;
         for (std::size_t b = 0; b < links; ++b) {
-            bodies.push_back(body(1000.0 * (1.0 + static_cast<double>(b)), {600.0, 900.0, 1100.0},
-                                  5.0 * random.vector(), random.vector()));
+            const Vec3 spin = random.vector(), velocity = 5.0 * random.vector();
+            bodies.push_back(
+                body(1000.0 * (1.0 + static_cast<double>(b)), {600.0, 900.0, 1100.0}, velocity, spin));
             place.emplace_back(4.0 * static_cast<double>(b), 0.0, 0.0);
         }
         std::vector<RigidContact> rows;
@@ -212,7 +213,8 @@ TEST("a chain of pinned bodies that are pushed keeps together, and its momentum 
         const std::size_t pins = rows.size();
         if (scene % 4 < 2)
             for (std::size_t b = 0; b < links; ++b) {
-                rows.push_back(contact(random.vector(), Vec3(0.0, 0.0, 1.0) + 0.3 * random.vector()));
+                const Vec3 normal = Vec3(0.0, 0.0, 1.0) + 0.3 * random.vector();
+                rows.push_back(contact(random.vector(), normal));
                 rows.back().body = b;
             }
         const std::vector<ContactBody> start = bodies;
@@ -302,7 +304,8 @@ TEST("a solver used again for other motions gives what a new one gives") {
     const ContactBody still = body(1500.0, {600.0, 2200.0, 2400.0}, Vec3::Zero());
     std::vector<RigidContact> contacts;
     for (int i = 0; i < 12; ++i) {
-        contacts.push_back(contact(random.vector(), Vec3(0.0, 0.0, 1.5) + random.vector()));
+        const Vec3 normal = Vec3(0.0, 0.0, 1.5) + random.vector();
+        contacts.push_back(contact(random.vector(), normal));
         contacts.back().compliance = 1e-3;
     }
     std::vector<RigidContact> again = contacts;

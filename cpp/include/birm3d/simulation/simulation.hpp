@@ -79,7 +79,7 @@ class Simulation {
   private:
     bool finished() const { return end_reason() != EndReason::running; }
     double remaining() const;  // s
-    void take();
+    void accept_trial();
     void adaptive_step();
     void fixed_step();
     [[noreturn]] void refuse_step(double dt, double critical) const;

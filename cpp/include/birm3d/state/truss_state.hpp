@@ -80,7 +80,7 @@ struct TrussState {
 
     // Does an obstacle hold any node beyond the free length of its truss? Such a node may return by itself.
     bool has_slack() const {
-        return std::any_of(groups.begin(), groups.end(), [](const BlockGroup& of) { return of.slack; });
+        return std::any_of(groups.begin(), groups.end(), [](const BlockGroup& group) { return group.slack; });
     }
 
     std::vector<TrussBlockState> block;
