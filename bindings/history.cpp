@@ -141,6 +141,7 @@ void register_history(py::module_& m) {
     add_view(history, "joint_work", &History::joint_work, "(n,) J");
     add_view(history, "segment_friction", &History::segment_friction,
              "(n,) J, of free-standing segments on the ground");
+    add_view(history, "suspension", &History::suspension, "(n,) J, in springs and lost in dampers of wheels");
     history.def_property_readonly(
         "segment_position", [](const History& self) { return of_segments(self, &SegmentHistory::position); },
         "(n, k, 2) m, foot of the axis of each free-standing segment, world");

@@ -143,7 +143,8 @@ void register_simulation(py::module_& m) {
                     {"tire_friction", balances.falls[Balances::tire_friction]},
                     {"ground_friction", balances.falls[Balances::ground_friction]},
                     {"impacts", balances.falls[Balances::impacts]},
-                    {"barrier_ground_friction", balances.falls[Balances::segment_friction]}};
+                    {"barrier_ground_friction", balances.falls[Balances::segment_friction]},
+                    {"suspension", balances.falls[Balances::dampers]}};
             },
             "of each dissipated term from its highest so far");
 

@@ -30,8 +30,11 @@ std::vector<Wheel> discs(const InputArray& wheels) {
     if (wheels.ndim() != 2 || wheels.shape(1) != 4) refuse("wheels shape", "(w, 4)", shape_text(wheels));
     std::vector<Wheel> result;
     result.reserve(static_cast<std::size_t>(wheels.shape(0)));
-    for (py::ssize_t i = 0; i < wheels.shape(0); ++i)
-        result.push_back({{wheels.at(i, 0), wheels.at(i, 1), wheels.at(i, 2)}, wheels.at(i, 3)});
+    for (py::ssize_t i = 0; i < wheels.shape(0); ++i) {
+        Wheel& wheel = result.emplace_back();
+        wheel.center = {wheels.at(i, 0), wheels.at(i, 1), wheels.at(i, 2)};
+        wheel.radius = wheels.at(i, 3);
+    }
     return result;
 }
 
@@ -64,39 +67,52 @@ void register_vehicle(py::module_& m) {
     py::class_<Unit>(
         m, "Unit",
         "A rigid body with its crushable skin and wheels; body axes r, s, t, origin at the mass centre.")
-        .def(py::init([](double mass, const InputArray& inertia, const TrussMesh& trusses,
-                         const InputArray& origin, const InputArray& wheels, const InputArray& breakaway,
-                         double mass_center_height, const InputArray& offset, const InputArray& core) {
-                 if (core.ndim() != 2 || core.shape(1) != 6) refuse("core shape", "(k, 6)", shape_text(core));
-                 std::vector<Box> boxes;
-                 boxes.reserve(static_cast<std::size_t>(core.shape(0)));
-                 for (py::ssize_t i = 0; i < core.shape(0); ++i)
-                     boxes.push_back({{core.at(i, 0), core.at(i, 1), core.at(i, 2)},
-                                      {core.at(i, 3), core.at(i, 4), core.at(i, 5)}});
-                 const RigidBody body(mass, matrix(inertia, "inertia"));
-                 std::vector<Wheel> own = discs(wheels);
-                 if (breakaway.ndim() != 2 || breakaway.shape(1) != 2 ||
-                     breakaway.shape(0) != static_cast<py::ssize_t>(own.size()))
-                     refuse("breakaway shape", "(w, 2), a row for each wheel", shape_text(breakaway));
-                 for (std::size_t i = 0; i < own.size(); ++i) {
-                     own[i].breakaway = breakaway.at(static_cast<py::ssize_t>(i), 0);
-                     own[i].travel = breakaway.at(static_cast<py::ssize_t>(i), 1);
-                 }
-                 return Unit(body, trusses.moved(vector(origin, "origin")), std::move(own),
-                             mass_center_height, vector(offset, "offset"), std::move(boxes));
-             }),
-             py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("trusses"), py::arg("origin"),
-             py::arg("wheels"), py::arg("breakaway"), py::arg("mass_center_height"), py::arg("offset"),
-             py::arg("core"),
-             "mass: kg. inertia: shape (3, 3), kg m^2. wheels: shape (w, 4), centre and radius, m.\n"
-             "breakaway: shape (w, 2), load at which each wheel gives way, N, and how far it is then pushed "
-             "up, m.\n"
-             "origin: shape (3,), m, of the body axes in those of the trusses; copies share what does not "
-             "move.\n"
-             "mass_center_height: m above the ground. offset: shape (3,), m, of the mass centre from the "
-             "vehicle's reference point along the ground.\n"
-             "core: shape (k, 6), middles and half edges of the boxes that the rigid body fills, body axes, "
-             "m.")
+        .def(
+            py::init([](double mass, const InputArray& inertia, const TrussMesh& trusses,
+                        const InputArray& origin, const InputArray& wheels, const InputArray& breakaway,
+                        const InputArray& suspension, double mass_center_height, const InputArray& offset,
+                        const InputArray& core) {
+                if (core.ndim() != 2 || core.shape(1) != 6) refuse("core shape", "(k, 6)", shape_text(core));
+                std::vector<Box> boxes;
+                boxes.reserve(static_cast<std::size_t>(core.shape(0)));
+                for (py::ssize_t i = 0; i < core.shape(0); ++i)
+                    boxes.push_back({{core.at(i, 0), core.at(i, 1), core.at(i, 2)},
+                                     {core.at(i, 3), core.at(i, 4), core.at(i, 5)}});
+                const RigidBody body(mass, matrix(inertia, "inertia"));
+                std::vector<Wheel> own = discs(wheels);
+                if (breakaway.ndim() != 2 || breakaway.shape(1) != 2 ||
+                    breakaway.shape(0) != static_cast<py::ssize_t>(own.size()))
+                    refuse("breakaway shape", "(w, 2), a row for each wheel", shape_text(breakaway));
+                for (std::size_t i = 0; i < own.size(); ++i) {
+                    own[i].breakaway = breakaway.at(static_cast<py::ssize_t>(i), 0);
+                    own[i].travel = breakaway.at(static_cast<py::ssize_t>(i), 1);
+                }
+                if (suspension.ndim() != 2 || suspension.shape(1) != 4 ||
+                    suspension.shape(0) != static_cast<py::ssize_t>(own.size()))
+                    refuse("suspension shape", "(w, 4), a row for each wheel", shape_text(suspension));
+                for (std::size_t i = 0; i < own.size(); ++i) {
+                    const auto number = [&](py::ssize_t k) {
+                        return suspension.at(static_cast<py::ssize_t>(i), k);
+                    };
+                    own[i].suspension = {number(0), number(1), number(2), number(3)};
+                }
+                return Unit(body, trusses.moved(vector(origin, "origin")), std::move(own), mass_center_height,
+                            vector(offset, "offset"), std::move(boxes));
+            }),
+            py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("trusses"), py::arg("origin"),
+            py::arg("wheels"), py::arg("breakaway"), py::arg("suspension"), py::arg("mass_center_height"),
+            py::arg("offset"), py::arg("core"),
+            "mass: kg. inertia: shape (3, 3), kg m^2. wheels: shape (w, 4), centre and radius, m.\n"
+            "breakaway: shape (w, 2), load at which each wheel gives way, N, and how far it is then pushed "
+            "up, m.\n"
+            "suspension: shape (w, 4), stiffness, N/m (0: fixed to the body), damping, N s/m, compression at "
+            "rest, m, travel from there to the bump stop, m.\n"
+            "origin: shape (3,), m, of the body axes in those of the trusses; copies share what does not "
+            "move.\n"
+            "mass_center_height: m above the ground. offset: shape (3,), m, of the mass centre from the "
+            "vehicle's reference point along the ground.\n"
+            "core: shape (k, 6), middles and half edges of the boxes that the rigid body fills, body axes, "
+            "m.")
         .def_property_readonly("n_trusses", [](const Unit& unit) { return unit.trusses.count; })
         .def_property_readonly(
             "input_index",

@@ -6,8 +6,7 @@ Nobody has published a real truck's wall force. How strong the front is was fitt
 another truck (tests/validation/fit_truck_preset.py). How high it pushes, frame and engine against grille
 and hood, is fitted to the one thing that film has shown: a 15,000-lb truck at 50 mph pitches by 27 degrees.
 The mass centre stands above the force, so the nose goes down and the rear wheels rise. How far depends on
-more than this number: the table shows what the height of the load does. With it at the upper end of its
-band the fit asks for nearly all of the force in the lower zone; grille and hood are left 1 %.
+more than this number: the table shows what the height of the load does.
 """
 
 from pathlib import Path

@@ -53,8 +53,9 @@ def test_a_rolling_vehicle_keeps_its_speed(result_of: Callable[[str], Result]) -
 
 @pytest.mark.parametrize("gravity", [1.62, 9.80665, 20.0])
 def test_the_weight_goes_with_gravity(gravity: float) -> None:
-    result = scenes.rolling(1.0, Settings(gravity=gravity)).run()
-    settled = result.time > SETTLED
+    # Springs that carry the weight on Earth let the vehicle bounce under another gravity.
+    result = scenes.rolling(5.0, Settings(gravity=gravity)).run()
+    settled = result.time > 4.0
     weight = result.scene.vehicle.mass * gravity
     assert result.tire_reaction[settled].sum(axis=1).mean() == pytest.approx(weight, rel=1e-3)
 
@@ -211,7 +212,7 @@ def test_braking_slows_a_car_by_its_share_of_the_friction(braking: float, tire_m
 def test_a_braked_car_comes_to_rest_and_stays() -> None:
     settings = Settings(braking=1.0, mu_tire=0.8)
     car = Vehicle.preset("passenger_car", mesh_density=0.1)
-    result = Simulation(car, None, 4.0, duration=1.2, settings=settings).run()
+    result = Simulation(car, None, 4.0, duration=3.0, settings=settings).run()  # rocks when it stops
     assert np.hypot(*result.velocity[-1, :2]) < 1e-3
     assert result.position[-1, 0] - result.position[0, 0] == pytest.approx(
         4.0**2 / (2 * 0.8 * 9.80665), rel=0.02
@@ -231,10 +232,17 @@ def test_locked_wheels_do_not_steer() -> None:
 
 
 def test_tyres_that_slide_across_are_followed_to_second_order() -> None:
-    """The wall turns the car, whose tyres slide sideways: halved steps leave a quarter of the error."""
+    """The wall turns the car, whose tyres slide sideways: halved steps leave a quarter of the error.
+
+    Its wheels are fixed: a sprung wheel meets its damper at once when it lands, somewhere within a step.
+    """
+    scene = scenes.oblique_car(mesh_density=0.3).scene
+    car = scene.vehicle.with_zone("tire", static_deflection=None, damping_ratio=None, bump_travel=None)
     force, yaw = (
         [
-            scenes.oblique_car(settings=Settings(time_step=step), mesh_density=0.3).run().metrics[name]
+            Simulation(car, scene.barrier, scene.impact_speed, 24.0, settings=Settings(time_step=step))
+            .run()
+            .metrics[name]
             for step in (4e-4, 1e-4)
         ]
         for name in ("peak_force_50ms", "max_yaw")

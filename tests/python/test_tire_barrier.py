@@ -245,13 +245,14 @@ def test_faces_stand_in_the_order_of_experience(name, mass):
     Rollover Caused by Concrete Safety Shaped Barrier (FHWA-RD-88-219, 1989): the vertical wall offers the
     greatest reduction of rollover, the F-shape little. McDevitt, Basics of Concrete Barriers (Public Roads,
     2000): the F-shape lifts less than New Jersey, the single slope of 10.8 deg does as New Jersey. Known to
-    differ: the single slope lifts the small car more than New Jersey does (0.5 m and 0.2 m), for it has no
-    springs, and what is crushed pushes at right angles to the face.
+    differ: the single slope lifts the small car more than New Jersey does (0.5 m and 0.2 m), for what is
+    crushed pushes at right angles to the face. At the vertical face, too, a vehicle rolls on its springs, by
+    4 to 8 deg, and far wheels leave the ground by up to 0.13 m.
     """
     lift = {face: met(name, mass, face).metrics["wheel_climb"] for face in FACES}
     roll = {face: met(name, mass, face).metrics["max_roll"] for face in FACES}
-    assert lift["vertical"] < 0.2 * lift["f_shape"] < 0.2 * lift["new_jersey"]
-    assert roll["vertical"] < 0.5 * min(roll[face] for face in FACES if face != "vertical")
+    assert lift["vertical"] < 0.25 * lift["f_shape"] < 0.25 * lift["new_jersey"]
+    assert roll["vertical"] < 0.8 * min(roll[face] for face in FACES if face != "vertical")
 
 
 @pytest.mark.parametrize("mu", [0.3, 0.6, 0.9])
@@ -330,9 +331,10 @@ def test_wheel_climb_is_that_of_the_lowest_point():
     level = Simulation(car(), None, 15.0, duration=0.1).run()
     assert level.metrics["wheel_climb"] < 1e-6
     rolled = Simulation(car(), None, 15.0, impact_roll=20.0, duration=0.01).run()
-    unit = rolled.scene.vehicle
-    track = np.ptp(unit.wheels[:, 1])
-    assert rolled.metrics["wheel_climb"] == pytest.approx(track * np.sin(np.radians(20.0)), rel=0.05)
+    vehicle = rolled.scene.vehicle
+    across = np.ptp(vehicle.wheels[:, 1]) * np.sin(np.radians(20.0))
+    extended = vehicle.zones["tire"].static_deflection * np.cos(np.radians(20.0))
+    assert rolled.metrics["wheel_climb"] == pytest.approx(across - extended, rel=0.05)
 
 
 def test_zones_of_tires_are_changed_like_others():

@@ -21,9 +21,9 @@ has left it, or at the end of the run, over the momentum towards it, m v sin(ang
 known from memory too. The wall's own impulse is in the table of computed figures: tyres that press a
 vehicle on the wall add to it.
 
-What the model can not do here: wheels have no travel. A near-side wheel that climbs a sloped face neither
-springs, steers nor comes off; it takes back most of the roll that the slope gives. The load of a trailer
-does not shift."""
+What the model can not do here: wheels do not steer. Where the front is crushed on the near side, straight
+wheels press a truck on the barrier, and it slides along for seconds. A near-side tread that climbs a sloped
+face lifts the body, not its own wheel, and does not come off. The load of a trailer does not shift."""
 
 
 def tasks() -> Sequence[str]:

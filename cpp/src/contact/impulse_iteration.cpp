@@ -56,12 +56,22 @@ bool stayed(const std::vector<Wrench>& on_base, std::vector<Wrench>& last) {
     return change <= settled * sum;
 }
 
-// Normal impulses of the tyres by wheel.
-void tire_impulses(const Scene& scene, const std::vector<RigidContact>& contacts, std::vector<Column>& tire) {
-    for (std::size_t u = 0; u < tire.size(); ++u)
-        tire[u].assign(scene.vehicle->units[u].wheels.size(), 0.0);
-    for (const RigidContact& contact : contacts)
-        if (contact.source == ContactSource::tire) tire[contact.body][contact.index] += contact.impulse;
+// Normal impulses of the tyres by wheel. Springs and dampers take no part in an impact.
+void tire_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory) {
+    for (std::size_t u = 0; u < memory.tire.size(); ++u) {
+        memory.tire[u].assign(scene.vehicle->units[u].wheels.size(), 0.0);
+        if (by.is_impact) continue;
+        for (const SuspensionLoad& load : memory.sprung[u])
+            memory.tire[u][load.wheel] += by.time * (load.spring + load.damper);
+    }
+    for (const RigidContact& contact : memory.kick.contacts)
+        if (contact.source == ContactSource::tire)
+            memory.tire[contact.body][contact.index] += contact.impulse;
+}
+
+bool any_sprung(const KickMemory& memory) {
+    return std::any_of(memory.sprung.begin(), memory.sprung.end(),
+                       [](const std::vector<SuspensionLoad>& loads) { return !loads.empty(); });
 }
 
 // Motions of the bodies at which contacts slide.
@@ -170,7 +180,7 @@ void settle_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory,
         if (meets) prepare_solver(scene, state, memory);
         set_friction_motions(state, kicked, bodies);
         memory.solver.solve(kicked.contacts, bodies);
-        tire_impulses(scene, kicked.contacts, memory.tire);
+        tire_impulses(scene, by, memory);
     };
     solve();
     // Friction depends on the normal impulses. It also tips the body, which changes these impulses: iterate.
@@ -180,7 +190,7 @@ void settle_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory,
     for (int round = 0; round < most_rounds; ++round) {
         const bool pushes_stay = stayed(kicked.contacts, memory.last);
         const bool frictions_stay = !meets || (round > 0 && stayed(kicked.on_base, memory.on_base));
-        if (pushes_stay && frictions_stay) break;
+        if (round > 0 && pushes_stay && frictions_stay) break;
         kick_by_friction(scene, by, memory, state);
         if (meets) find_segment_friction(scene, by, state, memory);
         if (!meets && !slides(kicked)) break;
@@ -222,7 +232,7 @@ double correct_targets(const Scene& scene, const State& kicked, double dt,
 void kick_by_contacts(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
     memory.kick.on_base.clear();
     memory.kick.on_pins.clear();
-    if (memory.kick.contacts.empty() && by.pressed.empty()) {
+    if (memory.kick.contacts.empty() && by.pressed.empty() && !any_sprung(memory)) {
         memory.kick.on_ground.clear();
         memory.kick.on_cores.clear();
         return;

@@ -10,6 +10,7 @@ struct KickedBy {
     const Column& pressed;  // (segments) impulse of all other forces that presses them on the ground (N s)
     std::span<const Twist> at_end;  // (bodies) their motions at that end of the step (see TireMotion)
     std::span<const Twist> from;    // (bodies) their motions before this kick
+    double time = 0.0;              // for which the loads of springs and dampers act (s)
     double drift = 0.0;             // length of the drift after which joints are to be closed (s)
     bool is_impact = false;
 };

@@ -21,23 +21,25 @@ Mat6 inertia_of(const RigidBody& body, const Mat3& R) {
 // Inertia matrix of a large mass under each wheel that would sink into the ground in the second half of the step.
 // `motion` assumes equal tyre impulses in both halves: see settled().
 Mat6 ground_support(const Unit& unit, const BodyState& body, const Mat6& inertia, const Twist& motion,
-                    WheelSet given_way, const std::vector<double>& tire_impulses,
-                    std::vector<RigidContact>& memory) {
+                    WheelSet given_way, const ContactImpulses& impulses, std::vector<RigidContact>& memory) {
     memory.clear();
-    find_tire_contacts(unit, 0, body, given_way, memory);
+    find_tire_contacts(unit, 0, body, given_way, WheelAt::bump_stop, memory);
     const auto row_of = [](const RigidContact& contact) {
         Vec6 row;
         row << contact.normal, contact.arm.cross(contact.normal);
         return row;
     };
+    const auto rigid_part = [&](const RigidContact& contact) {
+        return impulses.tire[contact.index] - impulses.sprung[contact.index];
+    };
     Vec6 unpushed, push = Vec6::Zero();
     unpushed << motion.velocity, motion.angular_velocity;
     for (const RigidContact& contact : memory)
-        push += tire_impulses[contact.index] * row_of(contact);
+        push += rigid_part(contact) * row_of(contact);
     unpushed -= inertia.ldlt().solve(push);
     Mat6 support = Mat6::Zero();
     for (const RigidContact& contact : memory) {
-        const bool stands = tire_impulses[contact.index] > 0.0 || contact.gap <= tolerance::touching_gap;
+        const bool stands = rigid_part(contact) > 0.0 || contact.gap <= tolerance::touching_gap;
         const Vec6 row = row_of(contact);
         if (stands && row.dot(unpushed) < 0.0)
             support += tolerance::ground_mass_ratio * unit.body.mass * row * row.transpose();
@@ -61,7 +63,7 @@ Twist predicted_motion(const Scene& scene, std::size_t u, const State& from, Tri
         Mat6 support = Mat6::Zero();
         if (scene.settings.ground)
             support = ground_support(unit, body, inertia, motion, trial.state.units[u].given_way,
-                                     trial.impulses[u].tire, trial.memory.contacts);
+                                     trial.impulses[u], trial.memory.contacts);
         motion = settled(motion, before.friction_motion, before.resistance, trial.dt, inertia, support);
     }
     return {R.transpose() * motion.velocity, R.transpose() * motion.angular_velocity};

@@ -89,7 +89,7 @@ Twist relative_motion(const Scene& scene, const State& state, std::size_t u, std
 
 void add_impulses(const Scene& scene, const State& state, const ContactKick& kicked,
                   std::vector<ContactImpulses>& sums, std::vector<Wrench>& joints) {
-    if (kicked.contacts.empty()) return;
+    if (kicked.on_ground.empty()) return;
     for (std::size_t u = 0; u < sums.size(); ++u)
         sums[u].tire_friction += kicked.on_ground[u].force;
     for (const RigidContact& contact : kicked.contacts) {

@@ -12,6 +12,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void clear(ContactImpulses& impulses) {
     std::fill(impulses.tire.begin(), impulses.tire.end(), 0.0);
+    std::fill(impulses.sprung.begin(), impulses.sprung.end(), 0.0);
     impulses.tire_friction = Vec3::Zero();
     impulses.obstacles.clear();
     impulses.barrier_normal = 0.0;
@@ -36,6 +37,7 @@ Trial::Trial(const Vehicle& vehicle) : state(vehicle) {
         stale.emplace_back(unit.trusses.blocks);
     }
     at_start.impulses = at_end.impulses = impulses;
+    memory.sprung.resize(vehicle.units.size());
     joint_impulses.resize(vehicle.joints.size());
     at_start.joint_impulses = at_end.joint_impulses = joint_impulses;
 }

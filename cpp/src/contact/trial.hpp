@@ -10,6 +10,7 @@
 #include "kernels/detect_core.hpp"
 #include "kernels/impulse.hpp"
 #include "kernels/slab_chain.hpp"
+#include "kernels/suspension.hpp"
 #include "scene/obstacles.hpp"
 #include "state/rigid_contact.hpp"
 
@@ -24,9 +25,10 @@ struct ObstacleImpulse {
 
 // Impulses of rigid contacts on one unit.
 struct ContactImpulses {
-    explicit ContactImpulses(std::size_t wheels) : tire(wheels, 0.0) {}
+    explicit ContactImpulses(std::size_t wheels) : tire(wheels, 0.0), sprung(wheels, 0.0) {}
 
     Column tire;                             // (wheels) normal impulse (N s)
+    Column sprung;                           // (wheels) part of it that springs and dampers carry (N s)
     Vec3 tire_friction = Vec3::Zero();       // of all wheels, world axes (N s)
     std::vector<ObstacleImpulse> obstacles;  // of bottomed-out trusses
     double barrier_normal = 0.0;             // sum of the normal impulses on the barrier among them (N s)
@@ -66,6 +68,8 @@ struct KickMemory {
     ContactKick kick;
     // Buffers of the search for impulses.
     ImpulseSolver solver;
+    std::vector<std::vector<SuspensionLoad>> sprung;  // (units) wheels that springs and dampers carry
+    std::vector<Twist> start;                         // motions of the bodies at the start of the step
     std::vector<Column> tire;
     Column last;
     std::vector<Wrench> on_cores, on_base;

@@ -46,7 +46,7 @@ bool tips(const Scene& scene, const State& state) {
         if (unit.wheels.empty()) continue;
         if ((body.orientation * Vec3::UnitZ()).z() < tipped) return true;
         wheels.clear();
-        find_tire_contacts(unit, u, body, state.units[u].given_way, wheels);
+        find_tire_contacts(unit, u, body, state.units[u].given_way, WheelAt::droop, wheels);
         const Twist motion = twist(unit.body, body);
         for (const RigidContact& wheel : wheels)
             if (wheel.gap > tolerance::lifted_wheel &&

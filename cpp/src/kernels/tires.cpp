@@ -9,16 +9,6 @@ namespace birm3d {
 
 namespace {
 
-// From the mass centre to the lowest point of the wheel, world axes.
-Vec3 lowest_point(const Wheel& wheel, const Mat3& R) {
-    const Vec3 axle = R.col(1);
-    const Vec3 down = -Vec3::UnitZ() + axle.z() * axle;  // downwards within the wheel's plane
-    const double size = down.norm();
-    const Vec3 center = R * wheel.center;
-    // A wheel that lies flat touches all around: its centre stands for the rim.
-    return size > 1e-9 ? Vec3(center + (wheel.radius / size) * down) : center;
-}
-
 // Fraction of mu N that the brush model mobilises, in [-1, 1].
 double brush(double normalised_slip) {
     const double s = std::min(1.0, std::abs(normalised_slip));
@@ -26,18 +16,48 @@ double brush(double normalised_slip) {
     return std::copysign(1.0 - rest * rest * rest, normalised_slip);
 }
 
+double raised_to(WheelAt at, const Suspension& suspension) {
+    switch (at) {
+        case WheelAt::droop:
+            return -suspension.at_rest;
+        case WheelAt::rest:
+            return 0.0;
+        case WheelAt::bump_stop:
+            return suspension.bump;
+    }
+    return 0.0;
+}
+
+// Where friction acts: a sprung wheel that carries load stands on the ground, wherever the body is.
+Vec3 point_on_ground(const Wheel& wheel, const Mat3& R, double height) {
+    Vec3 arm = lowest_point(wheel, R, 0.0);
+    if (wheel.suspension.springs()) arm.z() = -height;
+    return arm;
+}
+
 }  // namespace
 
+Vec3 lowest_point(const Wheel& wheel, const Mat3& R, double raised) {
+    const Vec3 axle = R.col(1);
+    const Vec3 down = -Vec3::UnitZ() + axle.z() * axle;  // downwards within the wheel's plane
+    const double size = down.norm();
+    const Vec3 center = R * (wheel.center + raised * Vec3::UnitZ());
+    // A wheel that lies flat touches all around: its centre stands for the rim.
+    return size > 1e-9 ? Vec3(center + (wheel.radius / size) * down) : center;
+}
+
 void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& state, WheelSet given_way,
-                        std::vector<RigidContact>& contacts) {
+                        WheelAt at, std::vector<RigidContact>& contacts) {
     const Mat3 R = state.orientation.toRotationMatrix();
     for (std::size_t i = 0; i < unit.wheels.size(); ++i) {
         RigidContact contact;
         contact.source = ContactSource::tire;
         contact.index = i;
         contact.body = body;
-        contact.arm = lowest_point(unit.wheels[i], R);
-        if (has_wheel(given_way, i)) contact.arm.z() += unit.wheels[i].travel;
+        const Wheel& wheel = unit.wheels[i];
+        const bool gone = has_wheel(given_way, i);
+        contact.arm = lowest_point(wheel, R, gone ? 0.0 : raised_to(at, wheel.suspension));
+        if (gone) contact.arm.z() += wheel.travel;
         contact.normal = Vec3::UnitZ();
         contact.gap = state.position.z() + contact.arm.z();
         contact.compliance = tolerance::tire_compliance;
@@ -86,7 +106,7 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
         const Vec3 direction = -sliding / std::max(speed, mu * speed_change) * velocity;
         for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
             const Vec3 impulse = mu * normal_impulses[i] * direction;
-            sum += {impulse, lowest_point(unit.wheels[i], R).cross(impulse)};
+            sum += {impulse, point_on_ground(unit.wheels[i], R, state.position.z()).cross(impulse)};
         }
         return sum;
     }
@@ -99,7 +119,7 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
     const double brakes = settings.braking, steers = std::sqrt(1.0 - brakes * brakes);
     for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
         if (normal_impulses[i] == 0.0) continue;
-        const Vec3 arm = lowest_point(unit.wheels[i], R);
+        const Vec3 arm = point_on_ground(unit.wheels[i], R, state.position.z());
         const Vec3 velocity = velocity_at(arm);
         const double tan_slip = velocity.dot(across) / std::max(std::abs(velocity.dot(along)), slowest);
         const double fraction = brush(settings.cornering_stiffness * tan_slip / (3.0 * mu));

@@ -23,9 +23,16 @@
 
 namespace birm3d {
 
+// From the mass centre to the lowest point of a wheel that is pushed up by `raised` from where it is at rest (m), for the
+// body's rotation R; world axes.
+Vec3 lowest_point(const Wheel& wheel, const Mat3& R, double raised);
+
+// Positions of a sprung wheel: extended as far as it goes, as under the weight, or at its bump stop.
+enum class WheelAt { droop, rest, bump_stop };
+
 // One contact for each wheel, whether it touches or not (normal +z, gap signed). Those that have given way are pushed up.
 void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& state, WheelSet given_way,
-                        std::vector<RigidContact>& contacts);
+                        WheelAt at, std::vector<RigidContact>& contacts);
 
 // The wheels that give way under normal impulses in a step of dt (s). Impacts have no load and are not among the impulses.
 WheelSet overloaded(const Unit& unit, double dt, std::span<const double> normal_impulses);

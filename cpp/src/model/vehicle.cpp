@@ -65,6 +65,14 @@ Unit::Unit(const RigidBody& body_, TrussMesh trusses_, std::vector<Wheel> wheels
         if (!(wheels[i].breakaway > 0.0)) refuse(name + " breakaway", "> 0 N", wheels[i].breakaway);
         if (!(wheels[i].travel >= 0.0 && std::isfinite(wheels[i].travel)))
             refuse(name + " travel", "finite and >= 0 m", wheels[i].travel);
+        const auto require_at_least_zero = [&](const char* what, const char* unit, double value) {
+            if (!(value >= 0.0 && std::isfinite(value)))
+                refuse(name + " " + what, std::string("finite and >= 0 ") + unit, value);
+        };
+        require_at_least_zero("stiffness", "N/m", wheels[i].suspension.stiffness);
+        require_at_least_zero("damping", "N s/m", wheels[i].suspension.damping);
+        require_at_least_zero("compression at rest", "m", wheels[i].suspension.at_rest);
+        require_at_least_zero("bump travel", "m", wheels[i].suspension.bump);
         if (i >= most_breakaway_wheels && std::isfinite(wheels[i].breakaway))
             refuse(name + " breakaway", "inf beyond the first 64 wheels", wheels[i].breakaway);
         if (!wheels[i].center.allFinite()) refuse(name + " center", "finite", "a coordinate that is not");

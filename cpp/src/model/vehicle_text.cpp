@@ -142,8 +142,9 @@ std::vector<Wheel> wheels_of(Reader& in, std::string_view name) {
     for (std::size_t left = in.count(name); left > 0; --left) {
         const Vec3 center = in.vector();
         const double radius = in.number();
-        const double breakaway = in.number();
-        wheels.push_back({center, radius, breakaway, in.number()});
+        const double breakaway = in.number(), travel = in.number();
+        const double stiffness = in.number(), damping = in.number(), at_rest = in.number();
+        wheels.push_back({center, radius, breakaway, travel, {stiffness, damping, at_rest, in.number()}});
     }
     return wheels;
 }
@@ -219,8 +220,8 @@ Joint joint_of(Reader& in) {
 Vehicle vehicle_of_text(std::string_view text) {
     Reader in(text);
     in.expect("birm3d-vehicle");
-    if (const int version = in.whole(); version != 2)
-        in.wrong("version 2", "version " + std::to_string(version));
+    if (const int version = in.whole(); version != 3)
+        in.wrong("version 3", "version " + std::to_string(version));
     std::vector<Unit> units;
     for (std::size_t left = in.count("units"); left > 0; --left)
         units.push_back(unit_of(in));

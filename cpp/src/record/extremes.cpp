@@ -35,9 +35,10 @@ Column& scratch() {
 Extremes::Energy energy(const History& history) {
     Column& total = scratch();
     total.assign(history.time.size(), 0.0);
-    for (const Column* term : {&history.kinetic, &history.potential, &history.stored, &history.crushed,
-                               &history.barrier_friction, &history.tire_friction, &history.ground_friction,
-                               &history.impacts, &history.segment_friction, &history.joint_work})
+    for (const Column* term :
+         {&history.kinetic, &history.potential, &history.stored, &history.crushed, &history.barrier_friction,
+          &history.tire_friction, &history.ground_friction, &history.impacts, &history.segment_friction,
+          &history.joint_work, &history.suspension})
         for (std::size_t k = 0; k < total.size(); ++k)
             total[k] += (*term)[k];
     Extremes::Energy found{history.kinetic[0], 0.0};

@@ -98,9 +98,11 @@ double greatest_wheel_climb(const History& history, const Vehicle& vehicle) {
         for (std::size_t k = 0; k < unit.position.size(); ++k) {
             const Vec3 up = unit.orientation[k].conjugate() * Vec3::UnitZ();         // body axes
             const double upright = std::sqrt(std::max(0.0, 1.0 - up.y() * up.y()));  // of the radius
-            for (const Wheel& wheel : wheels)
-                greatest =
-                    std::max(greatest, unit.position[k].z() + wheel.center.dot(up) - wheel.radius * upright);
+            for (const Wheel& wheel : wheels) {
+                // A sprung wheel that leaves the ground is fully extended.
+                const double center = wheel.center.dot(up) - wheel.suspension.at_rest * up.z();
+                greatest = std::max(greatest, unit.position[k].z() + center - wheel.radius * upright);
+            }
         }
     }
     return greatest;

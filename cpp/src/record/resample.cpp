@@ -44,9 +44,10 @@ void Recorder::resample(const Scene& scene, const Channels& wanted, History& his
 
 void Recorder::resample_energies(const OutputInstants& output, History& history) const {
     std::size_t e = at_energies;
-    for (Column* column : {&history.kinetic, &history.potential, &history.stored, &history.crushed,
-                           &history.barrier_friction, &history.tire_friction, &history.ground_friction,
-                           &history.impacts, &history.joint_work, &history.segment_friction}) {
+    for (Column* column :
+         {&history.kinetic, &history.potential, &history.stored, &history.crushed, &history.barrier_friction,
+          &history.tire_friction, &history.ground_friction, &history.impacts, &history.joint_work,
+          &history.segment_friction, &history.suspension}) {
         column->assign(history.time.size(), values_[e]);
         for (const Span& span : output.span) {
             const double a = values_[span.row * width_ + e], b = values_[(span.row + 1) * width_ + e];

@@ -10,6 +10,7 @@
 #include "birm3d/base/rotation.hpp"
 #include "birm3d/base/tolerances.hpp"
 #include "kernels/integrate.hpp"
+#include "kernels/suspension.hpp"
 #include "kernels/tires.hpp"
 #include "scene/indentation_gaps.hpp"
 #include "scene/obstacles.hpp"
@@ -50,7 +51,7 @@ void raise_to_ground(const Scene& scene, State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Unit& unit = scene.vehicle->units[u];
         std::vector<RigidContact> wheels;
-        find_tire_contacts(unit, u, state.units[u].body, state.units[u].given_way, wheels);
+        find_tire_contacts(unit, u, state.units[u].body, state.units[u].given_way, WheelAt::rest, wheels);
         for (const RigidContact& wheel : wheels)
             lowest = std::min(lowest, wheel.gap);
         if (scene.skin_meets_ground[u])
@@ -258,6 +259,9 @@ void Scene::start(State& state) const {
         const double rounding = 1e-15 * state.units[0].body.position.norm() + tolerance::initial_overlap;
         if (nearest < -rounding) refuse("initial gap of the vehicle to the barrier", ">= 0 m", nearest);
     }
+    if (settings.ground)
+        for (std::size_t u = 0; u < state.units.size(); ++u)
+            state.energies.springs += spring_energy(vehicle->units[u], state.units[u].body, 0);
     state.next_step = tolerance::first_contact_step;
 }
 

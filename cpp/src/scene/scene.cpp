@@ -132,6 +132,10 @@ std::uint64_t Scene::fingerprint() const {
             hash.add(wheel.center);
             hash.add(wheel.radius);
             if (std::isfinite(wheel.breakaway)) hash.add(wheel.breakaway), hash.add(wheel.travel);
+            if (wheel.suspension.springs())
+                for (const double number : {wheel.suspension.stiffness, wheel.suspension.damping,
+                                            wheel.suspension.at_rest, wheel.suspension.bump})
+                    hash.add(number);
         }
     }
     for (const Joint& joint : vehicle->joints) {

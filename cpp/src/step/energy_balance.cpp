@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernels/integrate.hpp"
+#include "kernels/suspension.hpp"
 #include "scene/bodies.hpp"
 
 namespace birm3d {
@@ -17,8 +18,9 @@ void note_departure(double size, const Scene& scene, const State& now, Balances:
 void check_energies(const Energies& e, const Scene& scene, const State& now, Balances& balances) {
     note_departure(std::abs(e.total() - balances.total), scene, now, balances.energy);
     balances.at_disposal = std::max(balances.at_disposal, balances.kinetic - e.potential);
-    const std::array<double, Balances::terms> terms{
-        e.crushed, e.barrier_friction, e.tire_friction, e.ground_friction, e.impacts, e.segment_friction};
+    const std::array<double, Balances::terms> terms{e.crushed,         e.barrier_friction, e.tire_friction,
+                                                    e.ground_friction, e.impacts,          e.segment_friction,
+                                                    e.dampers};
     for (std::size_t i = 0; i < terms.size(); ++i) {
         note_departure(balances.highest[i] - terms[i], scene, now, balances.falls[i]);
         balances.highest[i] = std::max(balances.highest[i], terms[i]);
@@ -64,6 +66,14 @@ void sum_truss_energies(State& now) {
         now.truss_work += unit.skin.work;
     }
     now.energies.crushed = now.truss_work - now.energies.stored;
+}
+
+void sum_spring_energies(const Scene& scene, State& now) {
+    if (!scene.settings.ground) return;
+    now.energies.springs = 0.0;
+    for (std::size_t u = 0; u < now.units.size(); ++u)
+        now.energies.springs +=
+            spring_energy(scene.vehicle->units[u], now.units[u].body, now.units[u].given_way);
 }
 
 void sum_kinetic_energy(const Scene& scene, State& now) {

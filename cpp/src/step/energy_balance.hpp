@@ -9,6 +9,9 @@ namespace birm3d {
 void sum_truss_energies(State& now);
 
 // Kinetic energy of all units and free-standing segments.
+// Of wheels with springs; zero for others.
+void sum_spring_energies(const Scene& scene, State& now);
+
 void sum_kinetic_energy(const Scene& scene, State& now);
 
 // Enters the greatest departures from both balances into `balances`. `state`: before the trial is accepted.

@@ -14,6 +14,7 @@
 #include "kernels/impulse.hpp"
 #include "kernels/integrate.hpp"
 #include "kernels/joints.hpp"
+#include "kernels/suspension.hpp"
 #include "kernels/tires.hpp"
 #include "scene/bodies.hpp"
 #include "scene/obstacles.hpp"
@@ -37,7 +38,8 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Unit& unit = scene.vehicle->units[u];
         const BodyState& body = state.units[u].body;
-        if (scene.settings.ground) find_tire_contacts(unit, u, body, state.units[u].given_way, contacts);
+        if (scene.settings.ground)
+            find_tire_contacts(unit, u, body, state.units[u].given_way, WheelAt::bump_stop, contacts);
         if (scene.obstacles.empty() || !options.hold_core) continue;
         const Mat3 R = body.orientation.toRotationMatrix();
         const Twist motion{R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
@@ -96,7 +98,8 @@ void set_lasting_targets(Stage stage, double dt, double gravity,
         const bool is_tire = contact.source == ContactSource::tire;
         // A tyre that carried load before the drift is still in contact after it, though rotation may have opened a
         // gap of rounding size. It makes an impact only if it approached before the forces of this step.
-        if (is_tire && before_drift[contact.body].tire[contact.index] > 0.0) return contact.is_impact;
+        const ContactImpulses& before = before_drift[contact.body];
+        if (is_tire && before.tire[contact.index] > before.sprung[contact.index]) return contact.is_impact;
         return contact.gap > (is_tire ? tire_gap : tolerance::touching_gap) ||
                approaches_hard(contact, bodies);
     });
@@ -115,7 +118,40 @@ double time_to_impact(double negligible, std::span<const ContactBody> bodies,
     return earliest;
 }
 
-// Applies half a step of contact loads and weight to all bodies.
+// Dampers see the motion at that end of the step: it is predicted after the drift, where the second half of the step is
+// assumed to change it as the first one did. So they are followed to second order.
+void find_sprung_wheels(const Scene& scene, const State& state, Stage stage, KickMemory& memory) {
+    if (!scene.settings.ground) return;
+    if (stage == Stage::before_drift) memory.start = memory.before;
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        Twist motion = memory.before[u];
+        motion.velocity += motion.velocity - memory.start[u].velocity;
+        motion.angular_velocity += motion.angular_velocity - memory.start[u].angular_velocity;
+        find_suspension_loads(scene.vehicle->units[u], state.units[u].body, motion, state.units[u].given_way,
+                              memory.sprung[u]);
+    }
+}
+
+// Impulse of a sprung wheel on its unit, about the mass centre.
+Wrench carry(const SuspensionLoad& load, double half, ContactImpulses& sums) {
+    const double size = half * (load.spring + load.damper);
+    sums.tire[load.wheel] += size;
+    sums.sprung[load.wheel] += size;
+    const Vec3 impulse = size * Vec3::UnitZ();
+    return {impulse, load.arm.cross(impulse)};
+}
+
+// What dampers take, by the mean of the velocities before and after the half kick.
+void add_damper_work(const std::vector<std::vector<SuspensionLoad>>& sprung, const std::vector<Twist>& before,
+                     const std::vector<Twist>& after, double half, Energies& energies) {
+    for (std::size_t u = 0; u < sprung.size(); ++u)
+        for (const SuspensionLoad& load : sprung[u]) {
+            const Vec3 force = half * load.damper * Vec3::UnitZ();
+            energies.dampers -= power({force, load.arm.cross(force)}, mean(before[u], after[u]));
+        }
+}
+
+// Applies half a step of contact loads, weight and suspension to all bodies.
 // Returns the impulse with which each free-standing segment presses on the ground (N s).
 Column kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial) {
     Column pressed(trial.state.segments.size());
@@ -137,6 +173,8 @@ Column kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial
             pressed[contact.obstacle] += load.wrench.force.z();
         }
         impulse.force.z() -= half * body.mass * scene.settings.gravity;
+        for (const SuspensionLoad& load : trial.memory.sprung[u])
+            impulse += carry(load, half, trial.impulses[u]);
         kick(body, impulse, unit.body);
     }
     return pressed;
@@ -213,6 +251,7 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
 
     for (RigidContact& contact : memory.contacts)
         contact.is_impact = approaches_hard(contact, bodies);
+    find_sprung_wheels(scene, state, stage, memory);
     const Column pressed = kick_by_forces(scene, stage, half, trial);
     list_motions(state, bodies, memory.pushed);
     if (start && options.locate_impacts)
@@ -224,18 +263,24 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
     // Tyre friction needs the velocity at that end of the step. For the end after the drift, the contacts' change of
     // velocity is taken to be the one before the drift.
     if (start) {
-        kick_towards_closed_joints(
-            scene, {.pressed = pressed, .at_end = memory.before, .from = memory.before, .drift = trial.dt},
-            memory, state);
+        kick_towards_closed_joints(scene,
+                                   {.pressed = pressed,
+                                    .at_end = memory.before,
+                                    .from = memory.before,
+                                    .time = half,
+                                    .drift = trial.dt},
+                                   memory, state);
     } else {
         combine(memory.pushed, 1.0, trial.by_contacts, memory.rolling);
-        kick_by_contacts(scene, {.pressed = pressed, .at_end = memory.rolling, .from = memory.before}, memory,
-                         state);
+        kick_by_contacts(scene,
+                         {.pressed = pressed, .at_end = memory.rolling, .from = memory.before, .time = half},
+                         memory, state);
     }
     add_impulses(scene, state, memory.kick, trial.impulses, trial.joint_impulses);
     list_motions(state, bodies, memory.after);
     if (start) combine(memory.after, -1.0, memory.pushed, trial.by_contacts);
     add_friction_work(scene, memory.before, memory.after, half, state);
+    add_damper_work(memory.sprung, memory.before, memory.after, half, state.energies);
     book_contacts(scene, memory.kick, memory.before, memory.after, state);
 
     if (!start) impact_at_once(scene, stage, 0.0, memory.after, memory.before, trial);

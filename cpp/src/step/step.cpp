@@ -4,6 +4,7 @@
 
 #include "contact/contact_forces.hpp"
 #include "kernels/integrate.hpp"
+#include "kernels/suspension.hpp"
 #include "kernels/tires.hpp"
 #include "step/energy_balance.hpp"
 #include "step/error_estimates.hpp"
@@ -48,6 +49,16 @@ void move_unit(const Scene& scene, std::size_t u, const State& from, Trial& tria
     trial.critical_step = std::min(trial.critical_step, critical_step(scene, unit.body, moved));
 }
 
+// What the springs of these wheels have is lost.
+void give_way(const Unit& of, WheelSet gone, UnitMotion& unit, Energies& energies) {
+    if ((gone & ~unit.given_way) == 0) return;
+    const double before = spring_energy(of, unit.body, unit.given_way);
+    unit.given_way |= gone;
+    const double lost = before - spring_energy(of, unit.body, unit.given_way);
+    energies.springs -= lost;
+    energies.dampers += lost;
+}
+
 }  // namespace
 
 void try_step(const Scene& scene, const State& from, double dt, const StepOptions& options, Trial& trial) {
@@ -65,6 +76,7 @@ void try_step(const Scene& scene, const State& from, double dt, const StepOption
     for (std::size_t u = 0; u < now.units.size(); ++u)
         move_unit(scene, u, from, trial);
     sum_truss_energies(now);
+    sum_spring_energies(scene, now);
     trial.error = std::max({trial.error, joint_error(scene, now, dt), rotation_error(scene, now, dt)});
 
     // Rigid contacts again, and half of the forces at the end.
@@ -79,7 +91,8 @@ void accept(const Scene& scene, Trial& trial, State& state) {
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         UnitState& unit = state.units[u];
         static_cast<UnitMotion&>(unit) = trial.state.units[u];
-        unit.given_way |= overloaded(scene.vehicle->units[u], trial.dt, trial.impulses[u].tire);
+        const WheelSet gone = overloaded(scene.vehicle->units[u], trial.dt, trial.impulses[u].tire);
+        give_way(scene.vehicle->units[u], gone, unit, trial.state.energies);
         trial.exchange_trusses(u, unit.trusses);
         const std::vector<std::size_t>& active = trial.active[u].blocks();
         if (!active.empty()) unit.trusses.group(scene.vehicle->units[u].trusses, active);

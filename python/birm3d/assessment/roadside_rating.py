@@ -32,10 +32,10 @@ _TIPS = (
     "The overturning moment of a segment is {ratio:.1f} times its restoring one: it would begin to tip, "
     "which is not computed. Containment, widths and occupant risk hold for segments that stay upright."
 )
-_NO_SPRINGS = (
-    "Wheels have no suspension: computed vehicles roll too little. In a published 10000S test the truck "
-    "rolled over a New Jersey barrier of 0.81 m; computed, it stays upright. A heavy vehicle that is "
-    "computed upright may roll over in a test."
+_ROLLS_LITTLE = (
+    "Springs are estimates, and wheels do not steer: computed vehicles may roll too little. In a published "
+    "10000S test the truck rolled over a New Jersey barrier of 0.81 m; computed, it rolls by 20 degrees. A "
+    "heavy vehicle that is computed upright may roll over in a test."
 )
 _WIDTHS = (0.6, 0.8, 1.0, 1.3, 1.7, 2.1, 2.5, 3.5)
 """Greatest working width, and vehicle intrusion, of the classes 1 to 8 of EN 1317-2 [m]."""
@@ -73,7 +73,7 @@ def rate_roadside(
         intrusion,
         judged[0].passed is True,
         (*rows, reported),
-        " ".join([standard.caution, *([] if light else [_NO_SPRINGS]), MODEL_CAUTION, *_tipping(result)]),
+        " ".join([standard.caution, *([] if light else [_ROLLS_LITTLE]), MODEL_CAUTION, *_tipping(result)]),
         test.vehicle.code,
     )
 

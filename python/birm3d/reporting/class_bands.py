@@ -31,6 +31,7 @@ _PARTS = {
     "side": "forces of the side",
     "corner": "forces of the corners",
     "tires": "forces of the tyres",
+    "springs": "stiffness of the springs",
     "mass_center_height": "height of the mass centre",
     "barrier_friction": "friction of vehicle on barrier",
     "tire_friction": "friction of tyres on the ground",

@@ -102,7 +102,14 @@ def _phenomena(case: Case) -> Iterator[tuple[str, str, str]]:
         "of magnitude",
     )
     yield "engine stops before the cabin; load bed slides on the frame", "no", "one rigid body a unit"
-    yield "suspension, steering, brakes of single wheels", "no", "wheels roll or slide, see the settings"
+    springs = result.scene.vehicle.has_springs
+    told = (
+        "springs, dampers and bump stops of wheels without mass"
+        if springs
+        else "wheels are fixed to the body"
+    )
+    yield "suspension", "yes" if springs else "no", told
+    yield "steering, brakes of single wheels", "no", "wheels roll or slide, see the settings"
     gone = result.statistics.wheels_given_way
     told = f"; {gone} wheels were loaded beyond what they carry, and gave way" if gone else ""
     yield "wheels and parts that come off", "no", f"nothing leaves the vehicle{told}"

@@ -268,6 +268,7 @@ class RunRecord:
         ``impacts`` (lost in rigid contacts). Then their ``total``, and ``residual``: total now less total at
         the start, as no work enters from outside. ``kinetic`` is that of all bodies. Where the barrier is
         free-standing also ``barrier_ground_friction``, what its segments lost to friction on the ground.
+        Where wheels have springs also ``suspension``: in springs, less than at rest, and lost in dampers.
         Where units or segments are joined also ``joints``: the work of joint forces in the held directions.
         It is zero up to the error of the steps, and is separate so that this error is not mistaken for a
         loss. The loss at the stops of a fifth wheel is in ``impacts``.
@@ -277,6 +278,8 @@ class RunRecord:
             terms["barrier_ground_friction"] = self._history.segment_friction
         if self.scene.vehicle.joint is not None or self._pinned:
             terms["joints"] = self._history.joint_work
+        if self.scene.vehicle.has_springs:
+            terms["suspension"] = self._history.suspension
         total = np.sum(list(terms.values()), axis=0)
         return FrozenMapping({**terms, "total": read_only(total), "residual": read_only(total - total[0])})
 

@@ -18,7 +18,8 @@ name                            value
 ``zone.<zone>.deflection[i]``   its deflection [m]
 ``zone.<zone>.scale``           factor on all stresses and slopes of the zone (now 1)
 ``scatter.<quantity>``          factor on all stresses and slopes of the zones that ``[[scatter]]`` in the
-                                vehicle's file names: ``front``, ``side``, ``corner`` or ``tires`` (now 1)
+                                vehicle's file names: ``front``, ``side``, ``corner`` or ``tires``; on the
+                                stiffness of wheels' springs: ``springs`` (now 1)
 ``truss.<number>``              the same five numbers of a vehicle made from arrays: sums over all trusses
                                 [N/m, N], shared as they are now
 ==============================  =======================================================================
@@ -160,7 +161,7 @@ def _names(scene: Scene) -> tuple[str, ...]:
 
 
 def _scattered(vehicle: Vehicle) -> dict[str, tuple[str, ...]]:
-    """Zones of each quantity of the class that is a factor on forces."""
+    """Zones of each quantity of the class that is a factor on zones."""
     return {
         name: one.zones
         for name, one in joined([unit.scatter for unit in vehicle.units], vehicle.zones_met).items()
@@ -278,7 +279,8 @@ def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -
     changed = {name: changed_zone(vehicle.zones[name], new) for name, new in zones.items()}
     for name, factor in groups.get("scatter", {}).items():
         for zone in _scattered(vehicle)[name]:
-            changed[zone] = changed.get(zone, vehicle.zones[zone]).scaled(factor)
+            now = changed.get(zone, vehicle.zones[zone])
+            changed[zone] = now.with_springs(factor) if name == "springs" else now.scaled(factor)
     if changed:
         recipe = recipe.with_zones(changed)
     if "truss" in groups:

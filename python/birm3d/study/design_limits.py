@@ -28,7 +28,7 @@ _SKIN = (
     "for security bollards asks for clear gaps of 1.2 m or less, whatever is computed."
 )
 _OVER = (
-    "Computed, not tested. The vehicle has no suspension that dives or rises, and the barrier does not give "
+    "Computed, not tested. The springs of the vehicle are estimates, and the barrier does not give "
     "way under it: leave a margin. Guidance for security bollards asks for 0.5 m or more."
 )
 _SLIDES = (

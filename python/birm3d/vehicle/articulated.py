@@ -19,6 +19,7 @@ from .core_arguments import core_unit, unit_arguments
 from .joint import Joint
 from .recipe import VehicleRecipe
 from .vehicle import Vehicle
+from .wheel_arguments import load_on_joint
 
 __all__ = ["ArticulatedVehicle", "Joint", "articulate"]
 
@@ -72,6 +73,11 @@ class ArticulatedVehicle(Vehicle):
         assert isinstance(trailing, VehicleRecipe)
         return CombinationRecipe(self.name, leading, trailing, self.joint)
 
+    @property
+    def has_springs(self) -> bool:
+        """Whether any wheel of any unit has a spring, see :class:`birm3d.Zone`."""
+        return any(unit.has_springs for unit in self._units)
+
     @cached_property
     def core(self) -> _core.Vehicle:
         """The same vehicle for the core; its reference point is the leading unit's mass centre."""
@@ -85,10 +91,18 @@ class ArticulatedVehicle(Vehicle):
             place_on_trailing=joint.place_on_trailing - trailing.center_of_mass,
             roll_limit=math.radians(joint.roll_limit),
         )
-        return _core.Vehicle(
-            [core_unit(leading, np.zeros(3)), core_unit(trailing, self._trailing_offset())],
-            [core_joint],
-        )
+        return _core.Vehicle([core_unit(*unit) for unit in self._placed_units()], [core_joint])
+
+    def _placed_units(self) -> list[tuple[Vehicle, Floats, tuple[Floats, float]]]:
+        """Return each unit, where its mass centre is, and what presses on it at the joint."""
+        leading, trailing = self._units
+        on_trailing = self.joint.place_on_trailing - trailing.center_of_mass
+        load = load_on_joint(trailing, on_trailing)
+        on_leading = self.joint.place_on_leading - leading.center_of_mass
+        return [
+            (leading, np.zeros(3), (on_leading, load)),
+            (trailing, self._trailing_offset(), (on_trailing, -load)),
+        ]
 
     def _trailing_offset(self) -> Floats:
         """Return the trailing mass centre along the ground, from the leading one, shape (3,) [m]."""
@@ -98,11 +112,7 @@ class ArticulatedVehicle(Vehicle):
         return offset
 
     def _core_arguments(self) -> list[dict[str, Any]]:
-        leading, trailing = self._units
-        offsets = (np.zeros(3), self._trailing_offset())
-        return [
-            unit_arguments(unit, offset) for unit, offset in zip((leading, trailing), offsets, strict=True)
-        ]
+        return [unit_arguments(*unit) for unit in self._placed_units()]
 
     def with_unit(self, index: int, unit: Vehicle) -> ArticulatedVehicle:
         """Return the vehicle with another leading (0) or trailing (1) unit."""
@@ -199,6 +209,7 @@ def articulate(units: Sequence[Vehicle], joint: Joint, name: str | None) -> Arti
         return np.concatenate(shifted)
 
     wheel_numbers = trailing.wheel_of_node + np.where(trailing.wheel_of_node >= 0, len(leading.wheels), 0)
+    wheel_zones = trailing.zone_of_wheel + np.where(trailing.zone_of_wheel >= 0, len(leading.zones), 0)
     shell_numbers = trailing.along_of_node + np.where(trailing.along_of_node >= 0, len(leading.nodes), 0)
     zone_numbers = trailing.zone_of_node + np.where(trailing.zone_of_node >= 0, len(leading.zones), 0)
     return ArticulatedVehicle(
@@ -214,6 +225,7 @@ def articulate(units: Sequence[Vehicle], joint: Joint, name: str | None) -> Arti
         along_of_node=np.concatenate([leading.along_of_node, shell_numbers]),
         quads=np.concatenate([leading.quads, trailing.quads + len(leading.nodes)]),
         wheels=of_both("wheels"),
+        zone_of_wheel=np.concatenate([leading.zone_of_wheel, wheel_zones]),
         mass_center_height=float(center[2]),
         zones={**leading.zones, **trailing.zones},
         rate_sensitivity=leading.rate_sensitivity,

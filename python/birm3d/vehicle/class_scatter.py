@@ -7,16 +7,16 @@ from typing import NamedTuple
 
 __all__ = ["QUANTITIES", "STIFFNESSES", "ClassScatter", "joined"]
 
-STIFFNESSES = ("front", "side", "corner", "tires")
-"""Quantities that are forces of zones."""
-QUANTITIES = (*STIFFNESSES, "mass_center_height", "barrier_friction", "tire_friction")
+STIFFNESSES = ("front", "side", "corner", "tires", "springs")
+"""Quantities that are factors on zones: on their forces, or on the stiffness of their wheels' springs."""
+QUANTITIES = (*STIFFNESSES[:4], "mass_center_height", "barrier_friction", "tire_friction", "springs")
 """What may differ, in the order in which it is drawn."""
 
 
 class ClassScatter(NamedTuple):
     """Of one quantity: a factor on that of the file's vehicle, lognormal over the vehicles of its class.
 
-    median: of the factor. log_sd: standard deviation of its logarithm. zones: whose forces it is a factor on.
+    median: of the factor. log_sd: standard deviation of its logarithm. zones: that it is a factor on.
     """
 
     median: float

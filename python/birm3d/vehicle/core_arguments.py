@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from .. import _core
 from .payload import core_ranges
+from .wheel_arguments import breakaway, suspension
 
 if TYPE_CHECKING:
     from .vehicle_fields import VehicleFields
@@ -18,18 +19,25 @@ __all__ = ["core_unit", "is_shape", "unit_arguments"]
 Floats = npt.NDArray[np.float64]
 
 
-def core_unit(vehicle: VehicleFields, offset: Floats) -> _core.Unit:
-    """Return the rigid body for the core; offset of its mass centre along the ground (3,) [m]."""
+def core_unit(
+    vehicle: VehicleFields, offset: Floats, joint: tuple[Floats, float] | None = None
+) -> _core.Unit:
+    """Return the rigid body for the core; offset of its mass centre along the ground (3,) [m].
+
+    joint: what presses on it there, as in :func:`birm3d.vehicle.wheel_arguments.wheel_loads`.
+    """
     shape = vehicle._shape
     if shape is not None and is_shape(vehicle):
         trusses = shape.trusses(vehicle.zones, vehicle.rate_sensitivity, vehicle.indentation_length)
         origin = vehicle.center_of_mass
     else:
         trusses, origin = _core.TrussMesh(**_truss_arguments(vehicle)), np.zeros(3)
-    return _core.Unit(**_body_arguments(vehicle, offset), trusses=trusses, origin=origin)
+    return _core.Unit(**_body_arguments(vehicle, offset, joint), trusses=trusses, origin=origin)
 
 
-def unit_arguments(vehicle: VehicleFields, offset: Floats) -> dict[str, Any]:
+def unit_arguments(
+    vehicle: VehicleFields, offset: Floats, joint: tuple[Floats, float] | None = None
+) -> dict[str, Any]:
     """Return what :func:`core_unit` gives the core, with the arguments of its TrussMesh as "trusses"."""
     shape = vehicle._shape
     if shape is not None and is_shape(vehicle):
@@ -37,7 +45,7 @@ def unit_arguments(vehicle: VehicleFields, offset: Floats) -> dict[str, Any]:
         trusses, origin = shape.truss_arguments(*laws), vehicle.center_of_mass
     else:
         trusses, origin = _truss_arguments(vehicle), np.zeros(3)
-    return {**_body_arguments(vehicle, offset), "trusses": trusses, "origin": origin}
+    return {**_body_arguments(vehicle, offset, joint), "trusses": trusses, "origin": origin}
 
 
 def is_shape(vehicle: VehicleFields) -> bool:
@@ -52,12 +60,15 @@ def is_shape(vehicle: VehicleFields) -> bool:
     return all(own is other or np.array_equal(own, other) for own, other in pairs)
 
 
-def _body_arguments(vehicle: VehicleFields, offset: Floats) -> dict[str, Any]:
+def _body_arguments(
+    vehicle: VehicleFields, offset: Floats, joint: tuple[Floats, float] | None
+) -> dict[str, Any]:
     return {
         "mass": vehicle.mass,
         "inertia": vehicle.inertia,
         "wheels": vehicle.wheels,
-        "breakaway": _breakaway(vehicle),
+        "breakaway": breakaway(vehicle),
+        "suspension": suspension(vehicle, joint),
         "mass_center_height": vehicle.mass_center_height,
         "offset": offset,
         "core": _core_boxes(vehicle),
@@ -90,17 +101,6 @@ def _truss_arguments(vehicle: VehicleFields) -> dict[str, Any]:
         "wheel_of": vehicle.wheel_of_node,
         "along_of": vehicle.along_of_node,
     }
-
-
-def _breakaway(vehicle: VehicleFields) -> Floats:
-    """Return load [N] and travel [m] of each wheel that gives way (w, 2), by the zone of its tread."""
-    rows = np.tile([np.inf, 0.0], (len(vehicle.wheels), 1))
-    zones = list(vehicle.zones.values())
-    if any(zone.breakaway is not None for zone in zones):
-        of_zone = np.array([(zone.breakaway or np.inf, zone.breakaway_travel or 0.0) for zone in zones])
-        on_tread = vehicle.wheel_of_node >= 0
-        rows[vehicle.wheel_of_node[on_tread]] = of_zone[vehicle.zone_of_node[on_tread]]
-    return rows
 
 
 def _core_boxes(vehicle: VehicleFields) -> Floats:

@@ -17,7 +17,7 @@ from ..io.toml import Strict, reject
 from .class_scatter import STIFFNESSES
 from .scaling import SIZES, Extent, Factors, PlaceMap, Scaling, factors_of, scaling_between
 from .skin_mesh import SkinMesh
-from .zone_law import NonNegative, Positive, ZoneLaw
+from .zone_law import OF_WHEELS, NonNegative, Positive, ZoneLaw
 
 __all__ = [
     "AlongLaw",
@@ -353,11 +353,19 @@ class Exterior(Block):
 class Scatter(Block):
     """How vehicles of the class differ from this one, see :class:`birm3d.vehicle.class_scatter.ClassScatter`.
 
-    Of forces (front, side, corner, tires) the zones say which ones; of the other quantities there are none.
+    Of forces (front, side, corner, tires) and of springs the zones say which ones; of the other quantities
+    there are none.
     """
 
     name: Literal[
-        "front", "side", "corner", "tires", "mass_center_height", "barrier_friction", "tire_friction"
+        "front",
+        "side",
+        "corner",
+        "tires",
+        "mass_center_height",
+        "barrier_friction",
+        "tire_friction",
+        "springs",
     ]
     zones: tuple[LawName, ...] = ()
     median: Positive = 1.0
@@ -531,7 +539,7 @@ class Zone(Block, ZoneLaw):
 
     def _check_tire_numbers(self) -> None:
         tires = "tire" in self.panels
-        for key in ("breakaway_N", "breakaway_travel_m"):
+        for key in OF_WHEELS:
             value = getattr(self, key)
             if not tires and value is not None:
                 reject(key, f"must be in a zone of the panel 'tire', got {value:g}")

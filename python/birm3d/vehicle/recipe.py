@@ -51,6 +51,7 @@ class VehicleArrays:
     along_of_node: Ints
     quads: Ints
     wheels: Floats
+    zone_of_wheel: Ints
     truss_laws: Floats | None = None
 
     def raised(self, height: float) -> VehicleArrays:

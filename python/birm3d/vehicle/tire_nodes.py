@@ -6,8 +6,8 @@ its length of the circle times the width of the wheel. Its truss runs across the
 of the axle and up to 60 degrees steep below and above. So a wheel resists a wall beside it and what it goes
 over. No truss runs lengthways, for what a wheel resists in a crash head-on is already in the zones of the
 front. Trusses are long, so that they hardly rotate while they are pressed; their anchors are no points of the
-vehicle. Nodes near the ground are left out: there the wheel stands on it. Neither suspension nor steering is
-modelled.
+vehicle. Nodes near the ground are left out: there the wheel stands on it. A tread moves with the
+body, not with the spring of its wheel, and does not steer.
 
 Friction between treads and a barrier has its own coefficient (:attr:`birm3d.Settings.mu_tire_barrier`). A
 wheel that is not locked has the angular velocity at which that friction has no torque about its axle. So a
@@ -24,7 +24,7 @@ import numpy.typing as npt
 
 from birm3d.vehicle.vehicle_file import VehicleFile, Wheel
 
-__all__ = ["Tread", "build_tread"]
+__all__ = ["Tread", "build_tread", "zones_of_wheels"]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -75,9 +75,9 @@ def build_tread(vehicle_file: VehicleFile, density: float = 1.0) -> Tread:
     """
     size = vehicle_file.exterior.element_size_m / math.sqrt(density)
     parts: list[tuple[Floats, Floats, float, int, int]] = []
-    for index, wheel in enumerate(vehicle_file.wheels):
-        zone = _zone_of(vehicle_file, wheel)
-        if zone is not None:
+    zones = zones_of_wheels(vehicle_file).tolist()
+    for index, (wheel, zone) in enumerate(zip(vehicle_file.wheels, zones, strict=True)):
+        if zone >= 0:
             parts.append((*_ring(wheel, size), zone, index))
     counts = [len(part[0]) for part in parts]
     empty = [np.empty((0, 3))]
@@ -90,15 +90,20 @@ def build_tread(vehicle_file: VehicleFile, density: float = 1.0) -> Tread:
     )
 
 
-def _zone_of(vehicle: VehicleFile, wheel: Wheel) -> int | None:
-    """Index of the first zone for tyres whose ranges hold the middle of the wheel."""
+def zones_of_wheels(vehicle_file: VehicleFile) -> Ints:
+    """Return the index of each wheel's zone (w,): of the panel ``tire``; -1 where there is none."""
+    return np.array([_zone_of(vehicle_file, wheel) for wheel in vehicle_file.wheels], np.int64)
+
+
+def _zone_of(vehicle: VehicleFile, wheel: Wheel) -> int:
+    """Index of the first zone for tyres whose ranges hold the middle of the wheel; -1 without one."""
     for index, zone in enumerate(vehicle.zones):
         x, y, z = wheel.center_m
         ranges = ((x, zone.x_m), (abs(y), zone.y_m), (z, zone.z_m))
         inside = all(r is None or r[0] <= place <= r[1] for place, r in ranges)
         if "tire" in zone.panels and inside:
             return index
-    return None
+    return -1
 
 
 def _ring(wheel: Wheel, size: float) -> tuple[Floats, Floats, float]:

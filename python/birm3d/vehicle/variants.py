@@ -11,7 +11,7 @@ from ..unit_check import Usual, given, warn_if_unusual
 from ..units import Quantity, Stated, si
 from .scaling import factors_of, sizes_given
 from .vehicle_data import VehicleData
-from .zone import KNEE, LAW_QUANTITIES, OPTIONAL, Zone, positive
+from .zone import KNEE, LAW_QUANTITIES, OF_ENVELOPE, OPTIONAL, Zone, positive
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -240,7 +240,7 @@ class VehicleVariants(VehicleData):
             if key not in known.split(", "):
                 raise ValueError(f"zone parameter must be one of {known}; got {key!r}")
         if "envelope" in changes:
-            changes = {**dict.fromkeys((*KNEE, *OPTIONAL)), **changes}
+            changes = {**dict.fromkeys((*KNEE, *OF_ENVELOPE)), **changes}
         elif self.zones[name].envelope is not None and any(key in changes for key in KNEE):
             missing = [key for key in KNEE[:3] if key not in changes]
             if missing:
@@ -248,9 +248,9 @@ class VehicleVariants(VehicleData):
                     f"{missing[0]} must be given too: zone {name!r} has an envelope, "
                     f"which needs {', '.join(KNEE[:3])} to take its place; got {', '.join(changes)}"
                 )
-            changes = {"envelope": None, **dict.fromkeys(OPTIONAL), **changes}
+            changes = {"envelope": None, **dict.fromkeys(OF_ENVELOPE), **changes}
         elif {*KNEE[:3], "k_unloading"} <= changes.keys():
-            changes = {**dict.fromkeys(OPTIONAL), **changes}
+            changes = {**dict.fromkeys(OF_ENVELOPE), **changes}
         for key, quantity in LAW_QUANTITIES.items():
             if isinstance(changes.get(key), str):
                 changes[key] = si(key, changes[key], quantity)

@@ -63,6 +63,8 @@ class Vehicle(OldVehicleNames):
         Shell elements; empty for vehicles made from arrays.
     wheels : ndarray, shape (w, 4)
         Centres and radius [m].
+    zone_of_wheel : ndarray of int, shape (w,)
+        Index into ``zones`` of the law of each wheel's tread, springs and hangers; -1 without one.
     mass_center_height : float
         Above the ground at rest [m].
     zones : mapping of str to Zone

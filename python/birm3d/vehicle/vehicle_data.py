@@ -130,6 +130,11 @@ class VehicleData(VehicleFields):
             return self._shape.node_spacing
         return node_spacing(self.nodes[self.is_skin])
 
+    @property
+    def has_springs(self) -> bool:
+        """Whether any wheel has a spring, see :class:`birm3d.Zone`."""
+        return any(zone.static_deflection is not None for zone in self.zones.values())
+
     @cached_property
     def core(self) -> _core.Vehicle:
         """The same vehicle for the core."""

@@ -49,6 +49,7 @@ class VehicleFields:
     indentation_length: float = 0.0
     wheel_of_node: npt.NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.empty(0, np.int64))
     along_of_node: npt.NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.empty(0, np.int64))
+    zone_of_wheel: npt.NDArray[np.int64] = dataclasses.field(default_factory=lambda: np.empty(0, np.int64))
     # What made the vehicle: laws per truss (m, N, N/m), or a file with its mesh density.
     _truss_laws: Floats | None = None
     _file: VehicleFile | None = None
@@ -61,9 +62,10 @@ class VehicleFields:
     _own: tuple[str, ...] = dataclasses.field(default=(), compare=False)
 
     def __post_init__(self) -> None:
-        for name in ("wheel_of_node", "along_of_node"):
+        n, w = len(self.nodes), len(self.wheels)
+        for name, size in (("wheel_of_node", n), ("along_of_node", n), ("zone_of_wheel", w)):
             if len(getattr(self, name)) == 0:
-                object.__setattr__(self, name, np.full(len(self.nodes), -1, np.int64))
+                object.__setattr__(self, name, np.full(size, -1, np.int64))
         for field in dataclasses.fields(self):
             value = getattr(self, field.name)
             if isinstance(value, np.ndarray):

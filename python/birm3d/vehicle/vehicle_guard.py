@@ -15,7 +15,7 @@ __all__ = ["as_built", "changed_by_hand", "check_parts"]
 
 _DERIVED = (
     *("mass", "center_of_mass", "inertia", "nodes", "anchors", "area", "zone_of_node", "quads", "wheels"),
-    *("mass_center_height", "wheel_of_node", "along_of_node"),
+    *("mass_center_height", "wheel_of_node", "along_of_node", "zone_of_wheel"),
 )
 # In a vehicle of two units, all fields but the name follow from the units.
 _OF_UNITS = (*_DERIVED, "zones", "rate_sensitivity", "indentation_length")

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from .. import _core
 from .along_panel import build_along
 from .mesher import build_mesh
-from .tire_nodes import build_tread
+from .tire_nodes import build_tread, zones_of_wheels
 from .vehicle_file import VehicleFile
 from .zone import Zone
 
@@ -39,6 +39,8 @@ class VehicleShape:
         As :class:`birm3d.Vehicle` has them, but in the axes of the file.
     wheels : ndarray, shape (w, 4)
         Centres and radius [m].
+    zone_of_wheel
+        As :class:`birm3d.Vehicle` has it.
     """
 
     def __init__(
@@ -51,6 +53,7 @@ class VehicleShape:
         along_of_node: Ints,
         quads: Ints,
         wheels: Floats,
+        zone_of_wheel: Ints,
     ) -> None:
         self.nodes = nodes
         self.anchors = anchors
@@ -60,7 +63,9 @@ class VehicleShape:
         self.along_of_node = along_of_node
         self.quads = quads
         self.wheels = wheels
-        for array in (nodes, anchors, area, zone_of_node, wheel_of_node, along_of_node, quads, wheels):
+        self.zone_of_wheel = zone_of_wheel
+        of_nodes = (nodes, anchors, area, zone_of_node, wheel_of_node, along_of_node)
+        for array in (*of_nodes, quads, wheels, zone_of_wheel):
             array.setflags(write=False)
         self._trusses: OrderedDict[tuple[object, ...], _core.TrussMesh] = OrderedDict()
         self._seen: OrderedDict[bytes, tuple[Floats, Floats]] = OrderedDict()
@@ -78,6 +83,7 @@ class VehicleShape:
             along_of_node=self.along_of_node[shell],
             quads=self.quads,
             wheels=self.wheels,
+            zone_of_wheel=self.zone_of_wheel,
         )
 
     @cached_property
@@ -130,7 +136,7 @@ class VehicleShape:
 
     def __reduce__(self) -> tuple[object, ...]:
         arrays = (self.nodes, self.anchors, self.area, self.zone_of_node, self.wheel_of_node)
-        return (VehicleShape, (*arrays, self.along_of_node, self.quads, self.wheels))
+        return (VehicleShape, (*arrays, self.along_of_node, self.quads, self.wheels, self.zone_of_wheel))
 
 
 def _moved(points: Floats, origin: Floats) -> Floats:
@@ -173,4 +179,5 @@ def shape_of(file: VehicleFile, mesh_density: float) -> VehicleShape:
         along_of_node=np.concatenate([none[0], along.of, none[2]]),
         quads=np.array(mesh.quads, np.int64),
         wheels=wheels,
+        zone_of_wheel=zones_of_wheels(file),
     )

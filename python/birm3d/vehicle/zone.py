@@ -14,7 +14,17 @@ import numpy as np
 from .. import _core
 from ..base.arguments import checked
 
-__all__ = ["KNEE", "LAW_NUMBERS", "LAW_QUANTITIES", "OPTIONAL", "TRUSS_LAW", "LawNumber", "Zone", "positive"]
+__all__ = [
+    "KNEE",
+    "LAW_NUMBERS",
+    "LAW_QUANTITIES",
+    "OF_ENVELOPE",
+    "OPTIONAL",
+    "TRUSS_LAW",
+    "LawNumber",
+    "Zone",
+    "positive",
+]
 
 KNEE = ("k_initial", "knee", "k_hardening", "f_max")
 """The numbers of the paper's loading envelope (Fig. 3)."""
@@ -49,11 +59,17 @@ LAW_NUMBERS: Mapping[str, LawNumber] = {
     "friction_share": LawNumber("number", "in [0, 1]", "share of friction"),
     "breakaway": LawNumber("force", "> 0", "wheels give way at", of_wheel=True),
     "breakaway_travel": LawNumber("length", "> 0", "by", of_wheel=True),
+    "static_deflection": LawNumber("length", "> 0", "springs under the weight", of_wheel=True),
+    "damping_ratio": LawNumber("number", "in [0, 1]", "damping ratio", of_wheel=True),
+    "bump_travel": LawNumber("length", "> 0", "to the bump stop", of_wheel=True),
 }
 """Numbers of a zone's law, in the order of files. Files, names of parameters and reports come from here."""
 
 OPTIONAL = tuple(name for name, row in LAW_NUMBERS.items() if row.optional)
 """Numbers that a law may have in addition to Fig. 3."""
+
+OF_ENVELOPE = tuple(name for name in OPTIONAL if not LAW_NUMBERS[name].of_wheel)
+"""Those of them that go with an envelope; a new envelope starts without."""
 
 LAW_QUANTITIES = {name: row.quantity for name, row in LAW_NUMBERS.items()}
 """Number of a zone's law -> its quantity, as :func:`birm3d.units.si` has it."""
@@ -91,6 +107,10 @@ class Zone(Mapping[str, Any]):
     breakaway, breakaway_travel
         Of a zone of tyres: load on the ground [N] at which springs and hangers of a wheel give way. The body
         then comes down by the travel [m] before the wheel carries it again. ``None``: they never give way.
+    static_deflection, damping_ratio, bump_travel
+        Of a zone of tyres: compression of the springs under the vehicle's weight [m], damping over critical
+        damping, and travel of the wheel from rest to the rigid bump stop [m]. The wheel's own mass is
+        neglected. ``None``: wheels are fixed to the body.
     """
 
     k_initial: float | None = None
@@ -105,6 +125,9 @@ class Zone(Mapping[str, Any]):
     friction_share: float | None = None
     breakaway: float | None = None
     breakaway_travel: float | None = None
+    static_deflection: float | None = None
+    damping_ratio: float | None = None
+    bump_travel: float | None = None
 
     def __post_init__(self) -> None:
         if self.envelope is None:
@@ -119,16 +142,23 @@ class Zone(Mapping[str, Any]):
         if (self.tail_depth is None) != (self.tail_slope is None):
             given, other = ("tail_slope", "depth") if self.tail_depth is None else ("tail_depth", "slope")
             raise ValueError(f"tail_{other} must be given beside {given}, got None")
-        self._check_breakaway()
+        self._check_wheels()
         _ = self.curve
 
-    def _check_breakaway(self) -> None:
-        for name, other in (("breakaway", "breakaway_travel"), ("breakaway_travel", "breakaway")):
-            value = getattr(self, name)
-            if value is not None:
-                positive(name, value)
-                if getattr(self, other) is None:
-                    raise ValueError(f"{other} must be given beside {name}, got None")
+    def _check_wheels(self) -> None:
+        for names in (
+            ("breakaway", "breakaway_travel"),
+            ("static_deflection", "damping_ratio", "bump_travel"),
+        ):
+            given = [name for name in names if getattr(self, name) is not None]
+            for name in given:
+                if name != "damping_ratio":
+                    positive(name, getattr(self, name))
+            for name in names:
+                if given and name not in given:
+                    raise ValueError(f"{name} must be given beside {given[0]}, got None")
+        if self.damping_ratio is not None and not 0.0 <= self.damping_ratio <= 1.0:
+            raise ValueError(f"damping_ratio must be in [0, 1], got {self.damping_ratio}")
 
     def __getitem__(self, name: str) -> Any:
         if name not in self._names:
@@ -186,6 +216,13 @@ class Zone(Mapping[str, Any]):
         if self.envelope is not None:
             changes["envelope"] = tuple((stretch * d, factor * stress) for d, stress in self.envelope)
         return dataclasses.replace(self, **changes)
+
+    def with_springs(self, factor: float) -> Zone:
+        """Return a zone of tyres with springs stiffer by a factor > 0; the damping ratio stays."""
+        if self.static_deflection is None:
+            return self
+        deflection = self.static_deflection / positive("factor", factor)
+        return dataclasses.replace(self, static_deflection=deflection)
 
     def __getstate__(self) -> dict[str, object]:
         return {name: value for name, value in self.__dict__.items() if name != "curve"}

@@ -11,7 +11,7 @@ from pydantic import Field, create_model
 from ..io.toml import Strict, reject
 from .zone import LAW_NUMBERS, Zone
 
-__all__ = ["NonNegative", "Positive", "ZoneLaw"]
+__all__ = ["OF_WHEELS", "NonNegative", "Positive", "ZoneLaw"]
 
 Positive: TypeAlias = Annotated[float, Field(gt=0.0)]
 NonNegative: TypeAlias = Annotated[float, Field(ge=0.0)]
@@ -35,6 +35,8 @@ def _fields() -> Iterator[tuple[str, str, Any]]:
 
 
 _KEYS = {key: name for key, name, _ in _fields()}
+OF_WHEELS = tuple(key for key, name in _KEYS.items() if name in LAW_NUMBERS and LAW_NUMBERS[name].of_wheel)
+"""Keys of a zone of tyres that say how its wheels are held."""
 _Numbers: Any = create_model("_Numbers", __base__=Strict, **{key: field for key, _, field in _fields()})
 
 

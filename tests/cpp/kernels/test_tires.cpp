@@ -44,7 +44,7 @@ TEST("a tilted wheel touches the ground with its lowest point") {
         state.position = {5.0, 6.0, 1.3};
         state.orientation = from_roll_pitch_yaw(angles);
         std::vector<RigidContact> contacts;
-        find_tire_contacts(unit, 0, state, 0, contacts);
+        find_tire_contacts(unit, 0, state, 0, WheelAt::bump_stop, contacts);
         CHECK(contacts.size() == 4);
         for (std::size_t i = 0; i < contacts.size(); ++i) {
             const double lowest = lowest_rim_point(unit.wheels[i], state.orientation);
@@ -66,7 +66,7 @@ TEST("a wheel gives way beyond its load, and is pushed up by its travel") {
     const WheelSet gone = overloaded(weak, 0.5, std::vector<double>(4, 2501.0));
     CHECK(gone == 2 && has_wheel(gone, 1) && !has_wheel(gone, 0) && !has_wheel(gone, 64));
     std::vector<RigidContact> contacts;
-    find_tire_contacts(weak, 0, BodyState(), gone, contacts);
+    find_tire_contacts(weak, 0, BodyState(), gone, WheelAt::bump_stop, contacts);
     CHECK(contacts.size() == 4);
     CHECK_CLOSE(contacts[1].gap - contacts[0].gap, 0.25, 1e-15, "exact but for rounding");
 }
@@ -75,7 +75,7 @@ TEST("a wheel that lies flat is held at its centre") {
     BodyState state;
     state.orientation = from_roll_pitch_yaw({0.5 * pi, 0.0, 0.0});
     std::vector<RigidContact> contacts;
-    find_tire_contacts(unit, 0, state, 0, contacts);
+    find_tire_contacts(unit, 0, state, 0, WheelAt::bump_stop, contacts);
     for (std::size_t i = 0; i < contacts.size(); ++i)
         CHECK_CLOSE((contacts[i].arm - state.orientation * unit.wheels[i].center).norm(), 0.0, 1e-15,
                     "exact but for rounding");

@@ -8,6 +8,16 @@
 
 namespace birm3d {
 
+// A spring and a damper between the body and a wheel without mass. Both act along the vertical.
+struct Suspension {
+    double stiffness = 0.0;  // N/m; 0: the wheel is fixed to the body
+    double damping = 0.0;    // N s/m
+    double at_rest = 0.0;    // compression under the weight (m)
+    double bump = 0.0;       // from there to the bump stop, which is rigid (m)
+
+    bool springs() const { return stiffness > 0.0; }
+};
+
 // A disc that rolls about the body's s axis; only its lowest point meets the ground.
 struct Wheel {
     Vec3 center = Vec3::Zero();  // body axes (m)
@@ -16,6 +26,7 @@ struct Wheel {
     // come down by `travel` (m).
     double breakaway = std::numeric_limits<double>::infinity();
     double travel = 0.0;
+    Suspension suspension{};  // `center` is where it holds the wheel at rest
 };
 
 // Wheels of a unit, one bit each: bit i is wheel i.

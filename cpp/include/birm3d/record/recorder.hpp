@@ -63,7 +63,7 @@ struct History {
     std::vector<SegmentHistory> segments;  // of a barrier that is free-standing, in the order of its elements
     Column kinetic, potential, stored, crushed;                                    // J
     Column barrier_friction, tire_friction, ground_friction, impacts, joint_work;  // J
-    Column segment_friction;                                                       // J
+    Column segment_friction, suspension;                                           // J
     double momentum_residual = 0.0;  // max |m a - sum of forces| / max |force|, over all units
 };
 

@@ -17,6 +17,7 @@ struct Balances {
         ground_friction,
         impacts,
         segment_friction,
+        dampers,
         terms
     };
 

@@ -39,7 +39,7 @@ struct UnitState : UnitMotion {
     TrussState trusses;
 };
 
-// Energies in J; all but `kinetic` and `potential` grow from zero.
+// Energies in J; all but `kinetic`, `potential` and `springs` grow from zero.
 struct Energies {
     double kinetic = 0.0;
     double potential = 0.0;         // of gravity, zero at the start
@@ -51,10 +51,12 @@ struct Energies {
     double impacts = 0.0;           // lost in rigid contacts
     double joints = 0.0;            // taken by what joints hold: zero but for the error of the steps
     double segment_friction = 0.0;  // lost to friction of free-standing segments on the ground
+    double springs = 0.0;           // in the springs of wheels, less that at rest
+    double dampers = 0.0;           // lost in the dampers of wheels
 
     double total() const {
         return kinetic + potential + stored + crushed + barrier_friction + tire_friction + ground_friction +
-               impacts + joints + segment_friction;
+               impacts + joints + segment_friction + springs + dampers;
     }
 };
 

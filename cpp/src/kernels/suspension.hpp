@@ -1,0 +1,32 @@
+// Springs and dampers of wheels without mass.
+//
+// A sprung wheel that stands on the ground is compressed by c, the depth at which its lowest point would lie below the
+// ground if it were fully extended. The spring has the energy k c^2 / 2 and pushes with its derivative, k c along the
+// vertical at that point. So it keeps the energy in any pose. The damper adds d dc/dt; together they never pull. A wheel
+// that leaves the ground is extended at once, and what its spring still has is lost in the damper.
+#pragma once
+
+#include <vector>
+
+#include "birm3d/model/vehicle.hpp"
+#include "birm3d/state/body_state.hpp"
+
+namespace birm3d {
+
+// Of one sprung wheel on the ground: both forces act upwards at `arm` from the mass centre, world axes.
+struct SuspensionLoad {
+    std::size_t wheel = 0;
+    Vec3 arm = Vec3::Zero();  // m
+    double spring = 0.0;      // N
+    double damper = 0.0;      // N
+};
+
+// Lists the loads of all sprung wheels that are on the ground and have not given way. `motion`: that dampers see, world
+// axes.
+void find_suspension_loads(const Unit& unit, const BodyState& state, const Twist& motion, WheelSet given_way,
+                           std::vector<SuspensionLoad>& loads);
+
+// Energy in the springs less that at rest (J). Of the wheels that have given way nothing is left.
+double spring_energy(const Unit& unit, const BodyState& state, WheelSet given_way);
+
+}  // namespace birm3d

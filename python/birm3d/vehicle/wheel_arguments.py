@@ -1,0 +1,84 @@
+"""What the core is told of a vehicle's wheels beside their places: loads at which they give way, and springs.
+
+The springs of a file are given by their compression under the weight, so that they follow the vehicle's mass.
+How the weight is shared follows from statics, with loads that lie on a plane over the wheels' places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from scipy.constants import g
+
+if TYPE_CHECKING:
+    from .vehicle_fields import VehicleFields
+    from .zone import Zone
+
+__all__ = ["breakaway", "load_on_joint", "suspension", "wheel_loads"]
+
+Floats = npt.NDArray[np.float64]
+
+
+def breakaway(vehicle: VehicleFields) -> Floats:
+    """Return load [N] and travel [m] of each wheel that gives way (w, 2), by its zone."""
+    rows = np.tile([np.inf, 0.0], (len(vehicle.wheels), 1))
+    for wheel, zone in _zones_of_wheels(vehicle):
+        rows[wheel] = zone.breakaway or np.inf, zone.breakaway_travel or 0.0
+    return rows
+
+
+def suspension(vehicle: VehicleFields, joint: tuple[Floats, float] | None = None) -> Floats:
+    """Return what holds each wheel (w, 4), by its zone.
+
+    Stiffness [N/m], 0 of a wheel that is fixed to the body; damping [N s/m]; compression at rest, and travel
+    from there to the bump stop [m]. joint: as in :func:`wheel_loads`.
+    """
+    rows = np.zeros((len(vehicle.wheels), 4))
+    loads: Floats | None = None
+    for wheel, zone in _zones_of_wheels(vehicle):
+        deflection = zone.static_deflection
+        if deflection is None:
+            continue
+        assert zone.damping_ratio is not None  # zones have all three or none
+        assert zone.bump_travel is not None
+        loads = wheel_loads(vehicle, joint) if loads is None else loads
+        stiffness = loads[wheel] / deflection
+        damping = 2.0 * zone.damping_ratio * loads[wheel] / np.sqrt(g * deflection)
+        rows[wheel] = stiffness, damping, deflection, zone.bump_travel
+    return rows
+
+
+def wheel_loads(vehicle: VehicleFields, joint: tuple[Floats, float] | None = None) -> Floats:
+    """Return the load of each wheel at rest on a level road [N], shape (w,).
+
+    Of all loads that carry the weight, and the load on a joint, those that lie on a plane. A unit that would
+    tip over its wheels is taken to load them evenly.
+    joint: its place from the mass centre, body axes (3,) [m], and what presses down on it [N].
+    """
+    weight = vehicle.mass * g
+    place, pressed = (np.zeros(3), 0.0) if joint is None else joint
+    rows = np.column_stack([np.ones(len(vehicle.wheels)), vehicle.wheels[:, :2]])
+    wanted = np.array([weight + pressed, pressed * place[0], pressed * place[1]])
+    loads = np.linalg.pinv(rows.T) @ wanted
+    if not (loads > 0.0).all():  # a trailer without its tractor does not stand on its wheels
+        return np.full(len(vehicle.wheels), (weight + pressed) / len(vehicle.wheels))
+    return np.asarray(loads, float)
+
+
+def load_on_joint(trailing: VehicleFields, place: Floats) -> float:
+    """Return what a trailing unit presses on its joint [N], at a place from its mass centre (3,) [m]."""
+    if len(trailing.wheels) == 0:
+        return 0.0
+    axle = trailing.wheels[:, 0].mean()
+    return float(trailing.mass * g * axle / (axle - place[0]))
+
+
+def _zones_of_wheels(vehicle: VehicleFields) -> Iterator[tuple[int, Zone]]:
+    """Yield each wheel that has a zone, and the zone."""
+    zones = list(vehicle.zones.values())
+    for wheel, zone in enumerate(vehicle.zone_of_wheel.tolist()):
+        if zone >= 0:
+            yield wheel, zones[zone]
