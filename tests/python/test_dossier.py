@@ -200,6 +200,7 @@ def test_without_bands_the_page_says_why(tmp_path: Path) -> None:
         birm3d.dossier(box, tmp_path / "none", draws=10)
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")  # one car of the class strikes its core
 def test_occupants_are_judged_by_the_standard_that_rates(tmp_path: Path) -> None:
     """A car that meets MASH and not EN 1317: the answer at the top is that of the rating below it."""
     car = Vehicle.preset("mash_1100c", mesh_density=0.1)

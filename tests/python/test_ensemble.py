@@ -144,7 +144,10 @@ def highest_wheel(result: Result) -> float:
     greatest = 0.0
     for u, unit in enumerate(result.scene.vehicle.units):
         centers, turns = result.pose(result.time, u)
-        for *place, radius in unit.wheels:
+        zones = list(unit.zones.values())
+        for (*place, radius), zone in zip(unit.wheels, unit.zone_of_wheel, strict=True):
+            extended = (zones[zone].static_deflection or 0.0) if zone >= 0 else 0.0
+            place[2] -= extended
             lowest = centers[:, 2] + turns[:, 2] @ place - radius * np.sqrt(1.0 - turns[:, 2, 1] ** 2)
             greatest = max(greatest, lowest.max())
     return greatest

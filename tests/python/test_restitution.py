@@ -41,7 +41,7 @@ def test_the_core_is_not_met_head_on(name: str) -> None:
     """At 25 m/s, which is two and a half times the energy of the fastest test that was fitted."""
     assert {test.speed < 16.0 for test in nhtsa_tests().values()} == {True}
     result = Simulation(Vehicle.preset(name), Barrier.rigid_wall(), 25.0).run()
-    assert result.energy["impacts"][-1] < 1e-3 * result.energy["kinetic"][0]
+    assert result.statistics.body_steps == 0
 
 
 def test_a_zone_with_a_new_law_has_no_recovery_but_that_which_is_given() -> None:
@@ -60,6 +60,10 @@ def test_the_report_says_that_the_core_was_met() -> None:
     truck = Vehicle.preset("semi_truck", mesh_density=0.3)
     with pytest.warns(CoreContactWarning, match="core_contact_force must be at most 320 kN"):
         met = Simulation(truck, Barrier.pole(), 22.35, duration=0.4).run().report()
+    assert "the rigid core was met between trusses in" in met
+    pickup = Vehicle.preset("paper_pickup", mesh_density=0.3)
+    with pytest.warns(CoreContactWarning):
+        met = Simulation(pickup, Barrier.pole(), 40.0, duration=0.4).run().report()
     assert "the rigid core was met behind bottomed-out trusses (" in met
     assert "of 'bumper'" in met
     wall = Simulation(truck, Barrier.rigid_wall(), 15.0, duration=0.2).run().report()

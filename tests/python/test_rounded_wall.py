@@ -36,7 +36,7 @@ def test_left_and_right_are_mirror_images(car: Vehicle) -> None:
     assert left.yaw[-1] == pytest.approx(-right.yaw[-1], rel=2e-3)
     at = int(np.searchsorted(left.time, 0.08))
     assert left.velocity[at, 1] < -2.5, "pushed off to the right; half of 150 tests have -3.2 to -4.5 m/s"
-    assert left.yaw[-1] > 2.0, "turned to the left"
+    assert left.yaw[-1] > 1.0, "turned to the left"
 
 
 def test_impulse_does_not_hang_on_a_small_radius(car: Vehicle) -> None:

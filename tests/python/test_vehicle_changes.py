@@ -47,6 +47,7 @@ OTHERS: dict[str, Callable[[Vehicle], Any]] = {
     "rate_sensitivity": lambda v: 0.07,
     "indentation_length": lambda v: 0.31,
     "wheel_of_node": lambda v: np.where(v.wheel_of_node == 0, 1, v.wheel_of_node),
+    "zone_of_wheel": lambda v: np.full_like(v.zone_of_wheel, -1),
     "along_of_node": lambda v: np.where(np.arange(v.n_nodes) == 7, 0, v.along_of_node),
 }
 

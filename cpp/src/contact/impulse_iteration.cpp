@@ -79,6 +79,22 @@ const std::vector<Twist>& sliding_motions(const KickMemory& memory) {
     return memory.sliding.empty() ? memory.pushed : memory.sliding;
 }
 
+// Motions of the bodies with the normal impulses and those of joints, without friction. Springs push joined units
+// apart, and the joint holds them: the motion without it has a sliding that does not happen.
+void find_held_motions(const Scene& scene, const KickedBy& by, KickMemory& memory) {
+    memory.held.clear();
+    if (scene.vehicle->joints.empty() || by.is_impact) return;
+    memory.held = memory.pushed;
+    const auto add = [&](std::size_t b, const Wrench& push) {
+        memory.held[b].velocity += memory.bodies[b].inverse_mass * push.force;
+        memory.held[b].angular_velocity += memory.bodies[b].inverse_inertia * push.torque;
+    };
+    for (const RigidContact& contact : memory.kick.contacts) {
+        add(contact.body, wrench_on_body(contact));
+        if (contact.other >= 0) add(static_cast<std::size_t>(contact.other), wrench_on_other(contact));
+    }
+}
+
 // Reduces a friction impulse so that it does not reverse the sliding of the body. `motion`: of the body without it.
 Wrench without_reversal(const Wrench& friction, const ContactBody& body, const Twist& motion) {
     const double slides = -power(friction, motion);
@@ -122,9 +138,11 @@ void kick_by_friction(const Scene& scene, const KickedBy& by, KickMemory& memory
         if (!rolls_freely) {
             Wrench all = kicked.on_ground[u];
             all += kicked.on_cores[u];
+            const bool is_held = !memory.held.empty();
+            const Twist& now = is_held ? memory.held[u] : motion[u];
             on_ground = without_reversal(
-                tire_friction(unit, scene.settings, body, {motion[u], by.at_end[u]}, memory.tire[u]),
-                memory.bodies[u], motion_without(all, memory.bodies[u]));
+                tire_friction(unit, scene.settings, body, {now, by.at_end[u]}, memory.tire[u]),
+                memory.bodies[u], is_held ? now : motion_without(all, memory.bodies[u]));
         }
         on_cores[u] = core_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u],
                                     greatest_other_inverse_mass(kicked.contacts, u, memory.bodies));
@@ -183,6 +201,7 @@ void settle_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory,
         tire_impulses(scene, by, memory);
     };
     solve();
+    find_held_motions(scene, by, memory);
     // Friction depends on the normal impulses. It also tips the body, which changes these impulses: iterate.
     constexpr int most_rounds = 30;
     memory.last.clear();

@@ -69,6 +69,7 @@ struct KickMemory {
     // Buffers of the search for impulses.
     ImpulseSolver solver;
     std::vector<std::vector<SuspensionLoad>> sprung;  // (units) wheels that springs and dampers carry
+    std::vector<Twist> held;                          // (bodies) motions with the impulses of joints
     std::vector<Twist> start;                         // motions of the bodies at the start of the step
     std::vector<Column> tire;
     Column last;

@@ -2,23 +2,16 @@
 
 #include <algorithm>
 
-#include "kernels/tires.hpp"
-
 namespace birm3d {
-
-namespace {
 
 bool has_springs(const Unit& unit) {
     return std::any_of(unit.wheels.begin(), unit.wheels.end(),
                        [](const Wheel& wheel) { return wheel.suspension.springs(); });
 }
 
-}  // namespace
-
 void find_suspension_loads(const Unit& unit, const BodyState& state, const Twist& motion, WheelSet given_way,
                            std::vector<SuspensionLoad>& loads) {
     loads.clear();
-    if (!has_springs(unit)) return;
     const Mat3 R = state.orientation.toRotationMatrix();
     for (std::size_t i = 0; i < unit.wheels.size(); ++i) {
         const Suspension& of = unit.wheels[i].suspension;

@@ -1,7 +1,7 @@
 // Springs and dampers of wheels without mass.
 //
-// A sprung wheel that stands on the ground is compressed by c, the depth at which its lowest point would lie below the
-// ground if it were fully extended. The spring has the energy k c^2 / 2 and pushes with its derivative, k c along the
+// A sprung wheel that stands on the ground is compressed by c: fully extended, its lowest point would lie so far below
+// the ground. The spring has the energy k c^2 / 2 and pushes with its derivative, k c along the
 // vertical at that point. So it keeps the energy in any pose. The damper adds d dc/dt; together they never pull. A wheel
 // that leaves the ground is extended at once, and what its spring still has is lost in the damper.
 #pragma once
@@ -20,6 +20,8 @@ struct SuspensionLoad {
     double spring = 0.0;      // N
     double damper = 0.0;      // N
 };
+
+bool has_springs(const Unit& unit);
 
 // Lists the loads of all sprung wheels that are on the ground and have not given way. `motion`: that dampers see, world
 // axes.

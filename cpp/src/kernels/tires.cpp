@@ -35,16 +35,20 @@ Vec3 point_on_ground(const Wheel& wheel, const Mat3& R, double height) {
     return arm;
 }
 
-}  // namespace
-
-Vec3 lowest_point(const Wheel& wheel, const Mat3& R, double raised) {
-    const Vec3 axle = R.col(1);
-    const Vec3 down = -Vec3::UnitZ() + axle.z() * axle;  // downwards within the wheel's plane
-    const double size = down.norm();
-    const Vec3 center = R * (wheel.center + raised * Vec3::UnitZ());
-    // A wheel that lies flat touches all around: its centre stands for the rim.
-    return size > 1e-9 ? Vec3(center + (wheel.radius / size) * down) : center;
+// Greatest change of a wheel's velocity along its axle by an impulse of 1 there, and at least twice that of the mass
+// centre. Rigid wheels keep the body from rolling; springs do not.
+double inverse_mass_at_wheels(const Unit& unit, const Mat3& R, double height) {
+    double greatest = 2.0 * unit.body.inverse_mass;
+    for (const Wheel& wheel : unit.wheels) {
+        if (!wheel.suspension.springs()) continue;
+        const Vec3 lever = point_on_ground(wheel, R, height).cross(R.col(1));
+        const Vec3 turned = R * (unit.body.inverse_inertia * (R.transpose() * lever));
+        greatest = std::max(greatest, unit.body.inverse_mass + lever.dot(turned));
+    }
+    return greatest;
 }
+
+}  // namespace
 
 void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& state, WheelSet given_way,
                         WheelAt at, std::vector<RigidContact>& contacts) {
@@ -84,7 +88,7 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
     const Mat3 R = state.orientation.toRotationMatrix();
     // Speed that a friction coefficient of 1 would take from a wheel: twice that of the mass centre, as the
     // body also turns.
-    const double speed_change = 2.0 * total * unit.body.inverse_mass;
+    const double speed_change = total * inverse_mass_at_wheels(unit, R, state.position.z());
     // At small slip the impulse is C N dt * v_across / v_along. A lower bound of v_along keeps it from reversing the
     // motion.
     const double slowest = settings.cornering_stiffness * speed_change;

@@ -23,10 +23,6 @@
 
 namespace birm3d {
 
-// From the mass centre to the lowest point of a wheel that is pushed up by `raised` from where it is at rest (m), for the
-// body's rotation R; world axes.
-Vec3 lowest_point(const Wheel& wheel, const Mat3& R, double raised);
-
 // Positions of a sprung wheel: extended as far as it goes, as under the weight, or at its bump stop.
 enum class WheelAt { droop, rest, bump_stop };
 

@@ -13,6 +13,16 @@ namespace birm3d {
 
 namespace {
 
+void add_to(Hash& hash, const Wheel& wheel) {
+    hash.add(wheel.center);
+    hash.add(wheel.radius);
+    if (std::isfinite(wheel.breakaway)) hash.add(wheel.breakaway), hash.add(wheel.travel);
+    const Suspension& held = wheel.suspension;
+    if (!held.springs()) return;
+    for (const double number : {held.stiffness, held.damping, held.at_rest, held.bump})
+        hash.add(number);
+}
+
 void add_to(Hash& hash, const HalfSpace& plane) {
     hash.add(plane.normal);
     hash.add(plane.offset);
@@ -128,15 +138,8 @@ std::uint64_t Scene::fingerprint() const {
             hash.add(node.tread_t);
             hash.add(static_cast<double>(node.wheel));
         }
-        for (const Wheel& wheel : unit.wheels) {
-            hash.add(wheel.center);
-            hash.add(wheel.radius);
-            if (std::isfinite(wheel.breakaway)) hash.add(wheel.breakaway), hash.add(wheel.travel);
-            if (wheel.suspension.springs())
-                for (const double number : {wheel.suspension.stiffness, wheel.suspension.damping,
-                                            wheel.suspension.at_rest, wheel.suspension.bump})
-                    hash.add(number);
-        }
+        for (const Wheel& wheel : unit.wheels)
+            add_to(hash, wheel);
     }
     for (const Joint& joint : vehicle->joints) {
         hash.add(static_cast<double>(joint.kind));

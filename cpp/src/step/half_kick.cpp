@@ -124,6 +124,7 @@ void find_sprung_wheels(const Scene& scene, const State& state, Stage stage, Kic
     if (!scene.settings.ground) return;
     if (stage == Stage::before_drift) memory.start = memory.before;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
+        if (!has_springs(scene.vehicle->units[u])) continue;
         Twist motion = memory.before[u];
         motion.velocity += motion.velocity - memory.start[u].velocity;
         motion.angular_velocity += motion.angular_velocity - memory.start[u].angular_velocity;

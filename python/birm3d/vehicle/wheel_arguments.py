@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from scipy.constants import g
+
+from .. import units
 
 if TYPE_CHECKING:
     from .vehicle_fields import VehicleFields
@@ -46,7 +47,7 @@ def suspension(vehicle: VehicleFields, joint: tuple[Floats, float] | None = None
         assert zone.bump_travel is not None
         loads = wheel_loads(vehicle, joint) if loads is None else loads
         stiffness = loads[wheel] / deflection
-        damping = 2.0 * zone.damping_ratio * loads[wheel] / np.sqrt(g * deflection)
+        damping = 2.0 * zone.damping_ratio * loads[wheel] / np.sqrt(units.g(deflection))
         rows[wheel] = stiffness, damping, deflection, zone.bump_travel
     return rows
 
@@ -58,7 +59,7 @@ def wheel_loads(vehicle: VehicleFields, joint: tuple[Floats, float] | None = Non
     tip over its wheels is taken to load them evenly.
     joint: its place from the mass centre, body axes (3,) [m], and what presses down on it [N].
     """
-    weight = vehicle.mass * g
+    weight = units.g(vehicle.mass)
     place, pressed = (np.zeros(3), 0.0) if joint is None else joint
     rows = np.column_stack([np.ones(len(vehicle.wheels)), vehicle.wheels[:, :2]])
     wanted = np.array([weight + pressed, pressed * place[0], pressed * place[1]])
@@ -73,7 +74,7 @@ def load_on_joint(trailing: VehicleFields, place: Floats) -> float:
     if len(trailing.wheels) == 0:
         return 0.0
     axle = trailing.wheels[:, 0].mean()
-    return float(trailing.mass * g * axle / (axle - place[0]))
+    return float(units.g(trailing.mass) * axle / (axle - place[0]))
 
 
 def _zones_of_wheels(vehicle: VehicleFields) -> Iterator[tuple[int, Zone]]:

@@ -108,9 +108,9 @@ class Zone(Mapping[str, Any]):
         Of a zone of tyres: load on the ground [N] at which springs and hangers of a wheel give way. The body
         then comes down by the travel [m] before the wheel carries it again. ``None``: they never give way.
     static_deflection, damping_ratio, bump_travel
-        Of a zone of tyres: compression of the springs under the vehicle's weight [m], damping over critical
-        damping, and travel of the wheel from rest to the rigid bump stop [m]. The wheel's own mass is
-        neglected. ``None``: wheels are fixed to the body.
+        Of a zone of tyres: compression of the springs under the vehicle's weight [m], and damping over
+        critical damping. The third is the travel of the wheel from rest to the rigid bump stop [m]. The
+        wheel's own mass is neglected. ``None``: wheels are fixed to the body.
     """
 
     k_initial: float | None = None

@@ -29,6 +29,10 @@ struct Wheel {
     Suspension suspension{};  // `center` is where it holds the wheel at rest
 };
 
+// From the mass centre to the lowest point of a wheel, for the body's rotation R; world axes (m). The wheel is pushed up
+// by `raised` from where it is at rest (m).
+Vec3 lowest_point(const Wheel& wheel, const Mat3& R, double raised);
+
 // Wheels of a unit, one bit each: bit i is wheel i.
 using WheelSet = std::uint64_t;
 inline constexpr std::size_t most_breakaway_wheels = 64;
