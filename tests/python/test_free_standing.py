@@ -239,7 +239,7 @@ def test_loose_segments_far_away_change_nothing(car: Vehicle) -> None:
     some, many = hit(car, 61, "loose"), hit(car, 161, "loose")
     # Places differ by rounding, as the row begins elsewhere: by 3e-14 m, which blows make 1e-9 m.
     assert np.abs(many.segment_position[:, 50:-50] - some.segment_position).max() < 1e-8
-    assert np.abs(many.velocity - some.velocity).max() < 1e-7
+    assert np.abs(many.velocity - some.velocity).max() < 1e-6
     assert (many.segment_velocity[:, :50] == 0.0).all()
 
 
