@@ -84,7 +84,7 @@ _MEASURED: dict[str, tuple[str, dict[str, float]]] = {
         "m/s^2",
         {**dict.fromkeys(("m/s^2", "m/s2", "m/s²"), 1.0), **dict.fromkeys(("g", "G"), g), "ft/s^2": ft},
     ),
-    "mass": ("kg", {"kg": kg, "t": 1e3, "lb": lb}),
+    "mass": ("kg", {"kg": kg, "t": 1e3, "lb": lb, "lbs": lb}),
     "force": ("N", {"N": N, "kN": kN, "MN": 1e6, "kgf": kgf, "lbf": lbf, "kip": 1e3 * lbf}),
     "moment": ("N m", {"N m": 1.0, "Nm": 1.0, "N*m": 1.0, "kN m": 1e3, "kNm": 1e3}),
     "impulse": ("N s", {"N s": 1.0, "Ns": 1.0, "N*s": 1.0, "kN s": 1e3, "kNs": 1e3}),

@@ -448,3 +448,16 @@ def test_direction_and_load_factor_have_bands(monkeypatch: pytest.MonkeyPatch) -
     assert {"direction_low", "dynamic_load_factor_high"} <= set(table.columns)
     (line,) = [line for line in loads.to_markdown().splitlines() if line.startswith("| bollard 2")]
     assert line.endswith("] |")
+
+
+def test_runs_that_miss_the_barrier_are_told() -> None:
+    """No load is an answer too, but not a silent one."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.2)
+    missed = birm3d.design_load(Simulation(car, Barrier.bollards(count=2, spacing=4.0), 20.0), draws=0)
+    assert missed.governing.peak_force == 0.0
+    assert "does not touch the barrier" in missed.caution
+    low = Simulation(Vehicle.preset("cabover_7200"), Barrier.rigid_wall(height=0.4), "30 mph")
+    over = birm3d.design_load(low, draws=0)
+    assert over.governing.peak_force > 0.0
+    assert "wheels meet nothing ahead of them, so loads are missing" in over.caution
+    assert "does not touch" not in over.caution

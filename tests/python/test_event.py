@@ -103,6 +103,22 @@ def test_outcomes(name: str, outcome: str, detail: str) -> None:
     assert repr(result).startswith(f"Result({outcome}, ")
 
 
+def test_a_vehicle_over_a_barrier_that_it_does_not_touch_says_so() -> None:
+    low = Simulation(Vehicle.preset("cargo_truck", mesh_density=0.2), Barrier.rigid_wall(height=0.3), 20.0)
+    result = low.run()
+    assert result.outcome_detail == (
+        "it went over the top of the barrier untouched: wheels meet nothing ahead of them in this model"
+    )
+
+
+def test_a_bus_that_goes_on_does_not_stand_still() -> None:
+    """Its rear may swing back faster than it leaves: that is no rest."""
+    result = Simulation(Vehicle.preset("bus_13t"), Barrier.jersey(), 70.0 / 3.6, 20.0).run()
+    assert result.outcome == "redirected"
+    assert result.end_reason != "stopped"
+    assert np.linalg.norm(result.velocity[-1]) > 10.0
+
+
 def test_a_car_between_two_posts_ends_when_it_has_passed() -> None:
     result = run("gap")
     assert result.metrics["dynamic_crush"] == 0.0

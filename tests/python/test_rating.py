@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Sequence
 
 import birm3d
@@ -186,6 +187,27 @@ def test_a_truck_between_the_posts_has_no_rating(truck: Vehicle) -> None:
     assert rating.designation == "no rating: penetration class"
     assert not rating.contained
     assert "at least this" in rating.summary()
+
+
+@pytest.mark.parametrize(("yaw", "roll"), [(90.0, 0.0), (180.0, 0.0), (0.0, 20.0)])
+def test_only_an_upright_front_is_rated(truck: Vehicle, yaw: float, roll: float) -> None:
+    """A truck that is thrown sideways, backwards or rolled at the posts is no test of a standard."""
+    crash = Simulation(
+        truck, Barrier.rigid_wall(), 20.0, impact_yaw=yaw, impact_roll=roll, duration=1.0, settings=FREE
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the rigid body strikes where sides are thin
+        rating = rate(crash.run(), "ASTM F2656")
+    assert rating.designation == "no rating: yaw and roll at impact"
+    row = next(one for one in rating.criteria if one.name == "yaw and roll at impact")
+    assert row.passed is False
+    assert row.value == f"{(yaw + 180.0) % 360.0 - 180.0:g}, {roll:g} deg"
+
+
+def test_a_pickup_that_slides_sideways_is_no_mash_test() -> None:
+    pickup = Vehicle.preset("pickup", mesh_density=0.3).scaled_to(2270.0)
+    run = Simulation(pickup, Barrier.jersey(), units.km_h(100.0), 25.0, impact_yaw=30.0).run()
+    assert rate(run, "MASH").designation == "MASH 3-11: no rating: yaw and roll at impact"
 
 
 def test_oblique_is_no_head_on(truck: Vehicle) -> None:

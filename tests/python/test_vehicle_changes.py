@@ -256,7 +256,8 @@ def test_vehicles_are_changed_in_any_units() -> None:
     law = {"k_hardening": 0.0, "k_unloading": "9 MPa/m", "f_max": "300 kPa"}
     zone = CAR.with_zone("hood", k_initial="3 MPa/m", knee="10 cm", **law).zones["hood"]
     assert (zone.k_initial, zone.knee, zone.f_max, zone.k_unloading) == (3e6, 0.1, 3e5, 9e6)
-    with pytest.raises(ValueError, match=r"gvw must be a number in kg, or text .* kg, t, lb; got '30 mph'"):
+    assert CAR.with_gvw("4000 lbs").mass == CAR.with_gvw("4000 lb").mass
+    with pytest.raises(ValueError, match=r"gvw must be a number in kg, .* kg, t, lb, lbs; got '30 mph'"):
         CAR.with_gvw("30 mph")
 
 

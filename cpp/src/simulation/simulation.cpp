@@ -106,7 +106,8 @@ EndReason Simulation::end_reason() const {
     if (scene_.duration) return EndReason::duration;
     if (!state_.decided) return EndReason::longest;
     if (event_.manner == Manner::slides_on) return EndReason::sliding;
-    return has_left(scene_, state_) ? EndReason::separated : EndReason::stopped;
+    // A vehicle that left may turn so fast in the tail that `has_left` no longer holds: it is not at rest.
+    return has_left(scene_, state_) || !at_rest(scene_, state_) ? EndReason::separated : EndReason::stopped;
 }
 
 double Simulation::deepest_node() const {

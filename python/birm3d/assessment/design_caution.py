@@ -36,6 +36,8 @@ _TIPS = (
     "On {elements} the overturning moment exceeds the restoring one: the segment would begin to tip, which "
     "is not computed."
 )
+_UNTOUCHED = "In a run the vehicle does not touch the barrier: that run adds no load."
+_OVER = "In a run the vehicle goes over {elements}: wheels meet nothing ahead of them, so loads are missing."
 _UNDECIDED = "The outcome was not decided when a run ended: later loads on {elements} are missing."
 
 _LEAST_SHARE = 0.01  # of the greatest load
@@ -67,6 +69,10 @@ def run_cautions(result: Result) -> dict[str, tuple[str, ...]]:
     found[_TIPS] = _tipping(result)
     if result.outcome == "undecided":
         found[_UNDECIDED] = ("the barrier",)
+    elif not loads:
+        found[_UNTOUCHED] = ("the barrier",)
+    if result.outcome == "overridden":
+        found[_OVER] = ("the barrier",)
     return {text: names for text, names in found.items() if names}
 
 

@@ -14,13 +14,22 @@ from ..barrier.surfaces import barrier_surfaces
 from ..result.capture import capture
 from ..result.metrics import ALONG_LINE
 from ..vehicle.unit_shapes import unit_shapes
+from .criteria import Criterion
 
 if TYPE_CHECKING:
     from ..barrier import Barrier
     from ..result import Result
     from ..units import Quantity
 
-__all__ = ["ExitBox", "Extent", "barrier_extent", "exit_box", "penetration_history", "vehicle_intrusion"]
+__all__ = [
+    "ExitBox",
+    "Extent",
+    "barrier_extent",
+    "exit_box",
+    "heading_rows",
+    "penetration_history",
+    "vehicle_intrusion",
+]
 
 Floats = npt.NDArray[np.float64]
 
@@ -87,6 +96,20 @@ def check_side_on(result: Result) -> None:
     angle = result.scene.impact_angle
     if abs(math.sin(math.radians(angle))) < ALONG_LINE:
         raise ValueError(f"impact_angle must lead across the barrier's line for a rating, got {angle:g} deg")
+
+
+def heading_rows(result: Result, most: float) -> list[Criterion]:
+    """Return the criterion that the vehicle goes upright along its own axis; none where it does exactly.
+
+    A test's vehicle tracks: its front strikes. most: greatest yaw and roll at impact [deg].
+    """
+    scene = result.scene
+    if scene.impact_yaw == 0.0 and scene.impact_roll == 0.0:
+        return []
+    yaw = (scene.impact_yaw + 180.0) % 360.0 - 180.0
+    value = f"{yaw:g}, {scene.impact_roll:g} deg"
+    met = max(abs(yaw), abs(scene.impact_roll)) <= most
+    return [Criterion("yaw and roll at impact", value, "", f"0 +-{most:g} deg, the front ahead", met)]
 
 
 def vehicle_intrusion(result: Result) -> float:

@@ -12,7 +12,15 @@ from .. import units
 from ..result.segment_motion import base_corners
 from .criteria import Criterion
 from .limits import FLAIL_LIMITS, THIV_LIMIT_KM_H, graded, severity_class
-from .measures import ExitBox, across_barrier, barrier_extent, check_side_on, exit_box, vehicle_intrusion
+from .measures import (
+    ExitBox,
+    across_barrier,
+    barrier_extent,
+    check_side_on,
+    exit_box,
+    heading_rows,
+    vehicle_intrusion,
+)
 from .occupant import occupant_risk
 from .rating import MODEL_CAUTION, Rating, first_reached
 from .roadside import RoadsideStandard, RoadsideTest
@@ -134,6 +142,7 @@ def _conditions(result: Result, standard: RoadsideStandard, test: RoadsideTest) 
             f"{test.angle - below:g} to {test.angle + above:g} deg",
             test.angle - below - _SLACK <= angle <= test.angle + above + _SLACK,
         ),
+        *heading_rows(result, above),
         *([_severity(result, test)] if standard.name == "MASH" else []),
         *([_together(speed, angle, standard, test)] if standard.together else []),
     )

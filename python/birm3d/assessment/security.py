@@ -16,7 +16,7 @@ import numpy as np
 
 from .. import units
 from .criteria import Criterion
-from .measures import barrier_extent, check_side_on, penetration_history
+from .measures import barrier_extent, check_side_on, heading_rows, penetration_history
 from .rating import MODEL_CAUTION, Rating, first_reached
 from .vehicles import A_PILLAR, LOAD_BED, StandardVehicle, standard_vehicle
 
@@ -147,6 +147,7 @@ def rate_security(
     became = Criterion("outcome", result.outcome, "", "", None, result.outcome_detail)
     rate = {"levels": _astm, "K": _dos, "code": _code}[standard.style]
     designation, contained, rows = rate(result, standard, vehicle, found)
+    rows = (*rows[:-1], *heading_rows(result, _HEAD_ON), rows[-1])
     failed = [row.name for row in (mass, *rows) if row.passed is False]
     return Rating(
         standard.name,
@@ -238,16 +239,15 @@ def _code(
 ) -> _Rated:
     speed = result.scene.impact_speed / units.km_h
     nominal = [v for v in _NOMINAL_KM_H if v <= speed + _SPEED_SLACK]
-    texts = ", ".join(f"{v:g}" for v in _NOMINAL_KM_H)
+    texts = ", ".join(f"{v:g}" for v in _NOMINAL_KM_H[:-1])
+    limit = f"{texts} or {_NOMINAL_KM_H[-1]:g} km/h, at most {_SPEED_SLACK:g} below"
     level = f"{nominal[-1]:g}" if nominal else None
     angle = min(result.scene.impact_angle, 180.0 - result.scene.impact_angle)
     stopped = found.final and found.greatest <= _FURTHEST
     distance = max(0.0, found.greatest)
     value = f"{distance:.1f} m" if stopped else "beyond"
     rows = (
-        Criterion(
-            "impact speed", speed, "km/h", f"at least {texts} less 1", level is not None, level or "no level"
-        ),
+        Criterion("impact speed", speed, "km/h", limit, level is not None, level or "no level"),
         Criterion("penetration distance", value, "", f"reported up to {_FURTHEST:g} m", stopped),
     )
     debris = "/debris not computed" if standard.name == "PAS 68" else ""

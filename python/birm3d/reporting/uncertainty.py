@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from .. import units
 from ..plotting.style import shown_unit
 from ..result.metrics import METRIC_UNITS
 from ..result.summary import HEADLINES, shown_as
@@ -21,14 +22,14 @@ __all__ = ["computing_error", "uncertainty_section"]
 _ROUNDING = 1e-9  # angles and lengths below are rounding errors
 _LEAST_RUNS, _MOST_RUNS = 8, 300  # of a study whose histories are drawn as bands
 _NOTHING = 1e-6  # a metric as small as this has no relative error
-# Differences of smaller lengths and angles are shares of these: a millimetre of 4 cm is no error of 2.5 %.
-_LEAST_SCALE = {"m": 0.5, "deg": 5.0}
+# Differences of smaller values are shares of these: a millimetre of 4 cm is no error of 2.5 %.
+_LEAST_SCALE = {"m": 0.5, "deg": 5.0, "m/s": 1.0, "m/s^2": units.g}
 
 
 def computing_error(case: Case) -> Iterator[tuple[str, float, float, float | None]]:
     """Yield metric, value, value with a hundredth of the tolerance, and the relative difference.
 
-    Differences of lengths below 0.5 m and of angles below 5 degrees are relative to these.
+    Differences of values smaller than 0.5 m, 5 degrees, 1 m/s and 1 g are relative to these.
     """
     ours, finer = case.result.metrics, case.finer.metrics
     for name in HEADLINES:
@@ -61,7 +62,7 @@ def uncertainty_section(case: Case) -> Section:
             "Computing error of the headline numbers",
             ("quantity", "this run", "refined", "unit", "relative difference"),
             rows,
-            note="Lengths below 0.5 m: relative to 0.5 m; angles below 5 deg: relative to 5 deg.",
+            note="Smaller values than 0.5 m, 5 deg, 1 m/s and 1 g: relative to these.",
             numbers=True,
         ),
         Caution(
@@ -135,7 +136,7 @@ def _percentiles(case: Case, study: Study) -> Table:
         label, size, unit = shown_as(name)
         own = case.result.metrics.get(name) if name in case.result.metrics else None
         numbers = (own, found.p05, found.median, found.p95, found.mean, found.standard_deviation)
-        cells = ("–" if number is None else f"{number / size:.4g}" for number in numbers)
+        cells = ("–" if number is None else _cell(number, size) for number in numbers)
         rows.append((label, *cells, unit, f"{found.n:,}"))
     return Table(
         "Percentiles of the study beside this run",
@@ -143,3 +144,8 @@ def _percentiles(case: Case, study: Study) -> Table:
         rows,
         numbers=True,
     )
+
+
+def _cell(number: float, size: float) -> str:
+    """Return a number in a unit of a size; a rounding error is 0."""
+    return "0" if abs(number) < _ROUNDING else f"{number / size:.4g}"

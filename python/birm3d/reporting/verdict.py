@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from collections.abc import Iterator, Sequence
 from statistics import median
 
@@ -78,7 +79,7 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         yield (
             f"Rating by {rating.standard}, indicative",
             f"{rating.designation} (vehicle {rating.vehicle_class}); {contained}, "
-            f"{_penetration(rating.penetration)}{_chances(case, rating.standard)}",
+            f"{_penetration(rating)}{_chances(case, rating.standard)}",
         )
     loads = touched_elements(result.element_loads)
     if loads:
@@ -125,10 +126,17 @@ def _quantity(one: Compared) -> str:
     return shown_as(one.test.quantity)[0]
 
 
-def _penetration(distance: float) -> str:
+def _penetration(rating: Rating) -> str:
+    distance = rating.penetration
     if distance < 0.0:
         return f"its reference point stays {-distance:.2f} m short of the datum"
-    return f"penetration {distance:.2f} m"
+    goes_on = any("at least this" in one.grade for one in rating.criteria)
+    return f"penetration {'at least ' if goes_on else ''}{distance:.2f} m"
+
+
+def _without_value(reason: str) -> str:
+    """Return the text of an error without the value that it received: the run is described elsewhere."""
+    return re.split("[,;] got ", reason)[0]
 
 
 def _chances(case: Case, standard: str) -> str:
@@ -156,7 +164,7 @@ def _design_band(row: ElementDesign) -> str:
 
 def _risk_line(case: Case) -> str:
     if isinstance(case.risk, str):
-        return f"not computed: {case.risk}"
+        return f"not computed: {_without_value(case.risk)}"
     asked = [one.standard for one in case.ratings if one.standard in ("MASH", "EN 1317")]
     known = "EN 1317" if is_oblique(case.result) and not case.risk.missing else "MASH"
     standard = asked[0] if asked else known
@@ -191,7 +199,7 @@ def risk_section(case: Case) -> Section:
     from ..assessment.risk_values import CAUTION
 
     if isinstance(case.risk, str):
-        return Section("Occupant risk", "occupants", [Text(f"Not computed: {case.risk}")])
+        return Section("Occupant risk", "occupants", [Text(f"Not computed: {_without_value(case.risk)}.")])
     strike = case.risk.time_of_strike
     when = (
         "The occupant strikes nothing."

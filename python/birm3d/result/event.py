@@ -74,6 +74,8 @@ def outcome_detail(result: RunRecord) -> str:
     if event.manner in ("between", "beside"):
         past = "between two elements of the barrier" if event.manner == "between" else "the barrier's end"
         return f"it passed {past}, {'touching it' if touched else 'untouched'}{rolled}"
+    if event.manner == "over" and not touched:
+        return f"{_MANNERS['over']} untouched: wheels meet nothing ahead of them in this model{rolled}"
     return _MANNERS[event.manner] + rolled
 
 

@@ -232,7 +232,7 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
         "delta_v": Metric(
             *("m/s", "motion", "greatest change of velocity, until separation", "motion"),
             lambda run: run.motion.velocity_change,
-            shown=Shown("change of velocity", ".2f", "m/s", headline=True),
+            shown=Shown("greatest change of velocity", ".2f", "m/s", headline=True),
         ),
         "impact_severity": Metric(
             *("J", "motion", "1/2 m (v sin angle)^2", "end", made.impact_severity),
@@ -295,9 +295,9 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
             shown=_asked("greatest angle between the units", "deg"),
         ),
         "peak_joint_force": Metric(
-            *("N", "joint", "greatest magnitude of the force between two units", "joint"),
+            *("N", "joint", "greatest magnitude of the force between two units, unfiltered", "joint"),
             *(lambda run: run.extremes.joint.force, "joint"),
-            shown=_asked("peak force of the joint", "kN", 1e3),
+            shown=_asked("peak force of the joint, unfiltered", "kN", 1e3),
         ),
         "energy_residual": Metric(
             "",
