@@ -84,6 +84,18 @@ def test_what_a_limit_says(height: Limit) -> None:
     assert height.plot().axes[0].get_xlabel() == "height [m]"
 
 
+def test_a_limit_says_how_far_the_vehicle_gets_past_the_line() -> None:
+    """A car that stops wedged between two posts is held, but far behind their line."""
+    simulation = Simulation(
+        Vehicle.preset("small_car", mesh_density=0.2), Barrier.bollards(count=7), "30 mph"
+    )
+    found = birm3d.greatest_gap(simulation, (0.9, 3.3), points=5, resolution=0.1, draws=0)
+    past = max(run.measure for run in found.runs if run.value == found.value)
+    told = f"the rigid body gets up to {past:.2f} m past the barrier's line."
+    assert (told in found.summary()) == (past > 0.0)
+    assert past > 0.5
+
+
 def test_a_limit_says_for_how_many_vehicles_of_the_class_it_holds() -> None:
     """Each drawn vehicle is run anew at the limit and at safer values: all offsets have to hold."""
     simulation = Simulation(

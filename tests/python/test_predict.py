@@ -153,3 +153,9 @@ def test_command_line(command: Callable[..., int], capsys: pytest.CaptureFixture
     told = json.loads(capsys.readouterr().out)
     assert told["share"] == 0.8
     assert told["metrics"]["max_displacement"]["low"] < told["metrics"]["max_displacement"]["high"]
+
+
+def test_draws_that_do_not_touch_the_barrier_are_told() -> None:
+    gap = birm3d.predict(Simulation(CAR, Barrier.bollards(count=2, spacing=4.0), 20.0), 8)
+    assert "In 8 of 8 draws the vehicle does not touch the barrier." in gap.caution
+    assert "does not touch" not in prediction().caution

@@ -251,6 +251,12 @@ class Limit:
             lines.append(
                 "Monotonic at the values tried. A change and its reverse between two of them can be missed."
             )
+        past = [run.measure for run in self.runs if run.value == self.value and run.measure > 0.0]
+        if self.measure == "vehicle_penetration" and past:
+            lines.append(
+                f"At {self._rounded(self.value)} {self.unit} the rigid body gets up to {max(past):.2f} m "
+                "past the barrier's line."
+            )
         ends = sum(run.holds and run.outcome == "passed" for run in self.runs)
         if ends:
             lines.append(

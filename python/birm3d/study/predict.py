@@ -46,6 +46,7 @@ _STRUCK = (
     "In {n} of {all} draws nothing was left to crush at some place and the rigid body struck: unfiltered "
     "peaks are blows of rigid bodies there. Take the 50-ms means."
 )
+_UNTOUCHED = "In {n} of {all} draws the vehicle does not touch the barrier."
 _ACROSS = (
     "The overlap is small: in tests at 25 % overlap the change of velocity across the vehicle was greater "
     "than its band from 80 ms on."
@@ -126,7 +127,12 @@ class Prediction:
             struck = int(np.count_nonzero(raw > _BLOW * filtered))
             if struck:
                 told.append(_STRUCK.format(n=struck, all=len(self.study)))
-        overlap = None if self.study._scene is None else self.study._scene.overlap
+        scene = self.study._scene
+        if scene is not None and scene.barrier is not None and "peak_element_force" in metrics:
+            untouched = int(np.count_nonzero(metrics["peak_element_force"] == 0.0))
+            if untouched:
+                told.append(_UNTOUCHED.format(n=untouched, all=len(self.study)))
+        overlap = None if scene is None else scene.overlap
         if overlap is not None and overlap <= _SMALL_OVERLAP:
             told.append(_ACROSS)
         return " ".join(told)
