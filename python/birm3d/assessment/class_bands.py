@@ -22,8 +22,8 @@ Seen = tuple[list[ElementDesign], bool]
 """What each element carries in a run, and whether the rigid body strikes one."""
 
 _DRAWS = 16
-_OF_FORCE = ("height", "direction")  # values that belong to the greatest 50-ms force
-_ROUNDING = 1e-6  # SI and degrees: by less nothing is outside a band
+_OF_FORCE = ("height", "direction")  # where and in which direction the greatest 50-ms force acts
+_ROUNDING = 1e-6  # a value counts as outside of a band if it is by more than this (SI, deg)
 
 _BLOWS = (
     "With {n} of {all} vehicles of the class a crush zone is used up and the rigid body strikes: the upper "

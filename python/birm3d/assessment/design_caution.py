@@ -40,9 +40,9 @@ _UNTOUCHED = "In a run the vehicle does not touch the barrier: that run adds no 
 _OVER = "In a run the vehicle goes over {elements}: wheels meet nothing ahead of them, so loads are missing."
 _UNDECIDED = "The outcome was not decided when a run ended: later loads on {elements} are missing."
 
-_LEAST_SHARE = 0.01  # of the greatest load
-_OF_FILTERED = 2.0  # unfiltered over filtered peak of a blow
-_STILL_ACTS = 0.05  # share of the peak force at the end of the run
+_LEAST_SHARE = 0.01  # elements that carry less than this share of the greatest load are not mentioned
+_OF_FILTERED = 2.0  # a peak that is as many times its filtered value is called a blow
+_STILL_ACTS = 0.05  # a force that ends above this share of its peak still acts
 
 
 def barrier_caution(barrier: Barrier) -> list[str]:

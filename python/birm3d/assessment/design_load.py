@@ -34,7 +34,7 @@ Floats = npt.NDArray[np.float64]
 
 _ASSUMED_PERIOD = 0.1  # s
 _NO_BAND = " No band: "
-_MOST_OF_ONE_PULSE = 2.0  # dynamic load factor of any single pulse, at the most
+_MOST_OF_ONE_PULSE = 2.0  # no single pulse has a greater dynamic load factor
 
 
 _ADDED = (
@@ -264,7 +264,7 @@ def with_vehicles(load: DesignLoad, seen: Iterable[tuple[int, Seen | None]], veh
     seen, vehicles
         See :func:`birm3d.assessment.class_bands.bands_of`.
     """
-    load.caution = load.caution.partition(_NO_BAND)[0]  # it was the last sentence
+    load.caution = load.caution.partition(_NO_BAND)[0]  # that there is no band was the last sentence
     return _with(load, bands_of(load.rows, seen, vehicles), vehicles)
 
 

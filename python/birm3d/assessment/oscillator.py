@@ -29,10 +29,10 @@ Floats = npt.NDArray[np.float64]
 LEAST_INTERVALS = 4
 """Intervals of the load in a natural period, at the least."""
 
-# Intervals of a load are put together up to this share of the period: changes a force by less than 1e-4.
+# Intervals of a load are put together up to this share of the period: it changes a force by less than 1e-4.
 _SHARE = 1.0 / 200.0
-_STEP = 0.93  # of the search for the greatest resistance that yields enough
-_LEAST = 1e-4  # of the elastic force
+_STEP = 0.93  # the search for the resistance goes down by this factor each time
+_LEAST = 1e-4  # share of the elastic force at which the search ends
 
 
 def elastic_force(load: Floats, interval: float, period: float, damping: float = 0.0) -> float:
@@ -63,7 +63,8 @@ def elastic_force(load: Floats, interval: float, period: float, damping: float =
     # w = L s + p is the complex velocity: w(t) = w(0) exp(L t) while the load does not change.
     velocity = pole * starts + loads
     reversal = np.mod(-np.angle(velocity), math.pi) / free
-    reversal[:-1] = np.minimum(reversal[:-1], interval)  # the last one has all the time it needs
+    # After the end of the load the reversal may come at any time.
+    reversal[:-1] = np.minimum(reversal[:-1], interval)
     greatest = np.abs((starts + (np.exp(pole * reversal) - 1.0) / pole * velocity).imag).max(initial=0.0)
     return float(max(greatest, np.abs(ends.imag).max(initial=0.0)) * omega * omega / free)
 
@@ -158,7 +159,7 @@ class _SoftSystem:
                 self._reach(load, step)
             else:
                 self._note()
-        # Free vibration: after one period nothing new comes.
+        # After the load it vibrates freely: the second period is as the first.
         swing = self._swing(step)
         for _ in range(math.ceil(2.0 * math.pi / (self.omega * step)) + 1):
             if abs(self.strain) >= self.yield_strain and self.strain * self.velocity > 0.0:

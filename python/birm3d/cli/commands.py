@@ -114,7 +114,7 @@ def _show_warning(message: Warning | str, *_: object) -> None:
     click.echo(f"birm3d: warning: {message}", err=True)
 
 
-# An except clause asks for its class only when there is an error: then the modules may be loaded.
+# Python evaluates the class of an except clause only when there is an error. So imports come only then.
 def _study_stopped() -> type[Exception]:
     from ..study.runner import StudyStoppedError
 
@@ -136,19 +136,19 @@ def main() -> None:
         error.show()
         sys.exit(error.exit_code)
     except (click.Abort, KeyboardInterrupt) as error:
-        # click turns Ctrl-C into Abort; a study says in it what is finished.
+        # click turns Ctrl-C into Abort; its cause may be a StudyInterrupted, which says what is finished.
         click.echo(str(error.__cause__ or error) or "stopped", err=True)
         sys.exit(130)
     except _study_stopped() as error:
         click.echo(f"birm3d: {error}", err=True)
         sys.exit(1)
-    except (ValueError, _unstable(), ImportError) as error:  # the last: an extra is missing
+    except (ValueError, _unstable(), ImportError) as error:  # ImportError: an extra is not installed
         click.echo(f"birm3d: {error}", err=True)
         sys.exit(2)
-    except BrokenPipeError:  # who reads stdout has seen enough, as head
+    except BrokenPipeError:  # the reader of stdout has stopped, as head does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
-    except OSError as error:  # a disk that is full, a file that went away
+    except OSError as error:  # the disk is full, or a file has vanished
         place = "" if error.filename is None else f"{error.filename}: "
         click.echo(f"birm3d: {place}{error.strerror or error}", err=True)
         sys.exit(1)

@@ -259,7 +259,7 @@ def _print_summary(study: Study) -> None:
 
 def _heading(study: Study, name: str) -> str:
     unit, words = study.units.get(name, ""), name.replace("_", " ")
-    return f"{words} \\[{unit}]" if unit else words  # rich takes [m] for a style
+    return f"{words} \\[{unit}]" if unit else words  # rich would take [m] for a style
 
 
 def _cell(value: Any) -> str:

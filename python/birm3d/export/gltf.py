@@ -28,9 +28,9 @@ Ints = npt.NDArray[np.int64]
 # glTF has y up: a quarter turn about x.
 _Y_UP = (-(0.5**0.5), 0.0, 0.0, 0.5**0.5)
 _SKIN, _WHEEL, _BARRIER = (0.86, 0.89, 0.91, 1.0), (0.17, 0.17, 0.17, 1.0), (0.60, 0.58, 0.55, 1.0)
-_WHEEL_WIDTH = 0.6  # of the radius; drawn, not modelled
+_WHEEL_WIDTH = 0.6  # drawn width over the radius; the model has no width
 _DEEP = (0.69, 0.06, 0.10)  # colour of the greatest crush
-_LEAST_SCALE = 0.05  # m, of the colours of crush
+_LEAST_SCALE = 0.05  # the colours of crush range over this at least, m
 
 
 @checked
@@ -87,7 +87,7 @@ def _unit(writer: GltfWriter, root: int, time: int, name: str, shape: UnitShape,
         moved = np.stack([skin.displacement[used] for skin in skins])
         crush = np.linalg.norm(moved, axis=2).max(axis=0)
         colors = _colors(crush)
-        # Whole places, and ways from the first instant on: players add them to the first.
+        # glTF has places at the first instant, and displacements from there for later ones.
         mesh = writer.mesh(
             f"skin of {name}", skins[0].nodes[used], faces, _SKIN, colors=colors, targets=moved[1:] - moved[0]
         )

@@ -98,9 +98,7 @@ def _parts(pyvista: Any, run: Instants, forces: tuple[Floats, ...], k: int) -> l
     for unit, (shape, skin) in enumerate(zip(run.shapes, run.skins[k], strict=True)):
         name = "vehicle" if len(run.shapes) == 1 else f"vehicle_unit_{unit + 1}"
         if len(shape.quads):
-            n = (
-                int(shape.quads.max()) + 1
-            )  # behind the shell's nodes are those of second trusses and of treads
+            n = int(shape.quads.max()) + 1  # further nodes belong to second trusses and to treads
             mesh = pyvista.PolyData(skin.world[:n], _polygons(shape.quads))
             mesh.cell_data["zone"] = shape.zone_of_node[shape.quads[:, 0]]
         else:

@@ -30,10 +30,10 @@ __all__ = ["page_data"]
 Floats = npt.NDArray[np.float64]
 Curves: TypeAlias = list[tuple[str, Floats]]
 
-_ROWS = 3000  # more than a screen has pixels across
+_ROWS = 3000  # histories are thinned out to this, which is more than a screen has pixels across
 _DIGITS = 6
-_BLOWS = ("kN", "g")  # units of what a blow may flatten
-_MARGIN = 0.05  # of a vertical range
+_BLOWS = ("kN", "g")  # curves in these units are cut off at short blows
+_MARGIN = 0.05  # room above and below curves, as a share of their range
 _ENERGIES = "Energy balance"
 _LEAST = {"deg": LEAST_ANGLE, "deg/s": LEAST_RATE}
 _DASHES = {SOLID: "solid", DASHED: "dash", DASH_DOT: "dashdot", DOTTED: "dot"}

@@ -26,13 +26,13 @@ Ints = npt.NDArray[np.int64]
 CRUSH_COLORS = ("#DCE2E8", "#FFE08A", "#FDAE4B", "#E8502E", "#B0101A", "#5E0008")
 """Of the skin: grey where there is no crush, so that little of it shows too."""
 
-_LEAST_SCALE = 0.05  # of the colours of crush, m
-_STEP = 1e-3  # of packed lengths, m
+_LEAST_SCALE = 0.05  # the colours of crush range over this at least, m
+_STEP = 1e-3  # packed lengths are whole numbers of these, m
 _MOVES = 5e-4  # a node that moves by less stays, m
-_AROUND = 6.0  # ground past what is shown, m
-_MARGIN = 1.25  # of the picture around what is shown
-_FAR = 3.0  # lengths of a vehicle; one that goes further is followed
-_HALF_ANGLE = 0.3  # of the lens, rad; as in replay.js
+_AROUND = 6.0  # the ground goes on so far past what is shown, m
+_MARGIN = 1.25  # width of the picture over the width of what is shown
+_FAR = 3.0  # a vehicle that goes further than so many of its lengths is followed by the camera
+_HALF_ANGLE = 0.3  # half of the camera's angle of view, rad; the same number is in replay.js
 
 
 def replay_times(result: Result, frames: int) -> Floats:

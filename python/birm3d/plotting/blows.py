@@ -12,15 +12,13 @@ __all__ = ["name_cut_peaks", "readable_level"]
 
 Floats = npt.NDArray[np.float64]
 
-_BLOW = 0.02  # what lasts for less in all is a blow [s]
-_LONG, _SHORT = (
-    0.02,
-    0.25,
-)  # shares of the loaded time: a blow lasts for the first at least, the second at most
-_LOADED = 0.003  # share of the greatest value above which there is load
-_TIMES = 4.0  # a peak as many times the rest is cut off
-_BEYOND = 1.2  # times the edge of a panel: peaks as high are named
-_ROOM = 1.6  # of the scale above the rest
+_BLOW = 0.02  # peaks that last for less in all are blows [s]
+# A blow lasts for the first share of the loaded time at least, and for the second at most.
+_LONG, _SHORT = 0.02, 0.25
+_LOADED = 0.003  # a curve is loaded while it is above this share of its greatest value
+_TIMES = 4.0  # a peak that is as many times the rest is cut off
+_BEYOND = 1.2  # peaks that are as many times the edge of the panel are named
+_ROOM = 1.6  # the panel's edge over the greatest value of the rest
 
 
 def readable_level(values: Floats, interval: float) -> float:

@@ -27,9 +27,10 @@ __all__ = ["plot_design_load"]
 Floats = npt.NDArray[np.float64]
 
 _MOST_BARS = 12
-_PERIODS = (0.005, 2.0)  # s
-_POINTS, _SOFT_POINTS = 240, 20  # of the elastic spectrum, and of the one that takes its time
-_LOAD_SHARE, _ROOM = 0.01, 1.08  # where a history ends, and the room after it
+_PERIODS = (0.005, 2.0)  # the spectrum's, s
+_POINTS, _SOFT_POINTS = 240, 20  # points of the elastic spectrum, and of the ductile one, which is slow
+# A history is drawn until it stays below this share of its peak, and on to this factor of that instant.
+_LOAD_SHARE, _ROOM = 0.01, 1.08
 
 
 def plot_design_load(loads: DesignLoad) -> Figure:

@@ -20,13 +20,13 @@ __all__ = ["plot_load_map"]
 
 Floats = npt.NDArray[np.float64]
 
-_MOST_TEXTS = 120  # cells that are labelled with their numbers
+_MOST_TEXTS = 120  # maps of more cells have no numbers in them
 _NARROW = 0.6  # width over height of a map below which its panels stand side by side
 _FLAT, _FLAT_SIDE = 0.12, 0.4  # height over width, and width over height, below which scales are not equal
-_MOST_COLUMNS = 60  # whose cells have an edge
-_CROPPED = 0.05  # of the greatest peak: columns at the ends with less are not drawn
-_LEAST_CROP = 0.25  # of the columns; fewer that carry nothing are drawn
-_DARK = 0.55  # share of the greatest value from which on numbers are white
+_MOST_COLUMNS = 60  # cells of maps with more columns have no edge
+_CROPPED = 0.05  # columns at the ends with less than this share of the greatest peak are not drawn
+_LEAST_CROP = 0.25  # unless they are less than this share of all columns
+_DARK = 0.55  # numbers are white in cells above this share of the greatest value
 
 
 def plot_load_map(map_: LoadMap, time: float | None = None) -> Figure:

@@ -30,10 +30,10 @@ __all__ = ["Instant", "draw_barrier", "draw_vehicle", "fit_to", "plot_plan"]
 Floats = npt.NDArray[np.float64]
 
 _INSTANTS = 5
-_WIDTH = 10.0  # of the figure, inches
-_TEXTS = 2.3  # of its height that texts take, inches
+_WIDTH = 10.0  # width of the figure, inches
+_TEXTS = 2.3  # part of the figure's height that texts take, inches
 _HEIGHTS = (3.4, 9.0)
-_FLAT = 2.6  # height of a panel, inches, below which its label takes two lines
+_FLAT = 2.6  # below this height of a panel, inches, its label takes two lines
 # Exit box of EN 1317-2 and MASH: depth A = a + width + 0.16 length over a length B. Cars (MASH: and pickups),
 # here up to 3.5 t, have a = 2.2 m and B = 10 m; heavier vehicles a = 4.4 m and B = 20 m.
 _CAR = 3500.0

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 __all__ = ["plot_history_bands", "plot_runs"]
 
-_MOST_RUNS = 8  # as many as there are colours
-_THIN = 40  # runs drawn as thin lines behind a band, at the most
+_MOST_RUNS = 8  # there are so many colours
+_THIN = 40  # at most so many runs are drawn as thin lines behind a band
 
 # Inputs that distinguish scenes, in the order of titles.
 _PARTS: Mapping[str, Callable[[Scene], str]] = {

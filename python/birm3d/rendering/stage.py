@@ -35,9 +35,9 @@ _NO_DRAWING = (
     "this machine has no way to draw: without a display VTK needs EGL or OSMesa "
     "(Debian: apt install libegl1 libgl1-mesa-dri, or libosmesa6)"
 )
-_LEAST_SCALE = 0.05  # m, of the colours of crush
+_LEAST_SCALE = 0.05  # the colours of crush range over this at least, m
 _BAR = 0.12  # share of the picture's width that the bar of colours or the names of zones take
-_AROUND = 8.0  # ground past what is shown, m: its edges are not in the foreground
+_AROUND = 8.0  # the ground goes on so far past what is shown, m, so that no edge is in the foreground
 _NEAR = 1.5  # posts as near to the vehicle as this are shown whole, m
 _SEEN_THROUGH = 0.22  # opacity of a barrier that the camera stands behind
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["dossier"]
 
-_FRAMES = 21  # of the plan view beside the page, whose outlines take long; the replay has more
+_FRAMES = 21  # instants of the plan view beside the page: its outlines take long to compute
 
 
 @checked

@@ -39,12 +39,12 @@ _GROUPS = (
     ("truck", "cab_over_truck", "bus"),
     ("tractor_semitrailer", "tractor", "semi_trailer"),
 )
-_SPEED, _ANGLE = 0.1, 5.0  # within which a speed (relative) or an angle [deg] is called the same
-# What a difference weighs: of speed and mass the logarithm of their ratio over the first, of angle [deg].
+_SPEED, _ANGLE = 0.1, 5.0  # speeds (relative) and angles [deg] that differ by less are called the same
+# Differences of this size count 1: logarithms of the ratio of speeds and of masses, and angles [deg].
 _SPEED_SCALE, _ANGLE_SCALE, _MASS_SCALE = 0.4, 30.0, 0.8
 _OTHER_KIND, _OTHER_GROUP, _OTHER_FAMILY, _OTHER_SIDE = 0.3, 1.0, 1.0, 1.0
 _LEAST_SPEED = 0.1  # m/s
-_NOTHING_MORE = ("",) * 6  # of a recipe whose vehicle says all
+_NOTHING_MORE = ("",) * 6  # a recipe whose vehicle says all has no other entries
 _FAMILIES: dict[str, Family] = {
     "bollards": "posts",
     "pole": "posts",
@@ -318,7 +318,7 @@ def nearest(scene: Scene, count: int = 10) -> list[Compared]:
     for recipe in order:
         simulation = _simulation(recipe)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of those runs; the one that is asked about has its own
+            warnings.simplefilter("ignore")  # they are not about the run of the dossier
             result = Simulation.from_scene(simulation.scene).run()
         there = Facts.of(simulation.scene)
         found += [

@@ -43,7 +43,7 @@ def _map_blocks(result: Result) -> list[Block]:
     """Return the picture of the load by cell; of a barrier that has none nothing."""
     try:
         front_of(result.scene.barrier)
-    except ValueError:  # a mesh, segments that move, or several rows of posts
+    except ValueError:  # meshes, segments that move and several rows of posts have no load map
         return []
     note = "Load on the barrier by cell, seen from the vehicle; the cells add up to the force across its line"
     return [figure(result.load_map().plot(), note)]

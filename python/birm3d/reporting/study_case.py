@@ -26,10 +26,10 @@ __all__ = ["Asked", "Case", "case_of", "is_oblique"]
 
 SECURITY = ("ASTM F2656", "ISO 22343-1", "IWA 14-1", "PAS 68", "SD-STD-02.01")
 ROADSIDE = ("MASH", "EN 1317")
-_FRAMES = 60  # of the replay
-_FINER = 1e-2  # of the tolerance
+_FRAMES = 60  # instants that the replay shows
+_FINER = 1e-2  # tolerance of the run that errors are measured with, over that of the run itself
 _LEAST_TOLERANCE = 1e-8
-_MOST_RATED = 2000  # runs of a study that are run once more to be rated
+_MOST_RATED = 2000  # longer studies are not rated, because each of their runs is run once more for it
 
 
 @dataclass(frozen=True)
@@ -155,7 +155,7 @@ def _rated(result: Result, asked: Asked) -> tuple[tuple[Rating, ...], dict[str, 
     for standard in ROADSIDE if is_oblique(result) else SECURITY:
         try:
             ratings.append(rate(result, standard, vehicle_class=called))
-        except ValueError as reason:  # it does not know the vehicle
+        except ValueError as reason:  # the standard does not know the vehicle
             reasons[standard] = str(reason)
     ratings.sort(key=lambda rating: "no rating" in rating.designation)
     return tuple(ratings), reasons
@@ -165,10 +165,10 @@ def _rated_study(study: Study, standard: str, asked: Asked) -> RatingStudy | Non
     if len(study) > _MOST_RATED or not study.parameters or study._scene is None:
         return None
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of its runs; the study has told them
+        warnings.simplefilter("ignore")  # the study has warned of its runs already
         try:
             return rate(study, standard, vehicle_class=asked.vehicle_class)
-        except ValueError:  # none of its runs is one that the standard knows
+        except ValueError:  # the standard knows none of its runs
             return None
 
 
@@ -185,8 +185,8 @@ def _loads(result: Result) -> DesignLoad | str:
     if result.scene.barrier is None:
         return "there is no barrier"
     try:
-        return design_load(result, draws=0, progress=False)  # bands come with those of the class
-    except ValueError as reason:  # rows too far apart for the assumed period
+        return design_load(result, draws=0, progress=False)  # class_bands adds the bands later
+    except ValueError as reason:  # the rows are too far apart for the assumed period
         return str(reason)
 
 
@@ -195,5 +195,5 @@ def _finer(result: Result) -> Result:
     tolerance = max(_LEAST_TOLERANCE, _FINER * settings.tolerance)
     finer = dataclasses.replace(settings, time_step=None, tolerance=tolerance)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # told by the run itself
+        warnings.simplefilter("ignore")  # the run itself has warned of the same
         return Simulation.from_scene(dataclasses.replace(result.scene, settings=finer)).run()

@@ -52,7 +52,7 @@ MANIFEST = "manifest.json"
 _FORMAT = "birm3d capsule"
 _RESULT, _VEHICLE, _REPORT, _README = "result.npz", "vehicle.toml", "report.txt", "README.txt"
 _MEMBERS = (_RESULT, _VEHICLE, _REPORT, _README)
-_EPOCH = (1980, 1, 1, 0, 0, 0)  # of all members: the bytes of a capsule depend on what is in it alone
+_EPOCH = (1980, 1, 1, 0, 0, 0)  # all members have this date, so that equal contents give equal bytes
 
 
 @dataclass(frozen=True)

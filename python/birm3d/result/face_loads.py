@@ -18,7 +18,7 @@ Floats = npt.NDArray[np.float64]
 
 SPREAD = 0.0125
 """Four quarters of a node's force act so far from it, along and up [m]."""
-_MOST_INSTANTS = 800  # at which nodes are looked at: of longer runs not at the end of every step
+_MOST_INSTANTS = 800  # forces of nodes are kept at so many instants: in long runs not at each step's end
 
 
 class FaceStep(NamedTuple):

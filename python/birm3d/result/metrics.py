@@ -79,7 +79,7 @@ def values_of_outcome(scene: Scene, outcome: _core.Outcome, names: tuple[str, ..
     """
     _require_rows(scene, outcome.extremes.rows)
     found = _found(RunValues(scene, outcome), names)
-    if math.isnan(sum(found.values())):  # or infinite both ways
+    if math.isnan(sum(found.values())):  # some value is NaN, or there are both infinities
         for name, value in found.items():
             if math.isnan(value):
                 raise ArithmeticError(f"{name} is not a number")

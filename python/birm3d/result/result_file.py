@@ -73,7 +73,7 @@ def write(result: RunAnalysis, report: str | None, stream: IO[bytes]) -> None:
         arrays["frames/time"] = result.frames.time
         for i, displacement in enumerate(result.frames.displacement):
             arrays[f"frames/{i}/displacement"] = displacement
-    long_enough = len(result.time) > 1  # else metrics do not exist, see compute_metrics()
+    long_enough = len(result.time) > 1  # compute_metrics() needs two rows
     header = {
         "format": _FORMAT,
         "format_version": FORMAT_VERSION,

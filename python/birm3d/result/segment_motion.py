@@ -33,7 +33,7 @@ def base_corners(result: RunRecord) -> Floats:
 
 def lateral_movement(result: RunRecord) -> Floats:
     """Return how far the furthest corner moved square to the line, away from the traffic, (n,) [m]."""
-    assert result.scene.barrier is not None  # asked for with a free-standing barrier only
+    assert result.scene.barrier is not None  # callers have a free-standing barrier
     past = -np.asarray(result.scene.barrier.core.normal)[:2]
     corners = base_corners(result) @ past
     return np.asarray((corners - corners[0]).max(axis=(1, 2), initial=0.0))

@@ -174,7 +174,8 @@ def place_sensor(result: RunRecord, point: str | Sequence[Quantity], part: str |
         return Sensor(result, "({:g}, {:g}, {:g}) m".format(*place), np.array(place), which or 0)
     if which is None:
         having = [i for i, unit in enumerate(units) if point in unit.points]
-        if len(having) > 1 and point != "mass_center":  # of which the leading unit's is the result's own
+        # Each unit has a mass_center; the leading unit's is meant.
+        if len(having) > 1 and point != "mass_center":
             names = " or ".join(repr(units[i].name) for i in having)
             raise ValueError(f"part must be {names}: each has a point {point!r}, got None")
         which = having[0] if having else 0

@@ -68,9 +68,9 @@ def encode(value: Any, arrays: dict[str, npt.NDArray[Any]], name: str) -> Any:
     kind = type(value).__name__
     if _classes().get(kind) is not type(value):
         raise TypeError(f"{name} must be of a kind that files know, got {type(value).__qualname__}")
-    if hasattr(value, "model_dump"):  # pydantic's, which takes long to load
+    if hasattr(value, "model_dump"):  # a model of pydantic, which is not imported here: that takes long
         fields = value.model_dump(by_alias=True)
-    elif kind == "ArticulatedVehicle":  # the rest of it follows from these
+    elif kind == "ArticulatedVehicle":  # its other fields follow from these
         fields = {"units": value.units, "joint": value.joint, "name": value.name}
     else:
         stored = (field for field in dataclasses.fields(value) if field.metadata.get("stored", True))

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from birm3d.vehicle.skin_mesh import PANELS, SkinSurface
-from birm3d.vehicle.vehicle_file import CoreBox, End, Upper, VehicleFile, Zone
+from .skin_mesh import PANELS, SkinSurface
+from .vehicle_file import CoreBox, End, Upper, VehicleFile, Zone
 
 __all__ = ["ExteriorMesh", "build_mesh", "match_zones", "winding_number"]
 
