@@ -160,8 +160,8 @@ void register_history(py::module_& m) {
         "elements",
         [](const py::object& self) {
             py::typing::List<ObstacleHistory> list;
-            for (const ObstacleHistory& of : self.cast<const History&>().obstacles)
-                list.append(py::cast(of, py::return_value_policy::reference_internal, self));
+            for (const ObstacleHistory& element : self.cast<const History&>().obstacles)
+                list.append(py::cast(element, py::return_value_policy::reference_internal, self));
             return list;
         },
         "Of the elements of the barrier that were touched, in their order.");

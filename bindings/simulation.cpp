@@ -127,8 +127,8 @@ void register_simulation(py::module_& m) {
             "sizes",
             [](const Balances& balances) {
                 double fall = 0.0;
-                for (const Balances::Departure& of : balances.falls)
-                    fall = std::max(fall, of.size);
+                for (const Balances::Departure& departure : balances.falls)
+                    fall = std::max(fall, departure.size);
                 return std::tuple(balances.energy.size, balances.momentum.size, fall, balances.at_disposal,
                                   balances.largest_momentum);
             },

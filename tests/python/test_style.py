@@ -266,6 +266,14 @@ def test_no_function_above_60_and_no_file_above_300_lines() -> None:
     assert length_errors(ROOT) == []
 
 
+def test_names_in_the_core_are_no_prepositions() -> None:
+    """A variable is called by what it is: `of` says nothing."""
+    named = re.compile(r"^[^/\"\n]*[\w>&*\]] of(?: [=:]|[;,)\[{(])", re.MULTILINE)
+    files = [path for path in CPP_FILES if "tests" not in path.relative_to(ROOT).parts]
+    found = [path.name for path in files if named.search(path.read_text(encoding="utf-8"))]
+    assert found == []
+
+
 def test_length_check_itself(tmp_path: Path) -> None:
     folder = tmp_path / "cpp/src"
     folder.mkdir(parents=True)

@@ -71,11 +71,11 @@ Twist predicted_motion(const Scene& scene, std::size_t u, const State& from, Tri
 
 void predict_segments(const Scene& scene, const State& from, double dt, State& now) {
     for (const UnitState& unit : from.units)
-        for (const ContactLoad& touch : unit.contact_loads) {
-            const int body = body_of_obstacle(scene, touch.obstacle);
+        for (const ContactLoad& contact : unit.contact_loads) {
+            const int body = body_of_obstacle(scene, contact.obstacle);
             if (body < 0) continue;
-            Load coming = scaled(touch.history.now, 0.5 * dt);
-            coming += scaled(touch.history.rate, dt * dt / 3.0);
+            Load coming = scaled(contact.history.now, 0.5 * dt);
+            coming += scaled(contact.history.rate, dt * dt / 3.0);
             kick_body(scene, static_cast<std::size_t>(body), reaction_of(coming), now);
         }
 }

@@ -80,10 +80,11 @@ Twist relative_motion(const Scene& scene, const State& state, std::size_t u, std
     const int other = body_of_obstacle(scene, obstacle);
     if (other < 0) return motion;
     const auto b = static_cast<std::size_t>(other);
-    const Twist of = mean(before[b], after[b]);
+    const Twist other_motion = mean(before[b], after[b]);
     motion.velocity -=
-        of.velocity + of.angular_velocity.cross(state.units[u].body.position - body_state(state, b).position);
-    motion.angular_velocity -= of.angular_velocity;
+        other_motion.velocity +
+        other_motion.angular_velocity.cross(state.units[u].body.position - body_state(state, b).position);
+    motion.angular_velocity -= other_motion.angular_velocity;
     return motion;
 }
 

@@ -63,14 +63,14 @@ struct KickMemory {
     std::vector<std::size_t> about;
     std::vector<ContactBody> bodies;
     std::vector<Twist> before, pushed, rolling, after;  // motions of the bodies
+    std::vector<Twist> start;                           // the same before the first half kick of the step
+    std::vector<std::vector<SuspensionLoad>> sprung;    // (units) loads of the wheels that stand on springs
     std::vector<Twist>
         sliding;  // motions that the friction of an impact acts against; empty: those before it
     ContactKick kick;
     // Buffers of the search for impulses.
     ImpulseSolver solver;
-    std::vector<std::vector<SuspensionLoad>> sprung;  // (units) wheels that springs and dampers carry
-    std::vector<Twist> held;                          // (bodies) motions with the impulses of joints
-    std::vector<Twist> start;                         // motions of the bodies at the start of the step
+    std::vector<Twist> held;  // (bodies) motions with the impulses of joints
     std::vector<Column> tire;
     Column last;
     std::vector<Wrench> on_cores, on_base;

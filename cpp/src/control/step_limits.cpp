@@ -30,9 +30,9 @@ double untouched_step_of(const TrussBlockState& block, const std::vector<Relativ
                          double fastest, double longest) {
     const Box& box = block.box;
     alignas(64) NearestOfBlock found, nearest;
-    std::array<std::size_t, block_size> of;  // place in near
+    std::array<std::size_t, block_size> which;  // place in near
     nearest.gap.fill(infinity);
-    of.fill(0);
+    which.fill(0);
     for (std::size_t j = 0; j < near.size(); ++j) {
         const Placement& in_shape = near[j].placement;
         if (!within_reach(*near[j].shape, in_shape, box, longest * fastest)) continue;
@@ -40,7 +40,7 @@ double untouched_step_of(const TrussBlockState& block, const std::vector<Relativ
         for (std::size_t k = 0; k < block_size; ++k) {
             if (!(found.gap[k] < nearest.gap[k])) continue;
             nearest.gap[k] = found.gap[k];
-            of[k] = j;
+            which[k] = j;
             nearest.nx[k] = found.nx[k], nearest.ny[k] = found.ny[k], nearest.nz[k] = found.nz[k];
         }
     }
@@ -48,7 +48,7 @@ double untouched_step_of(const TrussBlockState& block, const std::vector<Relativ
         const double gap = std::max(nearest.gap[k], 0.0);
         if (!(gap < longest * fastest) || is_slack(block, k)) continue;
         const Vec3 node(block.x[k], block.y[k], block.z[k]);
-        const Twist& motion = near[of[k]].motion;
+        const Twist& motion = near[which[k]].motion;
         const double approach = -Vec3(nearest.nx[k], nearest.ny[k], nearest.nz[k])
                                      .dot(motion.velocity + motion.angular_velocity.cross(node));
         const double straight = approach > 0.0 ? gap / approach : infinity;

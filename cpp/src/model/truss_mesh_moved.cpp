@@ -79,8 +79,8 @@ TrussMesh TrussMesh::moved(const Vec3& origin) const {
     }
     mesh.reach = std::sqrt(reach_2);
     mesh.anchors.center -= origin;
-    for (Panel& of : mesh.panel)
-        if (of.any) of.box.center -= origin, of.anchors.center -= origin;
+    for (Panel& shifted : mesh.panel)
+        if (shifted.any) shifted.box.center -= origin, shifted.anchors.center -= origin;
     return mesh;
 }
 

@@ -47,17 +47,18 @@ Extremes::ElementLoads greatest_element_loads(const History& history, const Barr
     if (count < 2) return found;
     const std::size_t window = rows_in(window_50ms, history.time[1] - history.time[0]);
     const double rows = static_cast<double>(window);
-    for (const ObstacleHistory& of : history.obstacles) {
+    for (const ObstacleHistory& loads : history.obstacles) {
         Vec3 force = Vec3::Zero(), moment = Vec3::Zero();   // sums of the rows up to now
         Vec3 force_before = force, moment_before = moment;  // and of those that have left the window
         double force_squared = 0.0, mean_squared = 0.0;
-        Overturning at_once(barrier, barrier.elements[of.obstacle].shape), mean = at_once;
+        Overturning at_once(barrier, barrier.elements[loads.obstacle].shape), mean = at_once;
         for (std::size_t k = 0; k < count; ++k) {
-            force += of.force[k], moment += of.moment[k];
-            if (k >= window) force_before += of.force[k - window], moment_before += of.moment[k - window];
-            force_squared = std::max(force_squared, of.force[k].squaredNorm());
+            force += loads.force[k], moment += loads.moment[k];
+            if (k >= window)
+                force_before += loads.force[k - window], moment_before += loads.moment[k - window];
+            force_squared = std::max(force_squared, loads.force[k].squaredNorm());
             mean_squared = std::max(mean_squared, ((force - force_before) / rows).squaredNorm());
-            at_once.add(of.moment[k]), mean.add((moment - moment_before) / rows);
+            at_once.add(loads.moment[k]), mean.add((moment - moment_before) / rows);
         }
         found.moment = std::max(found.moment, at_once.greatest());
         found.moment_50ms = std::max(found.moment_50ms, mean.greatest());

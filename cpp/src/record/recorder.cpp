@@ -125,28 +125,28 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e, const
         put(row + at_tire_friction, impulses.tire_friction);
         put(row + at_joint_impulse, impulses.joints);
         row[at_normal_impulse] = impulses.barrier_normal;
-        for (const ContactLoad& touch : loads.units[u].contact_loads) {
-            const bool ground = touch.obstacle == scene.ground;
-            const Load& now = touch.history.now;
+        for (const ContactLoad& contact : loads.units[u].contact_loads) {
+            const bool ground = contact.obstacle == scene.ground;
+            const Load& now = contact.history.now;
             add_to(row + (ground ? at_ground_force : at_barrier_force), now.wrench.force);
-            if (!ground) row[at_normal_force] += touch.normal_force;
-            const Load curvature = loads.curved ? touch.higher_order.corrector : Load{};
+            if (!ground) row[at_normal_force] += contact.normal_force;
+            const Load curvature = loads.curved ? contact.higher_order.corrector : Load{};
             add_to(row + (ground ? at_ground_curvature : at_barrier_curvature), curvature.wrench.force);
             if (ground) continue;
             row[at_normal_curvature] += curvature.normal_force;
-            double* on = obstacle_row(index, scene.obstacles[touch.obstacle].element).values.data();
+            double* on = obstacle_row(index, scene.obstacles[contact.obstacle].element).values.data();
             add_to(on + at_load, -now.wrench.force);
             add_to(on + at_load + 3, now.reaction_torque);
             add_to(on + at_load_curvature, -curvature.wrench.force);
             add_to(on + at_load_curvature + 3, curvature.reaction_torque);
         }
-        for (const ObstacleImpulse& of : impulses.obstacles) {
-            const bool ground = of.obstacle == scene.ground;
-            add_to(row + (ground ? at_ground_impulse : at_barrier_impulse), of.impulse);
+        for (const ObstacleImpulse& one : impulses.obstacles) {
+            const bool ground = one.obstacle == scene.ground;
+            add_to(row + (ground ? at_ground_impulse : at_barrier_impulse), one.impulse);
             if (ground) continue;
-            double* on = obstacle_row(index, scene.obstacles[of.obstacle].element).values.data();
-            add_to(on + at_load_impulse, -of.impulse);
-            add_to(on + at_load_impulse + 3, of.torque);
+            double* on = obstacle_row(index, scene.obstacles[one.obstacle].element).values.data();
+            add_to(on + at_load_impulse, -one.impulse);
+            add_to(on + at_load_impulse + 3, one.torque);
         }
         std::copy(impulses.tire.begin(), impulses.tire.end(), row + at_tire_impulses);
         row += unit_width(model);

@@ -99,9 +99,10 @@ Ends ends_along(const Scene& scene, const State& state, const Vec3& direction) {
             }
         };
         for (std::size_t b = 0; b < mesh.blocks; ++b) {
-            const TrussBlock& of = mesh.block[b];
-            compare(b, mesh.node_box[b], of.node_x, of.node_y, of.node_z);
-            if (b < mesh.skin_blocks) compare(b, mesh.anchor_box[b], of.anchor_x, of.anchor_y, of.anchor_z);
+            const TrussBlock& trusses = mesh.block[b];
+            compare(b, mesh.node_box[b], trusses.node_x, trusses.node_y, trusses.node_z);
+            if (b < mesh.skin_blocks)
+                compare(b, mesh.anchor_box[b], trusses.anchor_x, trusses.anchor_y, trusses.anchor_z);
         }
     }
     return ends;

@@ -32,8 +32,8 @@ Vec3 total_impulse(const ContactImpulses& sums) {
     Vec3 sum = sums.tire_friction + sums.joints;
     for (const double impulse : sums.tire)
         sum.z() += impulse;
-    for (const ObstacleImpulse& of : sums.obstacles)
-        sum += of.impulse;
+    for (const ObstacleImpulse& one : sums.obstacles)
+        sum += one.impulse;
     return sum;
 }
 

@@ -134,7 +134,7 @@ void find_sprung_wheels(const Scene& scene, const State& state, Stage stage, Kic
 }
 
 // Impulse of a sprung wheel on its unit, about the mass centre.
-Wrench carry(const SuspensionLoad& load, double half, ContactImpulses& sums) {
+Wrench add_spring_impulse(const SuspensionLoad& load, double half, ContactImpulses& sums) {
     const double size = half * (load.spring + load.damper);
     sums.tire[load.wheel] += size;
     sums.sprung[load.wheel] += size;
@@ -175,7 +175,7 @@ Column kick_by_forces(const Scene& scene, Stage stage, double half, Trial& trial
         }
         impulse.force.z() -= half * body.mass * scene.settings.gravity;
         for (const SuspensionLoad& load : trial.memory.sprung[u])
-            impulse += carry(load, half, trial.impulses[u]);
+            impulse += add_spring_impulse(load, half, trial.impulses[u]);
         kick(body, impulse, unit.body);
     }
     return pressed;

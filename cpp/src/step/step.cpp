@@ -50,11 +50,11 @@ void move_unit(const Scene& scene, std::size_t u, const State& from, Trial& tria
 }
 
 // What the springs of these wheels have is lost.
-void give_way(const Unit& of, WheelSet gone, UnitMotion& unit, Energies& energies) {
+void give_way(const Unit& model, WheelSet gone, UnitMotion& unit, Energies& energies) {
     if ((gone & ~unit.given_way) == 0) return;
-    const double before = spring_energy(of, unit.body, unit.given_way);
+    const double before = spring_energy(model, unit.body, unit.given_way);
     unit.given_way |= gone;
-    const double lost = before - spring_energy(of, unit.body, unit.given_way);
+    const double lost = before - spring_energy(model, unit.body, unit.given_way);
     energies.springs -= lost;
     energies.dampers += lost;
 }

@@ -99,10 +99,10 @@ def class_bands(
             found, failed = look_at_study(prediction.study, look, progress=False)
     ratings = {}
     for standard in standards:
-        of = {run: one.ratings[standard] for run, one in found.items() if standard in one.ratings}
-        if of:
-            missing = {run: "no rating" for run in found if run not in of}
-            ratings[standard] = rating_study(of, {**failed, **missing})
+        judged = {run: one.ratings[standard] for run, one in found.items() if standard in one.ratings}
+        if judged:
+            missing = {run: "no rating" for run in found if run not in judged}
+            ratings[standard] = rating_study(judged, {**failed, **missing})
     risks = {run: one.risk for run, one in found.items() if one.risk is not None}
     if loads is not None:
         seen = [(run, one.loads) for run, one in found.items()] + [(run, None) for run in failed]

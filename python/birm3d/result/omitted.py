@@ -73,7 +73,7 @@ def _body(result: RunAnalysis) -> Iterator[str]:
     statistics = result.statistics
     if statistics.body_steps < statistics.steps:
         left = _of(statistics.steps - statistics.body_steps, statistics.steps)
-        yield f"their own contact in {left} steps (no truss was closed)"
+        yield f"their own contact in {left} steps (no truss was bottomed out)"
     if result.scene.vehicle.joint is None:
         yield "joints (the vehicle is one unit)"
     else:

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from birm3d.vehicle.vehicle_file import VehicleFile, Wheel
+from .vehicle_file import VehicleFile, Wheel
 
 __all__ = ["Tread", "build_tread", "zones_of_wheels"]
 

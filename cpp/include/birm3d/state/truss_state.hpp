@@ -74,8 +74,8 @@ struct TrussState {
         for (const std::size_t b : changed)
             if (b / TrussMesh::group_size != last) group(mesh, last = b / TrussMesh::group_size);
         around = mesh.anchors;
-        for (const BlockGroup& of : groups)
-            around = around.with(of.box);
+        for (const BlockGroup& group_of_blocks : groups)
+            around = around.with(group_of_blocks.box);
     }
 
     // Does an obstacle hold any node beyond the free length of its truss? Such a node may return by itself.
