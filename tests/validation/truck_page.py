@@ -266,13 +266,14 @@ READING = """- **Engine.** The momentum that it lacks is taken from it in 5 to 1
   the truck's momentum. It slides for 1.5 m and brings it to the wall by 140 ms, at a third of the force of
   the first half. One body has to stop earlier: its travel is short there.
 - **Pitch.** The force acts below the mass centre, at about the height that the runs have. In the runs front
-  springs and hangers give way, and folds of the front stay where they touch the wall. Head-on, with rigid
-  wheels and full friction, the truck pitches by 1 to 4 degrees only; each alone limits the pitch. So the file
-  has two numbers for these, the same in all rows of this page. A front wheel gives way at 60 kN, 5.5 times
-  its load at rest: chosen by hand, 30 to 70 kN differ by 1 degree. The wheel then carries nothing until the
-  nose has sunk by 0.82 m there. That is the frame's height, 0.6 m at the axle that was pushed back to 2.1 m
-  ahead of the mass centre, carried on to 2.9 m. The front passes on 0.15 of the friction. In the runs the
-  vertical impulse has a mean size of 3 % of the forward one; sliding at a friction of 0.2 would give 20 %.
+  springs and hangers give way, and folds of the front stay where they touch the wall. Head-on, with wheels
+  that hold and full friction, the truck pitches by 1 to 4 degrees only; each alone limits the pitch. So the
+  file has two numbers for these, the same in all rows of this page. A front wheel gives way at 60 kN, 5.5
+  times its load at rest: chosen by hand, 30 to 70 kN differ by 1 degree. The wheel then carries nothing
+  until the nose has sunk by 0.82 m there. In the runs the frame, 0.6 m high, comes down on an axle that was
+  pushed back to 2.1 m ahead of the mass centre; at the wheel's own place, 2.9 m ahead, that is 0.82 m. This
+  truck has no springs. The front passes on 0.15 of the friction. In the runs the vertical impulse has a
+  mean size of 3 % of the forward one; sliding at a friction of 0.2 would give 20 %.
 - **Posts at the end of a bumper.** The outer two of three posts overlap it by 85 mm, and bend it away in the
   run. The computed skin there goes in with the post, as far as that pushes it.
 - **Friction on posts.** Computed posts rub the skin only where that moves along the panel. All contacts of

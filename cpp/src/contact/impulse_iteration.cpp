@@ -80,7 +80,7 @@ const std::vector<Twist>& sliding_motions(const KickMemory& memory) {
 }
 
 // Motions of the bodies with the normal impulses and those of joints, without friction. Springs push joined units
-// apart, and the joint holds them: the motion without it has a sliding that does not happen.
+// apart, and the joint resists. Without its impulse, tyres would seem to slide.
 void find_held_motions(const Scene& scene, const KickedBy& by, KickMemory& memory) {
     memory.held.clear();
     if (scene.vehicle->joints.empty() || by.is_impact) return;

@@ -1,9 +1,9 @@
 // Springs and dampers of wheels without mass.
 //
-// A sprung wheel is compressed by c while it stands on the ground: fully extended, its lowest point would be so far below
-// the ground. The spring has the energy k c^2 / 2. It pushes with the derivative k c, along the vertical at that point.
-// So it keeps the energy in any pose. The damper adds d dc/dt; together they never pull. A wheel that leaves the ground
-// is extended at once, and what its spring still has is lost in the damper.
+// A sprung wheel that stands on the ground is compressed by c: fully extended, its lowest point would lie so far below
+// the ground. The spring has the energy k c^2 / 2 and pushes with its derivative, k c along the vertical at that point.
+// So it keeps the energy in any pose. The damper adds d dc/dt; together they never pull. Where the body rises faster
+// than the damper lets the spring extend, the wheel carries nothing. The damper then takes what the spring loses.
 #pragma once
 
 #include <vector>

@@ -35,8 +35,8 @@ Vec3 point_on_ground(const Wheel& wheel, const Mat3& R, double height) {
     return arm;
 }
 
-// Greatest change of a wheel's velocity along its axle by an impulse of 1 there, and at least twice that of the mass
-// centre. Rigid wheels keep the body from rolling; springs do not.
+// Greatest change of a wheel's velocity along its axle by a unit impulse there (1/kg). It is at least twice that of the
+// mass centre, as the body also turns. Wheels on springs let it roll, too; fixed wheels do not.
 double inverse_mass_at_wheels(const Unit& unit, const Mat3& R, double height) {
     double greatest = 2.0 * unit.body.inverse_mass;
     for (const Wheel& wheel : unit.wheels) {
@@ -86,8 +86,7 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
     if (mu == 0.0 || total == 0.0) return sum;
 
     const Mat3 R = state.orientation.toRotationMatrix();
-    // Speed that a friction coefficient of 1 would take from a wheel: twice that of the mass centre, as the
-    // body also turns.
+    // Speed that friction with a coefficient of 1 would take from a wheel.
     const double speed_change = total * inverse_mass_at_wheels(unit, R, state.position.z());
     // At small slip the impulse is C N dt * v_across / v_along. A lower bound of v_along keeps it from reversing the
     // motion.

@@ -89,15 +89,14 @@ void set_lasting_targets(Stage stage, double dt, double gravity,
         }
         return;
     }
-    // A tyre that did not carry load before the drift falls on if its weight would not bring it to the ground within
-    // a step. If this half of a step stopped it, short steps would keep it above the ground: their first halves would
-    // carry nothing, and their second ones twice the load.
+    // A tyre that is too high to land within a step is left out. If this half of a step stopped it, short steps would
+    // keep it above the ground: their first halves would carry nothing, and their second ones twice the load.
     const double tire_gap = std::clamp(0.5 * gravity * dt * dt, rounding_gap, tolerance::touching_gap);
     std::erase_if(contacts, [&](const RigidContact& contact) {
         if (contact.bilateral) return false;
         const bool is_tire = contact.source == ContactSource::tire;
-        // A tyre that carried load before the drift is still in contact after it, though rotation may have opened a
-        // gap of rounding size. It makes an impact only if it approached before the forces of this step.
+        // A rigid contact of a tyre that carried load before the drift still does. Rotation may have opened a gap of
+        // rounding size. It makes an impact only if it approached before the forces of this step.
         const ContactImpulses& before = before_drift[contact.body];
         if (is_tire && before.tire[contact.index] > before.sprung[contact.index]) return contact.is_impact;
         return contact.gap > (is_tire ? tire_gap : tolerance::touching_gap) ||
@@ -118,8 +117,8 @@ double time_to_impact(double negligible, std::span<const ContactBody> bodies,
     return earliest;
 }
 
-// Dampers see the motion at that end of the step: it is predicted after the drift, where the second half of the step is
-// assumed to change it as the first one did. So they are followed to second order.
+// Forces of dampers need the velocity at the end of the half kick. After the drift it is predicted: the second half of the
+// step changes it as the first one did. So damping has an error of second order.
 void find_sprung_wheels(const Scene& scene, const State& state, Stage stage, KickMemory& memory) {
     if (!scene.settings.ground) return;
     if (stage == Stage::before_drift) memory.start = memory.before;

@@ -42,7 +42,7 @@ _TIPS = (
 )
 _ROLLS_LITTLE = (
     "Springs are estimates, and wheels do not steer: computed vehicles may roll too little. In a published "
-    "10000S test the truck rolled over a New Jersey barrier of 0.81 m; computed, it rolls by 20 degrees. A "
+    "10000S test the truck rolled over a New Jersey barrier of 0.81 m; computed, it rolls by 21 degrees. A "
     "heavy vehicle that is computed upright may roll over in a test."
 )
 _WIDTHS = (0.6, 0.8, 1.0, 1.3, 1.7, 2.1, 2.5, 3.5)

@@ -283,7 +283,7 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
         "wheel_climb": Metric(
             "m",
             "attitude",
-            "greatest height of any wheel's lowest point above the ground; with wheels and a ground",
+            "greatest height of any wheel's lowest point above the ground; sprung wheels count as extended",
             "wheel_climb",
             made.wheel_climb,
             "run",

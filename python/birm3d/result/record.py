@@ -268,7 +268,7 @@ class RunRecord:
         ``impacts`` (lost in rigid contacts). Then their ``total``, and ``residual``: total now less total at
         the start, as no work enters from outside. ``kinetic`` is that of all bodies. Where the barrier is
         free-standing also ``barrier_ground_friction``, what its segments lost to friction on the ground.
-        Where wheels have springs also ``suspension``: in springs, less than at rest, and lost in dampers.
+        Where wheels have springs also ``suspension``: of springs less that at rest, and lost in dampers.
         Where units or segments are joined also ``joints``: the work of joint forces in the held directions.
         It is zero up to the error of the steps, and is separate so that this error is not mistaken for a
         loss. The loss at the stops of a fifth wheel is in ``impacts``.

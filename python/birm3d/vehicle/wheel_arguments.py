@@ -1,4 +1,4 @@
-"""What the core is told of a vehicle's wheels beside their places: loads at which they give way, and springs.
+"""Springs, dampers and loads at which wheels give way, for the C++ library.
 
 The springs of a file are given by their compression under the weight, so that they follow the vehicle's mass.
 How the weight is shared follows from statics, with loads that lie on a plane over the wheels' places.
@@ -32,7 +32,7 @@ def breakaway(vehicle: VehicleFields) -> Floats:
 
 
 def suspension(vehicle: VehicleFields, joint: tuple[Floats, float] | None = None) -> Floats:
-    """Return what holds each wheel (w, 4), by its zone.
+    """Return spring, damper and bump stop of each wheel (w, 4), by its zone.
 
     Stiffness [N/m], 0 of a wheel that is fixed to the body; damping [N s/m]; compression at rest, and travel
     from there to the bump stop [m]. joint: as in :func:`wheel_loads`.
@@ -55,8 +55,8 @@ def suspension(vehicle: VehicleFields, joint: tuple[Floats, float] | None = None
 def wheel_loads(vehicle: VehicleFields, joint: tuple[Floats, float] | None = None) -> Floats:
     """Return the load of each wheel at rest on a level road [N], shape (w,).
 
-    Of all loads that carry the weight, and the load on a joint, those that lie on a plane. A unit that would
-    tip over its wheels is taken to load them evenly.
+    Loads that balance the weight and the load on a joint; they vary linearly with the wheels' places. If one
+    of these loads is not positive, all wheels share evenly.
     joint: its place from the mass centre, body axes (3,) [m], and what presses down on it [N].
     """
     weight = units.g(vehicle.mass)

@@ -37,7 +37,7 @@ class LawNumber(NamedTuple):
     """A number of a zone's law: its quantity as in :func:`birm3d.units.si`, and its limit in files.
 
     words: what reports call it. optional: a law may have it in addition. of_wheel: it is of the wheels of a
-    zone of tyres, not of the envelope.
+    zone of tyres, not of the crush law.
     """
 
     quantity: str
@@ -69,7 +69,7 @@ OPTIONAL = tuple(name for name, row in LAW_NUMBERS.items() if row.optional)
 """Numbers that a law may have in addition to Fig. 3."""
 
 OF_ENVELOPE = tuple(name for name in OPTIONAL if not LAW_NUMBERS[name].of_wheel)
-"""Those of them that go with an envelope; a new envelope starts without."""
+"""Optional numbers of the crush law; a new envelope starts without them."""
 
 LAW_QUANTITIES = {name: row.quantity for name, row in LAW_NUMBERS.items()}
 """Number of a zone's law -> its quantity, as :func:`birm3d.units.si` has it."""
@@ -204,7 +204,7 @@ class Zone(Mapping[str, Any]):
     def scaled(self, factor: float, stretch: float = 1.0) -> Zone:
         """Return the zone with its stresses times a factor > 0 and its deflections times a stretch > 0.
 
-        Slopes go with the factor over the stretch. Friction and breakaway loads stay as they are.
+        Slopes go with the factor over the stretch. The share of friction and all numbers of wheels stay.
         """
         factor, stretch = positive("scale", factor), positive("stretch", stretch)
         times = {"pressure": factor, "pressure per length": factor / stretch, "length": stretch}
