@@ -577,3 +577,15 @@ def test_panels_of_comparisons(head_on: Result) -> None:
     for arguments, message in ((([],), "at least one"), (([comparison], 0), "columns must be")):
         with pytest.raises(ValueError, match=message):
             plot_comparisons(*arguments)  # type: ignore[arg-type]
+
+
+def test_histories_end_where_a_run_gets_calm() -> None:
+    """A car at rest has nothing to show: the axis ends after the event, and says when the run did."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    short = Simulation(car, Barrier.rigid_wall(), 15.0, duration=0.2).run()
+    long = Simulation(car, Barrier.rigid_wall(), 15.0, duration=3.0).run()
+    for plot in (Result.plot_histories, Result.plot):
+        assert plot(short).axes[-1].get_xlim() == pytest.approx((0.0, short.time[-1] * 1e3))
+        panels = plot(long).axes
+        assert "time [ms]; calm until the run ends at 3,000 ms" in [one.get_xlabel() for one in panels]
+        assert all(one.get_xlim()[1] < 1800.0 for one in panels)

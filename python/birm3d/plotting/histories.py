@@ -28,6 +28,7 @@ from .style import (
     prepare,
     title,
 )
+from .time_axis import limit_time
 
 if TYPE_CHECKING:
     from ..result.result import Result
@@ -45,7 +46,8 @@ def plot_histories(result: Result) -> Figure:
     Forces and accelerations after CFC 60 (vehicle structure, barrier), angular rates after CFC 180
     (integration), SAE J211-1; unfiltered interval means are thin lines behind. Velocities and angles are
     states: they are not filtered. A blow of a few milliseconds that would flatten the rest of its panel is
-    cut off, and its peak is written beside it.
+    cut off, and its peak is written beside it. The figure ends where force and rotation stay small, if that
+    is well before the end of the run; its axes then say so.
     """
     figure = new_figure(12.0, 10.5)
     panels = figure.subplots(3, 2, sharex=True)
@@ -89,9 +91,7 @@ def plot_histories(result: Result) -> Figure:
     at_least(rates, LEAST_RATE)
     if result.tire_reaction.shape[1]:
         tires.set_ylim(bottom=0.0)
-    for axes in panels[-1]:
-        axes.set_xlabel("time [ms]")
-        axes.set_xlim(0.0, float(ms[-1]))
+    limit_time(panels[-1], result)
     for axes in (force, acceleration, rates, tires):
         cut_peaks(axes)
     figure.suptitle(title(result))

@@ -26,6 +26,7 @@ from .style import (
     prepare,
     title,
 )
+from .time_axis import limit_time
 
 if TYPE_CHECKING:
     from ..result.result import Result
@@ -80,9 +81,7 @@ def plot_result(result: Result) -> Figure:
 
     plot_energies(energies, result)
 
-    for axes in panels[-1]:
-        axes.set_xlabel("time [ms]")
-        axes.set_xlim(0.0, float(ms[-1]))
+    limit_time(panels[-1], result)
     cut_peaks(force, slowing)
     figure.suptitle(title(result))
     return figure

@@ -15,7 +15,7 @@ from ..result.summary import shown_as
 from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import band_of, headline_table
 from .given_tests import Compared, errors
-from .study_case import Case, is_oblique
+from .study_case import ROADSIDE, Case, is_oblique
 from .uncertainty import computing_error
 
 __all__ = ["criteria_table", "risk_section", "verdict_section"]
@@ -128,6 +128,8 @@ def _quantity(one: Compared) -> str:
 
 def _penetration(rating: Rating) -> str:
     distance = rating.penetration
+    if rating.standard in ROADSIDE:
+        return f"its furthest part {distance:.2f} m past the undeformed traffic face"
     if distance < 0.0:
         return f"its reference point stays {-distance:.2f} m short of the datum"
     goes_on = any("at least this" in one.grade for one in rating.criteria)
