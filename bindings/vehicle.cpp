@@ -26,6 +26,14 @@ std::vector<T> integers(const Integers& array, const char* name) {
     return result;
 }
 
+void require_row_for_each(const std::vector<Wheel>& wheels, const InputArray& numbers, py::ssize_t columns,
+                          const std::string& name) {
+    if (numbers.ndim() != 2 || numbers.shape(1) != columns ||
+        numbers.shape(0) != static_cast<py::ssize_t>(wheels.size()))
+        refuse(name + " shape", "(w, " + std::to_string(columns) + "), a row for each wheel",
+               shape_text(numbers));
+}
+
 std::vector<Wheel> discs(const InputArray& wheels) {
     if (wheels.ndim() != 2 || wheels.shape(1) != 4) refuse("wheels shape", "(w, 4)", shape_text(wheels));
     std::vector<Wheel> result;
@@ -80,21 +88,14 @@ void register_vehicle(py::module_& m) {
                                      {core.at(i, 3), core.at(i, 4), core.at(i, 5)}});
                 const RigidBody body(mass, matrix(inertia, "inertia"));
                 std::vector<Wheel> own = discs(wheels);
-                if (breakaway.ndim() != 2 || breakaway.shape(1) != 2 ||
-                    breakaway.shape(0) != static_cast<py::ssize_t>(own.size()))
-                    refuse("breakaway shape", "(w, 2), a row for each wheel", shape_text(breakaway));
-                for (std::size_t i = 0; i < own.size(); ++i) {
-                    own[i].breakaway = breakaway.at(static_cast<py::ssize_t>(i), 0);
-                    own[i].travel = breakaway.at(static_cast<py::ssize_t>(i), 1);
-                }
-                if (suspension.ndim() != 2 || suspension.shape(1) != 4 ||
-                    suspension.shape(0) != static_cast<py::ssize_t>(own.size()))
-                    refuse("suspension shape", "(w, 4), a row for each wheel", shape_text(suspension));
-                for (std::size_t i = 0; i < own.size(); ++i) {
-                    const auto number = [&](py::ssize_t k) {
-                        return suspension.at(static_cast<py::ssize_t>(i), k);
-                    };
-                    own[i].suspension = {number(0), number(1), number(2), number(3)};
+                require_row_for_each(own, breakaway, 2, "breakaway");
+                require_row_for_each(own, suspension, 4, "suspension");
+                for (py::ssize_t i = 0; i < breakaway.shape(0); ++i) {
+                    Wheel& wheel = own[static_cast<std::size_t>(i)];
+                    wheel.breakaway = breakaway.at(i, 0);
+                    wheel.travel = breakaway.at(i, 1);
+                    wheel.suspension = {suspension.at(i, 0), suspension.at(i, 1), suspension.at(i, 2),
+                                        suspension.at(i, 3)};
                 }
                 return Unit(body, trusses.moved(vector(origin, "origin")), std::move(own), mass_center_height,
                             vector(offset, "offset"), std::move(boxes));

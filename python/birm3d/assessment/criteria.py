@@ -6,7 +6,15 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 
-__all__ = ["Criterion", "criteria_html", "criteria_text", "foot_html", "table_html", "table_text"]
+__all__ = [
+    "Criterion",
+    "criteria_html",
+    "criteria_text",
+    "foot_html",
+    "table_html",
+    "table_text",
+    "without_sign_of_zero",
+]
 
 _LARGE = 1000.0  # from here on one decimal is shown
 _HEAD = ("criterion", "value", "limit", "verdict")
@@ -99,3 +107,8 @@ def foot_html(caution: str) -> str:
 def _below(text: str) -> str:
     lines = "<br>".join(map(escape, text.split("\n")))
     return f'<div style="max-width:48em;opacity:0.8">{lines}</div>'
+
+
+def without_sign_of_zero(text: str) -> str:
+    """Return a number as text, without the sign of what is rounded to zero."""
+    return text.removeprefix("-") if not text.strip("-0.") else text

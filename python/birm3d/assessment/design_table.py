@@ -17,7 +17,7 @@ from ..base.checks import array, is_whole, shown
 from ..base.frozen_mapping import FrozenMapping
 from ..io.atomic_write import whole_file
 from ..scene.scene import Scene
-from .criteria import table_html, table_text
+from .criteria import table_html, table_text, without_sign_of_zero
 from .element_design import BANDED, ENVELOPED, ElementDesign, System, check_system, design_direction
 from .oscillator import resistance
 
@@ -398,15 +398,13 @@ def _band(row: ElementDesign, name: str, size: float) -> str:
     if name not in row.band:
         return ""
     form = {"height": "{:.2f}", "dynamic_load_factor": "{:.2f}", "direction": "{:.0f}"}.get(name)
-    low, high = (_kilo(end / size) if form is None else _unsigned(form.format(end)) for end in row.band[name])
+    low, high = (
+        _kilo(end / size) if form is None else without_sign_of_zero(form.format(end))
+        for end in row.band[name]
+    )
     if name == "direction" and low == high:  # of walls it is that of the normal
         return ""
     return f" [{low} to {high}]"
-
-
-def _unsigned(text: str) -> str:
-    """Return a number as text, without the sign of a zero."""
-    return text.removeprefix("-") if not text.strip("-0.") else text
 
 
 def _pipes(cells: tuple[str, ...] | list[str]) -> str:

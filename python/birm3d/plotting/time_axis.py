@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 __all__ = ["limit_time"]
 
-# Shares of the greatest force and of the greatest angular velocity below which nothing is to be seen, and how
-# much of the run a figure must be able to leave out to end before it. ROOM after the last that is seen.
-_CALM, _MOST, _ROOM = 0.05, 0.6, 1.1
+_CALM = 0.05  # of the greatest force and of the greatest angular velocity; below that a run is calm
+_MOST = 0.6  # of the run; a figure ends early only if it then shows less than this
+_ROOM = 1.1  # times the last instant that is not calm: there such a figure ends
 _WINDOW = 0.01  # s, over which the force is a mean
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..assessment.criteria import without_sign_of_zero
 from ..plotting.energies import plot_energies
 from ..plotting.figure import new_figure
 from ..plotting.style import prepare
@@ -218,12 +219,12 @@ def _energies(case: Case) -> Iterator[tuple[str, ...]]:
             share = f"{(last - first) / start:+.1e}" if start > 0.0 else "–"
             yield name, f"{first / 1e3:.2e}", f"{last / 1e3:.2e}", share
         else:
-            yield name.replace("_", " "), _signed(f"{first / 1e3:,.2f}"), _signed(f"{last / 1e3:,.2f}"), share
-
-
-def _signed(text: str) -> str:
-    """Return a number as text, without the sign of what is rounded to zero."""
-    return text.removeprefix("-") if not text.strip("-0.") else text
+            yield (
+                name.replace("_", " "),
+                without_sign_of_zero(f"{first / 1e3:,.2f}"),
+                without_sign_of_zero(f"{last / 1e3:,.2f}"),
+                share,
+            )
 
 
 def _momenta(case: Case) -> Iterator[tuple[str, ...]]:
@@ -250,5 +251,5 @@ def _momenta(case: Case) -> Iterator[tuple[str, ...]]:
     )
     rows = {**terms, "sum of impulses": total, "change of momentum": change}
     for name, value in rows.items():
-        yield name, *(_signed(f"{x / 1e3:,.3f}") for x in value)
+        yield name, *(without_sign_of_zero(f"{x / 1e3:,.3f}") for x in value)
     yield "difference", *(f"{x / 1e3:.1e}" for x in total - change)

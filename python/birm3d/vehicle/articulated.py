@@ -73,11 +73,6 @@ class ArticulatedVehicle(Vehicle):
         assert isinstance(trailing, VehicleRecipe)
         return CombinationRecipe(self.name, leading, trailing, self.joint)
 
-    @property
-    def has_springs(self) -> bool:
-        """Whether any wheel of any unit has a spring, see :class:`birm3d.Zone`."""
-        return any(unit.has_springs for unit in self._units)
-
     @cached_property
     def core(self) -> _core.Vehicle:
         """The same vehicle for the core; its reference point is the leading unit's mass centre."""

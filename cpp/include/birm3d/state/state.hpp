@@ -39,7 +39,7 @@ struct UnitState : UnitMotion {
     TrussState trusses;
 };
 
-// Energies in J; all but `kinetic`, `potential` and `springs` grow from zero.
+// Energies in J. They grow from zero, but for `kinetic`, `potential` and `springs`.
 struct Energies {
     double kinetic = 0.0;
     double potential = 0.0;         // of gravity, zero at the start
