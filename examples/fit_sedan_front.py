@@ -31,10 +31,10 @@ SCALARS = (
     ScalarTarget("restitution", 0.20, 0.02),
     ScalarTarget("peak_normal_force_cfc60", 678e3, 30e3),
 )
-LENGTHS = (0.025, 0.042, 0.055)  # m
+LENGTHS = (0.075, 0.126, 0.165)  # m
 SPEEDS = (2.5, 4.0, 6.0, 8.0, 10.0, 12.5, 15.9, 20.0, 25.0)  # m/s
 # Least slope of unloading over the steepest of the envelope: chosen, restitution at 2 m/s is 0.49 with it.
-LEAST = 1.343
+LEAST = 2.238
 
 
 def front(*numbers: str) -> tuple[str, ...]:

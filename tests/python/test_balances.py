@@ -78,14 +78,35 @@ def greatest_friction(result: Result) -> float:
 
 def test_what_is_lost_does_not_come_back(scene_result: Result) -> None:
     scale = energy_scale(scene_result)
+    # The trapezoid rule returns a little more than the unloading curve of a recovery holds; see the next test.
+    zones = [zone for unit in scene_result.scene.vehicle.units for zone in unit.zones.values()]
+    limit = {"crushed": 2e-6 if any(zone.elastic_recovery for zone in zones) else 1e-14}
     for name in ("crushed", "barrier_friction", "tire_friction"):
-        assert np.diff(scene_result.energy[name]).min() >= -1e-14 * scale, name  # rounding of a sum
+        least = -limit.get(name, 1e-14) * scale  # rounding of a sum
+        assert np.diff(scene_result.energy[name]).min() >= least, name
     # Rigid contacts that found a point inside push it out again: measured, up to 4e-7 of the kinetic energy.
     # Wheels that land one after the other take more within a ms than the first had given back (1.6e-6).
     impacts = scene_result.energy["impacts"]
     rows = max(1, round(1e-3 / scene_result.scene.settings.output_interval))
     ahead = np.lib.stride_tricks.sliding_window_view(np.append(impacts, np.full(rows, impacts[-1])), rows + 1)
     assert (ahead[:, 1:].max(axis=1) - impacts).min() >= -1e-6 * scale
+
+
+def test_what_rebound_returns_too_much_falls_with_the_tolerance() -> None:
+    """At default tolerance 8e-5 of the energy crushed comes back: the trapezoid rule of a force that fades out."""
+    crash = scenes.nhtsa_10146(mesh_density=0.3)
+    returned = []
+    for tolerance in (1e-3, 1e-4, 1e-5):
+        choice = dataclasses.replace(crash.scene.settings, tolerance=tolerance)
+        crushed = (
+            Simulation(crash.scene.vehicle, crash.scene.barrier, crash.scene.impact_speed, settings=choice)
+            .run()
+            .energy["crushed"]
+        )
+        returned.append(-np.minimum(np.diff(crushed), 0.0).sum() / crushed[-1])
+    assert returned[0] < 2e-4
+    assert returned[1] < 0.5 * returned[0]
+    assert returned[2] < 0.5 * returned[1]
 
 
 def test_barrier_friction_is_lost_where_there_is_friction(scene_result: Result) -> None:
@@ -141,8 +162,8 @@ def test_barrier_force_stands_on_its_normal(scene_result: Result) -> None:
         bound = math.hypot(1.0, greatest_friction(r)) * r.sum_of_contact_forces
         largest = r.sum_of_contact_forces.max()
         # Rows within a step follow parabolas, the force's components and the normal force each its own; they
-        # part where the last nodes let go. Measured: 2e-7, a newton of five meganewtons.
-        assert (np.linalg.norm(r.barrier_force, axis=1) <= bound + 1e-6 * largest).all()
+        # part where the last trusses fade out. Measured: 2e-4, 340 N of 2 MN.
+        assert (np.linalg.norm(r.barrier_force, axis=1) <= bound + 5e-4 * largest).all()
         return
     along = r.barrier_force @ np.array(r.scene.barrier.core.normal)
     largest = r.barrier_normal_force.max()

@@ -114,10 +114,15 @@ def _of_whole(tail_depths: tuple[float, float], depth: float, reach: float) -> t
         Unknown("inner tail depth", *tail_depths, depth, "m", log=False),
         Unknown("outer tail slope", 3e5, 6e7, 5e6, "Pa/m"),
         Unknown("inner tail slope", 3e5, 6e7, 5e6, "Pa/m"),
-        Unknown("elastic recovery", 1e-3, 0.04, 4e-3, "m"),
+        Unknown("elastic recovery", 3e-3, 0.12, 0.012, "m"),
         Unknown("rate sensitivity", 0.0, 0.09, 0.05, "s/m", log=False),
         Unknown("indentation length", 0.1, 1.2, reach, "m", log=False),
     )
+
+
+# Least slope of unloading over the steepest of loading. With 5/3 a curve of degree 5 gives back what a line of
+# the slope of loading would.
+LEAST = 1.01 * 5.0 / 3.0
 
 
 SKINS = {
@@ -139,7 +144,7 @@ behind it; side panels (2 mm) from there on. The hood ends 1.0 m behind the fron
             *(3.9e6, 0.95e6, 0.41e6, 0.72e6, 3.0e6),
             *(0.18e6, 0.23e6, 0.51e6),
             *(0.58e6, 0.83, 0.84, 4.2e6, 3.6e6),
-            *(1.02e-3, 0.021, 0.65),
+            *(3.06e-3, 0.021, 0.65),
         ),
     ),
     "s": Skin(
@@ -162,7 +167,7 @@ A solid engine 0.76 m wide and wheels begin at 0.43 m; tails begin before, as wh
 def _law(
     depths: Sequence[float], stresses: Sequence[float], values: Mapping[str, float], side: str
 ) -> birm3d.Zone:
-    """An envelope with its tail; the least slope of unloading is the law's steepest of loading."""
+    """An envelope with its tail; the least slope of unloading follows the law's steepest of loading."""
     points = ((0.0, 0.0), *zip(depths, stresses, strict=True))
     depth, slope = values[f"{side} tail depth"], values[f"{side} tail slope"]
     steepest = 0.0
@@ -170,7 +175,7 @@ def _law(
         steepest = max(steepest, (s1 - s0) / (d1 - d0) + (slope if d1 > depth else 0.0))
     return birm3d.Zone(
         envelope=points,
-        k_unloading=1.01 * max(steepest, slope),
+        k_unloading=LEAST * max(steepest, slope),
         elastic_recovery=values["elastic recovery"],
         tail_depth=depth,
         tail_slope=slope,
@@ -189,7 +194,7 @@ def zones(skin: Skin, values: Mapping[str, float]) -> dict[str, birm3d.Zone]:
         knee=FENDER_KNEE,
         k_hardening=0.0,
         f_max=stress,
-        k_unloading=1.01 * stress / FENDER_KNEE,
+        k_unloading=LEAST * stress / FENDER_KNEE,
         elastic_recovery=values["elastic recovery"],
     )
     return found

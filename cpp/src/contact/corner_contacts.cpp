@@ -139,7 +139,10 @@ void place_in_corner(const ContactPass& pass, const Corner& corner, const Vec3& 
     const double deflection = truss.length[i] - (anchor - to).norm();
     const double free = truss.length[i] - (anchor - (to - corner.pushed_displacement())).norm();
     if (nodes.force[i] > 0.0 && free < nodes.deflection[i]) {
-        nodes.force[i] = std::max(0.0, nodes.force[i] + nodes.unloading[i] * (free - nodes.deflection[i]));
+        nodes.force[i] =
+            truss.recovery[i] < longest_recovery
+                ? std::min(nodes.force[i], unloading_force(truss, nodes, i, free))
+                : std::max(0.0, nodes.force[i] + nodes.unloading[i] * (free - nodes.deflection[i]));
         nodes.deflection[i] = free;
     }
     nodes.x[i] = to.x(), nodes.y[i] = to.y(), nodes.z[i] = to.z();

@@ -114,10 +114,6 @@ void find_leaving(const ContactPass& pass, const ContactBlock& block, BlockColum
     }
 }
 
-double unloading_force(const TrussBlockState& nodes, std::size_t i, double deflection) {
-    return std::max(0.0, nodes.unloading[i] * (deflection - nodes.residual[i]));
-}
-
 // The place to which the truss of a released node returns it.
 Vec3 free_place(const TrussBlock& truss, const TrussBlockState& nodes, std::size_t i) {
     const Vec3 anchor = anchor_of(truss, i);
@@ -160,7 +156,7 @@ void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i,
     const double deflection = truss.length[i] - (*stop - anchor).norm();
     const double at_release = truss.length[i] - (held - anchor).norm();
     block.stopped.push_back({i, *stop, deflection, next.residual[i], next.peak_deflection[i],
-                             unloading_force(next, i, deflection), next.unloading[i],
+                             unloading_force(truss, next, i, deflection), next.unloading[i],
                              0.5 * last.force[i] * (at_release - last.deflection[i])});
     StoppedNode& node = block.stopped.back();
     node.released_by = {block.reachable[plane != nullptr ? 0 : block.nearest[i]], n, n.dot(was - held)};

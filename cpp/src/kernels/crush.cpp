@@ -12,6 +12,18 @@ namespace birm3d {
 
 namespace {
 
+// Slope of unloading of each truss that pushes, 0 of others (N/m).
+BIRM3D_BLOCK_LOOP void find_tangents(const TrussBlock& truss, const TrussBlockState& now,
+                                     BlockColumn& tangent) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < block_size; ++i) {
+        const double left = std::max(now.deflection[i] - now.residual[i], tolerance::truss_length);
+        const double curve = recovery_degree * now.force[i] / left;
+        const double slope = truss.recovery[i] > longest_recovery ? now.unloading[i] : curve;
+        tangent[i] = now.force[i] > 0.0 ? slope : 0.0;
+    }
+}
+
 BIRM3D_BLOCK_LOOP double stiffness_of_pushing(const TrussBlock& truss, const BlockColumn& slope,
                                               const BlockColumn& force, double constant, double xx, double yy,
                                               double zz, double xy, double xz, double yz) {
@@ -33,8 +45,11 @@ double contact_stiffness(const FlatContact& surface, const TrussMesh& mesh, std:
     const Mat3& q = inverse_mass.form;
     if (pushing == mesh.pushable[b] && !mesh.recovers)
         return mesh.moments[b].total * inverse_mass.constant + mesh.moments[b].second.cwiseProduct(q).sum();
-    return stiffness_of_pushing(mesh.block[b], now.unloading, now.force, inverse_mass.constant, q(0, 0),
-                                q(1, 1), q(2, 2), 2.0 * q(0, 1), 2.0 * q(0, 2), 2.0 * q(1, 2));
+    alignas(64) BlockColumn tangent;
+    if (mesh.recovers) find_tangents(mesh.block[b], now, tangent);
+    return stiffness_of_pushing(mesh.block[b], mesh.recovers ? tangent : now.unloading, now.force,
+                                inverse_mass.constant, q(0, 0), q(1, 1), q(2, 2), 2.0 * q(0, 1),
+                                2.0 * q(0, 2), 2.0 * q(1, 2));
 }
 
 BIRM3D_BLOCK_LOOP double greatest_slack(const BlockColumn& force, const BlockColumn& deflection,

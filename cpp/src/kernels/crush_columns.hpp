@@ -15,7 +15,7 @@ inline PressColumns columns_of(const TrussMesh& mesh, std::size_t b, const Block
             truss.length.data(),
             truss.k_unloading.data(),
             truss.compliance.data(),
-            mesh.recovers ? truss.per_recovery.data() : nullptr,
+            mesh.recovers ? truss.recovery.data() : nullptr,
             mesh.hinge[b * mesh.hinges].deflection.data(),
             mesh.hinges,
             factor ? factor->data() : nullptr};

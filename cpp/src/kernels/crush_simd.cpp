@@ -2,8 +2,11 @@
 // Over 300 lines: the loop over a block and all that it inlines must be compiled together.
 #include "kernels/crush_simd.hpp"
 
+#include <type_traits>
+
 #include "base/packet.hpp"
 #include "birm3d/base/tolerances.hpp"
+#include "birm3d/model/recovery.hpp"
 
 namespace birm3d::BIRM3D_INSTRUCTION_SET {
 
@@ -111,39 +114,79 @@ BIRM3D_INLINE void copy(const PressState<const double>& before, const PressState
     if constexpr (recovers) Packet::load(before.unloading + i).store(now.unloading + i);
 }
 
-// The slope of unloading of each truss, and where its line meets zero force. A truss that loads sets them anew.
-struct Unloading {
-    Packet slope, residual;
-    BIRM3D_INLINE Packet line(const Packet& d) const {
+// Fig. 3: below the envelope a truss is on a line of constant slope, which meets zero force at `residual`. A truss that
+// loads sets it anew.
+struct UnloadingLine {
+    BIRM3D_INLINE UnloadingLine(const PressColumns& truss, const PressState<const double>& before,
+                                std::size_t i)
+        : slope(Packet::load(truss.k_unloading + i)),
+          compliance(Packet::load(truss.compliance + i)),
+          residual(Packet::load(before.residual + i)) {}
+    BIRM3D_INLINE Packet force(const Packet& d) const {
         const Packet zero = 0.0;
         return greater(slope * (d - residual), zero);
     }
+    BIRM3D_INLINE void load(const Packet& d, const Packet& unloading, const Packet& envelope) {
+        residual = where_above(unloading, envelope, d - envelope * compliance, residual);
+    }
+    BIRM3D_INLINE Packet tangent(const Packet&, const Packet&) const { return slope; }
+    BIRM3D_INLINE Packet twice_stored(const Packet&, const Packet& F) const { return F * F * compliance; }
+    BIRM3D_INLINE void store(const PressState<double>& now, std::size_t i) const {
+        residual.store(now.residual + i);
+    }
+    Packet slope, compliance, residual;
 };
 
-// Fig. 3: the slope is constant.
-BIRM3D_INLINE Packet load_one_slope(const PressColumns& truss, Unloading& unloading, const Packet& d,
-                                    const Packet& line, const Packet& envelope, std::size_t i) {
-    const Packet compliance = Packet::load(truss.compliance + i);
-    unloading.residual = where_above(line, envelope, d - envelope * compliance, unloading.residual);
-    return compliance;
-}
-
-// Elastic recovery is a constant fraction of the remaining length of the truss (truss_law.hpp). At first a truss may
-// load and unload along one slope.
-BIRM3D_INLINE Packet load_recovery(const PressColumns& truss, Unloading& unloading, const Packet& d,
-                                   const Packet& line, const Packet& envelope, std::size_t i) {
-    const Packet zero = 0.0, one = 1.0;
-    const auto where_loading = [&](const Packet& now, const Packet& else_) {
-        return where_above(envelope, zero, where_above(envelope, line, else_, now), else_);
-    };
-    const Packet least = tolerance::truss_length, length = Packet::load(truss.length + i);
-    const Packet per_recovery = Packet::load(truss.per_recovery + i) * length / greater(length - d, least);
-    const Packet steepest = greater(envelope * per_recovery, Packet::load(truss.k_unloading + i));
-    unloading.slope = where_loading(steepest, unloading.slope);
-    const Packet compliance = where_above(unloading.slope, zero, one / unloading.slope, zero);
-    unloading.residual = where_loading(d - envelope * compliance, unloading.residual);
-    return compliance;
-}
+// Trusses with a recovery unload along F = coefficient (d - residual)^5, others along a line (truss_law.hpp).
+struct UnloadingCurve {
+    BIRM3D_INLINE UnloadingCurve(const PressColumns& truss_, const PressState<const double>& before,
+                                 std::size_t i_)
+        : truss(truss_),
+          i(i_),
+          recovery(Packet::load(truss_.recovery + i_)),
+          coefficient(Packet::load(before.unloading + i_)),
+          residual(Packet::load(before.residual + i_)) {}
+    // The first where a truss unloads along a line, else the second.
+    BIRM3D_INLINE Packet where_line(const Packet& line, const Packet& curve) const {
+        const Packet longest = longest_recovery;
+        return where_above(recovery, longest, line, curve);
+    }
+    BIRM3D_INLINE Packet power(const Packet& u) const {
+        const Packet square = u * u;
+        return where_line(u, square * square * u);
+    }
+    BIRM3D_INLINE Packet degree() const { return where_line(line_degree, recovery_degree); }
+    BIRM3D_INLINE Packet force(const Packet& d) const {
+        const Packet zero = 0.0;
+        return coefficient * power(greater(d - residual, zero));
+    }
+    BIRM3D_INLINE void load(const Packet& d, const Packet& unloading, const Packet& envelope) {
+        const Packet zero = 0.0, least = tolerance::truss_length, length = Packet::load(truss.length + i);
+        const auto where_loading = [&](const Packet& now, const Packet& else_) {
+            return where_above(envelope, zero, where_above(envelope, unloading, else_, now), else_);
+        };
+        const Packet uncrushed = greater(length - d, least) / length;
+        const Packet by_slope = degree() * envelope * Packet::load(truss.compliance + i);
+        const Packet R = lesser(lesser(recovery * uncrushed, d), by_slope);
+        coefficient = where_loading(envelope / power(R), coefficient);
+        residual = where_loading(d - R, residual);
+    }
+    BIRM3D_INLINE Packet tangent(const Packet& d, const Packet& F) const {
+        const Packet least = tolerance::truss_length;
+        return degree() * F / greater(d - residual, least);
+    }
+    BIRM3D_INLINE Packet twice_stored(const Packet& d, const Packet& F) const {
+        const Packet zero = 0.0;
+        return F * greater(d - residual, zero) * (2.0 / (degree() + 1.0));
+    }
+    BIRM3D_INLINE void store(const PressState<double>& now, std::size_t) const {
+        coefficient.store(now.unloading + i);
+        residual.store(now.residual + i);
+    }
+    const PressColumns& truss;
+    std::size_t i;
+    Packet recovery, coefficient, residual;
+};
 
 // Releases the nodes of the packet at i whose trusses have stopped pushing. A node on a receding surface stops where
 // its truss reaches zero force. A truss that pushes its node off the surface extends at once to that length, and its
@@ -233,7 +276,7 @@ BIRM3D_INLINE void hold(const PressColumns& truss, const Surface& surface,
 }
 
 // Two passes over the packets, so that square roots and divisions of several packets overlap.
-template <bool flat, bool recovers, class Surface>
+template <bool flat, class Unloading, class Surface>
 BIRM3D_INLINE PressedNodes press(const PressColumns& truss, const Surface& surface,
                                  const PressState<const double>& before, const PressState<double>& now,
                                  double* gaps, double* normal_forces, NodeSums& sums) {
@@ -243,33 +286,31 @@ BIRM3D_INLINE PressedNodes press(const PressColumns& truss, const Surface& surfa
     Packet stiffness = zero;
     Vector moment{zero, zero, zero}, push{zero, zero, zero};
     bool pressed[block_size / packet_length];
+    constexpr bool recovers = std::is_same_v<Unloading, UnloadingCurve>;
     hold<flat, recovers>(truss, surface, before, now, gaps, normal_forces, pressed);
     for (std::size_t i = 0; i < block_size; i += packet_length) {
         if (!pressed[i / packet_length]) continue;
         const Packet F0 = Packet::load(before.force + i), gap = Packet::load(gaps + i);
         const Packet d = Packet::load(now.deflection + i), projection = Packet::load(normal_forces + i);
 
-        // Fig. 3: the loading envelope by the changes of slope at its hinges, and the unloading line below it.
+        // Fig. 3: the loading envelope by the changes of slope at its hinges, and unloading below it.
         Packet envelope = zero;
         for (std::size_t j = 0; j < truss.hinges; ++j) {
             const double* hinge = truss.hinge + j * 2 * block_size + i;
             envelope = envelope + Packet::load(hinge + block_size) * greater(d - Packet::load(hinge), zero);
         }
         if (truss.factor != nullptr) envelope = envelope * Packet::load(truss.factor + i);
-        const double* const slopes = recovers ? before.unloading : truss.k_unloading;
-        Unloading unloading{Packet::load(slopes + i), Packet::load(before.residual + i)};
-        const Packet line = unloading.line(d);
+        Unloading unloading(truss, before, i);
+        const Packet below = unloading.force(d);
         // A truss that would push its node off the surface does not push at all.
-        const Packet law = where_above(zero, projection, zero, where_above(line, envelope, envelope, line));
+        const Packet law = where_above(zero, projection, zero, where_above(below, envelope, envelope, below));
         const Packet F = where_above(zero, gap, law, where_above(F0, zero, law, zero));
         const Packet normal_force = F * greater(projection, zero);
 
         F.store(now.force + i);
         greater(d, Packet::load(before.peak_deflection + i)).store(now.peak_deflection + i);
-        const Packet compliance = recovers ? load_recovery(truss, unloading, d, line, envelope, i)
-                                           : load_one_slope(truss, unloading, d, line, envelope, i);
-        unloading.residual.store(now.residual + i);
-        if constexpr (recovers) unloading.slope.store(now.unloading + i);
+        unloading.load(d, below, envelope);
+        unloading.store(now, i);
         normal_force.store(normal_forces + i);
 
         const Vector node{Packet::load(now.x + i), Packet::load(now.y + i), Packet::load(now.z + i)};
@@ -283,11 +324,11 @@ BIRM3D_INLINE PressedNodes press(const PressColumns& truss, const Surface& surfa
             const Vector torque = surface.torque(i, node, n);
             moment = {moment.x + normal_force * torque.x, moment.y + normal_force * torque.y,
                       moment.z + normal_force * torque.z};
-            const Packet k = unloading.slope * greater(projection * projection, one);
+            const Packet k = unloading.tangent(d, F) * greater(projection * projection, one);
             stiffness = stiffness + where_above(F, zero, k * surface.inverse_mass(torque), zero);
         }
         work = work + (F0 + F) * (d - Packet::load(before.deflection + i));
-        stored = stored + F * F * compliance;
+        stored = stored + unloading.twice_stored(d, F);
         pushing = pushing + where_above(F, zero, one, zero);
         if (any_above(where_above(F, zero, zero, F0), zero)) {
             ceased = true;
@@ -321,17 +362,17 @@ PressedNodes press_curved(const PressColumns& truss, const CurvedPress& surface,
 PressedNodes press_flat(const PressColumns& truss, const FlatPress& surface,
                         const PressState<const double>& before, const PressState<double>& now, double* gaps,
                         double* normal_forces, NodeSums& sums) {
-    if (truss.per_recovery != nullptr)
-        return press<true, true>(truss, Flat(surface), before, now, gaps, normal_forces, sums);
-    return press<true, false>(truss, Flat(surface), before, now, gaps, normal_forces, sums);
+    if (truss.recovery != nullptr)
+        return press<true, UnloadingCurve>(truss, Flat(surface), before, now, gaps, normal_forces, sums);
+    return press<true, UnloadingLine>(truss, Flat(surface), before, now, gaps, normal_forces, sums);
 }
 
 PressedNodes press_curved(const PressColumns& truss, const CurvedPress& surface,
                           const PressState<const double>& before, const PressState<double>& now, double* gaps,
                           double* normal_forces, NodeSums& sums) {
-    if (truss.per_recovery != nullptr)
-        return press<false, true>(truss, Curved(surface), before, now, gaps, normal_forces, sums);
-    return press<false, false>(truss, Curved(surface), before, now, gaps, normal_forces, sums);
+    if (truss.recovery != nullptr)
+        return press<false, UnloadingCurve>(truss, Curved(surface), before, now, gaps, normal_forces, sums);
+    return press<false, UnloadingLine>(truss, Curved(surface), before, now, gaps, normal_forces, sums);
 }
 
 }  // namespace birm3d::BIRM3D_INSTRUCTION_SET

@@ -12,8 +12,7 @@ namespace birm3d {
 struct PressColumns {
     const double *anchor_x, *anchor_y, *anchor_z, *length;  // m
     const double *k_unloading, *compliance;                 // N/m, m/N
-    const double*
-        per_recovery;  // 1/m; null where no truss has a recovery: slopes of unloading are constant then
+    const double* recovery;  // m; null where no truss has one: all unload along lines of constant slope then
     const double*
         hinge;  // (hinges)(2)(block_size) deflection (m) and change of slope (N/m), one after the other
     std::size_t hinges;

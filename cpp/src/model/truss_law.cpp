@@ -69,8 +69,16 @@ TrussCurve with_tail(const TrussCurve& curve, double depth, double slope) {
     return out;
 }
 
+namespace {
+
+double degree(const TrussCurve& curve) {
+    return std::isfinite(curve.recovery) ? recovery_degree : line_degree;
+}
+
+}  // namespace
+
 double unloading_slope(const TrussCurve& curve, double force) {
-    return std::max(curve.k_unloading, force / curve.recovery);
+    return std::max(curve.k_unloading, degree(curve) * force / curve.recovery);
 }
 
 void require_valid(const TrussCurve& curve, const std::string& name) {
@@ -120,8 +128,12 @@ double truss_force(const TrussCurve& curve, TrussMemory& memory, double deflecti
         memory.peak_force = envelope_force(curve, deflection);
         return memory.peak_force;
     }
-    const double slope = unloading_slope(curve, memory.peak_force);
-    return std::max(0.0, memory.peak_force - slope * (memory.peak_deflection - deflection));
+    if (!(memory.peak_force > 0.0)) return 0.0;
+    const double n = degree(curve);
+    const double length =
+        std::min({curve.recovery, memory.peak_deflection, n * memory.peak_force / curve.k_unloading});
+    const double left = std::max(0.0, 1.0 - (memory.peak_deflection - deflection) / length);
+    return memory.peak_force * std::pow(left, n);
 }
 
 }  // namespace birm3d

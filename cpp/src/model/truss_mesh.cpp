@@ -278,7 +278,7 @@ void TrussMesh::fill_slot(const TrussInput& input, std::size_t source, std::size
     TrussBlock& to = block.fill()[b];
     to.k_unloading[i] = scale * curve.k_unloading;
     to.compliance[i] = to.k_unloading[i] > 0.0 ? 1.0 / to.k_unloading[i] : 0.0;
-    to.per_recovery[i] = 1.0 / curve.recovery;
+    to.recovery[i] = curve.recovery;
     if (!friction_share.empty()) friction_share.fill()[b][i] = curve.friction_share;
     double slope = 0.0;
     for (std::size_t j = 0; j < hinges; ++j) {

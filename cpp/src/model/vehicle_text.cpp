@@ -220,8 +220,8 @@ Joint joint_of(Reader& in) {
 Vehicle vehicle_of_text(std::string_view text) {
     Reader in(text);
     in.expect("birm3d-vehicle");
-    if (const int version = in.whole(); version != 3)
-        in.wrong("version 3", "version " + std::to_string(version));
+    if (const int version = in.whole(); version != 4)
+        in.wrong("version 4", "version " + std::to_string(version));
     std::vector<Unit> units;
     for (std::size_t left = in.count("units"); left > 0; --left)
         units.push_back(unit_of(in));

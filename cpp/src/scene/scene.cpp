@@ -124,7 +124,7 @@ std::uint64_t Scene::fingerprint() const {
                 hash.add(*column);
         if (unit.trusses.recovers)
             for (const TrussBlock& b : unit.trusses.block)
-                hash.add(b.per_recovery);
+                hash.add(b.recovery);
         for (const BlockColumn& share : unit.trusses.friction_share)
             hash.add(share);
         for (const Hinge& hinge : unit.trusses.hinge) {

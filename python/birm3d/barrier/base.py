@@ -165,8 +165,8 @@ class Barrier(BarrierMakers):
     def from_origin(self, across: float, along: float) -> npt.NDArray[np.float64]:
         """Return the same point from the origin, along the world's axes, shape (3,) [m]."""
         angle = math.radians(self.heading)
-        rotation = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-        return np.array([*(rotation @ [across, along]), 0.0])
+        c, s = math.cos(angle), math.sin(angle)
+        return np.array([c * across - s * along, s * across + c * along, 0.0])
 
     def station(self, point: Sequence[Quantity] | None = None) -> float:
         """Return how far along the barrier's line a point is [m], counted as ``impact_offset`` is.

@@ -193,7 +193,7 @@ def articulate(units: Sequence[Vehicle], joint: Joint, name: str | None) -> Arti
     inertia = np.zeros((3, 3))
     for unit, place in zip(units, places, strict=True):
         lever = place - center
-        inertia += unit.inertia + unit.mass * (lever @ lever * np.eye(3) - np.outer(lever, lever))
+        inertia += unit.inertia + unit.mass * ((lever**2).sum() * np.eye(3) - np.outer(lever, lever))
 
     def of_both(points: str) -> Floats:
         shifted = []

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["export_core"]
 
-VERSION = 3
+VERSION = 4
 
 
 def export_core(vehicle: VehicleVariants, path: str | Path) -> None:

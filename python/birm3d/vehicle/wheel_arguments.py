@@ -6,6 +6,7 @@ How the weight is shared follows from statics, with loads that lie on a plane ov
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 __all__ = ["breakaway", "load_on_joint", "suspension", "wheel_loads"]
 
 Floats = npt.NDArray[np.float64]
+
+_ON_ONE_AXLE = 1e-12
+"""Sum of squared distances from the middle below which wheels stand on one line [m^2]."""
 
 
 def breakaway(vehicle: VehicleFields) -> Floats:
@@ -61,12 +65,36 @@ def wheel_loads(vehicle: VehicleFields, joint: tuple[Floats, float] | None = Non
     """
     weight = units.g(vehicle.mass)
     place, pressed = (np.zeros(3), 0.0) if joint is None else joint
-    rows = np.column_stack([np.ones(len(vehicle.wheels)), vehicle.wheels[:, :2]])
-    wanted = np.array([weight + pressed, pressed * place[0], pressed * place[1]])
-    loads = np.linalg.pinv(rows.T) @ wanted
+    forces = weight + pressed, float(pressed * place[0]), float(pressed * place[1])
+    loads = _linear_loads(*vehicle.wheels[:, :2].T.tolist(), *forces)
     if not (loads > 0.0).all():  # a trailer without its tractor does not stand on its wheels
         return np.full(len(vehicle.wheels), (weight + pressed) / len(vehicle.wheels))
     return np.asarray(loads, float)
+
+
+def _linear_loads(x: list[float], y: list[float], force: float, about_y: float, about_x: float) -> Floats:
+    """Return loads (w,), linear in x and y, with these sums of load, load times x and load times y.
+
+    They stand on three columns that are orthogonal to each other (Gram and Schmidt). ``math.fsum`` rounds once. A
+    linear solver gives other bits on other processors.
+    """
+    n = len(x)
+    middle_x, middle_y = math.fsum(x) / n, math.fsum(y) / n
+    first = [each - middle_x for each in x]
+    second = [each - middle_y for each in y]
+    rest_first, rest_second = about_y - middle_x * force, about_x - middle_y * force
+    square_first = math.fsum(each * each for each in first)
+    slope_first = slope_second = 0.0
+    if square_first > _ON_ONE_AXLE:
+        slope_first = rest_first / square_first
+        share = math.fsum(a * b for a, b in zip(first, second, strict=True)) / square_first
+        second = [b - share * a for a, b in zip(first, second, strict=True)]
+        rest_second -= share * rest_first
+    square_second = math.fsum(each * each for each in second)
+    if square_second > _ON_ONE_AXLE:
+        slope_second = rest_second / square_second
+    pairs = zip(first, second, strict=True)
+    return np.array([force / n + slope_first * a + slope_second * b for a, b in pairs])
 
 
 def load_on_joint(trailing: VehicleFields, place: Floats) -> float:

@@ -95,9 +95,11 @@ class Zone(Mapping[str, Any]):
     envelope
         Points (deflection [m], stress [N per m^2]) from (0, 0); constant after the last.
     elastic_recovery
-        Length that the structure gives back [m], less in proportion to what has been crushed. It unloads with
-        the slope stress / (elastic_recovery * (1 - deflection / length of the truss)), at least
-        ``k_unloading``. So restitution falls with speed. ``None``: the one slope of Fig. 3.
+        Length R that the structure gives back [m], less in proportion to what has been crushed. From the
+        deflection d where the load turns, the stress falls with the fifth power of what is left of R, steeply
+        at first. R is elastic_recovery * (1 - d / length of the truss), at most d, and so short that the
+        steepest slope is at least ``k_unloading``. So restitution falls with speed. ``None``: the one slope
+        of Fig. 3.
     tail_depth, tail_slope
         From this deflection on [m] the envelope is steeper by this [N/m per m^2], as what has been crushed is
         packed together. ``None``: no tail.

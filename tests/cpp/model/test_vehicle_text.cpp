@@ -12,7 +12,7 @@ using namespace birm3d;
 namespace {
 
 const std::string block =
-    "birm3d-vehicle 3\n"
+    "birm3d-vehicle 4\n"
     "units 1\n"
     "mass 0x1.f4p+9\n"
     "inertia 0x1p+9 0x0p+0 0x0p+0 0x0p+0 0x1p+9 0x0p+0 0x0p+0 0x0p+0 0x1p+9\n"
@@ -87,7 +87,7 @@ TEST("what is wrong is named by its line") {
     CHECK(names(refusal(with("0x1.f4p+9", "0x1.8q+9")), "line 3"));
     CHECK(names(refusal(with("0x1.f4p+9", "0x1.123456789abcdefp+9")), "line 3"));
     CHECK(names(refusal(with("0x1.f4p+9", "nan")), "line 3"));
-    CHECK(names(refusal(with("birm3d-vehicle 3", "birm3d-vehicle 1")), "version 3"));
+    CHECK(names(refusal(with("birm3d-vehicle 4", "birm3d-vehicle 1")), "version 4"));
     CHECK(names(refusal(with("birm3d-vehicle", "vehicle")), "line 1"));
     CHECK(names(refusal(with("trusses 2", "trusses 3")), "line 21"));
     CHECK(names(refusal(with("trusses 2", "trusses -1")), ">= 0"));

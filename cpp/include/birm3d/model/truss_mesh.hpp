@@ -87,7 +87,7 @@ struct alignas(64) TrussBlock {
     BlockColumn length;                        // uncrushed (m)
     BlockColumn k_unloading;                   // N/m
     BlockColumn compliance;                    // 1/k_unloading, or 0 for a truss without stiffness (m/N)
-    BlockColumn per_recovery;                  // 1/recovery of its curve (1/m)
+    BlockColumn recovery;                      // of its curve, infinite where it unloads along a line (m)
     BlockColumn panel;                         // number of its panel
 };
 

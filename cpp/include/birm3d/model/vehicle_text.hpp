@@ -5,7 +5,7 @@
 // writes it (0x1.8p+3), inf, or a whole number: no rounding and no locale come between. Lengths are in m; n rows
 // follow each count.
 //
-//   birm3d-vehicle 3
+//   birm3d-vehicle 4
 //   units u
 //     mass m                      kg
 //     inertia                     nine numbers, about the mass centre, body axes (kg m^2)

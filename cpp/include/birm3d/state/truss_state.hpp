@@ -8,6 +8,7 @@
 
 #include "birm3d/base/hash.hpp"
 #include "birm3d/base/tolerances.hpp"
+#include "birm3d/model/recovery.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 
 namespace birm3d {
@@ -15,13 +16,20 @@ namespace birm3d {
 struct alignas(64) TrussBlockState {
     BlockColumn x, y, z;                    // shell nodes in body axes (m)
     BlockColumn deflection, force;          // of the truss, now (m, N)
-    BlockColumn peak_deflection, residual;  // greatest so far; where the unloading line meets zero force (m)
-    BlockColumn unloading;                  // slope of that line (N/m)
+    BlockColumn peak_deflection, residual;  // greatest so far; where unloading meets zero force (m)
+    BlockColumn unloading;                  // coefficient of unloading, see unloading_force() (N/m or N/m^5)
     Box box;                                // around the nodes, body axes
     bool touching;                          // does any node push on an obstacle?
     bool slack;  // does an obstacle hold any node beyond the free length of its truss?
     bool met;    // has anything come into it, in any step?
 };
+
+// Force of a truss below its envelope (truss_law.hpp): along a line, or with a recovery along a curve of degree 5 (N).
+inline double unloading_force(const TrussBlock& truss, const TrussBlockState& state, std::size_t i,
+                              double deflection) {
+    const double u = std::max(0.0, deflection - state.residual[i]);
+    return state.unloading[i] * (truss.recovery[i] < longest_recovery ? u * u * u * u * u : u);
+}
 
 // Does an obstacle hold the node beyond the free length of its truss? A truss does not pull.
 inline bool is_slack(const TrussBlockState& block, std::size_t i) {
@@ -114,6 +122,11 @@ struct TrussState {
         block[b].y = mesh.block[b].node_y;
         block[b].z = mesh.block[b].node_z;
         block[b].unloading = mesh.block[b].k_unloading;
+        // The curve of a truss that was never loaded is above its envelope.
+        if (mesh.recovers)
+            for (std::size_t i = 0; i < block_size; ++i)
+                if (mesh.block[b].recovery[i] < longest_recovery)
+                    block[b].unloading[i] = uncrushed_coefficient;
         block[b].box = mesh.node_box[b];
     }
     void group(const TrussMesh& mesh, std::size_t g) {
