@@ -28,6 +28,7 @@ SPECIAL: dict[str, Any] = {
     "barrier.segments": 1,
     "settings.time_step": 1e-4,
     "settings.mu_tire_barrier": 0.5,
+    "settings.cornering_stiffness": 8.0,
     "settings.ground": False,
     "settings.gravity": 9.5,
     "settings.braking": 0.5,

@@ -8,7 +8,7 @@ from pathlib import Path
 import birm3d
 import numpy as np
 import pytest
-from birm3d import Barrier, Result, Simulation, Vehicle, units
+from birm3d import Barrier, Result, Settings, Simulation, Vehicle, units
 from birm3d.vehicle.vehicle_file import read_vehicle_file, unit_paths
 
 # Mass [kg], and speeds [km/h] of a wall head-on and of a barrier along the road.
@@ -164,6 +164,30 @@ def test_bollards_and_barrier(name: str) -> None:
 def test_saved_and_read(name: str, tmp_path: Path) -> None:
     vehicle(name).save(tmp_path / "v.toml")
     assert Vehicle.from_file(tmp_path / "v.toml") == vehicle(name)
+
+
+def test_tyres_of_trucks_are_softer_in_slip_than_those_of_cars() -> None:
+    """The vehicle's own number holds unless the settings have one."""
+
+    def slide(name: str, **settings: float) -> Simulation:
+        return Simulation(
+            vehicle(name), None, 15.0, impact_yaw=5.0, duration=0.3, settings=Settings(**settings)
+        )
+
+    for name in VEHICLES:
+        heavy = vehicle(name).mass > 7000.0
+        assert slide(name).scene.cornering_stiffness == (6.0 if heavy else 10.0)
+    truck = slide("mash_10000s")
+    assert truck.run().state_hash == slide("mash_10000s", cornering_stiffness=6.0).run().state_hash
+    # At 5 degrees of slip the brush model gives 0.52 and 0.74 of the friction.
+    side, stiff = (
+        float(np.abs(run.run().tire_friction_force[1:20]).max())
+        for run in (truck, slide("mash_10000s", cornering_stiffness=10.0))
+    )
+    assert side < 0.85 * stiff
+    assert vehicle("mash_10000s").with_zone("tire", cornering_stiffness=7.5).zones["tire"].scaled(2.0)[
+        "cornering_stiffness"
+    ] == pytest.approx(7.5)
 
 
 def test_standards_find_their_vehicles() -> None:

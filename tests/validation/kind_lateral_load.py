@@ -15,7 +15,12 @@ TEXT = """Vehicles: the stand-in of the class with the mass of the level's desig
 vertical wall of the least height of the table. Compared: greatest mean force over 50 ms, and the height of
 its resultant, with the design force and its effective height. Marks: 25 % in force (a later proposal for
 the same vehicle is 1.3 times AASHTO's), 0.15 m in height. A design value is no measurement: it bounds
-tests, and a rigid wall should give at least AASHTO's.
+tests, and a rigid wall should give at least AASHTO's. Its heights of TL-4 and TL-5 are those of the rail's
+top, where no resultant on a wall of that height can act. Proposals of NCHRP 22-20(2) for the vehicles of MASH
+are known from memory, and are not judged.
+
+A truck strikes with its front, and 0.15 s later with its rear. The rear's force is higher up: 0.72 m against
+0.52 m at a wall of 0.91 m. Compared is the greater of both.
 
 What the model can not do here: the bed of a truck leans on the wall's top and its load shifts towards it; a
 trailer's floor and its tandem strike in turn. A box of skin on a rigid body has one side of one law."""
@@ -41,9 +46,11 @@ def rows(task: str) -> list[Row]:
     result = simulation(fact).run()
     who, force = name_of(result.scene.vehicle), 1e3 * float(fact["force_kN"])
     own = float(result.metrics["peak_force_50ms"])
-    found = [Row(task, who, "force over 50 ms", "N", force, *about(force, FORCE), own)]
+    judged = fact["status"] != "from memory"
+    found = [Row(task, who, "force over 50 ms", "N", force, *about(force, FORCE), own, judged=judged)]
     if fact["height_m"]:
         height = float(fact["height_m"])
         at = float(result.element_loads[0].height_at_peak)
-        found.append(Row(task, who, "height of the force", "m", height, height - HEIGHT, height + HEIGHT, at))
+        marks = height - HEIGHT, height + HEIGHT
+        found.append(Row(task, who, "height of the force", "m", height, *marks, at, judged=judged))
     return found

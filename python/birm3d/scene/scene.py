@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import statistics
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -11,7 +12,7 @@ from .. import _core
 from ..barrier.base import Barrier
 from ..base.arguments import checked
 from ..vehicle.vehicle import Vehicle
-from .settings import MU_TIRE_BARRIER, Settings
+from .settings import CORNERING_STIFFNESS, MU_TIRE_BARRIER, Settings
 from .width_overlap import offset_of_overlap
 
 __all__ = ["APPROACH", "Scene"]
@@ -46,6 +47,19 @@ class Scene:
             return asked
         return 0.0 if self.barrier is not None and self.barrier.friction == 0.0 else MU_TIRE_BARRIER
 
+    @property
+    def cornering_stiffness(self) -> float:
+        """Cornering stiffness of the tyres [1/rad]: what the settings ask for, or the mean over the wheels.
+
+        A wheel whose zone has none, or that has no zone, counts with that of a car's tyres.
+        """
+        asked = self.settings.cornering_stiffness
+        if asked is not None:
+            return asked
+        zones = list(self.vehicle.zones.values())
+        numbers = [zones[i].cornering_stiffness if i >= 0 else None for i in self.vehicle.zone_of_wheel]
+        return statistics.fmean(CORNERING_STIFFNESS if one is None else one for one in numbers or [None])
+
     def approached(self, numbers: Mapping[str, float]) -> Scene:
         """Return the same scene with other numbers of ``APPROACH``; not checked."""
         scene = object.__new__(Scene)  # dataclasses.replace() takes longer than a metric
@@ -67,7 +81,7 @@ class Scene:
             vehicle=self.vehicle.core,
             barriers=[] if self.barrier is None else [self.barrier.core],
             approach=self.approach,
-            settings=_with_tire_friction(self.settings, self.mu_tire_barrier).core,
+            settings=_with_tires(self.settings, self.mu_tire_barrier, self.cornering_stiffness).core,
             duration=self.duration,
         )
 
@@ -98,5 +112,5 @@ class Scene:
 
 
 @lru_cache(maxsize=16)
-def _with_tire_friction(settings: Settings, mu_tire_barrier: float) -> Settings:
-    return replace(settings, mu_tire_barrier=mu_tire_barrier)
+def _with_tires(settings: Settings, mu_tire_barrier: float, cornering_stiffness: float) -> Settings:
+    return replace(settings, mu_tire_barrier=mu_tire_barrier, cornering_stiffness=cornering_stiffness)

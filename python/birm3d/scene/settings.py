@@ -10,10 +10,13 @@ from .. import _core
 from ..base.arguments import check_fields
 from ..units import Quantity, quantity_in, si
 
-__all__ = ["MU_TIRE_BARRIER", "Settings"]
+__all__ = ["CORNERING_STIFFNESS", "MU_TIRE_BARRIER", "Settings"]
 
 MU_TIRE_BARRIER = 0.6
 """Friction coefficient of tyres on a barrier where none is asked for, see :class:`Settings`."""
+
+CORNERING_STIFFNESS = 10.0
+"""Cornering stiffness of tyres where neither settings nor vehicle have one [1/rad]: of a car's tyres."""
 
 
 def _in(unit: str, default: float | None) -> Any:
@@ -53,7 +56,8 @@ class Settings:
     braking
         Share of the tyre-pavement friction that brakes, 0 to 1: 0 wheels roll, 1 they are locked and slide.
     cornering_stiffness
-        Lateral tyre force per normal load and radian of slip, at small slip [1/rad].
+        Lateral tyre force per normal load and radian of slip, at small slip [1/rad]. ``None``: that of the
+        vehicle's zones of tyres, else 10. See :attr:`birm3d.simulation.Scene.cornering_stiffness`.
     restitution
         Of rigid contacts: tyres on the ground, the rigid body at the barrier (paper 5.2).
     contact_model
@@ -77,7 +81,7 @@ class Settings:
     mu_body: float = 0.4
     mu_tire_barrier: float | None = None
     braking: float = 0.0
-    cornering_stiffness: float = _in("1/rad", 10.0)
+    cornering_stiffness: float | None = _in("1/rad", None)
     restitution: float = 0.1
     contact_model: Literal["projected", "along_truss"] = "projected"
     tire_model: Literal["slip", "skid"] = "slip"
@@ -95,7 +99,7 @@ class Settings:
             mu_body: float = 0.4,
             mu_tire_barrier: float | None = None,
             braking: float = 0.0,
-            cornering_stiffness: float = 10.0,
+            cornering_stiffness: float | None = None,
             restitution: float = 0.1,
             contact_model: Literal["projected", "along_truss"] = "projected",
             tire_model: Literal["slip", "skid"] = "slip",
@@ -126,6 +130,8 @@ class Settings:
         given["tire_model"] = tire_models[self.tire_model]
         if self.mu_tire_barrier is None:
             given["mu_tire_barrier"] = MU_TIRE_BARRIER
+        if self.cornering_stiffness is None:
+            given["cornering_stiffness"] = CORNERING_STIFFNESS
         return _core.Settings(given)
 
     def __getstate__(self) -> dict[str, object]:

@@ -62,6 +62,7 @@ LAW_NUMBERS: Mapping[str, LawNumber] = {
     "static_deflection": LawNumber("length", "> 0", "springs under the weight", of_wheel=True),
     "damping_ratio": LawNumber("number", "in [0, 1]", "damping ratio", of_wheel=True),
     "bump_travel": LawNumber("length", "> 0", "to the bump stop", of_wheel=True),
+    "cornering_stiffness": LawNumber("number", "> 0", "cornering stiffness", of_wheel=True),
 }
 """Numbers of a zone's law, in the order of files. Files, names of parameters and reports come from here."""
 
@@ -113,6 +114,9 @@ class Zone(Mapping[str, Any]):
         Of a zone of tyres: compression of the springs under the vehicle's weight [m], and damping over
         critical damping. The third is the travel of the wheel from rest to the rigid bump stop [m]. The
         wheel's own mass is neglected. ``None``: wheels are fixed to the body.
+    cornering_stiffness
+        Of a zone of tyres: lateral force on the road per normal load and radian of slip, at small slip
+        [1/rad]. ``None``: that of a car's tyres, see :attr:`birm3d.simulation.Scene.cornering_stiffness`.
     """
 
     k_initial: float | None = None
@@ -130,6 +134,7 @@ class Zone(Mapping[str, Any]):
     static_deflection: float | None = None
     damping_ratio: float | None = None
     bump_travel: float | None = None
+    cornering_stiffness: float | None = None
 
     def __post_init__(self) -> None:
         if self.envelope is None:
@@ -159,6 +164,8 @@ class Zone(Mapping[str, Any]):
             for name in names:
                 if given and name not in given:
                     raise ValueError(f"{name} must be given beside {given[0]}, got None")
+        if self.cornering_stiffness is not None:
+            positive("cornering_stiffness", self.cornering_stiffness)
         if self.damping_ratio is not None and not 0.0 <= self.damping_ratio <= 1.0:
             raise ValueError(f"damping_ratio must be in [0, 1], got {self.damping_ratio}")
 
