@@ -16,6 +16,7 @@ from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import band_of, headline_table
 from .given_tests import Compared, errors
 from .study_case import ROADSIDE, Case, is_oblique
+from .study_verdict import study_answers, study_table
 from .uncertainty import computing_error
 
 __all__ = ["criteria_table", "risk_section", "verdict_section"]
@@ -39,6 +40,9 @@ def verdict_section(case: Case) -> Section:
         blocks.append(Text(_NO_BARRIER))
     for rating in case.ratings:
         blocks.append(_rating_table(case, rating))
+    table = study_table(case)
+    if table is not None:
+        blocks.append(table)
     if case.not_rated:
         rows = [(name, reason.partition("; got ")[0]) for name, reason in case.not_rated.items()]
         blocks.append(Table("Standards that do not rate this run", ("standard", "why"), rows))
@@ -81,6 +85,7 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
             f"{rating.designation} (vehicle {rating.vehicle_class}); {contained}, "
             f"{_penetration(rating)}{_chances(case, rating.standard)}",
         )
+    yield from study_answers(case)
     loads = touched_elements(result.element_loads)
     if loads:
         most = max(loads, key=lambda load: load.peak_force_50ms)
