@@ -50,8 +50,8 @@ def study_table(case: Case) -> Table | None:
     bands = {name: (median, band) for name, median, band, _, _ in rated.rows}
     rows = []
     for one in own.criteria:
-        judged = [c.passed for rating in rated.ratings for c in rating.criteria if c.name == one.name]
-        judged = [passed for passed in judged if passed is not None]
+        same = [c for rating in rated.ratings for c in rating.criteria if c.name == one.name]
+        judged = [c.passed for c in same if c.passed is not None]
         met = cells_of_share(study, sum(judged), len(judged)) if judged else ("reported", "–")
         rows.append((one.name, one.verdict, *bands.get(one.name, ("–", "–")), *met))
     word = "pass" if own.passed else "FAIL"
