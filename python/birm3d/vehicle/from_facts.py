@@ -108,7 +108,11 @@ def _scaled(preset: Vehicle, mass: float, sizes: Mapping[str, float | None], loa
         return preset.scaled_to(mass, **sizes)
     structure = preset._description.file_mass
     assert structure is not None  # presets have files
-    return preset.scaled_to(structure, **sizes).with_gvw(mass)
+    scaled = preset.scaled_to(structure, **sizes)
+    recipe = scaled._description
+    if recipe.usual_mass is not None:
+        recipe.usual_mass.warn("mass", mass)
+    return scaled._changed(recipe.with_mass(mass))
 
 
 def _assumed(name: str, value: float | None, log_sd: float, why: str, unit: str = "m") -> Assumption:
