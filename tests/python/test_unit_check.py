@@ -241,9 +241,8 @@ def test_a_mass_that_the_class_can_not_have_is_warned_of(make: Callable[[], Any]
 
 def test_a_scene_file_tells_an_odd_mass(tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"
-    path.write_text(
-        '[vehicle]\npreset = "cargo_truck"\ngvw = "500 kg"\n[barrier]\nkind = "rigid_wall"\n[impact]\nspeed = "30 mph"\n'
-    )
+    blocks = ('[vehicle]\npreset = "cargo_truck"\ngvw = "500 kg"', '[barrier]\nkind = "rigid_wall"')
+    path.write_text("\n".join((*blocks, '[impact]\nspeed = "30 mph"')))
     told_once(lambda: read_scene_file(path), f"gvw = 500 kg is {USUAL}")
 
 
