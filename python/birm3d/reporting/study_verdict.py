@@ -69,13 +69,20 @@ def study_table(case: Case) -> Table | None:
             "95 % interval",
         ),
         rows,
-        note=study_note(study),
+        note=f"{study_note(study)}{_of_speed(study)}",
     )
 
 
 def study_note(study: Study) -> str:
     """Return what shares of the runs and their intervals mean."""
     return _INTERVAL_NOTE if study.grid is None else _GRID_NOTE
+
+
+def _of_speed(study: Study) -> str:
+    """Return why a class is no property of the barrier alone, where the speed differs."""
+    if "impact_speed" not in study.parameters:
+        return ""
+    return " A run is rated at the level of its own speed: a lower level may be a slower run."
 
 
 def share_of_runs(count: int, n: int) -> str:
@@ -92,9 +99,9 @@ def cells_of_share(study: Study, count: int, n: int) -> tuple[str, str]:
 
 
 def _interval(count: int, n: int) -> str:
-    form = ".1%" if n >= _FINE else ".0%"
-    low, high = wilson(count / n, n)
-    return f"{low:{form}} to {high:{form}}"
+    digits = 1 if n >= _FINE else 0
+    low, high = (100.0 * end for end in wilson(count / n, n))
+    return f"{low:.{digits}f} to {high:.{digits}f}%"
 
 
 def _shares(study: Study, counts: Mapping[str, int]) -> str:

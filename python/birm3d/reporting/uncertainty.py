@@ -16,6 +16,7 @@ from ..study.history_bands import history_bands
 from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import class_blocks
 from .figures import figure
+from .numbers import percent
 from .study_case import Case
 from .study_verdict import cells_of_share, study_note
 
@@ -53,7 +54,7 @@ def uncertainty_section(case: Case) -> Section:
     rows = []
     for name, value, better, error in computing_error(case):
         label, size, unit = shown_as(name)
-        difference = "below 1e-6" if error is None else f"{error:.1e}"
+        difference = percent(0.0 if error is None else error)
         rows.append((label, f"{value / size:.5g}", f"{better / size:.5g}", unit, difference))
     blocks: list[Block] = [
         Text(
