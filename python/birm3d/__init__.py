@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     from .study.worst_offset import WorstOffset, worst_offset
     from .unit_check import UnitWarning
     from .vehicle import ArticulatedVehicle, Joint, Vehicle, Zone
+    from .vehicle.mass_check import MassWarning
 
 __all__ = [
     "ArticulatedVehicle",
@@ -84,6 +85,7 @@ __all__ = [
     "Joint",
     "Limit",
     "LoadMap",
+    "MassWarning",
     "NotInRangeError",
     "OccupantRisk",
     "OverlapWarning",
@@ -161,6 +163,7 @@ _WHERE = {
     "Joint": "vehicle:Joint",
     "Limit": "study.limit_search:Limit",
     "LoadMap": "result.load_map:LoadMap",
+    "MassWarning": "vehicle.mass_check:MassWarning",
     "NotInRangeError": "study.limit_search:NotInRangeError",
     "OccupantRisk": "assessment:OccupantRisk",
     "OverlapWarning": "result.overlap:OverlapWarning",

@@ -17,8 +17,13 @@ import html_reader
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Settings, Simulation, Study, Vehicle, scenes
+from birm3d.assessment.criteria import Criterion
+from birm3d.assessment.rating import Rating
+from birm3d.assessment.rating_bands import band_rows
 from birm3d.reporting.given_tests import Facts, _facts, errors, given_tests, nearest
+from birm3d.reporting.numbers import percent
 from birm3d.reporting.page import _mark
+from birm3d.reporting.study_verdict import share_of_runs
 from birm3d.reporting.uncertainty import _bands
 from birm3d.result.skin import skins_at
 from birm3d.result.summary import element_rows, headline_rows
@@ -225,7 +230,8 @@ def test_momentum_balance_closes(page: Page, result: Result) -> None:
 def test_verification_says_what_applies(page: Page, result: Result) -> None:
     rows = {row[0]: row[1:] for row in page.table("Verification")}
     (energy,) = [row for name, row in rows.items() if "10 %" in name]
-    assert energy == [f"{result.metrics['energy_residual']:.1e}", "10 %", "pass"]
+    assert energy == [tidy(f"{result.metrics['energy_residual']:.4%}"), "10 %", "pass"]
+    assert not re.search(r"\de-\d", " ".join(cell for row in rows.values() for cell in row))
     assert sum(row[-1].startswith("not applicable") for row in rows.values()) == 3
     assert not any(row[-1].startswith("FAIL") for row in rows.values())
 
@@ -426,15 +432,84 @@ def test_study(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         "3",
     ]
     assert page.table("Inputs of the study") == [["impact speed", "20.5 to 22.352", "m/s"]]
-    classes = {row[0]: row[1] for row in page.table("Probability of each class")}
-    rated = birm3d.rate(study, "ASTM F2656").probability
-    assert classes == {name: tidy(f"{share:.1%}") for name, share in rated.items()}
+    classes = page.table("Share of the runs in each class")  # a grid is no draw: no probability, no interval
+    rated = birm3d.rate(study, "ASTM F2656").designation
+    assert {name: text for name, text, _ in classes} == {
+        name: f"{rated.count(name)} of 3, {100 * rated.count(name) / 3:.0f} %" for name in rated
+    }
+    answers = dict(page.table("At a glance"))
+    assert answers["What happens in the 3 runs of the study?"] == "stopped in 3 of 3, 100 %"
+    assert "95 % interval (" not in page.source
+    assert "A share of them is no probability" in page.source
     with pytest.raises(ValueError, match="got both"):
         birm3d.dossier(study, tmp_path / "b", study=study)
     study.save(tmp_path / "study.csv")
     loaded = Study.load(tmp_path / "study.csv")
     with pytest.raises(ValueError, match="knows the scene that was varied"):
         birm3d.dossier(loaded, tmp_path / "b")
+
+
+def test_verdict_says_what_share_of_a_study_meets_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Counts of a Monte Carlo study, with the intervals of scipy; heavy trucks have no rating."""
+    monkeypatch.setattr("birm3d.reporting.build.find_spec", lambda name: None)
+    monkeypatch.setattr("birm3d.reporting.study_case.nearest", lambda scene: nearest(scene, 1))
+    unknown = {"impact_speed": stats.norm(21.0, 1.0), "vehicle.gvw": stats.norm(6800.0, 120.0)}
+    drawn = birm3d.monte_carlo(crash(), unknown, n=16, progress=False)
+    page = Page(birm3d.dossier(drawn, tmp_path / "drawn", draws=0))
+    rated = birm3d.rate(drawn, "ASTM F2656")
+    n = len(rated.ratings)
+    assert 0 < n < 16
+    answers = dict(page.table("At a glance"))
+
+    def interval(count: int, of: int) -> str:
+        found = stats.binomtest(count, of).proportion_ci(0.95, method="wilson")
+        return f"{100 * found.low:.0f} to {100 * found.high:.0f} %"
+
+    ended = drawn.outcome.count("stopped")
+    expected = f"stopped in {ended} of 16, {100 * ended / 16:.0f} % (95 % interval {interval(ended, 16)})"
+    assert answers["What happens in the 16 runs of the study?"].startswith(expected)
+    classes = answers["Rating of these runs by ASTM F2656, indicative"]
+    for name in set(rated.designation):
+        count = rated.designation.count(name)
+        assert (
+            f"{name} in {count} of {n}, {100 * count / n:.0f} % (95 % interval {interval(count, n)})"
+            in classes
+        )
+    assert (
+        f"Not rated are {16 - n} of 16 runs: {16 - n} because the standard has no vehicle of that" in classes
+    )
+    rows = {row[0]: row[1:] for row in page.table("The study beside the verdict by ASTM F2656")}
+    *_, met, band = rows["all of these, and contained"]
+    good = sum(rating.passed for rating in rated.ratings)
+    assert (met, band) == (f"{good} of {n}, {100 * good / n:.0f} %", interval(good, n))
+    assert page.source.index("The study beside the verdict") < page.source.index("Replay, colours show")
+
+
+def test_shares_of_runs_have_no_more_digits_than_the_runs_tell() -> None:
+    assert [share_of_runs(*pair) for pair in ((1, 3), (0, 8), (8, 8))] == ["33%", "0%", "100%"]
+    few, many, most = (share_of_runs(*pair) for pair in ((1, 399), (999, 1000), (1999, 2000)))
+    assert (few, many, most) == ("0.25%", "99.9%", "99.95%")
+
+
+def test_small_shares_have_no_powers_of_ten() -> None:
+    told = [percent(share) for share in (0.0, 5e-13, 7.3e-5, 2.3e-4, 5.6e-3, 0.052, 0.1)]
+    assert told == ["0%", "below 0.0001%", "0.0073%", "0.023%", "0.56%", "5.2%", "10.0%"]
+
+
+def test_bands_of_criteria_have_the_digits_of_their_medians() -> None:
+    masses = [Criterion("mass", mass, "kg", "", True) for mass in (6703.33, 6814.21, 6911.89)]
+    ratings = [Rating("", "", 0.0, True, (mass,), "", "") for mass in masses]
+    ((_, median, band, *_),) = band_rows(ratings)
+    assert median == "6,814.2 kg"
+    assert re.fullmatch(r"6,7\d\d\.\d to 6,\d{3}\.\d kg", band)
+
+
+def test_occupants_of_a_heavy_truck_are_not_judged_as_those_of_a_car(page: Page) -> None:
+    answer = dict(page.table("At a glance"))["Would occupants be at risk?"]
+    assert answer.startswith("MASH does not judge this for so heavy a vehicle; its limits for cars and")
+    assert answer.endswith("of 16 vehicles of the class meet all of them")
+    foundation = dict(page.table("At a glance"))["What does its foundation have to carry?"]
+    assert "natural period 0.1 s (assumed)" in foundation
 
 
 def block() -> Simulation:
@@ -534,5 +609,5 @@ def test_command_line(
     assert capsys.readouterr().out.strip() == str(out / "index.html")
     page = Page(out / "index.html")
     assert "Plaza" in page.texts["dd"]
-    assert page.table("Outcomes of the study") == [["stopped", "3", "100.0 %"]]
+    assert page.table("Outcomes of the study") == [["stopped", "3 of 3, 100 %", "–"]]
     assert command("rerun", str(out / "run.birm3d")) == 0

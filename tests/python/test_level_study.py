@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from birm3d import Barrier, Prediction, Simulation, Vehicle, units
 from birm3d.assessment import LevelStudy, RatingStudy
-from birm3d.assessment.probability import wilson
+from birm3d.base.intervals import wilson
 
 LEVEL = "EN 1317 H1"
 

@@ -44,6 +44,34 @@ def test_band_of_displacement_is_as_wide_as_tests_scatter() -> None:
     assert 0.60 < band.median["max_displacement"] < 0.78
 
 
+# 2.56 standard deviations of the logarithm, each about the mean of its class: tests/validation.
+TESTS_SCATTER = {"max_displacement": 0.289, "peak_deceleration_cfc60": 0.421}
+
+
+@pytest.mark.parametrize("name", ["passenger_car", "minivan", "pickup"])
+def test_bands_at_a_wall_are_not_wider_than_40_tests_scatter(name: str) -> None:
+    """They are drawn by one factor on the front, whose spread is that of displacement and peak."""
+    wall = Simulation(Vehicle.preset(name, mesh_density=0.3), Barrier.rigid_wall(), units.km_h(56.0))
+    band = birm3d.predict(wall, 32, metrics=list(TESTS_SCATTER))
+    widths = {metric: math.log(band.high[metric] / band.low[metric]) for metric in TESTS_SCATTER}
+    for metric, scatter in TESTS_SCATTER.items():
+        assert 0.85 * scatter < widths[metric] <= scatter
+
+
+def test_page_of_bands_has_its_tests_covered_and_no_band_too_wide() -> None:
+    page = (Path(__file__).parents[1] / "validation/prediction_bands.md").read_text(encoding="utf-8")
+    rows = [[cell.strip() for cell in line.strip("|\n").split("|")] for line in page.splitlines()]
+    found = {row[0]: row[1:] for row in rows if len(row) == 7}
+    for what in (
+        "displacement, wall at 56 km/h",
+        "peak deceleration, wall at 56 km/h",
+        "static crush, pole into the side",
+    ):
+        inside, width, scatter = (float(cell.rstrip("%")) for cell in found[what][1:4])
+        assert 70 <= inside <= 90
+        assert width <= scatter
+
+
 def test_common_random_numbers() -> None:
     """Another speed has the same draws: every vehicle is crushed more, the first to the last."""
     faster = birm3d.predict(varied(WALL, {"impact_speed": 17.0}), 64).study

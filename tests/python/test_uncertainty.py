@@ -15,10 +15,11 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Settings, Simulation, scenes
+from birm3d.base.intervals import wilson
 from birm3d.study.distributions import sample, uniforms
 from birm3d.study.fragility import _stopped
 from birm3d.study.sobol import SobolDesign
-from scipy.stats import ks_1samp, lognorm, norm, uniform
+from scipy.stats import binomtest, ks_1samp, lognorm, norm, uniform
 
 SPEED, MASS, STIFFNESS = 22.352, 6804.0, 3e6
 CRUSH = SPEED * math.sqrt(MASS / STIFFNESS)
@@ -272,11 +273,26 @@ def test_a_flat_curve_has_no_median() -> None:
 
 def test_wilson_interval_is_the_published_one() -> None:
     """Newcombe (1998), table I: 81 of 263 has 0.2553 to 0.3662; 0 of 20 has 0 to 0.1611."""
-    from birm3d.study.fragility import _wilson
+    assert wilson(81 / 263, 263) == pytest.approx((0.2553, 0.3662), abs=5e-5)
+    assert wilson(0.0, 20) == pytest.approx((0.0, 0.1611), abs=5e-5)
 
-    low, high = _wilson([81, 0], [263, 20], 0.95)
-    assert low == pytest.approx([0.2553, 0.0], abs=5e-5)
-    assert high == pytest.approx([0.3662, 0.1611], abs=5e-5)
+
+@pytest.mark.parametrize("confidence", [0.5, 0.8, 0.95, 0.999])
+@pytest.mark.parametrize(("events", "runs"), [(0, 1), (1, 1), (1, 3), (0, 20), (81, 263), (5000, 5000)])
+def test_wilson_interval_is_that_of_scipy(events: int, runs: int, confidence: float) -> None:
+    expected = binomtest(events, runs).proportion_ci(confidence, method="wilson")
+    low, high = wilson(events / runs, runs, confidence)
+    assert (low, high) == pytest.approx((expected.low, expected.high), rel=1e-12, abs=1e-15)
+    assert 0.0 <= low <= events / runs <= high <= 1.0
+
+
+def test_wilson_interval_refuses() -> None:
+    with pytest.raises(ValueError, match=r"share must be >= 0 and <= 1, got 1\.5"):
+        wilson(1.5, 8)
+    with pytest.raises(ValueError, match="n must be >= 1, got 0"):
+        wilson(0.5, 0)
+    with pytest.raises(ValueError, match=r"confidence must be between 0 and 1, got 95"):
+        wilson(0.5, 8, 95.0)
 
 
 def test_more_runs_for_each_speed_keep_the_earlier_ones(block: Simulation, tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import warnings
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import pytest
 from birm3d import (
     Barrier,
     FreeStanding,
+    MassWarning,
     Settings,
     Simulation,
     UnitWarning,
@@ -19,12 +21,14 @@ from birm3d import (
     critical_impact_point,
     fragility,
     monte_carlo,
+    predict,
     scenes,
     sweep,
     units,
 )
 from birm3d.calibration import Parameter
 from birm3d.scene_parameters import parameter_names, quantity_of, value_of, varied
+from birm3d.simulation.scene_file import read_scene_file
 from scipy import stats
 
 WALL = Barrier.rigid_wall()
@@ -199,3 +203,74 @@ def test_what_is_usual_or_says_its_unit_is_not_warned_of() -> None:
         box(0.15)
         Simulation.from_scene(at("400 km/h").scene)  # known already
         at(units.parse("400 km/h", "speed"))  # as the command line and scene files say it
+
+
+# ---- masses that no vehicle of the class can have ----------------------------------------------------------
+
+TRUCK = Vehicle.preset("cargo_truck", mesh_density=0.1)
+USUAL = r"far outside what 'cargo_truck' can have: usual is 2,300 to 17,010 kg"
+
+
+def told_once(make: Callable[[], Any], message: str) -> None:
+    with pytest.warns(MassWarning, match=message) as told:
+        make()
+    (one,) = (warning for warning in told if warning.category in (MassWarning, UnitWarning))
+    assert one.filename == __file__
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Vehicle.preset("cargo_truck", gvw=500, mesh_density=0.1), f"gvw = 500 kg is {USUAL}"),
+        (lambda: Vehicle.preset("cargo_truck", gvw="500 kg", mesh_density=0.1), f"gvw = 500 kg is {USUAL}"),
+        (lambda: TRUCK.with_gvw(2250.0), f"gvw = 2,250 kg is {USUAL}"),
+        (lambda: TRUCK.with_gvw("40 t"), f"gvw = 40,000 kg is {USUAL}"),
+        (
+            lambda: Vehicle.preset("semi_truck", mesh_density=0.1).with_gvw(90_000.0),
+            r"'semi_truck' can have: usual is 6,580 to 81,647 kg",
+        ),
+        (
+            lambda: Vehicle.from_facts("truck", mass=1000.0),
+            r"mass = 1,000 kg is far outside what 'cargo_truck'",
+        ),
+    ],
+)
+def test_a_mass_that_the_class_can_not_have_is_warned_of(make: Callable[[], Any], message: str) -> None:
+    told_once(make, message)
+
+
+def test_a_scene_file_tells_an_odd_mass(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    blocks = ('[vehicle]\npreset = "cargo_truck"\ngvw = "500 kg"', '[barrier]\nkind = "rigid_wall"')
+    path.write_text("\n".join((*blocks, '[impact]\nspeed = "30 mph"')))
+    told_once(lambda: read_scene_file(path), f"gvw = 500 kg is {USUAL}")
+
+
+def test_studies_tell_odd_masses_once() -> None:
+    crash = Simulation(TRUCK, WALL, 10.0)
+    wanted = ["dynamic_crush"]
+    masses = {"vehicle.gvw": [500.0, 1000.0, 6804.0]}
+    message = rf"vehicle.gvw = 500 kg \(the worst of 2 of 3 runs\) is {USUAL}"
+    told_once(lambda: sweep(crash, masses, metrics=wanted), message)
+    light = {"vehicle.gvw": stats.uniform(1000.0, 10.0)}
+    told_once(lambda: monte_carlo(crash, light, 4, metrics=wanted), r"\(the worst of 4 of 4 runs\)")
+
+
+def test_a_prediction_does_not_repeat_what_its_vehicle_was_warned_of() -> None:
+    with pytest.warns(MassWarning):
+        light = TRUCK.with_gvw(2000.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", MassWarning)
+        predict(Simulation(light, WALL, 5.0), 8, metrics=["dynamic_crush"])
+
+
+def test_usual_masses_are_not_warned_of() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for name in Vehicle.presets():
+            preset = Vehicle.preset(name, mesh_density=0.1)
+            preset.with_gvw(1.2 * preset.mass)
+        TRUCK.with_gvw(4600.0).with_gvw(12_000.0)
+        TRUCK.scaled_to(3000.0)  # another vehicle of the class
+        Vehicle.from_facts("truck", mass="18 t", mesh_density=0.1)
+        BLOCK.with_gvw(10.0)  # a laboratory body has no class

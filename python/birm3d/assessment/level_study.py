@@ -8,8 +8,9 @@ from typing import Any
 
 from ..base.arguments import checked
 from ..base.frozen_mapping import FrozenMapping
+from ..base.intervals import wilson
 from .criteria import Criterion, criteria_html, criteria_text
-from .probability import RatingStudy, wilson
+from .probability import RatingStudy
 from .rating import Rating
 from .roadside import RoadsideStandard
 from .roadside_rating import level_rating

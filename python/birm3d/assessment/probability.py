@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -12,6 +11,7 @@ import numpy.typing as npt
 
 from ..base.arguments import checked
 from ..base.frozen_mapping import FrozenMapping
+from ..base.intervals import wilson
 from ..study.predict import SHARE, quantiles
 from ..study.whole_runs import look_at_study, require_found
 from .criteria import Criterion, criteria_html, criteria_text, foot_html, table_html, table_text
@@ -22,24 +22,7 @@ if TYPE_CHECKING:
     from ..result import Result
     from ..study import Study
 
-__all__ = ["RatingStudy", "rate_study", "rating_study", "wilson"]
-
-_Z = 1.959964  # of the normal distribution, 95 %, two sides
-
-
-def wilson(share: float, n: int) -> tuple[float, float]:
-    """Return the 95 % interval of a probability by its share of n runs (Wilson).
-
-    Raises
-    ------
-    ValueError
-        If the share is not from 0 to 1.
-    """
-    if not 0.0 <= share <= 1.0:
-        raise ValueError(f"share must be >= 0 and <= 1, got {share}")
-    middle = (share + _Z**2 / (2 * n)) / (1 + _Z**2 / n)
-    half = _Z / (1 + _Z**2 / n) * math.sqrt(share * (1 - share) / n + _Z**2 / (4 * n**2))
-    return max(0.0, middle - half), min(1.0, middle + half)
+__all__ = ["RatingStudy", "rate_study", "rating_study"]
 
 
 class RatingStudy:

@@ -45,11 +45,11 @@ def _values(column: Sequence[Criterion]) -> tuple[str, str]:
             return shown[0][0], "the same in all"
         return ", ".join(f"{text} {n / len(column):.0%}" for text, n in shown), "–"
     low, middle, high = quantiles(np.array(numbers, float), SHARE)
-    unit = f" {column[0].unit}" if column[0].unit else ""
-    median = Criterion(column[0].name, middle, column[0].unit, "", None).shown
+    unit = column[0].unit
+    median = Criterion("", middle, unit, "", None).shown
     if max(numbers) - min(numbers) <= _ROUNDING * max(map(abs, numbers)):
         return median, "the same in all"
-    return median, f"{low:.2f} to {high:.2f}{unit}"
+    return median, f"{Criterion('', low, '', '', None).shown} to {Criterion('', high, unit, '', None).shown}"
 
 
 def _share(column: Sequence[Criterion]) -> str:

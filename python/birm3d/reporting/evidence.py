@@ -15,6 +15,7 @@ from ..result.summary import shown_as
 from .blocks import Block, Caution, Section, Table, Text
 from .figures import figure
 from .given_tests import Compared
+from .numbers import percent
 from .study_case import Case
 from .uncertainty import computing_error
 
@@ -172,12 +173,12 @@ def _criteria(case: Case) -> Iterator[tuple[str, str, str, str]]:
 
     yield (
         "total energy changes by less than 10 % (W179)",
-        f"{energy:.1e}",
+        percent(energy),
         "10 %",
         verdict(energy < W179_ENERGY),
     )
     own = f"{ENERGY_LIMIT:.1%}"
-    yield "total energy, this program's own limit", f"{energy:.1e}", own, verdict(energy <= ENERGY_LIMIT)
+    yield "total energy, this program's own limit", percent(energy), own, verdict(energy <= ENERGY_LIMIT)
     yield (
         "hourglass energy, of the total and of each part (W179)",
         "none",
@@ -196,15 +197,15 @@ def _criteria(case: Case) -> Iterator[tuple[str, str, str, str]]:
         "none",
         "not applicable: nodes of the skin have no mass",
     )
-    limit = f"{MOMENTUM_LIMIT:.0e} of the greatest force"
+    limit = f"{MOMENTUM_LIMIT:.4%} of the greatest force"
     yield (
         "momentum: m a is the sum of the forces, each row",
-        f"{momentum:.1e}",
+        percent(momentum),
         limit,
         verdict(momentum <= MOMENTUM_LIMIT),
     )
     worst = max((error for *_, error in computing_error(case) if error is not None), default=0.0)
-    yield "headline numbers with a hundredth of the tolerance", f"{worst:.1e}", "1 %", verdict(worst <= 0.01)
+    yield "headline numbers with a hundredth of the tolerance", percent(worst), "1 %", verdict(worst <= 0.01)
     yield "the outcome is decided", result.outcome, "", verdict(result.outcome != "undecided")
     told = len(case.warnings)
     yield "warnings of the run", str(told), "none", "pass" if told == 0 else "see the section on warnings"
@@ -215,16 +216,12 @@ def _energies(case: Case) -> Iterator[tuple[str, ...]]:
     for name, values in case.result.energy.items():
         first, last = float(values[0]), float(values[-1])
         share = f"{(last - first) / start + 0.0:+.3%}".replace("-0.000%", "+0.000%") if start > 0.0 else "–"
-        if name == "residual":
-            share = f"{(last - first) / start:+.1e}" if start > 0.0 else "–"
-            yield name, f"{first / 1e3:.2e}", f"{last / 1e3:.2e}", share
-        else:
-            yield (
-                name.replace("_", " "),
-                without_sign_of_zero(f"{first / 1e3:,.2f}"),
-                without_sign_of_zero(f"{last / 1e3:,.2f}"),
-                share,
-            )
+        yield (
+            name.replace("_", " "),
+            without_sign_of_zero(f"{first / 1e3:,.2f}"),
+            without_sign_of_zero(f"{last / 1e3:,.2f}"),
+            share,
+        )
 
 
 def _momenta(case: Case) -> Iterator[tuple[str, ...]]:

@@ -22,6 +22,11 @@ _RIGID = (
     "with the 50-ms means or with a response of the element. The file has the unfiltered peaks too."
 )
 
+_WHOLE_FORCE = (
+    "Forces are magnitudes of the whole force, its vertical part included; those of the design loads are "
+    "horizontal."
+)
+
 
 def load_section(case: Case) -> Section:
     """Return what each element that was touched has to carry."""
@@ -29,7 +34,9 @@ def load_section(case: Case) -> Section:
     if case.result.scene.barrier is None or not rows:
         return Section("Loads on the barrier", "loads", [Text("Nothing of a barrier was touched.")])
     blocks: list[Block] = [
-        Table("Loads on each element that was touched", ELEMENT_COLUMNS, rows, numbers=True),
+        Table(
+            "Loads on each element that was touched", ELEMENT_COLUMNS, rows, note=_WHOLE_FORCE, numbers=True
+        ),
         figure(case.result.plot_elements(), "Loads on the elements over time"),
         *_map_blocks(case.result),
         *_design_blocks(case),

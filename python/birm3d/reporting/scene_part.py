@@ -142,12 +142,12 @@ def _law(law: Any) -> str:
     parts = []
     for name, value in law.items():
         if name == "envelope":
-            points = ", ".join(f"{d:g} m: {stress / 1e6:.3g} MPa" for d, stress in value)
+            points = ", ".join(f"{d:.4g} m: {stress / 1e6:.3g} MPa" for d, stress in value)
             parts.append(f"points {points}")
         elif value is not None:
             row = LAW_NUMBERS[name]
             size, unit = _SHOWN[row.quantity]
-            parts.append(f"{row.words} {value / size:.4g} {unit}")
+            parts.append(f"{row.words} {value / size:.4g} {unit}".rstrip())
     return "; ".join(parts)
 
 

@@ -22,14 +22,14 @@ from ..study.predict import Prediction
 from .class_bands import ClassBands, class_bands
 from .given_tests import Compared, nearest
 
-__all__ = ["Asked", "Case", "case_of", "is_oblique"]
+__all__ = ["MOST_RATED", "Asked", "Case", "case_of", "is_oblique"]
 
 SECURITY = ("ASTM F2656", "ISO 22343-1", "IWA 14-1", "PAS 68", "SD-STD-02.01")
 ROADSIDE = ("MASH", "EN 1317")
 _FRAMES = 60  # instants that the replay shows
 _FINER = 1e-2  # tolerance of the run that errors are measured with, over that of the run itself
 _LEAST_TOLERANCE = 1e-8
-_MOST_RATED = 2000  # longer studies are not rated, because each of their runs is run once more for it
+MOST_RATED = 2000  # longer studies are not rated, because each of their runs is run once more for it
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,7 @@ def _rated(result: Result, asked: Asked) -> tuple[tuple[Rating, ...], dict[str, 
 
 
 def _rated_study(study: Study, standard: str, asked: Asked) -> RatingStudy | None:
-    if len(study) > _MOST_RATED or not study.parameters or study._scene is None:
+    if len(study) > MOST_RATED or not study.parameters or study._scene is None:
         return None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the study has warned of its runs already

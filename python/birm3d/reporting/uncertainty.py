@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
@@ -15,7 +16,9 @@ from ..study.history_bands import history_bands
 from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import class_blocks
 from .figures import figure
+from .numbers import percent
 from .study_case import Case
+from .study_verdict import cells_of_share, study_note
 
 __all__ = ["computing_error", "uncertainty_section"]
 
@@ -51,7 +54,7 @@ def uncertainty_section(case: Case) -> Section:
     rows = []
     for name, value, better, error in computing_error(case):
         label, size, unit = shown_as(name)
-        difference = "below 1e-6" if error is None else f"{error:.1e}"
+        difference = percent(0.0 if error is None else error)
         rows.append((label, f"{value / size:.5g}", f"{better / size:.5g}", unit, difference))
     blocks: list[Block] = [
         Text(
@@ -98,22 +101,26 @@ def _study_blocks(case: Case, study: Study) -> Iterator[Block]:
             kinds = ", ".join(dict.fromkeys(str(value) for value in values.tolist()))
             rows.append((name.replace("_", " "), kinds, unit))
     yield Table("Inputs of the study", ("input", "range", "unit"), rows)
-    done = [word for word in study.outcome if word]
-    counts = [(word, f"{n:,}", f"{n / len(done):.1%}") for word, n in study.outcomes.items()]
-    yield Table("Outcomes of the study", ("outcome", "runs", "share"), counts, numbers=True)
+    done = sum(study.outcomes.values())
+    counts = [(word, *cells_of_share(study, n, done)) for word, n in study.outcomes.items()]
+    yield Table(
+        "Outcomes of the study", ("outcome", "runs", "95 % interval"), counts, study_note(study), numbers=True
+    )
     yield _percentiles(case, study)
     yield from _bands(study)
     if case.rating_study is not None:
         rated = case.rating_study
-        shares = []
-        for name, share in rated.probability.items():
-            low, high = rated.interval(share)
-            shares.append((name, f"{share:.1%}", f"{low:.1%} to {high:.1%}"))
+        n = len(rated.ratings)
+        shares = [
+            (name, *cells_of_share(study, count, n))
+            for name, count in Counter(rated.designation).most_common()
+        ]
+        drawn = "Probability of each class" if study.grid is None else "Share of the runs in each class"
         yield Table(
-            f"Probability of each class by {rated.ratings[0].standard}, indicative",
-            ("class", "share of runs", "95 % interval of the share"),
+            f"{drawn} by {rated.ratings[0].standard}, indicative",
+            ("class", "runs", "95 % interval"),
             shares,
-            note=f"{len(rated.ratings):,} runs were rated.",
+            note=f"{n:,} of {len(study):,} runs were rated. {study_note(study)}",
             numbers=True,
         )
 

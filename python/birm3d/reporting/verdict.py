@@ -15,7 +15,9 @@ from ..result.summary import shown_as
 from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import band_of, headline_table
 from .given_tests import Compared, errors
+from .numbers import percent
 from .study_case import ROADSIDE, Case, is_oblique
+from .study_verdict import study_answers, study_table
 from .uncertainty import computing_error
 
 __all__ = ["criteria_table", "risk_section", "verdict_section"]
@@ -39,6 +41,9 @@ def verdict_section(case: Case) -> Section:
         blocks.append(Text(_NO_BARRIER))
     for rating in case.ratings:
         blocks.append(_rating_table(case, rating))
+    table = study_table(case)
+    if table is not None:
+        blocks.append(table)
     if case.not_rated:
         rows = [(name, reason.partition("; got ")[0]) for name, reason in case.not_rated.items()]
         blocks.append(Table("Standards that do not rate this run", ("standard", "why"), rows))
@@ -67,7 +72,7 @@ def _with_bands(table: Table, bands: Sequence[tuple[str, str, str, str, str]]) -
     found = {name: (band, share) for name, _, band, _, share in bands}
     rows = [(*row, *found.get(row[0], ("–", "–"))) for row in table.rows]
     return dataclasses.replace(
-        table, head=(*table.head, "80 % of the class", "of it within the limit"), rows=rows
+        table, head=(*table.head, "80 % of the class", "share of it within the limit"), rows=rows
     )
 
 
@@ -81,6 +86,7 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
             f"{rating.designation} (vehicle {rating.vehicle_class}); {contained}, "
             f"{_penetration(rating)}{_chances(case, rating.standard)}",
         )
+    yield from study_answers(case)
     loads = touched_elements(result.element_loads)
     if loads:
         most = max(loads, key=lambda load: load.peak_force_50ms)
@@ -92,10 +98,12 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         )
     if isinstance(case.design_loads, DesignLoad) and loads:
         row, period = case.design_loads.governing, case.design_loads.natural_period
+        assumed = " (assumed)" if "is assumed" in case.design_loads.caution else ""
         yield (
             "What does its foundation have to carry?",
             f"{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
-            f"{row.height:.2f} m, natural period {period:g} s, ductility {case.design_loads.ductility:g}"
+            f"{row.height:.2f} m, natural period {period:g} s{assumed}, ductility "
+            f"{case.design_loads.ductility:g}"
             f"{_design_band(row)}",
         )
     yield "Would occupants be at risk?", _risk_line(case)
@@ -174,12 +182,13 @@ def _risk_line(case: Case) -> str:
     others = ""
     if not isinstance(case.bands, str) and case.bands.risk is not None:
         found = case.bands.risk
-        others = f"; met by {found.passed(standard):.0%} of {len(found.risks)} vehicles of the class"
-    if standard in ("MASH", "EN 1317") and asked and case.result.scene.vehicle.mass >= _HEAVY:
-        return (
-            f"{standard} does not judge this for so heavy a vehicle; every value is in the section on "
-            "occupants"
-        )
+        good = round(found.passed(standard) * len(found.risks))
+        others = f". {good} of {len(found.risks)} vehicles of the class meet all of them"
+    if case.result.scene.vehicle.mass >= _HEAVY:
+        told = f"{standard} does not judge this for so heavy a vehicle"
+        if failed and not asked:
+            return f"{told}; its limits for cars and pickups are exceeded: {', '.join(failed)}{others}"
+        return f"{told}; every value is in the section on occupants"
     if not failed:
         met = f"the limits of {standard} are met; severity and every value are in the section on occupants"
         return f"{met}{others}"
@@ -189,8 +198,8 @@ def _risk_line(case: Case) -> str:
 def _computed_line(case: Case) -> str:
     metrics = case.result.metrics
     text = (
-        f"energy closes to {metrics['energy_residual']:.1e} of the initial kinetic energy, momentum to "
-        f"{metrics['momentum_residual']:.1e} of the greatest force"
+        f"energy closes to {percent(metrics['energy_residual'])} of the initial kinetic energy, momentum to "
+        f"{percent(metrics['momentum_residual'])} of the greatest force"
     )
     worst = max((error for *_, error in computing_error(case) if error is not None), default=None)
     return text if worst is None else f"{text}; headline numbers change by at most {worst:.2%} when refined"

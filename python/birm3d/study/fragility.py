@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from .. import pictures
 from ..base.arguments import checked
+from ..base.intervals import wilson
 from ..result.metrics import METRIC_UNITS
 from ..simulation.simulation import Simulation
 from ..unit_check import given
@@ -181,7 +182,8 @@ def fragility(
         raise ValueError(f"speeds must have runs that succeed, but all {n} at {speed:g} m/s failed: {reason}")
     happened = happened.reshape(n, len(listed)) & valid
     events = happened.sum(axis=0)
-    low, high = _wilson(events, runs, confidence)
+    limits = [wilson(k / of, of, confidence) for k, of in zip(events.tolist(), runs.tolist(), strict=True)]
+    low, high = np.array(limits).T
     fit, no_fit = fit_lognormal(np.array(listed), events, runs, Draws(happened, valid))
     if exceeds is None:
         event = "stopped"
@@ -231,13 +233,3 @@ def _exceeded(study: Study, exceeds: Mapping[str, float]) -> npt.NDArray[np.bool
             )
         happened |= values > limit
     return happened
-
-
-def _wilson(events: Any, runs: Any, confidence: float) -> tuple[Floats, Floats]:
-    from scipy.stats import binomtest
-
-    limits = [
-        binomtest(int(k), int(n)).proportion_ci(confidence, method="wilson")
-        for k, n in zip(events, runs, strict=True)
-    ]
-    return np.array([limit.low for limit in limits]), np.array([limit.high for limit in limits])

@@ -123,6 +123,8 @@ def run_study(
         runs are in its ``study``, and those before that in the store.
     StudyInterrupted
         A KeyboardInterrupt, with the finished runs in its ``study`` and in the store.
+    MassWarning
+        As a warning, once, if the vehicle's class can not have the mass in some rows.
     OverlapWarning, CoreContactWarning, BalanceWarning, CoarseSkinWarning
         As warnings, each once for all runs that were run now: how many and which rows are not reliable, and
         what is wrong with the worst.
@@ -145,6 +147,7 @@ def run_study(
     else:
         table = [tuple(_plain(value) for value in row) for row in rows]
     _check_rows(simulation, names, table)
+    _warn_of_masses(simulation, names, table)
     units = {name: METRIC_UNITS[name] for name in wanted}
     study = partial(Study._of, simulation.scene, names, table, units)
 
@@ -224,6 +227,18 @@ def _plain(value: Any) -> Any:
     if type(value) is float:
         return value
     return float(value) if is_number(value) else value
+
+
+def _warn_of_masses(simulation: Simulation, names: tuple[str, ...], rows: Sequence[tuple[Any, ...]]) -> None:
+    """Warn once of the masses that no vehicle of the class can have, by the one furthest from the usual."""
+    usual = simulation.scene.vehicle._description.usual_mass
+    if "vehicle.gvw" not in names or "vehicle" in names or usual is None:
+        return
+    column = names.index("vehicle.gvw")
+    odd = [float(row[column]) for row in rows if not usual.holds(float(row[column]))]
+    if odd:
+        worst = max(odd, key=lambda mass: max(usual.low / mass, mass / usual.high) if mass > 0.0 else 0.0)
+        usual.warn("vehicle.gvw", worst, f" (the worst of {len(odd)} of {len(rows)} runs)")
 
 
 def _check_rows(simulation: Simulation, names: tuple[str, ...], rows: Sequence[tuple[Any, ...]]) -> None:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from ..base.frozen_mapping import FrozenMapping
 from .joint import Joint
+from .mass_check import UsualMass
 from .recipe import VehicleRecipe
 from .zone import Zone, positive
 
@@ -44,6 +45,14 @@ class CombinationRecipe:
         """Sum of the masses in the units' files [kg]; ``None`` where one has no file."""
         masses = [unit.file_mass for unit in self.units]
         return sum(mass for mass in masses if mass is not None) if None not in masses else None
+
+    @property
+    def usual_mass(self) -> UsualMass | None:
+        """Masses that both units together can have [kg]; ``None`` where one has no file."""
+        first, second = (unit.usual_mass for unit in self.units)
+        if first is None or second is None:
+            return None
+        return UsualMass(self.name, first.low + second.low, first.high + second.high)
 
     @property
     def zones(self) -> Mapping[str, Zone]:

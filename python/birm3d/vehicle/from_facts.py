@@ -52,6 +52,7 @@ _WHEELBASE = 0.04
 _HEIGHT_OF_MASS = {False: 0.05, True: 0.10}  # of a mass centre that is not known, by whether it is loaded
 _KNOWN = 0.01  # of one that is given
 _Z = 1.2816  # 80 %, two sides
+_LARGE = 1000.0  # from here on whole numbers are shown
 
 
 def vehicle_of_facts(
@@ -108,13 +109,18 @@ def _scaled(preset: Vehicle, mass: float, sizes: Mapping[str, float | None], loa
         return preset.scaled_to(mass, **sizes)
     structure = preset._description.file_mass
     assert structure is not None  # presets have files
-    return preset.scaled_to(structure, **sizes).with_gvw(mass)
+    scaled = preset.scaled_to(structure, **sizes)
+    recipe = scaled._description
+    if recipe.usual_mass is not None:
+        recipe.usual_mass.warn("mass", mass)
+    return scaled._changed(recipe.with_mass(mass))
 
 
 def _assumed(name: str, value: float | None, log_sd: float, why: str, unit: str = "m") -> Assumption:
     assert value is not None
     low, high = value * math.exp(-_Z * log_sd), value * math.exp(_Z * log_sd)
-    text = f"{name} {value:.4g} {unit}, 80 % from {low:.4g} to {high:.4g}: {why}"
+    form = ",.0f" if value >= _LARGE else ".4g"
+    text = f"{name} {value:{form}} {unit}, 80 % from {low:{form}} to {high:{form}}: {why}"
     return Assumption(quantity=name, value=value, low=low, high=high, unit=unit, text=text)
 
 

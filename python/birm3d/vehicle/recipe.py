@@ -19,6 +19,7 @@ from .. import _core
 from ..base.deprecated import warn_renamed
 from ..base.frozen_mapping import FrozenMapping
 from .mass_center import stretched_inertia
+from .mass_check import UsualMass
 from .old_keys import OLD_FIELDS
 from .payload import check_load, solids_at, structure_mass
 from .scaling import scaling_between
@@ -133,6 +134,14 @@ class VehicleRecipe:
     def file_mass(self) -> float | None:
         """Mass of the vehicle that the file describes [kg]; ``None`` where there is no file."""
         return None if self.file is None else self.file.gvw_kg
+
+    @property
+    def usual_mass(self) -> UsualMass | None:
+        """Masses that the vehicle's class can have; ``None`` where there is no file."""
+        if self.file is None:
+            return None
+        mass = self.file.gvw_kg
+        return UsualMass.of(self.name, structure_mass(self.file) or mass, mass)
 
     def mass_properties(self) -> tuple[Floats, Floats]:
         """Return mass centre (3,), file axes [m], and inertia about it (3, 3) [kg m^2]."""

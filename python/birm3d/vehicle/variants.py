@@ -62,11 +62,21 @@ class VehicleVariants(VehicleData):
         return rebuilt(self, recipe)
 
     def _mass_given(self, name: str, mass: Quantity) -> float:
-        """Return a mass [kg] > 0, with a word if it is far from that of the vehicle's file."""
+        """Return a mass [kg] > 0, with a word if it is far from that of the vehicle's file.
+
+        Of another vehicle of the class (``mass``) the structure goes with the mass; then only a wrong unit is
+        told.
+        """
         number = positive(name, si(name, mass, "mass"))
         usual = self._description.file_mass
         if not isinstance(mass, (str, Stated)) and usual is not None:
-            warn_if_unusual(name, number, Usual(usual * _LEAST, usual * _MOST, "kg", "t"))
+            unit = Usual(usual * _LEAST, usual * _MOST, "kg", "t")
+            if not unit.low <= number <= unit.high:
+                warn_if_unusual(name, number, unit)
+                return number
+        of_class = self._description.usual_mass
+        if name == "gvw" and of_class is not None:
+            of_class.warn(name, number)
         return number
 
     def with_gvw(self, gvw: Quantity) -> Self:
@@ -81,8 +91,8 @@ class VehicleVariants(VehicleData):
         ------
         ValueError
             If the mass is not > 0, or a change by ``dataclasses.replace()`` would be lost.
-        UnitWarning
-            As a warning, if the mass is most likely in another unit.
+        UnitWarning, MassWarning
+            As warnings, if the mass is most likely in another unit, or no vehicle of the class can have it.
         """
         return self._changed(self._description.with_mass(self._mass_given("gvw", gvw)))
 

@@ -115,8 +115,9 @@ class Vehicle(OldVehicleNames):
             Naming file, line, key, limit and value of everything that is wrong in the file.
         ValueError
             If the vehicle can not have that weight or mesh.
-        UnitWarning
-            As a warning, if ``gvw`` is most likely in another unit, as 7.5 for 7.5 t.
+        UnitWarning, MassWarning
+            As warnings, if ``gvw`` is most likely in another unit, as 7.5 for 7.5 t, or if no vehicle of the
+            class can have it.
         """
         from ..io.file_format import reading
         from .builder import read

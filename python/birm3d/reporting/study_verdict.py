@@ -1,0 +1,136 @@
+"""What a study says of the verdict: the share of its runs that meets each, with its interval."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+
+from ..assessment import RatingStudy
+from ..base.intervals import wilson
+from ..study import Study
+from .blocks import Table
+from .study_case import MOST_RATED, Case
+
+__all__ = ["cells_of_share", "share_of_runs", "study_answers", "study_note", "study_table"]
+
+_FINE = 400  # runs from which a tenth of a percent means something
+
+_INTERVAL_NOTE = "95 % intervals (Wilson) take the runs as independent random draws of the inputs."
+_GRID_NOTE = "The runs are a grid of chosen values. A share of them is no probability and has no interval."
+
+
+def study_answers(case: Case) -> Iterator[tuple[str, str]]:
+    """Yield what the runs of the study end in and are rated, each as question and answer."""
+    study = case.study
+    if study is None:
+        return
+    ended = sum(study.outcomes.values())
+    if ended:
+        failed = f"; {len(study) - ended} runs failed and are left out" if ended < len(study) else ""
+        yield (
+            f"What happens in the {len(study):,} runs of the study?",
+            f"{_shares(study, study.outcomes)}{failed}",
+        )
+    rated = case.rating_study
+    if rated is not None:
+        yield (
+            f"Rating of these runs by {rated.ratings[0].standard}, indicative",
+            f"{_shares(study, Counter(rated.designation))}{_without(study, rated)}",
+        )
+    elif case.ratings:
+        yield "Rating of these runs", f"none: {_why_not(study)}"
+
+
+def study_table(case: Case) -> Table | None:
+    """Return the share of the study's runs that meets each criterion, beside the verdict on this run."""
+    study, rated = case.study, case.rating_study
+    if study is None or rated is None:
+        return None
+    own = next(one for one in case.ratings if one.standard == rated.ratings[0].standard)
+    bands = {name: (median, band) for name, median, band, _, _ in rated.rows}
+    rows = []
+    for one in own.criteria:
+        same = [c for rating in rated.ratings for c in rating.criteria if c.name == one.name]
+        judged = [c.passed for c in same if c.passed is not None]
+        met = cells_of_share(study, sum(judged), len(judged)) if judged else ("reported", "–")
+        rows.append((one.name, one.verdict, *bands.get(one.name, ("–", "–")), *met))
+    word = "pass" if own.passed else "FAIL"
+    n = len(rated.ratings)
+    met = cells_of_share(study, sum(rating.passed for rating in rated.ratings), n)
+    rows.append(("all of these, and contained", word, "–", "–", *met))
+    return Table(
+        f"The study beside the verdict by {own.standard}, indicative: {n:,} of {len(study):,} runs are rated",
+        (
+            "criterion",
+            "this run",
+            "median of the runs",
+            "80 % of the runs",
+            "runs that meet it",
+            "95 % interval",
+        ),
+        rows,
+        note=f"{study_note(study)}{_of_speed(study)}",
+    )
+
+
+def study_note(study: Study) -> str:
+    """Return what shares of the runs and their intervals mean."""
+    return _INTERVAL_NOTE if study.grid is None else _GRID_NOTE
+
+
+def _of_speed(study: Study) -> str:
+    """Return why a class is no property of the barrier alone, where the speed differs."""
+    if "impact_speed" not in study.parameters:
+        return ""
+    return " A run is rated at the level of its own speed: a lower level may be a slower run."
+
+
+def share_of_runs(count: int, n: int) -> str:
+    """Return a share in percent with no more digits than n runs tell; 0 and 100 % are exact."""
+    share = count / n
+    text = f"{share:.1%}" if n >= _FINE else f"{share:.0%}"
+    return f"{share:.2%}" if float(text[:-1]) in (0.0, 100.0) and 0 < count < n else text
+
+
+def cells_of_share(study: Study, count: int, n: int) -> tuple[str, str]:
+    """Return a share of the runs, and its interval where they are no grid, as two cells."""
+    text = f"{count:,} of {n:,}, {share_of_runs(count, n)}"
+    return text, "–" if study.grid is not None else _interval(count, n)
+
+
+def _interval(count: int, n: int) -> str:
+    digits = 1 if n >= _FINE else 0
+    low, high = (100.0 * end for end in wilson(count / n, n))
+    return f"{low:.{digits}f} to {high:.{digits}f}%"
+
+
+def _shares(study: Study, counts: Mapping[str, int]) -> str:
+    n = sum(counts.values())
+    parts = []
+    for name, count in sorted(counts.items(), key=lambda one: -one[1]):
+        interval = f" (95 % interval {_interval(count, n)})" if study.grid is None else ""
+        parts.append(f"{name} in {count:,} of {n:,}, {share_of_runs(count, n)}{interval}")
+    return "; ".join(parts)
+
+
+def _without(study: Study, rated: RatingStudy) -> str:
+    """Return how many runs have no rating and why, as the end of a line."""
+    if not rated.failed:
+        return ""
+    reasons = Counter(_short(reason) for reason in rated.failed.values()).most_common()
+    told = "; ".join(f"{n:,} because {reason}" for reason, n in reasons)
+    return f". Not rated are {len(rated.failed):,} of {len(study):,} runs: {told}"
+
+
+def _short(reason: str) -> str:
+    if reason.startswith("vehicle must be one that"):
+        return "the standard has no vehicle of that mass"
+    return reason.partition("; got ")[0]
+
+
+def _why_not(study: Study) -> str:
+    if len(study) > MOST_RATED:
+        return f"more than {MOST_RATED:,} runs are not rated"
+    if study._scene is None or not study.parameters:
+        return "a study from a file or an ensemble does not know its scenes"
+    return "the standard knows none of them"
