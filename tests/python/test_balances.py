@@ -78,7 +78,7 @@ def greatest_friction(result: Result) -> float:
 
 def test_what_is_lost_does_not_come_back(scene_result: Result) -> None:
     scale = energy_scale(scene_result)
-    # The trapezoid rule returns a little more than the unloading curve of a recovery holds; see the next test.
+    # The trapezoid rule returns a little more than the unloading curve of a recovery holds; see the next one.
     zones = [zone for unit in scene_result.scene.vehicle.units for zone in unit.zones.values()]
     limit = {"crushed": 2e-6 if any(zone.elastic_recovery for zone in zones) else 1e-14}
     for name in ("crushed", "barrier_friction", "tire_friction"):
@@ -93,7 +93,7 @@ def test_what_is_lost_does_not_come_back(scene_result: Result) -> None:
 
 
 def test_what_rebound_returns_too_much_falls_with_the_tolerance() -> None:
-    """At default tolerance 8e-5 of the energy crushed comes back: the trapezoid rule of a force that fades out."""
+    """At default tolerance 8e-5 of what was crushed comes back: the trapezoid rule of a force that fades."""
     crash = scenes.nhtsa_10146(mesh_density=0.3)
     returned = []
     for tolerance in (1e-3, 1e-4, 1e-5):

@@ -120,8 +120,8 @@ def _of_whole(tail_depths: tuple[float, float], depth: float, reach: float) -> t
     )
 
 
-# Least slope of unloading over the steepest of loading. With 5/3 a curve of degree 5 gives back what a line of
-# the slope of loading would.
+# Least slope of unloading over the steepest of loading. With 5/3 a curve of degree 5 gives back what a line
+# of the slope of loading would.
 LEAST = 1.01 * 5.0 / 3.0
 
 

@@ -15,12 +15,12 @@ TEXT = """Vehicles: the stand-in of the class with the mass of the level's desig
 vertical wall of the least height of the table. Compared: greatest mean force over 50 ms, and the height of
 its resultant, with the design force and its effective height. Marks: 25 % in force (a later proposal for
 the same vehicle is 1.3 times AASHTO's), 0.15 m in height. A design value is no measurement: it bounds
-tests, and a rigid wall should give at least AASHTO's. Its heights of TL-4 and TL-5 are those of the rail's
-top, where no resultant on a wall of that height can act. Proposals of NCHRP 22-20(2) for the vehicles of MASH
-are known from memory, and are not judged.
+tests, and a rigid wall should give at least AASHTO's. AASHTO's heights of TL-4 and TL-5 equal the
+rail's top, above any possible resultant on a wall of that height. Proposals of NCHRP 22-20(2) for the
+vehicles of MASH are known from memory, and are not judged.
 
-A truck strikes with its front, and 0.15 s later with its rear. The rear's force is higher up: 0.72 m against
-0.52 m at a wall of 0.91 m. Compared is the greater of both.
+At 0.91 m the front of the 10-t truck acts at 0.52 m, and its rear at 0.72 m, 0.15 s later. The greater of the
+two forces is compared, at its own height.
 
 What the model can not do here: the bed of a truck leans on the wall's top and its load shifts towards it; a
 trailer's floor and its tandem strike in turn. A box of skin on a rigid body has one side of one law."""

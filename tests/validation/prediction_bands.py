@@ -174,8 +174,8 @@ def spread_by(cases: Sequence[Case], quantity: str) -> float:
 def front_spread(cases: Sequence[Case]) -> float:
     """Spread of the front's factor: the smaller one of displacement and peak deceleration.
 
-    Both follow from the one factor. What scatters more than the other also has what is no stiffness: another
-    shape of the pulse, errors of measurement. The standard deviation of the factors themselves is greater.
+    Both follow from the one factor. The one that scatters more is also affected by the shape of the pulse and
+    by errors of measurement, which are no stiffness. The standard deviation of the factors is greater.
     A front softer than usual meets the engine, so that a long displacement needs a very low factor.
     """
     return min(spread_by(cases, quantity) for quantity in ("displacement", "peak"))
@@ -267,21 +267,21 @@ estimate. From 100 ms on the presets are pushed aside too little.
 ## Factors that meet the tests
 
 The blocks `[[scatter]]` of the presets have the median factor, and one spread (standard deviation of the
-logarithm) for the three presets. With so few tests, those of the groups do not differ beyond chance at the
-front. At the side the pickups scatter more than the others.
+logarithm) for the three presets. With so few tests, the spreads of the three presets can not be told apart at
+the front. At the side the pickups scatter more than the others.
 
 At the front the spread is the one with which the 80 % bands are as wide as the tests scatter. The factors
 themselves scatter more. A soft front meets the engine, so that a displacement that is 20 % longer needs two
 thirds of the force. Displacement and peak follow from one factor, and the smaller of their spreads counts.
-What scatters more than the other has also what is no stiffness: another shape of the pulse, errors of
-measurement.
+The quantity that scatters more is also affected by the shape of the pulse and by errors of measurement, which
+a factor on stiffness can not represent.
 
 | quantity of the front | tests' own scatter, ln(high / low) | spread with which the bands are as wide |
 | --- | --- | --- |
 {spreads}
 
-At the side the spread is the standard deviation of the factors. {at_ends} of the {sides} tests lie beyond
-factors of 0.41 to 2.46, and count with these ends.
+At the side the spread is the standard deviation of the factors. {at_ends} of the {sides} tests would
+need factors outside 0.41 to 2.46; they were set to these limits.
 
 | quantity | preset | tests | median factor | standard deviation of these factors (ln) | spread in the file |
 | --- | --- | --- | --- | --- | --- |

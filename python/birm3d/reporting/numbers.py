@@ -8,7 +8,7 @@ _LEAST = 1e-6  # a smaller share is a rounding error
 
 
 def percent(share: float) -> str:
-    """Return a small share in percent, two digits of it; without powers of ten."""
+    """Return a small share in percent, with one to four decimals and never as a power of ten."""
     if abs(share) < _LEAST:
         return f"below {_LEAST:.4%}" if share else "0%"
     digits = 1 if abs(share) >= 0.01 else 2 if abs(share) >= 0.001 else 3 if abs(share) >= 1e-4 else 4

@@ -1,4 +1,4 @@
-"""What a study says of the verdict: the share of its runs that meets each, with its interval."""
+"""Shares of a study's runs with each outcome, each rating and each criterion met, with their intervals."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _GRID_NOTE = "The runs are a grid of chosen values. A share of them is no probab
 
 
 def study_answers(case: Case) -> Iterator[tuple[str, str]]:
-    """Yield what the runs of the study end in and are rated, each as question and answer."""
+    """Yield the outcomes and ratings of the study's runs, each as question and answer."""
     study = case.study
     if study is None:
         return
@@ -82,11 +82,11 @@ def _of_speed(study: Study) -> str:
     """Return why a class is no property of the barrier alone, where the speed differs."""
     if "impact_speed" not in study.parameters:
         return ""
-    return " A run is rated at the level of its own speed: a lower level may be a slower run."
+    return " Each run is rated at the level of its own speed, so a lower level may only mean a slower run."
 
 
 def share_of_runs(count: int, n: int) -> str:
-    """Return a share in percent with no more digits than n runs tell; 0 and 100 % are exact."""
+    """Return a share in percent, whole below 400 runs, finer where it would wrongly read 0 or 100 %."""
     share = count / n
     text = f"{share:.1%}" if n >= _FINE else f"{share:.0%}"
     return f"{share:.2%}" if float(text[:-1]) in (0.0, 100.0) and 0 < count < n else text
@@ -132,5 +132,5 @@ def _why_not(study: Study) -> str:
     if len(study) > MOST_RATED:
         return f"more than {MOST_RATED:,} runs are not rated"
     if study._scene is None or not study.parameters:
-        return "a study from a file or an ensemble does not know its scenes"
-    return "the standard knows none of them"
+        return "a study from a file or an ensemble holds no scenes to rate"
+    return "the standard can rate none of them"

@@ -17,13 +17,13 @@ class MassWarning(UserWarning):
 
     Usual is from half of the file's empty mass, without payload, to 2.5 times the file's mass. Beyond it the
     program still answers: a mass below the empty one makes the structure lighter, one above fills the load
-    space. Stiffness stays that of the file. Text with a unit is judged too, other than by
-    :class:`birm3d.UnitWarning`.
+    space. Stiffness stays that of the file. Unlike :class:`birm3d.UnitWarning`, it also checks
+    masses given as text with a unit.
     """
 
 
 class UsualMass(NamedTuple):
-    """Masses of a vehicle [kg] that are accepted without a word; name: of the vehicle."""
+    """Masses of a vehicle [kg] that cause no warning; name: of the vehicle."""
 
     name: str
     low: float
@@ -44,8 +44,9 @@ class UsualMass(NamedTuple):
             return
         warnings.warn(
             f"{argument} = {mass:,.6g} kg{where} is far outside what {self.name!r} can have: usual is "
-            f"{self.low:,.0f} to {self.high:,.0f} kg, half of its empty mass to 2.5 times its own. Stiffness "
-            "stays as it is: choose another preset, or make one with scaled_to() or Vehicle.from_facts()",
+            f"{self.low:,.0f} to {self.high:,.0f} kg, half of its empty mass to 2.5 times the mass in its "
+            "file. Stiffness stays as it is: choose another preset, or make one with scaled_to() or "
+            "Vehicle.from_facts()",
             MassWarning,
             stacklevel=caller_level(),
         )

@@ -62,10 +62,9 @@ class VehicleVariants(VehicleData):
         return rebuilt(self, recipe)
 
     def _mass_given(self, name: str, mass: Quantity) -> float:
-        """Return a mass [kg] > 0, with a word if it is far from that of the vehicle's file.
+        """Return a mass [kg] > 0, and warn if it is far from that of the vehicle's file.
 
-        Of another vehicle of the class (``mass``) the structure goes with the mass; then only a wrong unit is
-        told.
+        For ``mass``, which scales the structure too, only a likely wrong unit is warned of.
         """
         number = positive(name, si(name, mass, "mass"))
         usual = self._description.file_mass

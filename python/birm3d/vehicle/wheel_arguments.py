@@ -73,9 +73,10 @@ def wheel_loads(vehicle: VehicleFields, joint: tuple[Floats, float] | None = Non
 
 
 def _linear_loads(x: list[float], y: list[float], force: float, about_y: float, about_x: float) -> Floats:
-    """Return loads (w,), linear in x and y, with these sums of load, load times x and load times y.
+    """Return loads (w,) that vary linearly over the wheels and balance force and moments.
 
-    They stand on three columns that are orthogonal to each other (Gram and Schmidt). ``math.fsum`` rounds once. A
+    force: sum of the loads [N]; about_y, about_x: sums of load times x and load times y [N m]. A moment about
+    a single line of wheels is left out. The method is that of Gram and Schmidt. ``math.fsum`` rounds once: a
     linear solver gives other bits on other processors.
     """
     n = len(x)

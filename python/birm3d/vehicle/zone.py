@@ -92,15 +92,14 @@ class Zone(Mapping[str, Any]):
     f_max
         Stress of the plateau [N per m^2]; ``None`` beside a knee: without end.
     k_unloading
-        Slope of unloading and reloading [N/m per m^2], not below any slope of the envelope.
+        Slope of unloading and reloading [N/m per m^2], not below any slope of the envelope. With
+        ``elastic_recovery``: the least slope where the load turns.
     envelope
         Points (deflection [m], stress [N per m^2]) from (0, 0); constant after the last.
     elastic_recovery
-        Length R that the structure gives back [m], less in proportion to what has been crushed. From the
-        deflection d where the load turns, the stress falls with the fifth power of what is left of R, steeply
-        at first. R is elastic_recovery * (1 - d / length of the truss), at most d, and so short that the
-        steepest slope is at least ``k_unloading``. So restitution falls with speed. ``None``: the one slope
-        of Fig. 3.
+        Length r that an uncrushed structure gives back [m]. Crushed by d, it gives back R = r (1 - d / length
+        of the truss), at most d and 5 stress / ``k_unloading``. On the way the stress falls with the fifth
+        power of what is left of R. So restitution falls with speed. ``None``: the one slope of Fig. 3.
     tail_depth, tail_slope
         From this deflection on [m] the envelope is steeper by this [N/m per m^2], as what has been crushed is
         packed together. ``None``: no tail.

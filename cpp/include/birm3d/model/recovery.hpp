@@ -1,9 +1,9 @@
-// Numbers of the unloading curve of truss_law.hpp, for kernels too.
+// These are numbers of the unloading curve (truss_law.hpp). Kernels include this header, as it defines no symbols.
 #pragma once
 
 namespace birm3d {
 
-// n of a truss with a recovery, and of Fig. 3's line.
+// The degree n of the curve of a truss with a recovery, and of Fig. 3's line.
 inline constexpr double recovery_degree = 5.0, line_degree = 1.0;
 
 // A recovery above this length stands for none: the truss unloads along Fig. 3's line (m).

@@ -21,9 +21,9 @@
 // L is the length of the truss: what has been crushed does not spring back. The steepest slope is n F_p / R, where the load
 // turned. The energy given back is F_p R / (n + 1). Of a curve by itself L is infinite.
 //
-// n is measured. During the rebound of NHTSA test 10146 the wall's force does work of 17.6 mm times its greatest value. It
-// falls to a hundredth of that within 103 mm: n = 103 / 17.6 - 1 = 4.9. The same ratio of finite-element cars at walls is
-// 4 to 10. A straight line would have n = 1. An infinite r leaves Fig. 3.
+// Below d_r the force is zero. n comes from the rebound of NHTSA test 10146. The wall's force does work of 17.6 mm times its
+// greatest value, and is nearly gone (1 %) after 103 mm. If that is R, n is 103 / 17.6 - 1 = 4.9. The same ratio of
+// finite-element cars at walls is 4 to 10. A straight line would have n = 1. An infinite r leaves Fig. 3.
 #pragma once
 
 #include <limits>
@@ -57,7 +57,7 @@ TrussCurve point_curve(const std::vector<double>& deflection, const std::vector<
 // > 0 and a slope that is not finite and >= 0.
 TrussCurve with_tail(const TrussCurve& curve, double depth, double slope);
 
-// Steepest slope of unloading from a force, where the load turns.
+// Least value of the slope where the load turns: without the limits by deflection and by the length of the truss.
 double unloading_slope(const TrussCurve& curve, double force);
 
 // Refuses slopes that are not finite, forces below zero, and a recovery that is not > 0. Refuses an envelope that is

@@ -128,7 +128,7 @@ struct TrussMesh {
     std::size_t shell_blocks = 0;
     std::size_t hinges = 0;  // slope changes of the longest envelope
     bool recovers =
-        false;  // does any curve have a finite recovery? Then unloading slopes are part of the state.
+        false;  // does any curve have a finite recovery? Then coefficients of unloading are part of the state.
 
     static constexpr std::size_t group_size = 8;  // blocks of a group, but for the last
     std::size_t end_of_group(std::size_t g) const { return std::min((g + 1) * group_size, blocks); }

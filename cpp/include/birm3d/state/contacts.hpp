@@ -15,7 +15,7 @@ struct SkinForces {
     double normal_force = 0.0;  // sum over nodes of the force along each surface normal (N)
     double work = 0.0;          // done on the trusses since the last instant, trapezoid rule (J)
     double stored = 0.0;        // elastic energy that unloading would return (J), blocks seen only
-    double stiffness = 0.0;     // sum of k_unloading of pushing nodes times inverse effective mass (1/s^2)
+    double stiffness = 0.0;  // sum of unloading slopes of pushing nodes times inverse effective mass (1/s^2)
     // Derivative of friction with respect to the unit's motion, at the motion for which friction was found
     // (kernels/friction.hpp).
     Mat6 resistance = Mat6::Zero();
