@@ -221,6 +221,7 @@ def moments_about_origin(vehicle: Vehicle) -> np.ndarray:
     return np.concatenate([[m], m * c, inertia.ravel()])
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.MassWarning")  # half as much again is much for a heavy truck
 @pytest.mark.parametrize("name", Vehicle.presets())
 def test_gvw_is_met_exactly(name: str) -> None:
     vehicle = Vehicle.preset(name, mesh_density=0.1)

@@ -235,9 +235,10 @@ def _warn_of_masses(simulation: Simulation, names: tuple[str, ...], rows: Sequen
     if "vehicle.gvw" not in names or "vehicle" in names or usual is None:
         return
     column = names.index("vehicle.gvw")
-    odd = [float(row[column]) for row in rows if not usual.holds(float(row[column]))]
+    masses = [float(row[column]) for row in rows]
+    odd = [mass for mass in masses if mass > 0.0 and not usual.holds(mass)]  # others are refused
     if odd:
-        worst = max(odd, key=lambda mass: max(usual.low / mass, mass / usual.high) if mass > 0.0 else 0.0)
+        worst = max(odd, key=lambda mass: max(usual.low / mass, mass / usual.high))
         usual.warn("vehicle.gvw", worst, f" (the worst of {len(odd)} of {len(rows)} runs)")
 
 

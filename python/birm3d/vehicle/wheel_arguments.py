@@ -65,8 +65,9 @@ def wheel_loads(vehicle: VehicleFields, joint: tuple[Floats, float] | None = Non
     """
     weight = units.g(vehicle.mass)
     place, pressed = (np.zeros(3), 0.0) if joint is None else joint
-    forces = weight + pressed, float(pressed * place[0]), float(pressed * place[1])
-    loads = _linear_loads(*vehicle.wheels[:, :2].T.tolist(), *forces)
+    about_y, about_x = float(pressed * place[0]), float(pressed * place[1])
+    x, y = vehicle.wheels[:, 0].tolist(), vehicle.wheels[:, 1].tolist()
+    loads = _linear_loads(x, y, weight + pressed, about_y, about_x)
     if not (loads > 0.0).all():  # a trailer without its tractor does not stand on its wheels
         return np.full(len(vehicle.wheels), (weight + pressed) / len(vehicle.wheels))
     return np.asarray(loads, float)
