@@ -17,11 +17,14 @@
 //
 // Fig. 3 has one slope k = k_unloading. Metal structures spring back by a nearly constant length r instead,
 // `recovery`, so that restitution falls with speed. The force falls steeply at first and fades out slowly:
-//   F = F_p ((d - d_r) / R)^n,  d_r = d_p - R,  n = 5,  R = min(r (1 - d_p / L), d_p, n F_p / k_unloading)
-// L is the length of the truss: what has been crushed does not spring back. The steepest slope is n F_p / R, where the load
-// turned. The energy given back is F_p R / (n + 1). Of a curve by itself L is infinite.
 //
-// Below d_r the force is zero. n comes from the rebound of NHTSA test 10146. The wall's force does work of 17.6 mm times its
+//   F = F_p ((d - d_r) / R)^n,  d_r = d_p - R,  n = 5
+//   R = min(r (1 - d_p / L), d_p, n F_p / k_unloading)
+//
+// Below d_r the force is zero. L is the length of the truss, infinite for a curve by itself. What has been crushed does not
+// spring back. The steepest slope is n F_p / R, where the load turned. The energy given back is F_p R / (n + 1).
+//
+// The degree n comes from the rebound of NHTSA test 10146. The wall's force does work of 17.6 mm times its
 // greatest value, and is nearly gone (1 %) after 103 mm. If that is R, n is 103 / 17.6 - 1 = 4.9. The same ratio of
 // finite-element cars at walls is 4 to 10. A straight line would have n = 1. An infinite r leaves Fig. 3.
 #pragma once
