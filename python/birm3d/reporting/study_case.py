@@ -22,14 +22,14 @@ from ..study.predict import Prediction
 from .class_bands import ClassBands, class_bands
 from .given_tests import Compared, nearest
 
-__all__ = ["MOST_RATED", "Asked", "Case", "case_of", "is_oblique"]
+__all__ = ["Asked", "Case", "case_of", "is_oblique", "why_not_rated"]
 
 SECURITY = ("ASTM F2656", "ISO 22343-1", "IWA 14-1", "PAS 68", "SD-STD-02.01")
 ROADSIDE = ("MASH", "EN 1317")
 _FRAMES = 60  # instants that the replay shows
 _FINER = 1e-2  # tolerance of the run that errors are measured with, over that of the run itself
 _LEAST_TOLERANCE = 1e-8
-MOST_RATED = 2000  # longer studies are not rated, because each of their runs is run once more for it
+_MOST_RATED = 2000  # longer studies are not rated, because each of their runs is run once more for it
 
 
 @dataclass(frozen=True)
@@ -161,8 +161,17 @@ def _rated(result: Result, asked: Asked) -> tuple[tuple[Rating, ...], dict[str, 
     return tuple(ratings), reasons
 
 
+def why_not_rated(study: Study) -> str:
+    """Return why no run of a study is rated, before a standard is asked; empty where runs are rated."""
+    if len(study) > _MOST_RATED:
+        return f"more than {_MOST_RATED:,} runs are not rated"
+    if study._scene is None or not study.parameters:
+        return "a study from a file or an ensemble holds no scenes to rate"
+    return ""
+
+
 def _rated_study(study: Study, standard: str, asked: Asked) -> RatingStudy | None:
-    if len(study) > MOST_RATED or not study.parameters or study._scene is None:
+    if why_not_rated(study):
         return None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the study has warned of its runs already

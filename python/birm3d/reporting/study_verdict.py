@@ -9,7 +9,7 @@ from ..assessment import RatingStudy
 from ..base.intervals import wilson
 from ..study import Study
 from .blocks import Table
-from .study_case import MOST_RATED, Case
+from .study_case import Case, why_not_rated
 
 __all__ = ["cells_of_share", "share_of_runs", "study_answers", "study_note", "study_table"]
 
@@ -38,7 +38,7 @@ def study_answers(case: Case) -> Iterator[tuple[str, str]]:
             f"{_shares(study, Counter(rated.designation))}{_without(study, rated)}",
         )
     elif case.ratings:
-        yield "Rating of these runs", f"none: {_why_not(study)}"
+        yield "Rating of these runs", f"none: {why_not_rated(study) or 'the standard can rate none of them'}"
 
 
 def study_table(case: Case) -> Table | None:
@@ -126,11 +126,3 @@ def _short(reason: str) -> str:
     if reason.startswith("vehicle must be one that"):
         return "the standard has no vehicle of that mass"
     return reason.partition("; got ")[0]
-
-
-def _why_not(study: Study) -> str:
-    if len(study) > MOST_RATED:
-        return f"more than {MOST_RATED:,} runs are not rated"
-    if study._scene is None or not study.parameters:
-        return "a study from a file or an ensemble holds no scenes to rate"
-    return "the standard can rate none of them"
