@@ -16,13 +16,16 @@
 // Below the peak deflection d_p (force F_p) the truss moves on  F = max(0, F_p - k (d_p - d)).
 //
 // Fig. 3 has one slope k = k_unloading. Metal structures spring back by a nearly constant length r instead,
-// `recovery`, so that restitution falls with speed. The force falls steeply at first and fades out slowly:
+// `recovery`, so that restitution falls with speed. The force then falls along a curve of degree n = 5.
 //
-//   F = F_p ((d - d_r) / R)^n,  d_r = d_p - R,  n = 5
+//   F = F_p ((d - d_r) / R)^n
+//
+// It is zero below the residual deflection d_r = d_p - R. The structure springs back by the length R.
+//
 //   R = min(r (1 - d_p / L), d_p, n F_p / k_unloading)
 //
-// Below d_r the force is zero. L is the length of the truss, infinite for a curve by itself. What has been crushed does not
-// spring back. The steepest slope is n F_p / R, where the load turned. The energy given back is F_p R / (n + 1).
+// L is the length of the truss, infinite for a curve by itself. What has been crushed does not spring back.
+// The slope is steepest where the load turned, n F_p / R. The energy given back is F_p R / (n + 1).
 //
 // The degree n comes from the rebound of NHTSA test 10146. The wall's force does work of 17.6 mm times its
 // greatest value, and is nearly gone (1 %) after 103 mm. If that is R, n is 103 / 17.6 - 1 = 4.9. The same ratio of
