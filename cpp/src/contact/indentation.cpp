@@ -19,9 +19,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Did the post stand in front of the panel at the start of the step?
 bool stood_before(const ContactPass& pass, std::size_t k, std::size_t p) {
     const Panel& panel = pass.mesh.panel[p];
-    const Indentation then(std::get<Post>(pass.shape(k)), pass.near[k].before, panel,
-                           pass.mesh.indentation_length);
-    return then.beside(panel) < 0.0 && gap_of_panel(then, p, pass.mesh, pass.before, 0.0, 0.0) > 0.0;
+    const Indentation then = indentation_by(std::get<Post>(pass.shape(k)), pass.near[k].before, panel,
+                                            pass.mesh, pass.scene.settings);
+    return then.beside() < 0.0 && gap_of_panel(then, p, pass.mesh, pass.before, 0.0, 0.0) > 0.0;
 }
 
 // Does any node of the unit push on the obstacle?
@@ -49,8 +49,9 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
         const auto bit = static_cast<std::uint8_t>(1U << p);
         const bool indents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
         if (!panel.any || !can_indent(post, near.now, panel, indents)) continue;
-        const Indentation indentation(post, near.now, panel, mesh.indentation_length);
-        if (!indents && !(indentation.beside(panel) < 0.0)) continue;
+        const Indentation indentation =
+            indentation_by(post, near.now, panel, mesh, pass.scene.settings);
+        if (!indents && !(indentation.beside() < 0.0)) continue;
         if (!indents && indentation.is_beyond(panel)) {
             now.passed |= bit;
             continue;
@@ -63,8 +64,8 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
         if (gap > 0.0) continue;
         if (indents || (!passed && (gap > -deepest || stood_before(pass, k, p)))) {
             now.panels |= bit;
-            list.push_back(
-                {k, p, indentation, Indentation(post, near.before, panel, mesh.indentation_length), growth});
+            list.push_back({k, p, indentation,
+                            indentation_by(post, near.before, panel, mesh, pass.scene.settings), growth});
         } else {
             now.passed |= bit;
         }

@@ -24,7 +24,27 @@ double core_margin(const TrussMesh& mesh, const Twist& motion, double dt) {
                              motion.velocity.norm() + motion.angular_velocity.norm() * mesh.reach, dt);
 }
 
-void find_core_contacts(const TrussMesh& mesh, std::size_t body, const BodyState& state,
+namespace {
+
+// A truss is closed if no more than this share of its depth is left, and what a step may close. Depths count along the panel's
+// axis: posts and walls push nodes along it, or along their trusses.
+constexpr double open_share = 0.1;
+
+// An anchor that lies deeper than this in an obstacle was passed while other trusses gave way (m).
+constexpr double passed_depth = 1e-3;
+
+bool is_closed(const TrussMesh& mesh, const TrussState& trusses, std::size_t b, std::size_t i, double reach) {
+    const TrussBlock& truss = mesh.block[b];
+    const TrussBlockState& now = trusses.block[b];
+    const Vec3& inward = mesh.panel[static_cast<std::size_t>(truss.panel[i])].inward;
+    const Vec3 anchor = anchor_of(truss, i), node(now.x[i], now.y[i], now.z[i]),
+               uncrushed(truss.node_x[i], truss.node_y[i], truss.node_z[i]);
+    return inward.dot(anchor - node) <= open_share * inward.dot(anchor - uncrushed) + reach;
+}
+
+}  // namespace
+
+void find_core_contacts(const TrussMesh& mesh, std::size_t body, const UnitState& state,
                         std::span<const PlacedShape> shapes, const Twist& motion, double dt,
                         std::vector<RigidContact>& contacts) {
     const auto relative = [&motion](const PlacedShape& shape) {
@@ -64,14 +84,18 @@ void find_core_contacts(const TrussMesh& mesh, std::size_t body, const BodyState
             const double gap = nearest.gap[i];
             const Twist there = relative(*at[i]);
             const double approach = -normal.dot(there.velocity + there.angular_velocity.cross(anchor));
-            if (gap >= reach_within_step(mesh, there, std::max(0.0, approach), dt)) continue;
+            const double reach = reach_within_step(mesh, there, std::max(0.0, approach), dt);
+            if (gap >= reach) continue;
+            if ((at[i]->pushes || gap < -passed_depth) &&
+                !is_closed(mesh, state.trusses, b, i, reach))
+                continue;
             RigidContact contact;
             contact.source = ContactSource::core;
             contact.index = truss;
             contact.obstacle = at[i]->obstacle;
             contact.body = body;
-            contact.arm = state.orientation * anchor;
-            contact.normal = state.orientation * normal;
+            contact.arm = state.body.orientation * anchor;
+            contact.normal = state.body.orientation * normal;
             contact.gap = gap;
             contact.compliance = tolerance::body_compliance;
             contact.friction = at[i]->friction;

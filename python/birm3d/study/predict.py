@@ -22,7 +22,7 @@ from ..vehicle.class_scatter import QUANTITIES, joined
 from .runner import run_study
 from .table import Study
 
-__all__ = ["SHARE", "Prediction", "check_draws", "drawn_parameters", "predict", "quantiles"]
+__all__ = ["SHARE", "Prediction", "check_draws", "drawn_parameters", "parameter_of", "predict", "quantiles"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -57,6 +57,7 @@ _PARAMETERS = {
     "mass_center_height": "vehicle.mass_center_height",
     "barrier_friction": "barrier.friction",
     "tire_friction": "settings.mu_tire",
+    "edge_flank": "settings.edge_flank_factor",
 }
 
 
@@ -256,6 +257,11 @@ def draws(power: int) -> Mapping[str, Floats]:
     return dict(zip(QUANTITIES, ndtri(points).T, strict=True))
 
 
+def parameter_of(quantity: str) -> str:
+    """Return the scene's parameter that stands for a quantity of :data:`QUANTITIES`."""
+    return _PARAMETERS.get(quantity, f"scatter.{quantity}")
+
+
 def drawn_parameters(simulation: Simulation, power: int) -> dict[str, Floats]:
     """Return the 2**power values of each parameter of the scene that is drawn.
 
@@ -274,11 +280,17 @@ def drawn_parameters(simulation: Simulation, power: int) -> dict[str, Floats]:
     normal, known = draws(power), parameter_names(simulation)
     columns = {}
     for name, one in scatter.items():
-        parameter = _PARAMETERS.get(name, f"scatter.{name}")
+        parameter = parameter_of(name)
         if parameter not in known:
             continue  # no barrier, or no trusses of such a zone
+        if name == "edge_flank" and not _has_rounded_edges(simulation):
+            continue
         present = value_of(simulation, parameter)
         if present > 0.0:
             factor = one.median * np.exp(one.log_sd * normal[name])
             columns[parameter] = present * factor
     return columns
+
+
+def _has_rounded_edges(simulation: Simulation) -> bool:
+    return getattr(simulation.scene.barrier, "edge_radius", 0.0) > 0.0

@@ -9,12 +9,15 @@ using namespace birm3d;
 
 namespace {
 
-const TrussMesh mesh(laboratory::front_face(laboratory::w2_curve(), 13, 10));  // anchors at 1 m
+const auto vehicle = laboratory::block(laboratory::w2_curve(), 13, 10);
+const Unit& unit = vehicle->units[0];
+const TrussMesh& mesh = unit.trusses;                           // anchors at 1 m
 const Shape face = HalfSpace{{-1.0, 0.0, 0.0}, -1.05};  // body axes: the anchors stand 50 mm before it
 
-std::vector<RigidContact> found(const Twist& motion, double dt, const BodyState& state = {}) {
+std::vector<RigidContact> found(const Twist& motion, double dt, const UnitState& state = UnitState(unit),
+                                bool pushes = false) {
     std::vector<RigidContact> contacts;
-    const PlacedShape shapes[] = {{&face, {}, 0, 0.0}};
+    const PlacedShape shapes[] = {{&face, {}, 0, 0.0, {}, pushes}};
     find_core_contacts(mesh, 3, state, shapes, motion, dt, contacts);
     return contacts;
 }
@@ -39,8 +42,8 @@ TEST("a turn brings those of one side only") {
 }
 
 TEST("contacts are given in world axes") {
-    BodyState state;
-    state.orientation = from_roll_pitch_yaw({0.1, -0.2, 0.7});
+    UnitState state(unit);
+    state.body.orientation = from_roll_pitch_yaw({0.1, -0.2, 0.7});
     const std::vector<RigidContact> contacts = found({Vec3(10.0, 0.0, 0.0), Vec3::Zero()}, 0.01, state);
     CHECK(contacts.size() == mesh.count);
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -49,7 +52,18 @@ TEST("contacts are given in world axes") {
         CHECK(c.index == i);
         CHECK(c.body == 3);
         CHECK_CLOSE(c.gap, 0.05, 1e-15, "rounding");
-        CHECK_CLOSE((c.arm - state.orientation * mesh.anchor(i)).norm(), 0.0, 0.0, "exact");
-        CHECK_CLOSE((c.normal + state.orientation * Vec3::UnitX()).norm(), 0.0, 1e-15, "rounding");
+        CHECK_CLOSE((c.arm - state.body.orientation * mesh.anchor(i)).norm(), 0.0, 0.0, "exact");
+        CHECK_CLOSE((c.normal + state.body.orientation * Vec3::UnitX()).norm(), 0.0, 1e-15, "rounding");
     }
+}
+
+TEST("while the obstacle pushes on nodes, anchors count whose own trusses are closed") {
+    const Twist ahead{Vec3(10.0, 0.0, 0.0), Vec3::Zero()};
+    UnitState state(unit);
+    CHECK(found(ahead, 0.01, state, true).empty());
+    state.trusses.block[0].x[0] = 1.05;  // on the face
+    state.trusses.block[0].x[1] = 2.0;
+    const std::vector<RigidContact> contacts = found(ahead, 0.01, state, true);
+    CHECK(contacts.size() == 1);
+    CHECK(contacts[0].index == mesh.first[0]);
 }

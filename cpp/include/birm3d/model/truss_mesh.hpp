@@ -78,7 +78,14 @@ struct Panel {
     Box box;      // around its uncrushed nodes
     Box anchors;  // and where they are anchored
     bool any;     // has it any?
+    std::vector<Box> outlines = {};  // each around the nodes up to one outline_step further in than the last
 };
+inline constexpr double outline_step = 0.1;  // m
+
+// Box around the nodes of a panel that are no deeper than `depth` behind its outermost one; between the outlines linear in
+// `depth`. A bumper is narrower than the body behind it.
+Box outline_at(const Panel& panel, double depth);
+
 inline constexpr std::size_t panels = 6;
 
 struct alignas(64) TrussBlock {
