@@ -39,7 +39,7 @@ def test_curves_are_those_of_the_runs(runs: list[Result]) -> None:
 
 def test_title_has_what_is_common_and_legend_what_differs(runs: list[Result], car: Vehicle) -> None:
     figure = birm3d.plot_runs(runs)
-    assert figure.get_suptitle().startswith(f"passenger_car, {car.mass:,.0f} kg, 90°\nrigid wall")
+    assert figure.get_suptitle().startswith(f"Passenger car, {car.mass:,.0f} kg, 90°\nrigid wall")
     assert "m/s" not in figure.get_suptitle()
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert [label.split()[0] for label in labels] == ["8.00", "12.00"]
@@ -85,7 +85,7 @@ def test_bands_last_as_long_as_the_longest_run(drawn: Study) -> None:
     assert set(bands.median) == {"deceleration", "travel"}
     assert np.isfinite(bands.high["deceleration"]).all()
     figure = bands.plot()
-    assert "passenger_car: rigid wall without end" in figure.get_suptitle()
+    assert "Passenger car: rigid wall without end" in figure.get_suptitle()
     assert figure.axes[1].get_ylabel() == "travel [m]"
     assert "travel_high" in bands.to_dataframe().columns
     assert "<img" in bands._repr_html_()

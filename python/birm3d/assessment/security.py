@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .. import units
+from ..result.event import outcome_words
 from .criteria import Criterion
 from .measures import barrier_extent, check_side_on, heading_rows, penetration_history
 from .rating import MODEL_CAUTION, Rating, first_reached
@@ -144,7 +145,7 @@ def rate_security(
         f"{vehicle.mass:,.0f} +-{vehicle.tolerance:g} kg",
         vehicle.weighs(result.scene.vehicle),
     )
-    became = Criterion("outcome", result.outcome, "", "", None, result.outcome_detail)
+    became = Criterion("outcome", outcome_words(result.outcome), "", "", None, result.outcome_detail)
     rate = {"levels": _astm, "K": _dos, "code": _code}[standard.style]
     designation, contained, rows = rate(result, standard, vehicle, found)
     rows = (*rows[:-1], *heading_rows(result, _HEAD_ON), rows[-1])

@@ -13,6 +13,7 @@ from ..barrier.text import barrier_text
 from ..result.history_channels import HISTORY_CHANNELS, checked_channels
 from ..scene.scene import Scene
 from ..scene.text import overlap_text
+from ..vehicle.title import vehicle_text
 from .figure import new_figure
 from .style import BLUE, CYCLE, LEAST_ANGLE, SOLID, at_least, legend, prepare
 
@@ -27,7 +28,7 @@ _THIN = 40  # at most so many runs are drawn as thin lines behind a band
 
 # Inputs that distinguish scenes, in the order of titles.
 _PARTS: Mapping[str, Callable[[Scene], str]] = {
-    "vehicle": lambda scene: f"{scene.vehicle.name}, {scene.vehicle.mass:,.0f} kg",
+    "vehicle": lambda scene: vehicle_text(scene.vehicle),
     "speed": lambda scene: f"{scene.impact_speed:.2f} m/s ({scene.impact_speed / units.mph:.1f} mph)",
     "angle": lambda scene: f"{scene.impact_angle:g}°{overlap_text(scene)}",
     "offset": lambda scene: f"offset {scene.impact_offset:g} m" if scene.impact_offset else "no offset",

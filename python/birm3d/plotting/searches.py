@@ -9,10 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..base.shown_numbers import shown_unit
 from ..result.metrics import METRIC_UNITS
 from .figure import new_figure
 from .studies import axis_label
-from .style import BLUE, CYCLE, DASHED, GREEN, RED, legend, prepare, shown_unit
+from .style import BLUE, CYCLE, DASHED, GREEN, RED, legend, prepare
 
 if TYPE_CHECKING:
     from ..study.limit_search import Limit

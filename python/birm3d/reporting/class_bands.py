@@ -23,6 +23,7 @@ from ..study.predict_and_look import predict_and_look
 from ..study.whole_runs import look_at_study
 from ..vehicle.class_scatter import joined
 from .blocks import Block, Caution, Table, Text
+from .shares import outcome_table
 
 __all__ = ["ClassBands", "band_of", "class_bands", "class_blocks", "headline_table"]
 
@@ -93,7 +94,7 @@ def class_bands(
         warnings.simplefilter("ignore")  # of vehicles that are not this one; the caution counts them
         if prediction is None:
             if not any(unit.scatter for unit in result.scene.vehicle.units):
-                return f"the file of {result.scene.vehicle.name!r} does not say how its class scatters"
+                return "the vehicle's file does not say how its class scatters"
             simulation = Simulation.from_scene(result.scene)
             prediction, found, failed = predict_and_look(simulation, draws, look)
         else:
@@ -180,6 +181,7 @@ def class_blocks(result: Result, bands: ClassBands | str) -> Iterator[Block]:
         cells,
         numbers=True,
     )
+    yield outcome_table(predicted.study, "Outcomes of the vehicles of its class")
     yield Caution(predicted.caution)
 
 

@@ -11,6 +11,7 @@ from ..assessment import DesignLoad, ElementDesign, OccupantRisk, Rating
 from ..assessment.criteria import Criterion
 from ..assessment.rating import MODEL_CAUTION
 from ..result.element_loads import touched_elements
+from ..result.event import outcome_words
 from ..result.summary import shown_as
 from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import band_of, headline_table
@@ -78,7 +79,7 @@ def _with_bands(table: Table, bands: Sequence[tuple[str, str, str, str, str]]) -
 
 def _glance(case: Case) -> Iterator[tuple[str, str]]:
     result = case.result
-    yield "What happens to the vehicle?", f"{result.outcome}: {result.outcome_detail}"
+    yield "What happens to the vehicle?", f"{outcome_words(result.outcome)}: {result.outcome_detail}"
     for rating in case.ratings:
         contained = "contained" if rating.contained else "NOT contained"
         yield (

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from .. import units
 from ..barrier.text import barrier_text
+from ..vehicle.title import vehicle_text
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -16,7 +17,7 @@ __all__ = ["overlap_text", "scene_text"]
 def scene_text(scene: Scene, separator: str = ": ") -> str:
     """Return vehicle, mass, speed and angle, and after the separator kind, count and sizes of the barrier."""
     speed = f"{scene.impact_speed:.2f} m/s ({scene.impact_speed / units.mph:.1f} mph)"
-    head = f"{scene.vehicle.name}, {scene.vehicle.mass:,.0f} kg, {speed}"
+    head = f"{vehicle_text(scene.vehicle)}, {speed}"
     if scene.barrier is None:
         return f"{head}, no barrier"
     return f"{head} at {scene.impact_angle:g}°{overlap_text(scene)}{separator}{barrier_text(scene.barrier)}"

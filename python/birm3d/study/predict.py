@@ -14,11 +14,13 @@ from .. import pictures
 from ..base.arguments import checked
 from ..base.checks import shown
 from ..base.frozen_mapping import FrozenMapping
+from ..result.event import outcome_words
 from ..result.metric_table import METRICS
 from ..result.summary import shown_as
 from ..simulation.parameters import parameter_names, value_of
 from ..simulation.simulation import Simulation
 from ..vehicle.class_scatter import QUANTITIES, joined
+from .counted import counted, is_count
 from .runner import run_study
 from .table import Study
 
@@ -97,8 +99,8 @@ class Prediction:
 
     def summary(self) -> str:
         """Return all bands as text."""
-        rows = [f"{self.study.vehicle}: {self.share:.0%} bands of {len(self.study)} vehicles of the class"]
-        rows += [f"  {share:4.0%} {outcome}" for outcome, share in self.outcomes.items()]
+        rows = [self._title]
+        rows += [f"  {share:4.0%} {words}" for words, share in self._shares()]
         rows.append(f"  {'metric':<28}{'low':>13}{'median':>13}{'high':>13}")
         for name, *numbers in self._answers():
             _, size, unit = shown_as(name)
@@ -108,10 +110,20 @@ class Prediction:
         rows.append(f"  Caution: {self.caution}")
         return "\n".join(rows)
 
+    @property
+    def _title(self) -> str:
+        return f"{self.study.title}; {self.share:.0%} bands of {len(self.study)} vehicles of the class"
+
+    def _shares(self) -> Iterator[tuple[str, float]]:
+        """Yield each outcome, and each event that is counted, with the share of the draws that have it."""
+        yield from ((outcome_words(word), share) for word, share in self.outcomes.items())
+        for one in counted(self.study):
+            yield f"with {one.words}", one.runs / one.n
+
     def _answers(self) -> Iterator[tuple[str, float, float, float]]:
         """Yield the metrics that say what happens, with their bands; rounding errors are 0."""
         for name in self.median:
-            if METRICS[name].error not in _NO_ANSWERS:
+            if METRICS[name].error not in _NO_ANSWERS and not is_count(name):
                 low, middle, high = (
                     0.0 if abs(band[name]) < _ROUNDING else band[name]
                     for band in (self.low, self.median, self.high)
@@ -158,13 +170,12 @@ class Prediction:
     def _repr_html_(self) -> str:
         """Return what notebooks show: shares of outcomes, bands in the units of other tables, caution."""
         rows: list[tuple[str, ...]] = []
-        rows += [(outcome, "", f"{share:.0%}", "", "") for outcome, share in self.outcomes.items()]
+        rows += [(words, "", f"{share:.0%}", "", "") for words, share in self._shares()]
         for name, *numbers in self._answers():
             label, size, unit = shown_as(name)
             rows.append((label, *(_shown(number / size) for number in numbers), unit))
-        title = f"{self.study.vehicle}: {self.share:.0%} bands of {len(self.study)} vehicles of the class"
         table = pictures.table_html(("metric", "low", "median", "high", "unit"), rows)
-        return f"<div><b>{escape(title)}</b>{table}<div>Caution: {escape(self.caution)}</div></div>"
+        return f"<div><b>{escape(self._title)}</b>{table}<div>Caution: {escape(self.caution)}</div></div>"
 
     def __repr__(self) -> str:
         return f"Prediction({len(self.study)} runs, {self.share:.0%} bands, {dict(self.outcomes)})"

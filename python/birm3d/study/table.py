@@ -20,6 +20,7 @@ from ..base.arguments import checked
 from ..base.frozen_mapping import FrozenMapping
 from ..result.event import OUTCOMES
 from ..simulation.parameters import unit_of
+from ..vehicle.title import title_of_name
 from .float_rows import FloatRows
 
 if TYPE_CHECKING:
@@ -197,7 +198,8 @@ class Study:
     @property
     def title(self) -> str:
         """Vehicle and barrier: what figures and tables of the study are headed with."""
-        return f"{self.vehicle}: {self.barrier}" if self.barrier else self.vehicle
+        name = title_of_name(self.vehicle) if self._scene is None else self._scene.vehicle.title
+        return f"{name}: {self.barrier}" if self.barrier else name
 
     @property
     def outcomes(self) -> Mapping[str, int]:

@@ -13,6 +13,7 @@ from .. import pictures
 from ..barrier.kinds import Bollards
 from ..base.arguments import checked
 from ..base.checks import whole_number
+from ..result.event import outcome_words
 from ..result.metrics import METRIC_UNITS
 from ..simulation.parameters import varied
 from ..simulation.simulation import Simulation
@@ -135,7 +136,7 @@ class WorstOffset:
         for row in self.rows:
             runs = len(row.search.grid) + len(row.search.refinement)
             place = (f"{row.spacing:.4g}", f"{row.offset:.3f}", f"{row.share:.2f}")
-            cells.append((*place, f"{row.value:.5g}", row.outcome, str(runs)))
+            cells.append((*place, f"{row.value:.5g}", outcome_words(row.outcome), str(runs)))
         widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
         lines = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in cells]
         coarsest = max(self.resolution)
