@@ -2,8 +2,8 @@
 
 Masses and penetration classes of ASTM F2656, K and L levels and code strings are from public summaries of the
 standards and makers' certificates. IWA 14-1 measures from the front of the barrier, PAS 68 from its back
-(Heald, "What is IWA 14?"). Speed windows, tolerances of masses and reference points of the vehicles are from
-memory.
+(Heald, "What is IWA 14?"). Speed windows, tolerances of masses and reference points of the vehicles are
+as commonly reported: the standards are not at hand.
 """
 
 from __future__ import annotations
