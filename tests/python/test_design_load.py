@@ -304,6 +304,8 @@ def test_what_is_written(envelope: DesignLoad, tmp_path: Path) -> None:
     figure = envelope.plot()
     assert len(figure.axes) == 5
     assert "bollard" in figure.axes[1].get_title()
+    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert ("80 % of the class" in labels) == any(row.band for row in envelope)
 
 
 def test_cautions_are_said_where_they_matter() -> None:

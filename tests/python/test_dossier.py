@@ -24,7 +24,7 @@ from birm3d.reporting.given_tests import Facts, _facts, errors, given_tests, nea
 from birm3d.reporting.numbers import percent
 from birm3d.reporting.page import _mark
 from birm3d.reporting.shares import share_of_runs
-from birm3d.reporting.uncertainty import _bands
+from birm3d.reporting.uncertainty import _bands, _input_words
 from birm3d.result.skin import skins_at
 from birm3d.result.summary import element_rows, headline_rows
 from scipy import stats
@@ -253,6 +253,26 @@ def test_vehicle_has_its_sources_and_bands(page: Page, result: Result) -> None:
 def test_titles_have_the_vehicle_in_words(page: Page, folder: Path) -> None:
     assert "cargo_truck" not in " ".join([*page.texts["caption"], *page.texts["h1"], *page.texts["p"]])
     assert dict(page.table("Scene"))["vehicle"] == "Cargo truck, 6,803.9 kg"
+
+
+def test_a_run_that_nobody_rates_says_so_at_a_glance(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("birm3d.reporting.build.find_spec", lambda name: None)
+    car = Vehicle.preset("passenger_car", mesh_density=0.1)
+    page = Page(birm3d.dossier(Simulation(car, Barrier.bollards(), 8.0).run(), tmp_path / "a", draws=0))
+    glance = dict(page.table("At a glance"))
+    assert glance["Rating, indicative"] == (
+        "none: car of 1,814 kg is no test vehicle of ASTM F2656, ISO 22343-1, IWA 14-1, PAS 68, SD-STD-02.01"
+    )
+    why = dict(page.table("Standards that do not rate"))
+    assert why["SD-STD-02.01"] == "it knows no car of 1,814 kg, but 15,000-lb truck (truck, 6,804 ±140 kg)"
+    told = glance["How well does the model do in given tests nearby?"]
+    assert told.endswith("none of these tests has both this kind of vehicle and this kind of barrier")
+
+
+def test_inputs_of_a_study_are_words() -> None:
+    assert _input_words("barrier.friction") == "barrier: friction"
+    assert _input_words("zone.front.k_initial") == "zone front: k initial"
+    assert _input_words("impact_speed") == "impact speed"
 
 
 def test_each_zone_has_a_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -541,6 +561,8 @@ def test_bands_of_criteria_have_the_digits_of_their_medians() -> None:
 
 
 def test_occupants_of_a_heavy_truck_are_not_judged_as_those_of_a_car(page: Page) -> None:
+    told = "MASH and EN 1317 do not judge this for so heavy a vehicle: limits are those for cars and pickups."
+    assert told in page.texts["p"]
     answer = dict(page.table("At a glance"))["Would occupants be at risk?"]
     assert answer.startswith("MASH does not judge this for so heavy a vehicle; its limits for cars and")
     assert answer.endswith("of 16 vehicles of the class meet all of them")

@@ -96,10 +96,10 @@ def _study_blocks(case: Case, study: Study) -> Iterator[Block]:
         size, unit = shown_unit(study.units.get(name, ""))
         if values.dtype.kind == "f":
             low, high = float(np.min(values)) / size, float(np.max(values)) / size
-            rows.append((name.replace("_", " "), f"{low:.5g} to {high:.5g}", unit))
+            rows.append((_input_words(name), f"{low:.5g} to {high:.5g}", unit))
         else:
             kinds = ", ".join(dict.fromkeys(str(value) for value in values.tolist()))
-            rows.append((name.replace("_", " "), kinds, unit))
+            rows.append((_input_words(name), kinds, unit))
     yield Table("Inputs of the study", ("input", "range", "unit"), rows)
     yield outcome_table(study, "Outcomes of the study")
     yield _percentiles(case, study)
@@ -119,6 +119,12 @@ def _study_blocks(case: Case, study: Study) -> Iterator[Block]:
             note=f"{n:,} of {len(study):,} runs were rated. {study_note(study)}",
             numbers=True,
         )
+
+
+def _input_words(name: str) -> str:
+    """Return a parameter in words: ``barrier.friction`` is the friction of the barrier."""
+    group, _, number = name.replace("_", " ").rpartition(".")
+    return f"{group.replace('.', ' ')}: {number}" if group else number
 
 
 def _bands(study: Study) -> Iterator[Block]:

@@ -25,6 +25,7 @@ __all__ = ["criteria_table", "risk_section", "verdict_section"]
 
 _ALL_ALIKE = 4  # vehicle, barrier, speed, angle
 _HEAVY = 3500.0  # kg; from here on MASH and EN 1317 do not judge what occupants undergo
+_KNOWS = " knows: "  # in the error of a standard that does not know the vehicle
 _NO_BARRIER = "There is no barrier in this scene: nothing is rated."
 
 
@@ -46,7 +47,7 @@ def verdict_section(case: Case) -> Section:
     if table is not None:
         blocks.append(table)
     if case.not_rated:
-        rows = [(name, reason.partition("; got ")[0]) for name, reason in case.not_rated.items()]
+        rows = [(name, _reason(case, reason)) for name, reason in case.not_rated.items()]
         blocks.append(Table("Standards that do not rate this run", ("standard", "why"), rows))
     if case.ratings:
         own = (f"{one.standard}: {one.caution.replace(MODEL_CAUTION, '').strip()}" for one in case.ratings)
@@ -87,6 +88,8 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
             f"{rating.designation} (vehicle {rating.vehicle_class}); {contained}, "
             f"{_penetration(rating)}{_chances(case, rating.standard)}",
         )
+    if result.scene.barrier is not None and not case.ratings:
+        yield "Rating, indicative", "none: " + "; ".join(_why_none(case))
     yield from study_answers(case)
     loads = touched_elements(result.element_loads)
     if loads:
@@ -120,8 +123,32 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         values = "1 value that was" if len(found) == 1 else f"{len(found)} values that were"
         told.append(f"median error {median(map(abs, found)):.0%} in {values} not fitted")
         told += [f"{one.test.name}, {_quantity(one)}: {one.error:+.0%}" for one in _twins(case.tests)]
+    if told and not any({"vehicle", "barrier"} <= set(one.alike) for one in case.tests):
+        told.append("none of these tests has both this kind of vehicle and this kind of barrier")
     if told:
         yield "How well does the model do in given tests nearby?", "; ".join(told)
+
+
+def _kind(case: Case) -> str:
+    """Return kind and mass of the vehicle, by which standards know it."""
+    vehicle = case.result.scene.vehicle
+    return f"{(vehicle.kind or 'vehicle').replace('_', ' ')} of {vehicle.mass:,.0f} kg"
+
+
+def _why_none(case: Case) -> Iterator[str]:
+    """Yield why no standard rates the run."""
+    unknown = [name for name, reason in case.not_rated.items() if _KNOWS in reason]
+    if unknown:
+        yield f"{_kind(case)} is no test vehicle of {', '.join(unknown)}"
+    yield from (f"{name}, see below" for name in case.not_rated if name not in unknown)
+    if not case.not_rated:
+        yield "no standard was asked for"
+
+
+def _reason(case: Case, reason: str) -> str:
+    """Return why a standard does not rate the run, without the argument that its error names."""
+    text, _, vehicles = _without_value(reason).partition(_KNOWS)
+    return f"it knows no {_kind(case)}, but {vehicles.replace('_', ' ')}" if vehicles else text
 
 
 def _twins(tests: Sequence[Compared]) -> list[Compared]:
@@ -218,8 +245,12 @@ def risk_section(case: Case) -> Section:
         if strike is None
         else (f"The occupant strikes the compartment {strike * 1e3:.1f} ms after the first touch.")
     )
+    heavy = (
+        "MASH and EN 1317 do not judge this for so heavy a vehicle: limits are those for cars and pickups."
+    )
     blocks: list[Block] = [
         Text(when),
+        *([Caution(heavy)] if case.result.scene.vehicle.mass >= _HEAVY else []),
         _risk_table(case, case.risk),
         *(Text(text) for text in case.risk.missing),
         Caution(CAUTION),

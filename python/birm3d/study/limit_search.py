@@ -215,7 +215,7 @@ class Limit:
             )
         widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
         rows = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in cells]
-        return "\n".join([self.headline, *self.remarks, "", *rows])
+        return "\n".join([self.headline, self.study.scene_title, *self.remarks, "", *rows])
 
     __str__ = summary
 
@@ -263,11 +263,11 @@ class Limit:
             lines.append(
                 f"In {ends} of the runs that hold the vehicle passes the barrier's end: give it more length."
             )
-        return [*lines, self._band, f"Caution: {self.caution}"]
+        return [*lines, self.band, f"Caution: {self.caution}"]
 
     @property
-    def _band(self) -> str:
-        """For how many vehicles of the class the limit holds, and from where on for all."""
+    def band(self) -> str:
+        """A sentence: for how many vehicles of the class the limit holds, and from where on for all."""
         if not self.class_shares:
             return "No band: the answer is that of this one vehicle."
         texts = [
