@@ -141,7 +141,7 @@ def test_what_it_tells() -> None:
     cells = re.findall(r"<td[^>]*>(.*?)</td>", prediction()._repr_html_())
     place = cells.index("peak 50-ms mean of the force along the normal")  # words and units of other tables
     assert cells[place + 1 : place + 5] == [*force[1:4], "kN"]
-    assert cells[cells.index("peak deceleration along r, CFC 60") + 4] == "g"
+    assert cells[cells.index("peak deceleration along the vehicle, CFC 60") + 4] == "g"
 
 
 def test_saved_vehicles_keep_their_scatter(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from ..base.shown_numbers import shown_value
 from ..result.report import END_REASONS
 from ..simulation.zone_numbers import unit_of_number
 from ..vehicle import Vehicle
-from ..vehicle.title import vehicle_text
+from ..vehicle.title import kind_words, vehicle_text
 from ..vehicle.zone import LAW_NUMBERS
 from .blocks import Block, Caution, Section, Table, Text
 from .figures import figure
@@ -56,7 +56,10 @@ def scene_section(case: Case) -> Section:
         ("ended", f"at {result.time[-1]:.4f} s: {END_REASONS[result.end_reason]}"),
     ]
     blocks: list[Block] = [
-        figure(result.plot_plan(), "Plan view of the trajectory"),
+        figure(
+            result.plot_plan(),
+            "Plan view of the trajectory; outlines from above, with what overhangs the barrier",
+        ),
         Table("Scene", ("", "value"), rows),
     ]
     return Section("Scene", "scene", blocks)
@@ -163,7 +166,7 @@ def _facts(unit: Vehicle) -> Iterator[tuple[str, str, str]]:
     given = file is not None and unit.mass == file.gvw_kg
     yield "mass", f"{unit.mass:,.1f} kg", "stated in the vehicle's file" if given else "set by the user"
     if unit.kind is not None:
-        yield "kind", unit.kind.replace("_", " "), "stated in the vehicle's file"
+        yield "kind", kind_words(unit.kind), "stated in the vehicle's file"
     for name in ("length", "width", "height", "wheelbase", "track"):
         length = getattr(unit, name)
         if length is not None:

@@ -9,10 +9,12 @@ from statistics import median
 
 from ..assessment import DesignLoad, ElementDesign, OccupantRisk, Rating
 from ..assessment.criteria import Criterion
+from ..assessment.design_load import ASSUMED, greatest_of_periods
 from ..assessment.rating import MODEL_CAUTION
 from ..result.element_loads import touched_elements
 from ..result.event import outcome_words
 from ..result.summary import shown_as
+from ..vehicle.title import kind_words
 from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import band_of, headline_table
 from .given_tests import Compared, errors
@@ -102,7 +104,7 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         )
     if isinstance(case.design_loads, DesignLoad) and loads:
         row, period = case.design_loads.governing, case.design_loads.natural_period
-        assumed = " (assumed)" if "is assumed" in case.design_loads.caution else ""
+        assumed = _assumed(case.design_loads)
         yield (
             "What does its foundation have to carry?",
             f"{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
@@ -132,7 +134,7 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
 def _kind(case: Case) -> str:
     """Return kind and mass of the vehicle, by which standards know it."""
     vehicle = case.result.scene.vehicle
-    return f"{(vehicle.kind or 'vehicle').replace('_', ' ')} of {vehicle.mass:,.0f} kg"
+    return f"{kind_words(vehicle.kind or 'vehicle')} of {vehicle.mass:,.0f} kg"
 
 
 def _why_none(case: Case) -> Iterator[str]:
@@ -148,7 +150,7 @@ def _why_none(case: Case) -> Iterator[str]:
 def _reason(case: Case, reason: str) -> str:
     """Return why a standard does not rate the run, without the argument that its error names."""
     text, _, vehicles = _without_value(reason).partition(_KNOWS)
-    return f"it knows no {_kind(case)}, but {vehicles.replace('_', ' ')}" if vehicles else text
+    return f"it knows no {_kind(case)}, but {kind_words(vehicles)}" if vehicles else text
 
 
 def _twins(tests: Sequence[Compared]) -> list[Compared]:
@@ -191,6 +193,16 @@ def _load_band(case: Case) -> str:
     if isinstance(case.bands, str) or name not in case.bands.prediction.low:
         return ""
     return f"; 80 % of the class: {band_of(case.bands, name, 1e3, ',.0f')} kN on the most loaded element"
+
+
+def _assumed(loads: DesignLoad) -> str:
+    """Return that the period is assumed, and what another one may ask for."""
+    if ASSUMED not in loads.caution:
+        return ""
+    found = greatest_of_periods(loads)
+    return (
+        " (assumed)" if found is None else f" (assumed; up to {found[0] / 1e3:,.0f} kN at {found[1]:.2g} s)"
+    )
 
 
 def _design_band(row: ElementDesign) -> str:

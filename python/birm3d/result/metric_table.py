@@ -87,12 +87,12 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
         "peak_deceleration": Metric(
             *("m/s^2", "motion", "greatest deceleration along r, unfiltered", "motion"),
             *(lambda run: run.motion.deceleration, "run"),
-            shown=_asked("peak deceleration along r, unfiltered", "g", units.g),
+            shown=_asked("peak deceleration along the vehicle, unfiltered", "g", units.g),
         ),
         "peak_deceleration_cfc60": Metric(
             *("m/s^2", "motion", "the same after CFC 60", "filtered_deceleration"),
             *(lambda run: run.extremes.filtered_deceleration, "run"),
-            shown=Shown("peak deceleration along r, CFC 60", ".1f", "g", units.g, headline=True),
+            shown=Shown("peak deceleration along the vehicle, CFC 60", ".1f", "g", units.g, headline=True),
         ),
         "peak_normal_force": Metric(
             "N",

@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import Protocol
 
-if TYPE_CHECKING:
-    from .vehicle_fields import VehicleFields
-
-__all__ = ["title_of_name", "vehicle_text", "without_mass"]
+__all__ = ["kind_words", "title_of_name", "vehicle_text", "without_mass"]
 
 _MASS = re.compile(r"(,| of) \d[\d.,]* (kg|lb|t)( loaded)?$")
+
+
+class _Titled(Protocol):
+    """A vehicle, of which only these are asked."""
+
+    @property
+    def title(self) -> str: ...
+
+    @property
+    def mass(self) -> float: ...
 
 
 def without_mass(title: str) -> str:
@@ -19,7 +26,12 @@ def without_mass(title: str) -> str:
     return _MASS.sub("", title)
 
 
-def vehicle_text(vehicle: VehicleFields, decimals: int = 0) -> str:
+def kind_words(text: str) -> str:
+    """Return a kind of vehicle, or a text with such kinds, in words: ``"cab-over truck"``."""
+    return text.replace("cab_over", "cab-over").replace("_", " ")
+
+
+def vehicle_text(vehicle: _Titled, decimals: int = 0) -> str:
     """Return title and mass of a vehicle, as ``"Cargo truck, 6,804 kg"``."""
     return f"{vehicle.title}, {vehicle.mass:,.{decimals}f} kg"
 
