@@ -131,7 +131,11 @@ def test_ratings_have_probabilities() -> None:
 
 def test_what_it_tells() -> None:
     text = prediction().summary()
-    assert "80% bands of 64 vehicles of the class" in text
+    head = text.splitlines()[0]
+    assert head.startswith("Passenger car, 1,814 kg, "), "whose bands these are, at which speed"
+    assert head.endswith("; 80 % bands of 64 vehicles of the class")
+    assert not any(line.strip().startswith("later_contacts") for line in text.splitlines())
+    assert "with a later contact, which counts for nothing here" in text
     assert "drawn: scatter.front" in text
     (force,) = [line.split() for line in text.splitlines() if line.strip().startswith("peak_force_50ms")]
     assert force[-1] == "kN"

@@ -17,6 +17,7 @@ from ..base.frozen_mapping import FrozenMapping
 from ..result.event import outcome_words
 from ..result.metric_table import METRICS
 from ..result.summary import shown_as
+from ..scene.text import scene_text
 from ..simulation.parameters import parameter_names, value_of
 from ..simulation.simulation import Simulation
 from ..vehicle.class_scatter import QUANTITIES, joined
@@ -112,7 +113,9 @@ class Prediction:
 
     @property
     def _title(self) -> str:
-        return f"{self.study.title}; {self.share:.0%} bands of {len(self.study)} vehicles of the class"
+        scene = self.study._scene
+        head = self.study.title if scene is None else scene_text(scene)
+        return f"{head}; {100 * self.share:g} % bands of {len(self.study)} vehicles of the class"
 
     def _shares(self) -> Iterator[tuple[str, float]]:
         """Yield each outcome, and each event that is counted, with the share of the draws that have it."""
