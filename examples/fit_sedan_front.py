@@ -9,9 +9,9 @@ and to four scalars. These are no measurements of their own (for one body they f
 they say what must not be missed, and make the intervals somewhat narrower than the curve alone would.
 birm3d.calibrate says which of the five one test can tell.
 
-Three numbers are chosen: SHARE, the stress behind the engine, and the length that the structure gives back. The
-The last table has restitution against speed for three lengths. One test would take more, but then a car rebounds
-better at 8 m/s than at 4.
+Three numbers are chosen: SHARE, the stress behind the engine, and the length that the structure gives back.
+The last table has restitution against speed for three lengths. One test would take more, but then a car
+rebounds better at 8 m/s than at 4.
 """
 
 import dataclasses

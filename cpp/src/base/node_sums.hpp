@@ -2,7 +2,7 @@
 // Plain, because files that are compiled for several instruction sets include it (see src/base/packet.hpp).
 #pragma once
 
-#include "base/inline.hpp"
+#include "birm3d/base/inline.hpp"
 
 namespace birm3d {
 

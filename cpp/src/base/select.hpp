@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "base/inline.hpp"
+#include "birm3d/base/inline.hpp"
 
 namespace birm3d {
 

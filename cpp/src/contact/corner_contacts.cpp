@@ -139,8 +139,9 @@ void place_in_corner(const ContactPass& pass, const Corner& corner, const Vec3& 
     const double deflection = truss.length[i] - (anchor - to).norm();
     const double free = truss.length[i] - (anchor - (to - corner.pushed_displacement())).norm();
     if (nodes.force[i] > 0.0 && free < nodes.deflection[i]) {
+        // A line goes on from its force. From the residual, as unloading_force(), it would round otherwise.
         nodes.force[i] =
-            truss.recovery[i] < longest_recovery
+            has_recovery(truss.recovery[i])
                 ? std::min(nodes.force[i], unloading_force(truss, nodes, i, free))
                 : std::max(0.0, nodes.force[i] + nodes.unloading[i] * (free - nodes.deflection[i]));
         nodes.deflection[i] = free;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "base/inline.hpp"
+#include "birm3d/base/inline.hpp"
 #include "birm3d/base/tolerances.hpp"
 
 namespace birm3d {

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "base/inline.hpp"
+#include "birm3d/base/inline.hpp"
 
 namespace birm3d {
 

@@ -12,15 +12,15 @@ namespace birm3d {
 
 namespace {
 
-// Slope of unloading of each truss that pushes, 0 of others (N/m).
+// Slope of unloading of each truss where it pushes (N/m). That of a line is its coefficient, which
+// n F / u would give only up to rounding.
 BIRM3D_BLOCK_LOOP void find_tangents(const TrussBlock& truss, const TrussBlockState& now,
                                      BlockColumn& tangent) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < block_size; ++i) {
         const double left = std::max(now.deflection[i] - now.residual[i], tolerance::truss_length);
-        const double curve = recovery_degree * now.force[i] / left;
-        const double slope = truss.recovery[i] > longest_recovery ? now.unloading[i] : curve;
-        tangent[i] = now.force[i] > 0.0 ? slope : 0.0;
+        const double curve = unloading_tangent<double>(recovery_degree, now.force[i], left);
+        tangent[i] = has_recovery(truss.recovery[i]) ? curve : now.unloading[i];
     }
 }
 

@@ -137,7 +137,7 @@ struct UnloadingLine {
     Packet slope, compliance, residual;
 };
 
-// Trusses with a recovery unload along F = coefficient (d - residual)^5, others along a line (truss_law.hpp).
+// Trusses with a recovery unload along F = coefficient (d - residual)^n, others along a line (truss_law.hpp).
 struct UnloadingCurve {
     BIRM3D_INLINE UnloadingCurve(const PressColumns& truss_, const PressState<const double>& before,
                                  std::size_t i_)
@@ -146,14 +146,13 @@ struct UnloadingCurve {
           recovery(Packet::load(truss_.recovery + i_)),
           coefficient(Packet::load(before.unloading + i_)),
           residual(Packet::load(before.residual + i_)) {}
-    // The first where a truss unloads along a line, else the second.
+    // The first where a truss unloads along a line, else the second: has_recovery() for eight trusses.
     BIRM3D_INLINE Packet where_line(const Packet& line, const Packet& curve) const {
         const Packet longest = longest_recovery;
         return where_above(recovery, longest, line, curve);
     }
     BIRM3D_INLINE Packet power(const Packet& u) const {
-        const Packet square = u * u;
-        return where_line(u, square * square * u);
+        return where_line(power_by_squares<line_degree>(u), power_by_squares<recovery_degree>(u));
     }
     BIRM3D_INLINE Packet degree() const { return where_line(line_degree, recovery_degree); }
     BIRM3D_INLINE Packet force(const Packet& d) const {
@@ -173,7 +172,7 @@ struct UnloadingCurve {
     }
     BIRM3D_INLINE Packet tangent(const Packet& d, const Packet& F) const {
         const Packet least = tolerance::truss_length;
-        return degree() * F / greater(d - residual, least);
+        return unloading_tangent(degree(), F, greater(d - residual, least));
     }
     BIRM3D_INLINE Packet twice_stored(const Packet& d, const Packet& F) const {
         const Packet zero = 0.0;

@@ -72,7 +72,7 @@ TrussCurve with_tail(const TrussCurve& curve, double depth, double slope) {
 namespace {
 
 double degree(const TrussCurve& curve) {
-    return std::isfinite(curve.recovery) ? recovery_degree : line_degree;
+    return has_recovery(curve.recovery) ? recovery_degree : line_degree;
 }
 
 }  // namespace

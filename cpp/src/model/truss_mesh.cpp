@@ -149,7 +149,7 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
     indentation_length = input.indentation_length;
     count = input.node.size();
     for (const TrussCurve& curve : input.curve)
-        hinges = std::max(hinges, curve.slope.size()), recovers = recovers || std::isfinite(curve.recovery);
+        hinges = std::max(hinges, curve.slope.size()), recovers = recovers || has_recovery(curve.recovery);
 
     const std::vector<Site> site = sites_of(input);
     std::vector<std::vector<std::size_t>> parts = parts_of(input, wheels.size());

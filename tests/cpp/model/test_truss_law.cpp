@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "check.hpp"
+#include "laboratory.hpp"
 
 using namespace birm3d;
 
@@ -99,6 +100,22 @@ TEST("no path of a truss with a recovery gains energy, and a loop returns a sixt
     for (int i = 0; i < steps; ++i)
         returned += truss_force(giving, loop, 0.6 - 0.08 * (i + 0.5) / steps) * 0.08 / steps;
     CHECK_CLOSE(returned / (peak * 0.08 / 6.0), 1.0, 1e-6, "midpoint rule");
+}
+
+TEST("a recovery above the longest stands for none") {
+    TrussCurve giving = curve;
+    giving.recovery = 10.0 * longest_recovery;
+    TrussMemory memory, memory_of_line;
+    for (const double d : {0.3, 0.28, 0.26, 0.5, 0.45})
+        CHECK(truss_force(giving, memory, d) == truss_force(curve, memory_of_line, d));
+    CHECK(has_recovery(longest_recovery) && !has_recovery(giving.recovery));
+    CHECK(!TrussMesh(laboratory::front_face(giving, 2, 2)).recovers);
+}
+
+TEST("powers in both orders are exact for whole numbers") {
+    static_assert(power_by_squares<7>(3.0) == 2187.0 && power_in_turn<7>(3.0) == 2187.0);
+    CHECK(power_by_squares<recovery_degree>(2.0) == 32.0 && power_in_turn<recovery_degree>(2.0) == 32.0);
+    CHECK(power_by_squares<line_degree>(0.1) == 0.1 && power_in_turn<line_degree>(0.1) == 0.1);
 }
 
 TEST("a tail makes the envelope steeper from its depth on") {

@@ -26,7 +26,7 @@
 //
 // The degree n comes from the rebound of NHTSA test 10146. The wall's force does work of 17.6 mm times its
 // greatest value, and is nearly gone (1 %) after 103 mm. If that is R, n is 103 / 17.6 - 1 = 4.9. The same ratio of
-// finite-element cars at walls is 4 to 10. A straight line would have n = 1. An infinite r leaves Fig. 3.
+// finite-element cars at walls is 4 to 10. A straight line would have n = 1. Without a recovery Fig. 3 holds.
 #pragma once
 
 #include <limits>
@@ -42,7 +42,7 @@ struct TrussCurve {
     std::vector<double> deflection;  // where the slope changes; starts at 0, increasing (m)
     std::vector<double> slope;       // slope from there on; the last one extends to infinity
     double k_unloading = 0.0;        // with a recovery: the least slope where the load turns
-    double recovery = std::numeric_limits<double>::infinity();  // m
+    double recovery = std::numeric_limits<double>::infinity();  // m, see has_recovery()
     // Of the barrier's friction, in [0, 1]: folded parts stick to the barrier while the vehicle moves on, and only this
     // share reaches the rigid body.
     double friction_share = 1.0;

@@ -94,7 +94,7 @@ struct alignas(64) TrussBlock {
     BlockColumn length;                        // uncrushed (m)
     BlockColumn k_unloading;                   // N/m
     BlockColumn compliance;                    // 1/k_unloading, or 0 for a truss without stiffness (m/N)
-    BlockColumn recovery;                      // of its curve, infinite where it unloads along a line (m)
+    BlockColumn recovery;                      // of its curve, see has_recovery() (m)
     BlockColumn panel;                         // number of its panel
 };
 
@@ -134,8 +134,7 @@ struct TrussMesh {
     std::size_t skin_blocks = 0;  // the first of them
     std::size_t shell_blocks = 0;
     std::size_t hinges = 0;  // slope changes of the longest envelope
-    bool recovers =
-        false;  // does any curve have a finite recovery? Then coefficients of unloading are part of the state.
+    bool recovers = false;  // has any curve a recovery? Then coefficients of unloading are part of the state.
 
     static constexpr std::size_t group_size = 8;  // blocks of a group, but for the last
     std::size_t end_of_group(std::size_t g) const { return std::min((g + 1) * group_size, blocks); }

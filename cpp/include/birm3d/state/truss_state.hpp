@@ -17,18 +17,20 @@ struct alignas(64) TrussBlockState {
     BlockColumn x, y, z;                    // shell nodes in body axes (m)
     BlockColumn deflection, force;          // of the truss, now (m, N)
     BlockColumn peak_deflection, residual;  // greatest so far; where unloading meets zero force (m)
-    BlockColumn unloading;                  // coefficient of unloading, see unloading_force() (N/m or N/m^5)
+    BlockColumn unloading;                  // coefficient of unloading, see unloading_force() (N/m or N/m^n)
     Box box;                                // around the nodes, body axes
     bool touching;                          // does any node push on an obstacle?
     bool slack;  // does an obstacle hold any node beyond the free length of its truss?
     bool met;    // has anything come into it, in any step?
 };
 
-// Force of a truss below its envelope (truss_law.hpp): along a line, or with a recovery along a curve of degree 5 (N).
+// Force of a truss below its envelope (truss_law.hpp): along a line, or with a recovery along the curve (N).
+// By squares, as in the kernel, the power would round otherwise; in turn it keeps the bits of earlier runs.
 inline double unloading_force(const TrussBlock& truss, const TrussBlockState& state, std::size_t i,
                               double deflection) {
     const double u = std::max(0.0, deflection - state.residual[i]);
-    return state.unloading[i] * (truss.recovery[i] < longest_recovery ? u * u * u * u * u : u);
+    return state.unloading[i] * (has_recovery(truss.recovery[i]) ? power_in_turn<recovery_degree>(u)
+                                                                 : power_in_turn<line_degree>(u));
 }
 
 // Does an obstacle hold the node beyond the free length of its truss? A truss does not pull.
@@ -125,8 +127,7 @@ struct TrussState {
         // The curve of a truss that was never loaded is above its envelope.
         if (mesh.recovers)
             for (std::size_t i = 0; i < block_size; ++i)
-                if (mesh.block[b].recovery[i] < longest_recovery)
-                    block[b].unloading[i] = uncrushed_coefficient;
+                if (has_recovery(mesh.block[b].recovery[i])) block[b].unloading[i] = uncrushed_coefficient;
         block[b].box = mesh.node_box[b];
     }
     void group(const TrussMesh& mesh, std::size_t g) {

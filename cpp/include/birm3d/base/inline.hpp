@@ -1,4 +1,4 @@
-// Plain: files that are compiled for several instruction sets include it (base/packet.hpp).
+// Plain: files that are compiled for several instruction sets include it (src/base/packet.hpp).
 #pragma once
 
 // Helpers of a loop must be compiled with the loop, for its instruction set.
