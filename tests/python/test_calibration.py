@@ -301,7 +301,7 @@ class TestSeveralScenes:
         names = ("zone.bumper.stress[3]", "zone.engine_bay.stress[3]")
         made = varied(sedan, {**dict.fromkeys(names, 0.6e6), "settings.tolerance": 1e-5}).run()
         target = CurveTarget(made.time[1:] - 5e-5, made.barrier_normal_force[1:], sigma=5e3, cfc=60)
-        fit = calibrate(sedan, target, Parameter(names, 0.4e6, 0.76e6), starts=1)
+        fit = calibrate(sedan, target, Parameter(names, 0.2e6, 0.76e6), starts=1)
         zones = fit.vehicle.zones
         assert zones["bumper"].envelope[3][1] == zones["engine_bay"].envelope[3][1]
         assert zones["bumper"].envelope[3][1] == pytest.approx(0.6e6, rel=1e-3)

@@ -30,8 +30,15 @@ namespace {
 // axis: posts and walls push nodes along it, or along their trusses.
 constexpr double open_share = 0.1;
 
-// An anchor that lies deeper than this in an obstacle was passed while other trusses gave way (m).
+// An anchor that gives way and lies deeper than this in an obstacle was passed while its truss was open (m).
 constexpr double passed_depth = 1e-3;
+
+// Does no box of the rigid body hold the anchor? Vehicles without boxes are rigid at all anchors.
+bool gives_way(const std::vector<Box>& core, const Vec3& anchor) {
+    return !core.empty() && std::none_of(core.begin(), core.end(), [&](const Box& box) {
+        return ((anchor - box.center).cwiseAbs() - box.half).maxCoeff() <= tolerance::touching_gap;
+    });
+}
 
 bool is_closed(const TrussMesh& mesh, const TrussState& trusses, std::size_t b, std::size_t i, double reach) {
     const TrussBlock& truss = mesh.block[b];
@@ -44,9 +51,10 @@ bool is_closed(const TrussMesh& mesh, const TrussState& trusses, std::size_t b, 
 
 }  // namespace
 
-void find_core_contacts(const TrussMesh& mesh, std::size_t body, const UnitState& state,
+void find_core_contacts(const Unit& unit, std::size_t body, const UnitState& state,
                         std::span<const PlacedShape> shapes, const Twist& motion, double dt,
                         std::vector<RigidContact>& contacts) {
+    const TrussMesh& mesh = unit.trusses;
     const auto relative = [&motion](const PlacedShape& shape) {
         return Twist{motion.velocity - shape.motion.velocity,
                      motion.angular_velocity - shape.motion.angular_velocity};
@@ -81,14 +89,16 @@ void find_core_contacts(const TrussMesh& mesh, std::size_t body, const UnitState
             if (at[i] == nullptr) continue;
             const std::size_t truss = mesh.first[b] + i;
             const Vec3 anchor = anchor_of(block, i), normal(nearest.nx[i], nearest.ny[i], nearest.nz[i]);
-            const double gap = nearest.gap[i];
+            double gap = nearest.gap[i];
             const Twist there = relative(*at[i]);
             const double approach = -normal.dot(there.velocity + there.angular_velocity.cross(anchor));
             const double reach = reach_within_step(mesh, there, std::max(0.0, approach), dt);
             if (gap >= reach) continue;
-            if ((at[i]->pushes || gap < -passed_depth) &&
-                !is_closed(mesh, state.trusses, b, i, reach))
-                continue;
+            if (std::holds_alternative<Post>(*at[i]->shape) && gives_way(unit.core, anchor)) {
+                const bool passed = gap < -passed_depth;
+                if ((passed || at[i]->pushes) && !is_closed(mesh, state.trusses, b, i, reach)) continue;
+                if (passed) gap = 0.0;  // it holds where it was when its truss closed
+            }
             RigidContact contact;
             contact.source = ContactSource::core;
             contact.index = truss;

@@ -66,7 +66,7 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
         }
         if (placed.empty()) continue;
         const std::size_t first = contacts.size();
-        find_core_contacts(unit.trusses, u, state.units[u], placed, motion, dt, contacts);
+        find_core_contacts(unit, u, state.units[u], placed, motion, dt, contacts);
         for (std::size_t i = first; i < contacts.size(); ++i) {
             RigidContact& contact = contacts[i];
             contact.other = body_of_obstacle(scene, contact.obstacle);

@@ -42,9 +42,7 @@ _NO_ANSWERS = ("balance", "effort")
 _LARGE = 1e4  # values from here on have no decimals
 _ROUNDING = 1e-9
 
-_CLASS = (
-    "The bands are those of vehicles of one class in this scene; errors of the model come on top of them."
-)
+_CLASS = "The bands are those of vehicles of one class in this scene; errors of the model come on top of them."
 _STRUCK = (
     "In {n} of {all} draws nothing was left to crush at some place and the rigid body struck: unfiltered "
     "peaks are blows of rigid bodies there. Take the 50-ms means."
@@ -52,7 +50,7 @@ _STRUCK = (
 _UNTOUCHED = "In {n} of {all} draws the vehicle does not touch the barrier."
 _ACROSS = (
     "The overlap is small: in tests at 25 % overlap the change of velocity across the vehicle was greater "
-    "than its band from 80 ms on."
+    "than its band from 100 ms on."
 )
 
 # What a quantity of the class is called among the scene's parameters; a factor on it, where it is no law's.
@@ -161,10 +159,9 @@ class Prediction:
             name: {"low": self.low[name], "median": self.median[name], "high": self.high[name]}
             for name in self.median
         }
-        outcomes = dict(self.outcomes)
         return {
             "share": self.share,
-            "outcomes": outcomes,
+            "outcomes": dict(self.outcomes),
             "metrics": bands,
             "drawn": list(self.drawn),
             "caution": self.caution,
@@ -172,8 +169,7 @@ class Prediction:
 
     def _repr_html_(self) -> str:
         """Return what notebooks show: shares of outcomes, bands in the units of other tables, caution."""
-        rows: list[tuple[str, ...]] = []
-        rows += [(words, "", f"{share:.0%}", "", "") for words, share in self._shares()]
+        rows: list[tuple[str, ...]] = [(words, "", f"{share:.0%}", "", "") for words, share in self._shares()]
         for name, *numbers in self._answers():
             label, size, unit = shown_as(name)
             rows.append((label, *(_shown(number / size) for number in numbers), unit))
@@ -292,19 +288,13 @@ def drawn_parameters(simulation: Simulation, power: int) -> dict[str, Floats]:
             f"got {vehicle.name!r}"
         )
     normal, known = draws(power), parameter_names(simulation)
+    has_edges = getattr(simulation.scene.barrier, "edge_radius", 0.0) > 0.0
     columns = {}
     for name, one in scatter.items():
         parameter = parameter_of(name)
-        if parameter not in known:
-            continue  # no barrier, or no trusses of such a zone
-        if name == "edge_flank" and not _has_rounded_edges(simulation):
-            continue
+        if parameter not in known or (name == "edge_flank" and not has_edges):
+            continue  # no barrier, no trusses of such a zone, or no rounded edges
         present = value_of(simulation, parameter)
         if present > 0.0:
-            factor = one.median * np.exp(one.log_sd * normal[name])
-            columns[parameter] = present * factor
+            columns[parameter] = present * (one.median * np.exp(one.log_sd * normal[name]))
     return columns
-
-
-def _has_rounded_edges(simulation: Simulation) -> bool:
-    return getattr(simulation.scene.barrier, "edge_radius", 0.0) > 0.0

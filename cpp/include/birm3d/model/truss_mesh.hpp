@@ -82,6 +82,9 @@ struct Panel {
 };
 inline constexpr double outline_step = 0.1;  // m
 
+// Of a panel with these nodes (body axes) and that axis.
+std::vector<Box> outlines_of(std::vector<Vec3> nodes, const Vec3& inward);
+
 // Box around the nodes of a panel that are no deeper than `depth` behind its outermost one; between the outlines linear in
 // `depth`. A bumper is narrower than the body behind it.
 Box outline_at(const Panel& panel, double depth);
