@@ -50,7 +50,9 @@ def main(output: Path | None) -> None:
         "passenger car, 59.8 mph, frictionless wall; energy made (+) or lost (-), % of the initial energy\n"
     )
     print(
-        f"{'angle [deg]':12s}" + "".join(f"{model:>16s}" for model in MODELS) + f"{'speed at the end [m/s]':>24s}"
+        f"{'angle [deg]':12s}"
+        + "".join(f"{model:>16s}" for model in MODELS)
+        + f"{'speed at the end [m/s]':>24s}"
     )
     for angle in ANGLES:
         line = f"{angle:<12g}"

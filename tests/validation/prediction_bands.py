@@ -252,8 +252,8 @@ ln(high / low).
 The peak is that of the compartment's deceleration, which one channel has measured to 10 %; the model has that
 of the mass centre. The mean ratio of the other tests stands between them. Shares of the small-overlap tests
 are those of a normal distribution by their quartiles, with the scatter of the presets' files, friction and
-tyres included. The scatter was not fitted to those tests, but four numbers of the model and the spread at the edge were: see
-[the page of all tests](README.md).
+tyres included. The spread of the sideways force at the edge was chosen by those tests, and so were four
+numbers of the model: see [the page of all tests](README.md).
 
 | quantity | tests | inside the 80 % band | width of the band | of the tests | 70 to 90 % | not wider |
 | --- | --- | --- | --- | --- | --- | --- |

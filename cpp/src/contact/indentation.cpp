@@ -49,8 +49,7 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
         const auto bit = static_cast<std::uint8_t>(1U << p);
         const bool indents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
         if (!panel.any || !can_indent(post, near.now, panel, indents)) continue;
-        const Indentation indentation =
-            indentation_by(post, near.now, panel, mesh, pass.scene.settings);
+        const Indentation indentation = indentation_by(post, near.now, panel, mesh, pass.scene.settings);
         if (!indents && !(indentation.beside() < 0.0)) continue;
         if (!indents && indentation.is_beyond(panel)) {
             now.passed |= bit;

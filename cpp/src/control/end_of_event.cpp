@@ -38,7 +38,7 @@ Box box_of_structure(const Scene& scene, std::size_t i) {
 // Is the vehicle still lifting a wheel from the ground, tilting further, or tipped over and not yet at rest?
 bool tips(const Scene& scene, const State& state) {
     if (!scene.settings.ground || scene.settings.gravity == 0.0) return false;
-    constexpr double tipped = 0.7;  // cosine of the up axis to the vertical: about 45 degrees
+    constexpr double tipped = 0.7;       // cosine of the up axis to the vertical: about 45 degrees
     constexpr double least_tilt = 0.01;  // sine; below it the direction of tilting is not clear
     std::vector<RigidContact> wheels;
     for (std::size_t u = 0; u < state.units.size(); ++u) {

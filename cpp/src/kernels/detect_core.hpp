@@ -19,7 +19,7 @@ struct PlacedShape {
     Placement placement;
     std::size_t obstacle = 0;
     double friction = 0.0;
-    Twist motion = {};  // of the obstacle, as a twist about the body's origin, body axes
+    Twist motion = {};    // of the obstacle, as a twist about the body's origin, body axes
     bool pushes = false;  // on any node of the unit
 };
 

@@ -30,9 +30,9 @@ constexpr double rounding_gap = 1e-12;
 
 // Does the obstacle push on any node of the unit?
 bool pushes(const UnitState& unit, std::size_t obstacle) {
-    return std::any_of(
-        unit.contact_loads.begin(), unit.contact_loads.end(),
-        [=](const ContactLoad& load) { return load.obstacle == obstacle && load.normal_force > 0.0; });
+    return std::any_of(unit.contact_loads.begin(), unit.contact_loads.end(), [=](const ContactLoad& load) {
+        return load.obstacle == obstacle && load.normal_force > 0.0;
+    });
 }
 
 // Lists in memory.contacts every rigid contact that is possible within the step, and the constraints of joints.
@@ -61,8 +61,8 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
             const Twist relative{motion.velocity - other.velocity,
                                  motion.angular_velocity - other.angular_velocity};
             if (within_reach(obstacle.shape, in_shape, anchors, core_margin(unit.trusses, relative, dt)))
-                placed.push_back({&obstacle.shape, in_shape, i, obstacle.friction, other,
-                                  pushes(state.units[u], i)});
+                placed.push_back(
+                    {&obstacle.shape, in_shape, i, obstacle.friction, other, pushes(state.units[u], i)});
         }
         if (placed.empty()) continue;
         const std::size_t first = contacts.size();

@@ -42,7 +42,7 @@ _NO_ANSWERS = ("balance", "effort")
 _LARGE = 1e4  # values from here on have no decimals
 _ROUNDING = 1e-9
 
-_CLASS = "The bands are those of vehicles of one class in this scene; errors of the model come on top of them."
+_CLASS = "The bands are those of vehicles of one class in this scene; errors of the model come on top."
 _STRUCK = (
     "In {n} of {all} draws nothing was left to crush at some place and the rigid body struck: unfiltered "
     "peaks are blows of rigid bodies there. Take the 50-ms means."

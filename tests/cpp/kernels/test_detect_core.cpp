@@ -11,7 +11,7 @@ namespace {
 
 const auto vehicle = laboratory::block(laboratory::w2_curve(), 13, 10);
 const Unit& unit = vehicle->units[0];
-const TrussMesh& mesh = unit.trusses;                           // anchors at 1 m
+const TrussMesh& mesh = unit.trusses;                   // anchors at 1 m
 const Shape face = HalfSpace{{-1.0, 0.0, 0.0}, -1.05};  // body axes: the anchors stand 50 mm before it
 
 std::vector<RigidContact> found(const Unit& of, const PlacedShape& shape, const Twist& motion, double dt,

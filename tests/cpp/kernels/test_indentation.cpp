@@ -43,8 +43,8 @@ Followed indentation_by(const Post& post, const Placement& stands, const Placeme
     contact_gap.fill(std::numeric_limits<double>::infinity());
     rank.fill(std::numeric_limits<double>::infinity());
     follow_indentation(Indentation(post, stands, front, reach, edge),
-                       Indentation(post, last, front, reach, edge), nodes, mesh.block[0].panel, 1, contact_gap,
-                       found, found, rank, found.follows);
+                       Indentation(post, last, front, reach, edge), nodes, mesh.block[0].panel, 1,
+                       contact_gap, found, found, rank, found.follows);
     return found;
 }
 

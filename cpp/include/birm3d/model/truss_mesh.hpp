@@ -74,10 +74,10 @@ struct StiffnessMoments {
 
 // The part of a skin whose trusses point in, more than in any other way, along +r, -r, +s, -s, +t or -t.
 struct Panel {
-    Vec3 inward;  // that axis
-    Box box;      // around its uncrushed nodes
-    Box anchors;  // and where they are anchored
-    bool any;     // has it any?
+    Vec3 inward;                     // that axis
+    Box box;                         // around its uncrushed nodes
+    Box anchors;                     // and where they are anchored
+    bool any;                        // has it any?
     std::vector<Box> outlines = {};  // each around the nodes up to one outline_step further in than the last
 };
 inline constexpr double outline_step = 0.1;  // m
