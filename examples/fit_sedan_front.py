@@ -1,4 +1,4 @@
-"""Where the front of `passenger_car` comes from: five numbers fitted to NHTSA test 10146, three chosen.
+"""Where the front of `passenger_car` comes from: five numbers fitted to NHTSA test 10146, five chosen.
 
     python examples/fit_sedan_front.py [--output FOLDER] [--mesh-density 0.25]
 
@@ -9,9 +9,9 @@ and to four scalars. These are no measurements of their own (for one body they f
 they say what must not be missed, and make the intervals somewhat narrower than the curve alone would.
 birm3d.calibrate says which of the five one test can tell.
 
-Three numbers are chosen: SHARE, the stress behind the engine, and the length that the structure gives back.
-The last table has restitution against speed for three lengths. One test would take more, but then a car
-rebounds better at 8 m/s than at 4.
+Five numbers are chosen: SHARE, LEAST, the engine's width, the stress behind it, and the length that the
+structure gives back. The last table has restitution against speed for three lengths. One test would take
+more, but then a car rebounds better at 8 m/s than at 4.
 """
 
 import dataclasses

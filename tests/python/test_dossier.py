@@ -66,7 +66,7 @@ def tidy(text: str) -> str:
 
 def crash(**settings: Any) -> Simulation:
     truck = Vehicle.preset("cargo_truck", mesh_density=0.15)
-    return Simulation(truck, Barrier.bollards(), 20.0, settings=Settings(**settings))
+    return Simulation(truck, Barrier.bollards(), 21.3, settings=Settings(**settings))
 
 
 @pytest.fixture(scope="module")

@@ -26,8 +26,8 @@ double core_margin(const TrussMesh& mesh, const Twist& motion, double dt) {
 
 namespace {
 
-// A truss is closed if no more than this share of its depth is left, and what a step may close. Depths count along the panel's
-// axis: posts and walls push nodes along it, or along their trusses.
+// A truss is closed if what is left of its depth is at most this share of it, plus what one step can crush. Depths count along
+// the panel's axis: posts and walls push nodes along it, or along their trusses.
 constexpr double open_share = 0.1;
 
 // An anchor that gives way and lies deeper than this in an obstacle was passed while its truss was open (m).
@@ -97,7 +97,7 @@ void find_core_contacts(const Unit& unit, std::size_t body, const UnitState& sta
             if (std::holds_alternative<Post>(*at[i]->shape) && gives_way(unit.core, anchor)) {
                 const bool passed = gap < -passed_depth;
                 if ((passed || at[i]->pushes) && !is_closed(mesh, state.trusses, b, i, reach)) continue;
-                if (passed) gap = 0.0;  // it holds where it was when its truss closed
+                if (passed) gap = 0.0;  // the anchor rests on the post where it is now
             }
             RigidContact contact;
             contact.source = ContactSource::core;

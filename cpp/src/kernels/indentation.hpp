@@ -26,9 +26,9 @@
 // indentation's extent it is released, and what its truss stores is lost. Of several indentations the deepest one holds a
 // node. Skin slides on a post only along the panel: friction acts across e.
 //
-// The panel's edge is that of its nodes up to one radius of the post behind the outermost one. A post that misses the bumper
-// does not indent it by meeting the wider body behind: it meets the nodes there as any surface does. For the edge of a wall all
-// nodes count, as the wall's face crushes what is deeper beside it.
+// The width of a panel counts only nodes that are no deeper than one radius of the post behind its foremost node. A post that
+// misses the bumper does not indent it by meeting the wider body behind: it meets the nodes there as any surface does. For the
+// edge of a wall all nodes count, as the wall's face crushes what is deeper beside it.
 //
 // A post as wide as the panel acts as a wall does. The round post is cut off slightly above the highest place of its rim.
 // Where f falls more steeply than `steepest`, it falls with that slope.

@@ -63,7 +63,7 @@ void raise_to_ground(const Scene& scene, State& state) {
     move(state, -lowest * Vec3::UnitZ());
 }
 
-// A post may indent a panel before it touches a node. Deeper ones came past the panel's edge (m).
+// Greatest depth of an indentation at the start (m). A deeper post has passed the panel's edge and is ignored.
 constexpr double deepest_start = 0.3;
 
 // Moves the vehicle back to before any post indents it.
