@@ -42,6 +42,7 @@ constexpr std::array rows = {
     SettingRow{"braking", &set<&Settings::braking>},
     SettingRow{"cornering_stiffness", &set<&Settings::cornering_stiffness>},
     SettingRow{"restitution", &set<&Settings::restitution>},
+    SettingRow{"edge_flank_factor", &set<&Settings::edge_flank_factor>},
     SettingRow{"contact_model", &set<&Settings::contact_model>},
     SettingRow{"tire_model", &set<&Settings::tire_model>},
 };

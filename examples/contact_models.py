@@ -13,6 +13,7 @@ from pathlib import Path
 
 import birm3d
 import click
+import numpy as np
 from birm3d import Settings, scenes
 from matplotlib.figure import Figure
 
@@ -49,14 +50,16 @@ def main(output: Path | None) -> None:
         "passenger car, 59.8 mph, frictionless wall; energy made (+) or lost (-), % of the initial energy\n"
     )
     print(
-        f"{'angle [deg]':12s}" + "".join(f"{model:>16s}" for model in MODELS) + f"{'exit speed [m/s]':>24s}"
+        f"{'angle [deg]':12s}"
+        + "".join(f"{model:>16s}" for model in MODELS)
+        + f"{'speed at the end [m/s]':>24s}"
     )
     for angle in ANGLES:
         line = f"{angle:<12g}"
         for model in MODELS:
             energy = results[model, angle].energy
             line += f"{100.0 * energy['residual'][-1] / energy['total'][0]:+16.4f}"
-        speeds = " / ".join(f"{results[model, angle].metrics['exit_speed']:.2f}" for model in MODELS)
+        speeds = " / ".join(f"{np.linalg.norm(results[model, angle].velocity[-1]):.2f}" for model in MODELS)
         print(f"{line}{speeds:>24s}")
 
     if output:

@@ -1,6 +1,6 @@
 """Where the fronts of `minivan` and `pickup` come from: one number fitted to one or two tests each.
 
-    python examples/fit_fronts.py [--output FOLDER] [--mesh-density 0.25]
+    python examples/fit_fronts.py [--output FOLDER] [--mesh-density 1]
 
 Of these tests of NHTSA only scalars are known: mass, speed and the greatest displacement of the compartment.
 So the shape of the envelope is that of the passenger car (fit_sedan_front.py), and one factor on its stresses
@@ -16,7 +16,7 @@ import numpy as np
 from birm3d import scenes
 from birm3d.calibration import CalibrationResult, Parameter, ScalarTarget
 from birm3d.reference import nhtsa_tests
-from fit_sedan_front import ZONES, front, with_envelope
+from fit_sedan_front import ZONES, front, with_envelopes
 from matplotlib.figure import Figure
 
 TESTS = {"minivan": ("7460",), "pickup": ("7360", "7582")}
@@ -24,10 +24,9 @@ SHARE = 0.03  # of the displacement: what integrating one or two accelerometers 
 
 
 def shaped(simulation: birm3d.Simulation) -> birm3d.Simulation:
-    """Give the front the passenger car's envelope, as strong as the vehicle is heavy."""
+    """Give the front the passenger car's envelopes, as strong as the vehicle is heavy."""
     car = birm3d.Vehicle.preset("passenger_car", mesh_density=0.1).scaled_to(simulation.scene.vehicle.mass)
-    zone = car.zones[ZONES[0]]
-    return with_envelope(simulation, np.array(zone.envelope), zone.k_unloading)
+    return with_envelopes(simulation, {zone: np.array(car.zones[zone].envelope) for zone in ZONES})
 
 
 def fit(name: str, mesh_density: float) -> CalibrationResult:
@@ -56,7 +55,7 @@ def figure(fitted: dict[str, birm3d.Vehicle]) -> Figure:
 
 @click.command(help=__doc__)
 @click.option("--output", type=click.Path(path_type=Path), help="folder for the figure")
-@click.option("--mesh-density", default=0.25, show_default=True, help="relative to the presets'")
+@click.option("--mesh-density", default=1.0, show_default=True, help="relative to the presets'")
 def main(output: Path | None, mesh_density: float) -> None:
     vehicles = {"passenger_car": scenes.nhtsa_frontal("10146", mesh_density=0.1).scene.vehicle}
     for name in TESTS:
@@ -71,10 +70,11 @@ def main(output: Path | None, mesh_density: float) -> None:
                 f"{number:8s}{test.mass:10.0f}{test.dynamic_displacement:14.3f}{ways[0]:12.3f}{ways[1]:10.3f}"
             )
         vehicles[name] = vehicle = fitted.simulations[-1].scene.vehicle
-        zone = vehicle.zones[ZONES[0]]
-        print(f"\nenvelope at {vehicle.mass:.0f} kg; k_unloading {zone.k_unloading:.4g} Pa/m")
-        for depth, stress in zone.envelope:
-            print(f"{depth:8.3f} m {1e-6 * stress:8.4f} MPa")
+        for name_of_zone in ("bumper", "engine"):
+            zone = vehicle.zones[name_of_zone]
+            print(f"\n{name_of_zone} at {vehicle.mass:.0f} kg; k_unloading {zone.k_unloading:.4g} Pa/m")
+            for depth, stress in zone.envelope:
+                print(f"{depth:8.3f} m {1e-6 * stress:8.4f} MPa")
         print()
 
     if output:

@@ -242,7 +242,7 @@ def test_dataframe_without_pandas(
 
 def test_report(scene_result: Result) -> None:
     text, scene = scene_result.report(), scene_result.scene
-    assert scene.vehicle.name in text
+    assert scene.vehicle.title in text
     assert "computed" in text
     assert "left out" in text
     assert f"{scene_result.statistics.steps} steps" in text

@@ -118,10 +118,10 @@ def test_barrier_friction_is_lost_where_there_is_friction(scene_result: Result) 
 
 
 def test_newtons_law_in_every_row(scene_result: Result, body_to_world: Orientation) -> None:
-    """Recomputed from the arrays that a user sees: m a = barrier + tyres + gravity, row by row."""
+    """Recomputed from the arrays that a user sees: m a = barrier + tyres + ground + gravity, row by row."""
     r, mass = scene_result, scene_result.scene.vehicle.mass
     weight = mass * r.scene.settings.gravity
-    force = r.barrier_force + r.tire_friction_force
+    force = r.barrier_force + r.tire_friction_force + r.ground_force  # of the skin on the ground
     force[:, 2] += r.tire_reaction.sum(axis=1) - weight
     acceleration = body_to_world(r).apply(r.acceleration.copy())
     # scipy wants a writable copy. Impulses of some 1e5 N s are differences of running sums over the run.

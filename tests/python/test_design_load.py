@@ -296,7 +296,7 @@ def test_what_is_written(envelope: DesignLoad, tmp_path: Path) -> None:
     assert len(lines) == 2 + 3
     assert len({line.count("|") for line in lines}) == 1
     for number in {number for row in envelope for number in row.scene.values()}:
-        assert f"({number}) passenger_car" in text
+        assert f"({number}) Passenger car" in text
     assert "Caution: Computed, not tested" in text
     assert envelope.caution in envelope.summary()
     assert "<table>" in envelope._repr_html_()
@@ -304,6 +304,8 @@ def test_what_is_written(envelope: DesignLoad, tmp_path: Path) -> None:
     figure = envelope.plot()
     assert len(figure.axes) == 5
     assert "bollard" in figure.axes[1].get_title()
+    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert ("80 % of the class" in labels) == any(row.band for row in envelope)
 
 
 def test_cautions_are_said_where_they_matter() -> None:
@@ -315,7 +317,12 @@ def test_cautions_are_said_where_they_matter() -> None:
     assert "rigid and fixed" not in free.caution
     assert "assumed" not in free.caution
     short = Simulation(car(), Barrier.rigid_wall(), 12.0, duration=0.05).run()
-    caution = birm3d.design_load(short).caution
+    loads = birm3d.design_load(short)
+    caution = loads.caution
+    periods = np.geomspace(0.03, 0.3, 31)
+    most = loads.spectrum(periods).max() / 1e3
+    told = f"With another one from 0.03 to 0.3 s, wall carries up to {most:,.0f} kN"
+    assert told in caution, "an assumed period may lie in a notch of the spectrum"
     assert "still acts" in caution
     assert "natural period of 0.1 s is assumed" in caution
 

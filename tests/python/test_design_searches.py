@@ -75,6 +75,8 @@ def test_what_a_limit_says(height: Limit) -> None:
     assert shown[1] <= 0.637 <= shown[0]
     assert "Monotonic at the values tried" in text
     assert "Caution: " in text
+    assert text.splitlines()[1] == height.study.scene_title, "an answer is that of one vehicle at one speed"
+    assert height.band in height.plot().axes[0].get_title()
     assert len(height.study) == len(height.runs) == len(height.to_dataframe())
     values = [run.value for run in height.runs]
     assert values == sorted(values)
@@ -270,7 +272,12 @@ def test_worst_offset_of_each_spacing(worst: birm3d.WorstOffset) -> None:
 
 
 def test_what_a_worst_offset_says(worst: birm3d.WorstOffset) -> None:
-    assert "peak element force 50ms [N]" in worst.summary()
+    head, labels, *_ = worst.summary().splitlines()
+    assert head.startswith(
+        "Scene of the greatest value: Passenger car, 1,814 kg, 10.00 m/s (22.4 mph) at 90°"
+    )
+    assert "peak 50-ms force (vector) on one element [kN]" in labels
+    assert f"= {1e-3 * worst.worst.value:.4g} kN at spacing" in repr(worst)
     assert "Scanned every 0.35 m or finer" in worst.summary()
     assert list(worst.to_dataframe()["peak_element_force_50ms"]) == worst.value.tolist()
     assert len(worst.plot().axes) == 2

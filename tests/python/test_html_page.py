@@ -47,7 +47,7 @@ def test_tables_hold_the_outcome(page: Page, text: str, result: Result) -> None:
     assert cells.count("✓ yes") == 3
     # A sentence beside numbers would leave their names no room on a phone.
     assert f'<tr><td colspan="3">{result.outcome_detail}</td></tr>' in text
-    assert any("passenger_car, 1,814.4 kg" in cell for cell in cells)
+    assert any("Passenger car, 1,814.4 kg" in cell for cell in cells)
     assert page.texts["pre"] == [result.report()]
     assert "<!--" not in "".join(page.texts["body"])
 

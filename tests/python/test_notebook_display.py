@@ -139,10 +139,10 @@ def test_figures_of_studies_name_the_barrier(tmp_path: Path) -> None:
     )
     heads.append(point.plot().axes[0].get_title())
     for head in heads:
-        assert head.startswith("laboratory_block: 3 bollards, Ø 0.32 m, 1 m high, 0.8 m apart"), head
+        assert head.startswith("Laboratory block: 3 bollards, Ø 0.32 m, 1 m high, 0.8 m apart"), head
     assert (
         birm3d.sweep(posts, {"barrier": [Barrier.pole()]}, **kept).title
-        == "laboratory_block: several barriers"
+        == "Laboratory block: several barriers"
     )
     assert birm3d.sweep(posts, {"barrier.count": [3]}, **kept).title.endswith("0.8 m apart; count varied")
 

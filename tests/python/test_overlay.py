@@ -9,6 +9,7 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Result, Simulation, Study, Vehicle
+from birm3d.study.history_bands import HistoryBands
 from scipy import stats
 
 
@@ -39,7 +40,7 @@ def test_curves_are_those_of_the_runs(runs: list[Result]) -> None:
 
 def test_title_has_what_is_common_and_legend_what_differs(runs: list[Result], car: Vehicle) -> None:
     figure = birm3d.plot_runs(runs)
-    assert figure.get_suptitle().startswith(f"passenger_car, {car.mass:,.0f} kg, 90°\nrigid wall")
+    assert figure.get_suptitle().startswith(f"Passenger car, {car.mass:,.0f} kg, 90°\nrigid wall")
     assert "m/s" not in figure.get_suptitle()
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert [label.split()[0] for label in labels] == ["8.00", "12.00"]
@@ -85,10 +86,22 @@ def test_bands_last_as_long_as_the_longest_run(drawn: Study) -> None:
     assert set(bands.median) == {"deceleration", "travel"}
     assert np.isfinite(bands.high["deceleration"]).all()
     figure = bands.plot()
-    assert "passenger_car: rigid wall without end" in figure.get_suptitle()
+    assert "Passenger car: rigid wall without end" in figure.get_suptitle()
     assert figure.axes[1].get_ylabel() == "travel [m]"
     assert "travel_high" in bands.to_dataframe().columns
     assert "<img" in bands._repr_html_()
+
+
+def test_a_figure_of_bands_ends_where_they_get_calm() -> None:
+    """One run that slides on for seconds must not press the crash into the first tenth of the figure."""
+    time = np.linspace(0.0, 5.0, 501)
+    pulse = 90.0 * np.exp(-(((time - 0.1) / 0.05) ** 2))
+    runs = {"deceleration": np.array([pulse, 1.1 * pulse]), "travel": np.array([15.0 * time, 18.0 * time])}
+    figure = HistoryBands(time, runs, 0.8, "two runs").plot()
+    for axes in figure.axes:
+        assert 150.0 < axes.get_xlim()[1] < 400.0
+        assert axes.get_xlabel() == "time [ms]; calm until the run ends at 5,000 ms"
+    assert figure.axes[1].get_ylim()[1] < 10.0
 
 
 def test_bands_of_a_prediction(car: Vehicle) -> None:

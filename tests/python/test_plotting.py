@@ -23,6 +23,7 @@ from birm3d.result.skin import skins_at
 from birm3d.vehicle.silhouette import rings, silhouette
 from birm3d.vehicle.unit_shapes import UnitShape, unit_shapes
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from scipy.spatial import ConvexHull
@@ -61,7 +62,7 @@ def test_histories(oblique: Result) -> None:
     figure = oblique.plot_histories()
     force, acceleration, velocity, rates, tires, angles = figure.get_axes()
     assert names(force) == ["along the normal, CFC 60", "50-ms mean"]
-    assert names(acceleration) == ["r, CFC 60", "s, CFC 60", "t, CFC 60"]
+    assert names(acceleration) == ["forward, CFC 60", "left, CFC 60", "up, CFC 60"]
     assert names(rates) == ["roll rate, CFC 180", "pitch rate, CFC 180", "yaw rate, CFC 180"]
     assert names(angles) == ["roll", "pitch", "yaw"]
     assert [a.get_ylabel().split("[")[1] for a in (force, velocity, tires)] == ["kN]", "m/s]", "kN]"]
@@ -340,7 +341,7 @@ def test_rounding_errors_are_not_drawn_as_motion() -> None:
     block = Simulation(spring, Barrier.rigid_wall(friction=0.0), 5.0, settings=free).run()
     assert max(np.abs(block.pitch).max(), np.abs(block.roll).max(), np.abs(block.yaw).max()) < 1e-6
     panels = [*block.plot().get_axes(), *block.plot_histories().get_axes()]
-    angles = [axes for axes in panels if axes.get_title() == "Angles"]
+    angles = [axes for axes in panels if axes.get_title().startswith("Angles")]
     assert len(angles) == 2
     for axes in angles:
         low, high = axes.get_ylim()
@@ -415,7 +416,7 @@ def test_loads_on_elements_end_and_have_peaks() -> None:
     assert last <= force.get_xlim()[1] < 1.1 * last
     # The scene is symmetric: both posts have the same peak, written once.
     (text,) = force.texts
-    assert text.get_text() == f"bollard 1 and bollard 2: {greatest.max():,.0f} kN"
+    assert text.get_text() in {f"bollard 1 and bollard 2: {post.max():,.0f} kN" for post in smooth}
     assert moment.texts[0].get_text().endswith("kN m")
     assert text.get_position()[1] > greatest.max()
     assert force.get_ylim()[1] > text.get_position()[1]
@@ -510,6 +511,14 @@ def test_bad_sides_and_heights(head_on: Result) -> None:
         head_on.plot_crush("top")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"height must be between .* got 5"):
         head_on.plot_crush("front", height=5.0)
+
+
+def test_labels_of_a_crush_figure_are_within_it() -> None:
+    """The map has equal scales and is narrower than its place; the profile below has longer numbers."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.2)
+    figure = Simulation(car, Barrier.bollards(count=1), 17.9).run().plot_crush("front")
+    FigureCanvasAgg(figure).draw()
+    assert min(axes.get_tightbbox().x0 for axes in figure.get_axes()) >= 0.0
 
 
 def test_crush_figure(head_on: Result) -> None:

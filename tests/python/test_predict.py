@@ -131,7 +131,11 @@ def test_ratings_have_probabilities() -> None:
 
 def test_what_it_tells() -> None:
     text = prediction().summary()
-    assert "80% bands of 64 vehicles of the class" in text
+    head = text.splitlines()[0]
+    assert head.startswith("Passenger car, 1,814 kg, "), "whose bands these are, at which speed"
+    assert head.endswith("; 80 % bands of 64 vehicles of the class")
+    assert not any(line.strip().startswith("later_contacts") for line in text.splitlines())
+    assert "with a later contact, which counts for nothing here" in text
     assert "drawn: scatter.front" in text
     (force,) = [line.split() for line in text.splitlines() if line.strip().startswith("peak_force_50ms")]
     assert force[-1] == "kN"
@@ -141,7 +145,7 @@ def test_what_it_tells() -> None:
     cells = re.findall(r"<td[^>]*>(.*?)</td>", prediction()._repr_html_())
     place = cells.index("peak 50-ms mean of the force along the normal")  # words and units of other tables
     assert cells[place + 1 : place + 5] == [*force[1:4], "kN"]
-    assert cells[cells.index("peak deceleration along r, CFC 60") + 4] == "g"
+    assert cells[cells.index("peak deceleration along the vehicle, CFC 60") + 4] == "g"
 
 
 def test_saved_vehicles_keep_their_scatter(tmp_path: Path) -> None:

@@ -67,7 +67,7 @@ def test_the_fitted_truck_meets_the_runs(
         assert row.met[mark], row.errors
     assert not row.own.core_contact
     (preset,) = page.computed(birm3d.Vehicle.preset("cargo_truck"), [truck.runs()[name]])
-    assert preset.met["force"]
+    assert preset.met["force"] == ("force" in marks)  # 36 % short at the row of three
     assert abs(preset.own.travel / truck.runs()[name].travel - 1.0) < 0.17
 
 

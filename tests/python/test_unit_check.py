@@ -246,6 +246,18 @@ def test_a_scene_file_tells_an_odd_mass(tmp_path: Path) -> None:
     told_once(lambda: read_scene_file(path), f"gvw = 500 kg is {USUAL}")
 
 
+def test_a_changed_mass_in_a_file_and_a_varied_one_are_warned_of(tmp_path: Path) -> None:
+    path = tmp_path / "light.toml"
+    with pytest.warns(MassWarning):
+        TRUCK.with_gvw(500.0).save(path)
+    told_once(lambda: Vehicle.from_file(path), f"changes.gvw_kg = 500 kg is {USUAL}")
+    scene = tmp_path / "scene.toml"
+    scene.write_text(f'[vehicle]\nfile = "{path.name}"\n[impact]\nspeed = "30 mph"\nduration = "0.1 s"\n')
+    told_once(lambda: read_scene_file(scene), f"changes.gvw_kg = 500 kg is {USUAL}")
+    crash = Simulation(TRUCK, WALL, 10.0)
+    told_once(lambda: varied(crash, {"vehicle.gvw": "500 kg"}), f"vehicle.gvw = 500 kg is {USUAL}")
+
+
 def test_studies_tell_odd_masses_once() -> None:
     crash = Simulation(TRUCK, WALL, 10.0)
     wanted = ["dynamic_crush"]

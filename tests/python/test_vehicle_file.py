@@ -7,6 +7,7 @@ import re
 import sys
 from pathlib import Path
 
+import birm3d
 import numpy as np
 import pytest
 from birm3d import units
@@ -550,3 +551,11 @@ def test_lines_after_all_kinds_of_values(text):
     assert lines[("c",)] == line_of(text, "[c]\n" if "[c]\n" in text else "[c]\r")
     assert lines[("c", "d")] == lines[("c",)] + 1
     assert ("b",) not in lines
+
+
+def test_no_file_of_the_package_quotes_from_memory() -> None:
+    """A client reads the sources: a value without one at hand says so."""
+    root = Path(birm3d.__file__).parent
+    pages = (path for kind in ("toml", "csv", "py", "html") for path in root.rglob(f"*.{kind}"))
+    found = [str(path) for path in pages if "from memory" in " ".join(path.read_text("utf-8").split())]
+    assert not found

@@ -21,7 +21,7 @@ has a number of its own. An error beyond the test's own scatter is bold.
 - left out: a fit to all rows of its vehicle but this one.
 - predicted: no fit has seen the row.
 
-Figures known from memory only are printed apart, at the end of a kind, and are in no count.
+Figures whose source is not at hand are printed apart, at the end of a kind, and are in no count.
 Details of the fits: [finite-element cars](finite_element.md), [finite-element truck](truck.md).
 """
 
@@ -36,7 +36,7 @@ def page(modules: Mapping[str, ModuleType], tables: Mapping[str, Sequence[Row]])
             lines += [*_computed(), ""]
         memory = [row for row in tables[name] if not row.judged]
         if memory:
-            lines += ["From memory, not judged:", "", *_table(memory), ""]
+            lines += ["As commonly reported, source not at hand; not judged:", "", *_table(memory), ""]
     return "\n".join(lines).rstrip() + "\n"
 
 

@@ -23,7 +23,7 @@ class Row:
 
     measured is in the row's unit; predicted is met where it lies from ``low`` to ``high``, which is the
     test's own scatter or a bound that its source gives. role: "fitted", "left out" or "predicted". judged:
-    false for a figure that nobody read in a source ("from memory"); such rows are printed apart.
+    false for a figure that nobody read in a source ("source not at hand"); such rows are printed apart.
     """
 
     test: str

@@ -17,7 +17,7 @@ its resultant, with the design force and its effective height. Marks: 25 % in fo
 the same vehicle is 1.3 times AASHTO's), 0.15 m in height. A design value is no measurement: it bounds
 tests, and a rigid wall should give at least AASHTO's. AASHTO's heights of TL-4 and TL-5 equal the
 rail's top, above any possible resultant on a wall of that height. Proposals of NCHRP 22-20(2) for the
-vehicles of MASH are known from memory, and are not judged.
+vehicles of MASH are shown as commonly reported. Their source is not at hand, and they are not judged.
 
 At 0.91 m the front of the 10-t truck acts at 0.52 m, and its rear at 0.72 m, 0.15 s later. The greater of the
 two forces is compared, at its own height.
@@ -46,7 +46,7 @@ def rows(task: str) -> list[Row]:
     result = simulation(fact).run()
     who, force = name_of(result.scene.vehicle), 1e3 * float(fact["force_kN"])
     own = float(result.metrics["peak_force_50ms"])
-    judged = fact["status"] != "from memory"
+    judged = fact["status"] != "source not at hand"
     found = [Row(task, who, "force over 50 ms", "N", force, *about(force, FORCE), own, judged=judged)]
     if fact["height_m"]:
         height = float(fact["height_m"])

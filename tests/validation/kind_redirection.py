@@ -14,12 +14,12 @@ from stand_in import name_of, stand_in
 NAME = "redirection"
 TITLE = "Oblique impact on walls and concrete barriers"
 TEXT = """Vehicles: the stand-in of the class with the test's mass. Barriers: rigid, fixed, friction 0.2. No
-measured force, exit angle or roll of these tests could be read in a source; forces are known from memory
-only and are printed apart. What can be judged: the change of momentum across the barrier when the vehicle
-has left it, or at the end of the run, over the momentum towards it, m v sin(angle). It is 1 + e with e from
-0 to 0.3 (the mark). Whether the vehicle is contained and stays upright, as in the tests (1: yes, 0: no), is
-known from memory too. The wall's own impulse is in the table of computed figures: tyres that press a
-vehicle on the wall add to it.
+measured force, exit angle or roll of these tests could be read in a source; forces as commonly
+reported, whose sources are not at hand, are printed apart. What can be judged: the change of momentum across
+the barrier when the vehicle has left it, or at the end of the run, over the momentum towards it, m v
+sin(angle). It is 1 + e, with a restitution e from 0 to 0.3 (the mark). Whether the vehicle is contained and
+stays upright (1: yes, 0: no) is compared with what is commonly reported of the tests. The wall's own impulse
+is in the table of computed figures: tyres that press a vehicle on the wall add to it.
 
 What the model can not do here: wheels do not steer. Where the front is crushed on the near side, straight
 wheels press a truck on the barrier, and it slides along for seconds. A near-side tread that climbs a sloped

@@ -248,8 +248,8 @@ OpenRadioss on a generic truck of 6,810 kg: a finite-element code's answer for a
 `tests/data/finite_element/truck_runs.csv` says what each number is. In brackets: the run. Bold: not within
 12 % of the travel, 15 % of the force, 20 kN s sideways on a post, 5 deg of pitch.
 The preset has another mass, height and length than this truck, and is not meant to be it. Three stresses of
-its front are fitted to travel and force (`tests/validation/fit_truck_preset.py`). With stresses from a rule
-of thumb it met one travel of five and no force, which was up to 65 % too large."""
+its front are fitted to travel, force, and the pitch on film (`tests/validation/fit_truck_preset.py`). With
+stresses from a rule of thumb it met one travel of five and no force, which was up to 65 % too large."""
 
 LEFT_OUT = """Fitted to the four others, from the same start. Only the wall at 25 deg tells of the tyres,
 and only posts of the indentation length. The fits were made before front wheels gave way and the front

@@ -86,6 +86,15 @@ CornerFace face_at(const ContactPass& pass, const ContactBlock& block, std::size
     return face;
 }
 
+// Is the place beside the k-th reachable obstacle, past an end where the next one begins? Then the next one's surface is there,
+// and the edge of that end is none.
+bool is_past_covered_end(const ContactPass& pass, const ContactBlock& block, std::size_t k,
+                         const Vec3& place) {
+    const auto* prism = std::get_if<Prism>(&pass.shape(block.reachable[k]));
+    return prism != nullptr &&
+           prism->is_past_covered_end(pass.near[block.reachable[k]].now.to_own(place).y());
+}
+
 // Was the node on the k-th reachable obstacle at the start of the step, at a face with this normal?
 bool stood_on(const ContactPass& pass, const ContactBlock& block, std::size_t k, const Vec3& normal,
               const Vec3& node) {
@@ -107,6 +116,7 @@ void add_faces_since_start(const ContactPass& pass, const ContactBlock& block, c
             if (corner.count == 0) corner.add(own);
             continue;
         }
+        if (is_past_covered_end(pass, block, k, node)) continue;
         const CornerFace face = face_at(pass, block, k, node, node);
         const bool was_on =
             std::abs(face.gap) <= tolerance::touching_gap || stood_on(pass, block, k, face.normal, node);

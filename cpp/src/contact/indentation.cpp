@@ -19,9 +19,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Did the post stand in front of the panel at the start of the step?
 bool stood_before(const ContactPass& pass, std::size_t k, std::size_t p) {
     const Panel& panel = pass.mesh.panel[p];
-    const Indentation then(std::get<Post>(pass.shape(k)), pass.near[k].before, panel,
-                           pass.mesh.indentation_length);
-    return then.beside(panel) < 0.0 && gap_of_panel(then, p, pass.mesh, pass.before, 0.0, 0.0) > 0.0;
+    const Indentation then = indentation_by(std::get<Post>(pass.shape(k)), pass.near[k].before, panel,
+                                            pass.mesh, pass.scene.settings);
+    return then.beside() < 0.0 && gap_of_panel(then, p, pass.mesh, pass.before, 0.0, 0.0) > 0.0;
 }
 
 // Does any node of the unit push on the obstacle?
@@ -49,8 +49,8 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
         const auto bit = static_cast<std::uint8_t>(1U << p);
         const bool indents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
         if (!panel.any || !can_indent(post, near.now, panel, indents)) continue;
-        const Indentation indentation(post, near.now, panel, mesh.indentation_length);
-        if (!indents && !(indentation.beside(panel) < 0.0)) continue;
+        const Indentation indentation = indentation_by(post, near.now, panel, mesh, pass.scene.settings);
+        if (!indents && !(indentation.beside() < 0.0)) continue;
         if (!indents && indentation.is_beyond(panel)) {
             now.passed |= bit;
             continue;
@@ -63,8 +63,8 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
         if (gap > 0.0) continue;
         if (indents || (!passed && (gap > -deepest || stood_before(pass, k, p)))) {
             now.panels |= bit;
-            list.push_back(
-                {k, p, indentation, Indentation(post, near.before, panel, mesh.indentation_length), growth});
+            list.push_back({k, p, indentation,
+                            indentation_by(post, near.before, panel, mesh, pass.scene.settings), growth});
         } else {
             now.passed |= bit;
         }
@@ -166,14 +166,25 @@ bool pushed_on_surface(const ContactPass& pass, const ContactBlock& block, std::
     return std::abs(nearest(pass.shape(k), pass.near[k].before.to_own(node)).gap) <= tolerance::touching_gap;
 }
 
-// Gaps to the nearest surface of the nodes that are in contact with it, else infinite. The gap alone does not tell: a
-// surface recedes from a node that pushes on it, by more in a longer step.
-void find_contact_gaps(const ContactPass& pass, const ContactBlock& block, BlockColumn& contact_gap) {
+// The surfaces that the nodes of a block are in contact with, by the names that follow_indentation gives them.
+struct HoldingSurfaces {
+    alignas(64) BlockColumn contact_gap, least_facing;
+};
+
+// Cosine of a surface's normal and a panel's direction above which the surface holds a node of the panel. The flank of another
+// post does so at any angle. A bumper slides along the ground below it, which does not hold it.
+constexpr double least_facing_post = -1.0, least_facing_other = 0.5;
+
+// The gap alone does not tell whether a node is in contact: a surface recedes from a node that pushes on it, by more in a longer
+// step.
+void find_holding_surfaces(const ContactPass& pass, const ContactBlock& block, HoldingSurfaces& held) {
     for (std::size_t i = 0; i < block_size; ++i) {
         const double gap = block.faces.gap[i];
         const bool touches =
             gap <= tolerance::touching_gap || (gap <= pass.margin && pushed_on_surface(pass, block, i));
-        contact_gap[i] = touches ? gap : infinity;
+        held.contact_gap[i] = touches ? gap : infinity;
+        const bool on_post = std::holds_alternative<Post>(pass.shape(block.reachable[block.nearest[i]]));
+        held.least_facing[i] = on_post ? least_facing_post : least_facing_other;
     }
 }
 
@@ -188,8 +199,9 @@ void omit_indented(const ContactPass& pass, std::size_t b, std::size_t k, Neares
 void follow_indentations(const ContactPass& pass, ContactBlock& block) {
     block.released.fill(0.0);
     if (block.indentations.empty()) return;
-    alignas(64) BlockColumn follows, rank, contact_gap;
-    find_contact_gaps(pass, block, contact_gap);
+    alignas(64) BlockColumn follows, rank;
+    HoldingSurfaces held;
+    find_holding_surfaces(pass, block, held);
     rank.fill(infinity);
     const BlockColumn& panel_of = pass.mesh.block[block.index].panel;
     for (const BlockIndentation& reached : block.indentations) {
@@ -199,7 +211,7 @@ void follow_indentations(const ContactPass& pass, ContactBlock& block) {
             continue;
         alignas(64) const BlockColumn gap = block.faces.gap;
         follow_indentation(indented.indentation, indented.before, *block.start, panel_of, indented.panel,
-                           contact_gap, block.faces, block.contact, rank, follows);
+                           held.contact_gap, held.least_facing, block.faces, block.contact, rank, follows);
         note_second(follows, gap, block.second_gap);
         note_released(follows, block.released);
         const auto reachable = std::find(block.reachable.begin(), block.reachable.end(), indented.near) -

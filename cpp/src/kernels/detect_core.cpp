@@ -24,9 +24,30 @@ double core_margin(const TrussMesh& mesh, const Twist& motion, double dt) {
                              motion.velocity.norm() + motion.angular_velocity.norm() * mesh.reach, dt);
 }
 
-void find_core_contacts(const TrussMesh& mesh, std::size_t body, const BodyState& state,
+namespace {
+
+// A truss is closed if what is left of its depth is at most this share of it, plus what one step can crush. Depths count along
+// the panel's axis: posts and walls push nodes along it, or along their trusses.
+constexpr double open_share = 0.1;
+
+// An anchor that gives way and lies deeper than this in an obstacle was passed while its truss was open (m).
+constexpr double passed_depth = 1e-3;
+
+bool is_closed(const TrussMesh& mesh, const TrussState& trusses, std::size_t b, std::size_t i, double reach) {
+    const TrussBlock& truss = mesh.block[b];
+    const TrussBlockState& now = trusses.block[b];
+    const Vec3& inward = mesh.panel[static_cast<std::size_t>(truss.panel[i])].inward;
+    const Vec3 anchor = anchor_of(truss, i), node(now.x[i], now.y[i], now.z[i]),
+               uncrushed(truss.node_x[i], truss.node_y[i], truss.node_z[i]);
+    return inward.dot(anchor - node) <= open_share * inward.dot(anchor - uncrushed) + reach;
+}
+
+}  // namespace
+
+void find_core_contacts(const Unit& unit, std::size_t body, const UnitState& state,
                         std::span<const PlacedShape> shapes, const Twist& motion, double dt,
                         std::vector<RigidContact>& contacts) {
+    const TrussMesh& mesh = unit.trusses;
     const auto relative = [&motion](const PlacedShape& shape) {
         return Twist{motion.velocity - shape.motion.velocity,
                      motion.angular_velocity - shape.motion.angular_velocity};
@@ -61,17 +82,23 @@ void find_core_contacts(const TrussMesh& mesh, std::size_t body, const BodyState
             if (at[i] == nullptr) continue;
             const std::size_t truss = mesh.first[b] + i;
             const Vec3 anchor = anchor_of(block, i), normal(nearest.nx[i], nearest.ny[i], nearest.nz[i]);
-            const double gap = nearest.gap[i];
+            double gap = nearest.gap[i];
             const Twist there = relative(*at[i]);
             const double approach = -normal.dot(there.velocity + there.angular_velocity.cross(anchor));
-            if (gap >= reach_within_step(mesh, there, std::max(0.0, approach), dt)) continue;
+            const double reach = reach_within_step(mesh, there, std::max(0.0, approach), dt);
+            if (gap >= reach) continue;
+            if (std::holds_alternative<Post>(*at[i]->shape) && unit.gives_way(anchor)) {
+                const bool passed = gap < -passed_depth;
+                if ((passed || at[i]->pushes) && !is_closed(mesh, state.trusses, b, i, reach)) continue;
+                if (passed) gap = 0.0;  // the anchor rests on the post where it is now
+            }
             RigidContact contact;
             contact.source = ContactSource::core;
             contact.index = truss;
             contact.obstacle = at[i]->obstacle;
             contact.body = body;
-            contact.arm = state.orientation * anchor;
-            contact.normal = state.orientation * normal;
+            contact.arm = state.body.orientation * anchor;
+            contact.normal = state.body.orientation * normal;
             contact.gap = gap;
             contact.compliance = tolerance::body_compliance;
             contact.friction = at[i]->friction;

@@ -6,8 +6,8 @@
 #include "birm3d/geometry/shape.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 #include "birm3d/model/vehicle.hpp"
-#include "birm3d/state/body_state.hpp"
 #include "birm3d/state/contacts.hpp"
+#include "birm3d/state/state.hpp"
 #include "geometry/placement.hpp"
 #include "state/rigid_contact.hpp"
 
@@ -19,7 +19,8 @@ struct PlacedShape {
     Placement placement;
     std::size_t obstacle = 0;
     double friction = 0.0;
-    Twist motion = {};  // of the obstacle, as a twist about the body's origin, body axes
+    Twist motion = {};    // of the obstacle, as a twist about the body's origin, body axes
+    bool pushes = false;  // on any node of the unit
 };
 
 // Distance within which an anchor can reach a surface in dt, in any direction (m); `motion` in body axes.
@@ -27,7 +28,11 @@ double core_margin(const TrussMesh& mesh, const Twist& motion, double dt);
 
 // Adds a contact for each anchor that is at the nearest of the surfaces or, as it now moves, will be within dt;
 // `motion` in body axes, contacts in world axes. Of obstacles that move too the relative motion counts.
-void find_core_contacts(const TrussMesh& mesh, std::size_t body, const BodyState& state,
+//
+// Anchors that no box of the rigid body holds give way to posts (`gives_way` of a vehicle file). Such an anchor is skipped while
+// its truss is open. For that a node must push on the post, or the anchor lie deeper than `passed_depth` in it. A post in the
+// bumper may stand where trusses of the fender are anchored: the bumper's trusses stop it there.
+void find_core_contacts(const Unit& unit, std::size_t body, const UnitState& state,
                         std::span<const PlacedShape> shapes, const Twist& motion, double dt,
                         std::vector<RigidContact>& contacts);
 

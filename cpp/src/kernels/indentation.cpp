@@ -21,14 +21,14 @@ constexpr double most_tilted = 0.5, overturned = 0.95;
 // A panel that slides along the end of the wall meets the edge as it meets any surface.
 constexpr double least_facing = 0.7, turned_away = 0.3;
 
-// Sideways force of the skin on a flank, relative to that on a frictionless wedge. Both are chosen by hand. For a post 0.1 to
-// 0.4 would do: with less, a pole 0.35 m off the middle gives less sideways than finite elements show. With more, posts at the
-// end of a bumper throw it aside. For the open side of an edge 1.2 to 1.6 would do: cars at 25 % overlap are pushed off as in
-// 150 tests. On the wall's side it is zero: the wall's face holds the skin there.
-constexpr double post_flank = 0.35, open_flank = 1.4;
+// Sideways force of the skin on a post's flank, relative to that on a frictionless wedge. It is chosen by hand; 0.1 to 0.4
+// would do. With less, a pole 0.35 m off the middle gives less sideways than finite elements show. With more, posts at the end
+// of a bumper throw it aside.
+constexpr double post_flank = 0.35;
 
-// `side`: 1 on the open side of an edge, -1 before its wall, 0 on the flank of a post.
-double flank_factor(double side) {
+// `side`: 1 on the open side of an edge, -1 before its wall, 0 on the flank of a post. Before the wall the factor is zero: the
+// wall's face holds the skin there.
+double flank_factor(double side, double open_flank) {
     return (1.0 - std::abs(side)) * post_flank + std::max(side, 0.0) * open_flank;
 }
 
@@ -59,7 +59,8 @@ BIRM3D_BLOCK_LOOP double furthest(const BlockColumn& panel_of, double panel, con
 
 }  // namespace
 
-Indentation::Indentation(const Post& post, const Placement& stands, const Panel& panel, double length_)
+Indentation::Indentation(const Post& post, const Placement& stands, const Panel& panel, double length_,
+                         double edge_flank_factor)
     : length(length_) {
     const Vec3 &e = panel.inward, o = stands.from_own(Vec3::Zero());
     const Vec3 axis_up = stands.direction_from_own(Vec3::UnitZ());
@@ -70,29 +71,31 @@ Indentation::Indentation(const Post& post, const Placement& stands, const Panel&
     wx = w.x(), wy = w.y(), wz = w.z();
     lx = l.x(), ly = l.y(), lz = l.z();
     ox = o.x(), oy = o.y(), oz = o.z();
-    // The middles of the edges at either side. Corners of the box would alternate with small rotations of the post.
-    Eigen::Index side = 0;
-    w.cwiseAbs().maxCoeff(&side);
-    const Vec3 edge = std::copysign(panel.box.half[side], w[side]) * Vec3::Unit(side);
-    const Vec3 middle = panel.box.center - o, least = middle - edge, most = middle + edge;
-    low = least.dot(w);
-    high = most.dot(w);
-    const double off = std::min(1.0, std::max({low, -high, 0.0}) / post.radius);
-    grip = 1.0 - off * off;
-    surface = middle.dot(e) - panel.box.half.dot(e.cwiseAbs());
-    tilt = stretch * leaning;
     radius = post.radius;
-    // A panel that ends before the edge's axis meets only its rounding. Then the edge counts as a post.
-    const double opens =
-        post.opens ? std::max(0.0, 1.0 - 2.0 * off) * open_side(w, stands, *post.opens) : 0.0;
-    flank_low = flank_factor(-opens);
-    flank_high = flank_factor(opens);
-    const Vec3 along_wall = post.opens ? direction_along_wall(stands, *post.opens) : Vec3(Vec3::Zero());
-    wall_e = e.dot(along_wall);
-    wall_w = w.dot(along_wall);
+    tilt = stretch * leaning;
     const double rim = std::sqrt(leaning * leaning + rounded * rounded);
     top = post.height * upright + radius * rim;
     top_rate = radius * leaning / rim - post.height * tilt;
+    surface = (panel.box.center - o).dot(e) - panel.box.half.dot(e.cwiseAbs());
+    const Box outline = post.opens ? panel.box : outline_at(panel, radius);
+    // The middles of the edges at either side. Corners of the box would alternate with small rotations of the post.
+    Eigen::Index side = 0;
+    w.cwiseAbs().maxCoeff(&side);
+    const Vec3 edge = std::copysign(outline.half[side], w[side]) * Vec3::Unit(side);
+    const Vec3 middle = outline.center - o, least = middle - edge, most = middle + edge;
+    low = least.dot(w);
+    high = most.dot(w);
+    bottom = middle.dot(l) - outline.half.dot(l.cwiseAbs());
+    const double off = std::min(1.0, std::max({low, -high, 0.0}) / post.radius);
+    grip = 1.0 - off * off;
+    // A panel that ends before the edge's axis meets only its rounding. Then the edge counts as a post.
+    const double opens =
+        post.opens ? std::max(0.0, 1.0 - 2.0 * off) * open_side(w, stands, *post.opens) : 0.0;
+    flank_low = flank_factor(-opens, edge_flank_factor);
+    flank_high = flank_factor(opens, edge_flank_factor);
+    const Vec3 along_wall = post.opens ? direction_along_wall(stands, *post.opens) : Vec3(Vec3::Zero());
+    wall_e = e.dot(along_wall);
+    wall_w = w.dot(along_wall);
     per_reach = 1.0 / length;
     per_stretch = upright;
     const double slope_there = steepest * upright, cosine = 1.0 / std::sqrt(1.0 + slope_there * slope_there);
@@ -100,8 +103,12 @@ Indentation::Indentation(const Post& post, const Placement& stands, const Panel&
     rise_there = stretch * radius * cosine;
 }
 
-double Indentation::beside(const Panel& panel) const {
-    const double bottom = (panel.box.center - foot()).dot(along()) - panel.box.half.dot(along().cwiseAbs());
+double Indentation::deepest_place(const Panel& panel) const {
+    const double at = (panel.box.center - foot()).dot(along()), half = panel.box.half.dot(along().cwiseAbs());
+    return stretch * radius + std::max(tilt * std::min(at - half, top), tilt * std::min(at + half, top));
+}
+
+double Indentation::beside() const {
     return std::max({low - radius, -radius - high, bottom - top});
 }
 
@@ -115,11 +122,7 @@ bool Indentation::is_beyond(const Panel& panel) const {
 
 // From the post's displacement, its flanks, and the growth of the slope.
 double Indentation::fastest_growth(const Panel& panel) const {
-    const Vec3 middle = panel.box.center - foot();
-    const double at = middle.dot(along()), half = panel.box.half.dot(along().cwiseAbs());
-    const double deepest =
-        stretch * radius + std::max(tilt * std::min(at - half, top), tilt * std::min(at + half, top));
-    return 2.0 + slope_at<double>(deepest - surface, per_reach).slope;
+    return 2.0 + slope_at<double>(deepest_place(panel) - surface, per_reach).slope;
 }
 
 bool can_indent(const Post& post, const Placement& stands, const Panel& panel, bool indents) {
@@ -179,7 +182,8 @@ double gap_of(const Indentation& indentation, const TrussBlockState& nodes, cons
 
 void follow_indentation(const Indentation& indentation, const Indentation& then, const TrussBlockState& nodes,
                         const BlockColumn& panel_of, std::size_t panel, const BlockColumn& contact_gap,
-                        NodeFaces& faces, BlockContact& contact, BlockColumn& rank, BlockColumn& follows) {
+                        const BlockColumn& least_facing, NodeFaces& faces, BlockContact& contact,
+                        BlockColumn& rank, BlockColumn& follows) {
     simd.find_indentation(
         indentation, then,
         {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), panel_of.data(),
@@ -187,7 +191,7 @@ void follow_indentation(const Indentation& indentation, const Indentation& then,
         {faces.gap.data(), faces.per_force.data(), faces.bx.data(), faces.by.data(), faces.bz.data(),
          contact.nx.data(), contact.ny.data(), contact.nz.data(), contact.px.data(), contact.py.data(),
          contact.pz.data(), contact.tx.data(), contact.ty.data(), contact.tz.data(), rank.data(),
-         follows.data(), contact_gap.data()});
+         follows.data(), contact_gap.data(), least_facing.data()});
 }
 
 double furthest_off(const TrussBlockState& nodes, const BlockColumn& panel_of, std::size_t panel,

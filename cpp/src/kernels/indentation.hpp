@@ -8,7 +8,8 @@
 //
 // The sheet beside a post is held by tension and shear. It goes in with the post, straight along e. It is not carried along
 // the panel, so that an indentation stays where it was made. The factor k scales the sideways displacement by the flank: 0.35
-// for a post, as the sheet's tension on one flank balances that on the other; 1.4 on the open side of a wall's edge, by tests.
+// for a post, as the sheet's tension on one flank balances that on the other; edge_flank_factor on the open side of a wall's
+// edge.
 // On the edge's other side the wall's face holds the skin. Once D has reached a node, its depth u follows the velocity v of
 // the post:
 //   du = g (1 - ds/dd |w - w*|) dv_e + g k sin(flank) dv_w
@@ -23,7 +24,12 @@
 //
 // A node follows the indentation while its truss pushes, also behind a post that has moved on along the panel. Beyond the
 // indentation's extent it is released, and what its truss stores is lost. Of several indentations the deepest one holds a
-// node. Skin slides on a post only along the panel: friction acts across e.
+// node. An indentation does not release a node that stands on the flank of another post. Skin slides on a post only along
+// the panel: friction acts across e.
+//
+// The width of a panel counts only nodes that are no deeper than one radius of the post behind its foremost node. A post that
+// misses the bumper does not indent it by meeting the wider body behind: it meets the nodes there as any surface does. For the
+// edge of a wall all nodes count, as the wall's face crushes what is deeper beside it.
 //
 // A post as wide as the panel acts as a wall does. The round post is cut off slightly above the highest place of its rim.
 // Where f falls more steeply than `steepest`, it falls with that slope.
@@ -43,9 +49,12 @@
 namespace birm3d {
 
 struct Indentation : IndentationNumbers {
-    Indentation(const Post& post, const Placement& stands, const Panel& panel, double length_);
+    // `edge_flank_factor`: see Settings.
+    Indentation(const Post& post, const Placement& stands, const Panel& panel, double length_,
+                double edge_flank_factor);
 
     double length;  // see with_indentation_length in Python (m)
+    double bottom;  // of the panel, along from the foot (m)
 
     Vec3 into() const { return {ex, ey, ez}; }
     Vec3 across() const { return {wx, wy, wz}; }
@@ -54,7 +63,10 @@ struct Indentation : IndentationNumbers {
 
     // Distance of the post beside or below the panel (m). Negative if part of the post is in front of, in or behind
     // the panel.
-    double beside(const Panel& panel) const;
+    double beside() const;
+
+    // Of the post over the panel, along `into` from the foot (m).
+    double deepest_place(const Panel& panel) const;
 
     // Is the whole post behind the panel, even if that is fully crushed?
     bool is_beyond(const Panel& panel) const;
@@ -81,11 +93,13 @@ double gap_of(const Indentation& indentation, const TrussBlockState& nodes, cons
 // A node that would be drawn into another surface does not follow: the post came past the panel's edge behind it.
 // `then`: the indentation at the start of the step. `follows`: 1 for nodes that follow, 2 for released ones, else 0.
 // `contact_gap`: to the surface in `faces`, of nodes that are in contact with it as the kernel is called; else infinite (m).
+// `least_facing`: cosine of that surface's normal and the panel's direction above which it holds the node.
 // `rank`: of the indentation that each node follows so far, at first infinite. Free nodes outside may be left
 // unchanged.
 void follow_indentation(const Indentation& indentation, const Indentation& then, const TrussBlockState& nodes,
                         const BlockColumn& panel_of, std::size_t panel, const BlockColumn& contact_gap,
-                        NodeFaces& faces, BlockContact& contact, BlockColumn& rank, BlockColumn& follows);
+                        const BlockColumn& least_facing, NodeFaces& faces, BlockContact& contact,
+                        BlockColumn& rank, BlockColumn& follows);
 
 // An indentation that is further than this from all nodes holds none of them (m). `gap`: to the nearest surface so
 // far.

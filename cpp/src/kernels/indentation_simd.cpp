@@ -119,11 +119,10 @@ BIRM3D_INLINE Packet outward_displacement(const Standing& now, const Standing& t
     return -0.5 * ((at_end.in + at_start.in) * in + (at_end.across + at_start.across) * across);
 }
 
-// Gap to another surface that stops the node from following the indentation; infinite if there is none. A surface
-// along which it slides, as the ground below a bumper, does not stop it.
+// Gap to another surface that stops the node from following the indentation; infinite if there is none.
 BIRM3D_INLINE Packet gap_of_holding_surface(const IndentationNumbers& d, const KnownFaces& known,
                                             std::size_t i) {
-    const Packet zero = 0.0, far = infinitely_far, faces = 0.5;
+    const Packet zero = 0.0, far = infinitely_far, faces = Packet::load(known.least_facing + i);
     const Packet along = d.ex * Packet::load(known.nx + i) + d.ey * Packet::load(known.ny + i) +
                          d.ez * Packet::load(known.nz + i);
     const Packet held = where_above(along, faces, Packet::load(known.contact_gap + i), far);

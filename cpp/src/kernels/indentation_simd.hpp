@@ -38,6 +38,8 @@ struct PanelNodes {
 struct KnownFaces {
     double *gap, *per_force, *bx, *by, *bz, *nx, *ny, *nz, *px, *py, *pz, *tx, *ty, *tz, *rank, *follows;
     const double* contact_gap;  // to the surface that a node is in contact with; infinite without one (m)
+    const double*
+        least_facing;  // cosine of its normal and the panel's direction above which it holds the node
 };
 
 // See follow_indentation.

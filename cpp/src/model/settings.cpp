@@ -21,6 +21,7 @@ void require_valid(const Settings& s) {
     require_within("braking", s.braking, 0.0, 1.0);
     require_positive("cornering_stiffness", s.cornering_stiffness);
     require_within("restitution", s.restitution, 0.0, 1.0);
+    require_not_negative("edge_flank_factor", s.edge_flank_factor);
 }
 
 }  // namespace birm3d

@@ -215,6 +215,7 @@ void TrussMesh::find_panels(const TrussInput& input) {
         if (!panel[p].any) continue;
         panel[p].box = box_around(nodes[p]);
         panel[p].anchors = box_around(anchors_of[p]);
+        panel[p].outlines = outlines_of(nodes[p], panel[p].inward);
     }
 }
 

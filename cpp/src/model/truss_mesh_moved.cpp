@@ -79,8 +79,13 @@ TrussMesh TrussMesh::moved(const Vec3& origin) const {
     }
     mesh.reach = std::sqrt(reach_2);
     mesh.anchors.center -= origin;
-    for (Panel& shifted : mesh.panel)
-        if (shifted.any) shifted.box.center -= origin, shifted.anchors.center -= origin;
+    for (Panel& shifted : mesh.panel) {
+        if (!shifted.any) continue;
+        shifted.box.center -= origin;
+        shifted.anchors.center -= origin;
+        for (Box& outline : shifted.outlines)
+            outline.center -= origin;
+    }
     return mesh;
 }
 

@@ -82,6 +82,13 @@ Unit::Unit(const RigidBody& body_, TrussMesh trusses_, std::vector<Wheel> wheels
     }
 }
 
+bool Unit::gives_way(const Vec3& anchor) const {
+    return !core.empty() && trusses.indentation_length > 0.0 &&
+           std::none_of(core.begin(), core.end(), [&](const Box& box) {
+               return ((anchor - box.center).cwiseAbs() - box.half).maxCoeff() <= tolerance::touching_gap;
+           });
+}
+
 bool stands_on_wheels(const Unit& unit) {
     if (unit.wheels.empty()) return false;
     const TrussMesh& mesh = unit.trusses;

@@ -63,12 +63,14 @@ void raise_to_ground(const Scene& scene, State& state) {
     move(state, -lowest * Vec3::UnitZ());
 }
 
-// A post indents a bowed front before it touches a node. Moves the vehicle back to before that.
+// Greatest depth of an indentation at the start (m). A deeper post has passed the panel's edge and is ignored.
+constexpr double deepest_start = 0.3;
+
+// Moves the vehicle back to before any post indents it.
 void stand_back(const Scene& scene, const Vec3& heading, State& state) {
-    constexpr double deepest = 0.3;
     constexpr int most_steps = 50;
     for (int i = 0; i < most_steps; ++i) {
-        const double overlap = overlap_of_indentations(scene, state, deepest);
+        const double overlap = overlap_of_indentations(scene, state, deepest_start);
         if (overlap == 0.0) return;
         move(state, -(overlap + tolerance::touching_gap) * heading);
     }
@@ -137,6 +139,8 @@ void place(const Scene& scene, const Vec3& heading, State& state) {
         move(state, free * heading);
         distance += free;
         if (std::abs(free) < tolerance::initial_overlap * 1e-3) break;
+        // A thin post would go on between columns of nodes.
+        if (overlap_of_indentations(scene, state, deepest_start) > 0.0) break;
     }
     if (distance <= longest) {
         stand_back(scene, heading, state);

@@ -35,6 +35,11 @@ std::vector<Bound> groups_by_gap(const Indentation& indentation, std::size_t pan
 
 }  // namespace
 
+Indentation indentation_by(const Post& post, const Placement& stands, const Panel& panel,
+                           const TrussMesh& mesh, const Settings& settings) {
+    return {post, stands, panel, mesh.indentation_length, settings.edge_flank_factor};
+}
+
 double gap_of_panel(const Indentation& indentation, std::size_t panel, const TrussMesh& mesh,
                     const UnitState& unit, double far, double enough) {
     double least = infinity;
@@ -75,8 +80,8 @@ void for_each_indentation(const Scene& scene, const UnitState& unit, const Truss
         for (std::size_t p = 0; p < panels; ++p) {
             const Panel& panel = mesh.panel[p];
             if (!panel.any || !can_indent(*post, in_shape, panel, false)) continue;
-            Indentation indentation(*post, in_shape, panel, mesh.indentation_length);
-            if (!(indentation.beside(panel) < distance) || indentation.is_beyond(panel)) continue;
+            Indentation indentation = indentation_by(*post, in_shape, panel, mesh, scene.settings);
+            if (!(indentation.beside() < distance) || indentation.is_beyond(panel)) continue;
             if (distance > 0.0) {
                 indentation.low = -infinity;
                 indentation.high = infinity;

@@ -6,6 +6,10 @@
 
 namespace birm3d {
 
+// The indentation of a panel by a post that stands there, seen from the body.
+Indentation indentation_by(const Post& post, const Placement& stands, const Panel& panel,
+                           const TrussMesh& mesh, const Settings& settings);
+
 // Least gap of the nodes of a panel from an indentation (m); infinite if all are further away than `far`. The search
 // stops at the first gap below `enough`.
 double gap_of_panel(const Indentation& indentation, std::size_t panel, const TrussMesh& mesh,

@@ -95,21 +95,21 @@ std::uint8_t indented_panels(const UnitState& unit, std::size_t obstacle) {
     return known != unit.indented.end() ? known->panels : std::uint8_t{0};
 }
 
-// Nodes of second trusses that push. Other such nodes do not count, as the first trusses' nodes are the skin.
-class PushingNodes {
+// Some points of a block. Each of the others is replaced by one of these.
+class SelectedPoints {
   public:
-    explicit PushingNodes(const TrussBlockState& block)
-        : box_(block.box), x_(block.x), y_(block.y), z_(block.z) {
-        const auto pushes = [](double force) { return force > 0.0; };
-        const auto first = std::find_if(block.force.begin(), block.force.end(), pushes);
-        any_ = first != block.force.end();
+    template <class Keep>
+    SelectedPoints(const Points& all, const Keep& keeps) : box_(all.box), x_(*all.x), y_(*all.y), z_(*all.z) {
+        std::size_t known = 0;
+        while (known < block_size && !keeps(known))
+            ++known;
+        any_ = known < block_size;
         if (!any_) return;
-        const auto known = static_cast<std::size_t>(first - block.force.begin());
         for (std::size_t n = 0; n < block_size; ++n) {
-            if (pushes(block.force[n])) continue;
-            x_[n] = block.x[known];
-            y_[n] = block.y[known];
-            z_[n] = block.z[known];
+            if (keeps(n)) continue;
+            x_[n] = x_[known];
+            y_[n] = y_[known];
+            z_[n] = z_[known];
         }
     }
     std::optional<Points> points() const {
@@ -136,7 +136,7 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
             const Placement in_shape = placement(pose_of(scene, i, state), unit.body);
             if (!within_reach(shape, in_shape, all, least)) continue;
             const std::uint8_t indented = indented_panels(unit, i);
-            std::optional<PushingNodes> pushing;
+            std::optional<SelectedPoints> selected;
             if (what.nodes)
                 least = nearest_in_blocks(
                     shape, in_shape, i == scene.ground ? mesh.shell_blocks : mesh.blocks,
@@ -145,15 +145,26 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
                         if ((mesh.panels_of[b] & indented) != 0) return std::nullopt;
                         if (b < mesh.skin_blocks || b >= mesh.shell_blocks)
                             return Points{block.box, &block.x, &block.y, &block.z};
-                        return pushing.emplace(block).points();
+                        // Nodes of second trusses count where they push, as the first trusses' nodes are the skin.
+                        return selected
+                            .emplace(Points{block.box, &block.x, &block.y, &block.z},
+                                     [&](std::size_t n) { return block.force[n] > 0.0; })
+                            .points();
                     },
                     least);
             if (!what.anchors) continue;
             least = nearest_in_blocks(
                 shape, in_shape, mesh.skin_blocks,
-                [&](std::size_t b) {
+                [&](std::size_t b) -> std::optional<Points> {
                     const TrussBlock& block = mesh.block[b];
-                    return Points{mesh.anchor_box[b], &block.anchor_x, &block.anchor_y, &block.anchor_z};
+                    const Points anchors{mesh.anchor_box[b], &block.anchor_x, &block.anchor_y,
+                                         &block.anchor_z};
+                    if (!std::holds_alternative<Post>(shape)) return anchors;
+                    const Unit& model = scene.vehicle->units[u];
+                    return selected
+                        .emplace(anchors,
+                                 [&](std::size_t n) { return !model.gives_way(anchor_of(block, n)); })
+                        .points();
                 },
                 least);
         }

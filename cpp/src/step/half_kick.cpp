@@ -28,6 +28,13 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Rounding of the gap of a tyre that stands on the ground (m).
 constexpr double rounding_gap = 1e-12;
 
+// Does the obstacle push on any node of the unit?
+bool pushes(const UnitState& unit, std::size_t obstacle) {
+    return std::any_of(unit.contact_loads.begin(), unit.contact_loads.end(), [=](const ContactLoad& load) {
+        return load.obstacle == obstacle && load.normal_force > 0.0;
+    });
+}
+
 // Lists in memory.contacts every rigid contact that is possible within the step, and the constraints of joints.
 void find_rigid_contacts(const Scene& scene, const State& state, double dt, const StepOptions& options,
                          KickMemory& memory) {
@@ -54,11 +61,12 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
             const Twist relative{motion.velocity - other.velocity,
                                  motion.angular_velocity - other.angular_velocity};
             if (within_reach(obstacle.shape, in_shape, anchors, core_margin(unit.trusses, relative, dt)))
-                placed.push_back({&obstacle.shape, in_shape, i, obstacle.friction, other});
+                placed.push_back(
+                    {&obstacle.shape, in_shape, i, obstacle.friction, other, pushes(state.units[u], i)});
         }
         if (placed.empty()) continue;
         const std::size_t first = contacts.size();
-        find_core_contacts(unit.trusses, u, body, placed, motion, dt, contacts);
+        find_core_contacts(unit, u, state.units[u], placed, motion, dt, contacts);
         for (std::size_t i = first; i < contacts.size(); ++i) {
             RigidContact& contact = contacts[i];
             contact.other = body_of_obstacle(scene, contact.obstacle);

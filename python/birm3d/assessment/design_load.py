@@ -26,13 +26,31 @@ from ..units import Quantity, si
 from .class_bands import Bands, Seen, bands_of, class_draws, governing_scenes, with_bands
 from .design_caution import barrier_caution, has_blow, merged, run_cautions
 from .design_table import DesignLoad, LoadScene
-from .element_design import ElementDesign, System, check_system, element_design, envelope, peak_filter
+from .element_design import (
+    ElementDesign,
+    System,
+    check_system,
+    element_design,
+    envelope,
+    peak_filter,
+)
+from .oscillator import LEAST_INTERVALS
 
-__all__ = ["DesignLoadInterrupted", "design_load", "looker", "with_vehicles"]
+__all__ = [
+    "ASSUMED",
+    "DesignLoadInterrupted",
+    "design_load",
+    "greatest_of_periods",
+    "looker",
+    "with_vehicles",
+]
 
 Floats = npt.NDArray[np.float64]
 
 _ASSUMED_PERIOD = 0.1  # s
+ASSUMED = f"The natural period of {_ASSUMED_PERIOD:g} s is assumed: give that of the element."
+"""Caution where no natural period was given."""
+_PERIODS, _POINTS = (0.03, 0.3), 31  # s: about a third to three times the period that is assumed
 _NO_BAND = " No band: "
 _MOST_OF_ONE_PULSE = 2.0  # no single pulse has a greater dynamic load factor
 
@@ -159,7 +177,7 @@ def design_load(
     failed: dict[int, str] = {}
     general = barrier_caution(barrier)
     if natural_period is None:
-        general.append(f"The natural period of {_ASSUMED_PERIOD:g} s is assumed: give that of the element.")
+        general.append(ASSUMED)
 
     def table() -> DesignLoad:
         runs = sorted(found)
@@ -185,7 +203,8 @@ def design_load(
             finished=len(found),
             quantile=quantile,
         )
-        load.caution = " ".join(dict.fromkeys([*general, *cautions, *_at_ends(load, varied)]))
+        beyond = _of_other_periods(load) if natural_period is None else ()
+        load.caution = " ".join(dict.fromkeys([*general, *beyond, *cautions, *_at_ends(load, varied)]))
         return load
 
     def banded(load: DesignLoad) -> DesignLoad:
@@ -307,6 +326,32 @@ def _system(
     system = System(float(period), float(ductility), float(damping))
     check_system(system, max(case.scene.settings.output_interval for case in cases))
     return system
+
+
+def _of_other_periods(load: DesignLoad) -> Iterator[str]:
+    """Yield what the governing element carries at other periods than the one that was assumed."""
+    found = greatest_of_periods(load)
+    if found is not None:
+        force, period = found
+        yield (
+            f"With another one from {_PERIODS[0]:g} to {_PERIODS[1]:g} s, {load.governing.name} carries up "
+            f"to {force / 1e3:,.0f} kN, at {period:.2g} s."
+        )
+
+
+def greatest_of_periods(load: DesignLoad) -> tuple[float, float] | None:
+    """Return the greatest equivalent static force of the governing element [N], and its period [s].
+
+    Over a third to three times the period that is assumed where none is given; ``None`` of one that nothing
+    touches, or where the rows are too far apart.
+    """
+    row = load.governing
+    if row.load is None or _PERIODS[0] < LEAST_INTERVALS * row.load.interval:
+        return None
+    periods = np.geomspace(*_PERIODS, _POINTS)
+    forces = load.spectrum(periods)
+    at = int(np.argmax(forces))
+    return float(forces[at]), float(periods[at])
 
 
 def _at_ends(load: DesignLoad, varied: Mapping[str, Sequence[float]]) -> Iterator[str]:

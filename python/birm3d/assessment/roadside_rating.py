@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import units
+from ..result.event import outcome_words
 from ..result.segment_motion import base_corners
 from .criteria import Criterion
 from .limits import FLAIL_LIMITS, THIV_LIMIT_KM_H, graded, severity_class
@@ -193,7 +194,9 @@ def _containment(result: Result, name: str) -> Criterion:
     """
     limit = "contained or redirected"
     if result.outcome != "undecided":
-        return Criterion(name, result.outcome, "", limit, result.outcome not in ("passed", "overridden"))
+        return Criterion(
+            name, outcome_words(result.outcome), "", limit, result.outcome not in ("passed", "overridden")
+        )
     barrier = result.scene.barrier
     assert barrier is not None  # check_side_on has refused None
     parts = [result.unit(i) for i in range(len(result.scene.vehicle.units))]
@@ -260,7 +263,7 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
     ]
     if light:
         rows += [
-            Criterion("F: upright", result.outcome, "", "not rolled over", upright),
+            Criterion("F: upright", outcome_words(result.outcome), "", "not rolled over", upright),
             Criterion("F: greatest roll", roll, "deg", f"{_MOST_ROLL:g} deg", roll <= _MOST_ROLL),
             Criterion("F: greatest pitch", pitch, "deg", f"{_MOST_ROLL:g} deg", pitch <= _MOST_ROLL),
             graded("H: OIV, longitudinal", risk.oiv_x, "m/s", limits.velocity),
@@ -270,7 +273,14 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
         ]
     else:
         rows += [
-            Criterion("G: upright", result.outcome, "", "preferable", None, "yes" if upright else "no"),
+            Criterion(
+                "G: upright",
+                outcome_words(result.outcome),
+                "",
+                "preferable",
+                None,
+                "yes" if upright else "no",
+            ),
             Criterion("greatest roll", roll, "deg", "", None),
         ]
     rows += [
@@ -290,7 +300,7 @@ def _european(result: Result, test: RoadsideTest, light: bool, intrusion: float)
     width = _working_width(result)
     rows: list[Criterion] = [
         _containment(result, "containment"),
-        Criterion("upright", result.outcome, "", "not rolled over", upright),
+        Criterion("upright", outcome_words(result.outcome), "", "not rolled over", upright),
         Criterion("greatest roll", roll, "deg", "", None),
         _box_row(exit_box(result, not light), judged=True),
     ]

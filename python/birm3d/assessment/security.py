@@ -2,8 +2,8 @@
 
 Masses and penetration classes of ASTM F2656, K and L levels and code strings are from public summaries of the
 standards and makers' certificates. IWA 14-1 measures from the front of the barrier, PAS 68 from its back
-(Heald, "What is IWA 14?"). Speed windows, tolerances of masses and reference points of the vehicles are from
-memory.
+(Heald, "What is IWA 14?"). Speed windows, tolerances of masses and reference points of the vehicles are
+as commonly reported: the standards are not at hand.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .. import units
+from ..result.event import outcome_words
 from .criteria import Criterion
 from .measures import barrier_extent, check_side_on, heading_rows, penetration_history
 from .rating import MODEL_CAUTION, Rating, first_reached
@@ -144,7 +145,7 @@ def rate_security(
         f"{vehicle.mass:,.0f} +-{vehicle.tolerance:g} kg",
         vehicle.weighs(result.scene.vehicle),
     )
-    became = Criterion("outcome", result.outcome, "", "", None, result.outcome_detail)
+    became = Criterion("outcome", outcome_words(result.outcome), "", "", None, result.outcome_detail)
     rate = {"levels": _astm, "K": _dos, "code": _code}[standard.style]
     designation, contained, rows = rate(result, standard, vehicle, found)
     rows = (*rows[:-1], *heading_rows(result, _HEAD_ON), rows[-1])

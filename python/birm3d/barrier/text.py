@@ -14,11 +14,15 @@ def barrier_text(barrier: Barrier | None) -> str:
     return "no barrier" if barrier is None else barrier.text
 
 
+_VARIED = {"free_standing": "its segments"}
+"""Number of a barrier -> what is varied with it, where the name does not say it."""
+
+
 def varied_barrier_text(barrier: Barrier | None, parameters: Iterable[str]) -> str:
     """Return :func:`barrier_text` of a study, which may vary the barrier or some of its numbers."""
     names = list(parameters)
     if "barrier" in names:
         return "several barriers"
     own = [name.removeprefix("barrier.") for name in names if name.startswith("barrier.")]
-    words = ", ".join(name.replace("_", " ") for name in own)
+    words = ", ".join(_VARIED.get(name, name.replace("_", " ")) for name in own)
     return barrier_text(barrier) + (f"; {words} varied" if own else "")

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from .parameters import unit_of_values
+
 __all__ = ["FittedParameter", "FittedTarget"]
 
 Floats = npt.NDArray[np.float64]
@@ -44,6 +46,11 @@ class FittedParameter:
     standard_error: float | None
     interval: tuple[float, float] | None
     reason: str | None
+
+    @property
+    def unit(self) -> str:
+        """SI unit of the values; ``""`` of a factor or a function."""
+        return unit_of_values(self.names, self.factor)
 
 
 @dataclass(frozen=True, eq=False)

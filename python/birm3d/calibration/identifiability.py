@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..base.shown_numbers import shown_value
 from .fit import Search
 from .problem import Problem
 
@@ -125,7 +126,9 @@ def analyse(search: Search, *, confidence: float, uncertainty: str, profiled: bo
         side = _side(point[k], gradient[k])
         if k not in reasons and side is not None:
             bound = parameter.lower if side == "lower" else parameter.upper
-            reasons[k] = f"at its {side} bound {bound:g}: the data would go on beyond it"
+            reasons[k] = (
+                f"at its {side} bound {shown_value(bound, parameter.unit)}: the data would go on beyond it"
+            )
 
     for k, (step, failure) in channel.blocked(point).items():
         # Downhill past the value, by a tenth of what its own standard error would bring.
@@ -270,12 +273,12 @@ def _other_optima(analysis: Analysis, search: Search) -> None:
         here, there = problem.parameters.from_unit(best.end), problem.parameters.from_unit(descent.end)
         for k in apart:
             label = problem.parameters.labels[k]
+            unit = problem.parameters.parameters[k].unit
+            ends = [shown_value(values[k], unit) for values in (here, there)]
             if climbed > _BARRIER * spread.factor:
-                reason = f"two optima of equal cost: {label} = {here[k]:.4g} or {there[k]:.4g}"
+                reason = f"two optima of equal cost: {label} = {ends[0]} or {ends[1]}"
             else:
-                reason = (
-                    f"flat valley: {label} = {here[k]:.4g} and {there[k]:.4g} and all between cost the same"
-                )
+                reason = f"flat valley: {label} = {ends[0]} and {ends[1]} and all between cost the same"
             analysis.reasons[k] = reason
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..base.shown_numbers import shown_value
 from .curve_target import CurveTarget
 from .evaluator import Evaluator
 from .fit import Search
@@ -107,7 +108,8 @@ def _interval(parameter: Parameter, share: float, half: float) -> tuple[float, f
 def _ends_at_bounds(fitted: list[FittedParameter]) -> list[str]:
     """Intervals that end at a bound: there it is the bound that ends them, not the data."""
     return [
-        f"the interval of {parameter.label} ends at its {side} bound {bound:g}, not by the data"
+        f"the interval of {parameter.label} ends at its {side} bound "
+        f"{shown_value(bound, parameter.unit)}, not by the data"
         for parameter in fitted
         if parameter.interval is not None
         for side, end, bound in zip(

@@ -12,15 +12,20 @@ import numpy.typing as npt
 
 from ..base.arguments import check_fields
 from ..base.checks import number, pair
-from ..simulation.parameters import quantity_of, value_of, varied
+from ..simulation.parameters import quantity_of, unit_of, value_of, varied
 from ..units import Quantity, si
 
 if TYPE_CHECKING:
     from ..simulation.simulation import Simulation
 
-__all__ = ["Parameter", "ParameterSet"]
+__all__ = ["Parameter", "ParameterSet", "unit_of_values"]
 
 Floats = npt.NDArray[np.float64]
+
+
+def unit_of_values(names: Sequence[str], factor: bool) -> str:
+    """Return the SI unit of a parameter that drives the numbers `names`; ``""`` of a factor or a function."""
+    return "" if factor or not names else unit_of(names[0])
 
 
 @dataclass(frozen=True)
@@ -130,6 +135,11 @@ class Parameter:
         if quantity is None:
             raise ValueError(f"{key} of {self.label} must be a number, got {value!r}")
         return si(f"{key} of {self.label}", value, quantity)
+
+    @property
+    def unit(self) -> str:
+        """SI unit of the value; ``""`` of a factor or a function."""
+        return unit_of_values(tuple(self.names), self.factor)
 
     @property
     def label(self) -> str:

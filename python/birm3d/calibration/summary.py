@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ..base.shown_numbers import plain_number, shown_unit
 from .record import CalibrationRecord
 
 __all__ = ["summary"]
@@ -43,30 +44,33 @@ def _head(result: CalibrationRecord) -> str:
 def _targets(result: CalibrationRecord) -> list[str]:
     rows = [("target", "points", "independent", "sigma", "rms left", "unit")]
     for target in result.targets:
-        low, high = target.sigma.min(), target.sigma.max()
-        sigma = f"{low:.4g}" if low == high else f"{low:.3g}..{high:.3g}"
+        size, unit = shown_unit(target.unit)
+        low, high = (plain_number(end / size, 3) for end in (target.sigma.min(), target.sigma.max()))
+        sigma = low if low == high else f"{low} .. {high}"
         label = target.label if target.simulation == 0 else f"{target.label} [{target.simulation}]"
         rows.append(
             (
                 label,
                 str(len(target.x)),
-                f"{target.independent_points:.4g}",
+                plain_number(target.independent_points),
                 sigma,
-                f"{target.rms:.4g}",
-                target.unit,
+                plain_number(target.rms / size, 3),
+                unit,
             )
         )
     return _table(rows)
 
 
 def _parameters(result: CalibrationRecord) -> list[str]:
-    rows = [("parameter", "start", "value", f"{100 * result.confidence:g} % interval", "")]
+    rows = [("parameter", "start", "value", f"{100 * result.confidence:g} % interval", "unit", "")]
     for parameter in result.parameters:
+        size, unit = shown_unit(parameter.unit)
+        start, value = (plain_number(number / size, 5) for number in (parameter.start, parameter.value))
         interval = "none"
         if parameter.interval is not None:
-            interval = f"{parameter.interval[0]:.5g} .. {parameter.interval[1]:.5g}"
+            interval = " .. ".join(plain_number(end / size, 5) for end in parameter.interval)
         remark = (parameter.reason or "").split(":")[0]
-        rows.append((parameter.label, f"{parameter.start:.5g}", f"{parameter.value:.5g}", interval, remark))
+        rows.append((parameter.label, start, value, interval, unit, remark))
     return _table(rows)
 
 
@@ -86,7 +90,7 @@ def _table(rows: Sequence[tuple[str, ...]]) -> list[str]:
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     return [
         "  ".join(
-            cell.ljust(width) if i in (0, len(row) - 1) else cell.rjust(width)
+            cell.ljust(width) if i == 0 or rows[0][i] in ("unit", "") else cell.rjust(width)
             for i, (cell, width) in enumerate(zip(row, widths, strict=True))
         ).rstrip()
         for row in rows

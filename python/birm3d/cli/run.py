@@ -120,13 +120,14 @@ def _print_outcome(result: Result) -> None:
     from rich.table import Table
 
     from ..scene.text import overlap_text
+    from ..vehicle.title import vehicle_text
 
     scene = result.scene
     table = Table(
         "outcome",
         "value",
         "unit",
-        title=f"{scene.vehicle.name}, {scene.vehicle.mass:,.0f} kg, {scene.impact_speed:.2f} m/s "
+        title=f"{vehicle_text(scene.vehicle)}, {scene.impact_speed:.2f} m/s "
         f"({scene.impact_speed / units.mph:.1f} mph) at {scene.impact_angle:g}°{overlap_text(scene)}",
         caption=f"{result.end_reason} after {result.time[-1] * 1e3:.0f} ms; {result.statistics.steps} steps "
         f"in {result.run_time * 1e3:.1f} ms of computing",

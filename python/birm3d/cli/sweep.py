@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import units
+from ..result.event import outcome_words
 from .files import CSV, STORE
 from .scene import scene_options, simulation_of
 from .table import print_table
@@ -242,18 +243,24 @@ def _print_runs(study: Study, metrics: Sequence[str]) -> None:
 def _print_summary(study: Study) -> None:
     from rich.table import Table
 
+    from ..study.counted import counted, is_count
+
     table = Table(
         *("metric", "runs", "mean", "standard deviation", "5 %", "median", "95 %"),
         title=f"{study.title}, {len(study)} random runs over {', '.join(study.parameters)}",
     )
     for name, row in study.summary().items():
+        if is_count(name):
+            continue
         deviation = "" if row.standard_deviation is None else _cell(row.standard_deviation)
         numbers = (_cell(value) for value in (row.p05, row.median, row.p95))
         table.add_row(_heading(study, name), str(row.n), _cell(row.mean), deviation, *numbers)
     print_table(table)
     counts = Table("outcome", "runs")
     for outcome, n in study.outcomes.items():
-        counts.add_row(outcome, str(n))
+        counts.add_row(outcome_words(outcome), str(n))
+    for one in counted(study):
+        counts.add_row(f"of any outcome, with {one.words}", str(one.runs))
     print_table(counts)
 
 

@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..result.event import outcome_words
 from ..result.summary import HEADLINES, headline_rows, shown_as
 from ..scene.text import scene_text
+from ..study.counted import counted, is_count
 
 if TYPE_CHECKING:
     from ..result.result import Result
@@ -58,7 +60,11 @@ def study_html(study: Study) -> str:
     from ..plotting.studies import plot_small
 
     rows = [("runs", f"{len(study):,}")]
-    rows += [(word, f"{count:,} ({count / len(study):.0%})") for word, count in study.outcomes.items()]
+    rows += [
+        (outcome_words(word), f"{count:,} ({count / len(study):.0%})")
+        for word, count in study.outcomes.items()
+    ]
+    rows += [(f"with {one.words}", f"{one.runs:,} ({one.runs / one.n:.0%})") for one in counted(study)]
     if study.failed:
         rows.append(("failed", f"{len(study.failed):,} (reasons in .failed)"))
     for name, values in list(study.parameters.items())[:_MOST_PARAMETERS]:
@@ -78,7 +84,8 @@ def text_html(text: str, figure: Any, name: str) -> str:
 
 def _spread_table(study: Study) -> str:
     summary = study.summary()
-    names = [name for name in HEADLINES if name in summary] or list(summary)
+    names = [name for name in HEADLINES if name in summary]
+    names = names or [name for name in summary if not is_count(name)]
     rows = []
     for name in names[:_MOST_METRICS]:
         found = summary[name]

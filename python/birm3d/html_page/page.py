@@ -15,10 +15,12 @@ from ..barrier.text import barrier_text
 from ..io.atomic_write import whole_file
 from ..result.crush_profile import Side, crushed_sides, side_words
 from ..result.element_loads import touched_elements
+from ..result.event import outcome_words
 from ..result.metrics import METRIC_UNITS
 from ..result.report import END_REASONS
 from ..result.summary import ELEMENT_COLUMNS, element_rows, outcome_rows
 from ..scene.text import scene_text
+from ..vehicle.title import vehicle_text
 from .notebook import figure_html
 from .page_data import page_data
 
@@ -125,7 +127,7 @@ def _scene_rows(result: Result) -> list[tuple[str, ...]]:
         else f"adaptive, tolerance {settings.tolerance:g}"
     )
     return [
-        ("vehicle", f"{vehicle.name}, {vehicle.mass:,.1f} kg, {vehicle.n_nodes:,} shell nodes"),
+        ("vehicle", f"{vehicle_text(vehicle, 1)}, {vehicle.n_nodes:,} shell nodes"),
         ("barrier", _barrier(scene.barrier)),
         ("impact speed", f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph)"),
         ("impact angle", f"{scene.impact_angle:g}° from the barrier's line"),
@@ -165,7 +167,7 @@ def _check_rows(result: Result) -> list[tuple[str, ...]]:
         good = metrics[name] <= limit
         rows.append((label, "✓ yes" if good else "✗ no", f"{limit:g}", f"{metrics[name]:.1e}"))
     decided = result.outcome != "undecided"
-    rows.append(("the outcome is decided", "✓ yes" if decided else "✗ no", "", result.outcome))
+    rows.append(("the outcome is decided", "✓ yes" if decided else "✗ no", "", outcome_words(result.outcome)))
     return rows
 
 

@@ -25,7 +25,7 @@ function replayPanel(box, data) {
   box.append(
     element("div", { className: "replay-tools" }, ...views, ...closer,
       element("label", {}, sees, " see through the barrier")),
-    element("div", { className: "replay-scale" }, "crush 0 ", bar, ` ${data.greatest.toFixed(2)} m`),
+    element("div", { className: "replay-scale" }, "moved 0 ", bar, ` ${data.greatest.toFixed(2)} m`),
     element("p", { className: "replay-note" },
       "Drag to turn, Shift and wheel or two fingers to zoom, double click to go back. Lines on the ground are 1 m apart."),
   );

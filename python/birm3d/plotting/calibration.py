@@ -10,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.interpolate import PchipInterpolator
 
+from ..base.shown_numbers import shown_unit
 from .figure import new_figure
-from .style import BLUE, DASHED, DOTTED, ORANGE, RED, legend, prepare, shown_unit
+from .style import BLUE, DASHED, DOTTED, ORANGE, RED, legend, prepare
 
 if TYPE_CHECKING:
     from ..calibration.fitted import FittedTarget
@@ -62,18 +63,18 @@ def plot_profiles(result: CalibrationResult) -> Figure:
     profiles = list(result.profiles.values())
     figure, panels = _panels(len(profiles))
     for axes, profile in zip(panels, profiles, strict=False):
+        size, unit = shown_unit(result[profile.name].unit)
         values, rise = smooth_profile(profile)
-        axes.plot(values, rise, BLUE, ls="-", lw=1.6, label="through the points")
-        axes.plot(
-            profile.values, np.maximum(profile.rise, 0.0), "o", color=BLUE, ls="none", ms=4, label="computed"
-        )
+        axes.plot(values / size, rise, BLUE, ls="-", lw=1.6, label="through the points")
+        computed = np.maximum(profile.rise, 0.0)
+        axes.plot(profile.values / size, computed, "o", color=BLUE, ls="none", ms=4, label="computed")
         axes.axhline(profile.threshold, color=RED, lw=1.0, ls="--", label="threshold")
         top = max(2.0 * profile.threshold, 1.05 * float(np.min([profile.rise.max(), 30.0])))
         axes.set_ylim(-0.03 * top, top)
         ends = [end for end in (profile.lower, profile.upper) if end is not None]
         for k, end in enumerate(ends):
-            axes.axvline(end, color=RED, lw=1.0, ls=":", label="_" if k else "ends of the interval")
-        axes.set_xlabel(profile.name)
+            axes.axvline(end / size, color=RED, lw=1.0, ls=":", label="_" if k else "ends of the interval")
+        axes.set_xlabel(f"{profile.name} [{unit}]" if unit else profile.name)
         axes.set_ylabel("rise of chi-square")
         legend([axes])
     return figure

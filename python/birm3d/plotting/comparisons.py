@@ -9,8 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..base.shown_numbers import shown_unit
 from .figure import new_figure
-from .style import BLUE, DASHED, RED, legend, prepare, shown_unit
+from .style import BLUE, DASHED, RED, legend, prepare
 
 if TYPE_CHECKING:
     from ..signals.compare import CurveComparison

@@ -103,6 +103,7 @@ def plot_crush(
     heights = field.height[nodes]
     above.set_ylim(float(heights.min()) - margin, float(heights.max()) + margin)
     figure.suptitle(title(result))
+    figure.draw_without_rendering()  # the map's equal scales move it, and with it the room for labels
     return figure
 
 

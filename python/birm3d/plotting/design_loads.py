@@ -85,6 +85,12 @@ def _bars(axes: Axes, loads: DesignLoad) -> None:
     for k, (name, label, color) in enumerate(columns):
         values = [getattr(row, name) / 1e3 for row in rows]
         axes.bar(place + 0.27 * (k - 1), values, 0.25, color=color, label=label)
+        for at, row in zip(place + 0.27 * (k - 1), rows, strict=True):
+            if name in row.band:
+                low, high = row.band[name]
+                axes.vlines(at, low / 1e3, high / 1e3, color="k", lw=1.0)
+    if any(row.band for row in rows):
+        axes.plot([], [], "k-", lw=1.0, label="80 % of the class")
     axes.set_xticks(place, [row.name for row in rows], fontsize="small")
     if len(rows) > 4:
         axes.tick_params("x", labelrotation=30)

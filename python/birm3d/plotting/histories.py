@@ -37,7 +37,7 @@ __all__ = ["plot_histories"]
 
 # SAE J211-1: vehicle structure and barrier forces, and what is integrated to an angle.
 _STRUCTURE, _INTEGRATED = 60, 180
-_AXES = (("r", BLUE), ("s", ORANGE), ("t", RED))
+_AXES = (("forward", BLUE), ("left", ORANGE), ("up", RED))
 
 
 def plot_histories(result: Result) -> Figure:
@@ -80,7 +80,7 @@ def plot_histories(result: Result) -> Figure:
     rates.set_title("Angular rates, body axes")
     rates.set_ylabel("angular rate [deg/s]")
     legend([rates])
-    angles.set_title("Angles")
+    angles.set_title("Angles, positive: right side down, nose down, to the left")
     at_least(angles, LEAST_ANGLE)
     angles.set_ylabel("angle [deg]")
     legend([angles])

@@ -52,7 +52,7 @@ def plot_result(result: Result) -> Figure:
         plot_filtered(
             force, result, result.barrier_normal_force / 1e3, 60, "barrier force along the normal", BLUE
         )
-    plot_filtered(slowing, result, deceleration, 60, "deceleration along r", RED, 1)
+    plot_filtered(slowing, result, deceleration, 60, "deceleration along the vehicle", RED, 1)
     force.set_ylabel("barrier force [kN]")
     slowing.set_ylabel("deceleration [g]")
     force.set_title("Barrier force, and deceleration of the mass centre")

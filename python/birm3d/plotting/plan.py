@@ -14,6 +14,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
+from ..result.event import outcome_words
 from ..result.segment_motion import base_corners
 from ..result.skin import Skin, skins_at
 from ..vehicle.silhouette import rings, silhouette
@@ -215,7 +216,7 @@ def _exit_box(axes: Axes, result: Result, plan: Callable[[Floats], Floats]) -> F
 
 def _outcome(result: Result) -> str:
     metrics = result.metrics
-    outcome = f"{result.outcome}: {result.outcome_detail}"
+    outcome = f"{outcome_words(result.outcome)}: {result.outcome_detail}"
     if "exit_angle" not in metrics:
         return outcome
     angle, separation = metrics["exit_angle"], metrics["time_of_separation"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -13,8 +14,10 @@ from ..barrier.text import barrier_text
 from ..result.history_channels import HISTORY_CHANNELS, checked_channels
 from ..scene.scene import Scene
 from ..scene.text import overlap_text
+from ..vehicle.title import vehicle_text
 from .figure import new_figure
 from .style import BLUE, CYCLE, LEAST_ANGLE, SOLID, at_least, legend, prepare
+from .time_axis import calm_from, shown_time
 
 if TYPE_CHECKING:
     from ..result.result import Result
@@ -23,11 +26,12 @@ if TYPE_CHECKING:
 __all__ = ["plot_history_bands", "plot_runs"]
 
 _MOST_RUNS = 8  # there are so many colours
+_LOADS = ("g", "kN")
 _THIN = 40  # at most so many runs are drawn as thin lines behind a band
 
 # Inputs that distinguish scenes, in the order of titles.
 _PARTS: Mapping[str, Callable[[Scene], str]] = {
-    "vehicle": lambda scene: f"{scene.vehicle.name}, {scene.vehicle.mass:,.0f} kg",
+    "vehicle": lambda scene: vehicle_text(scene.vehicle),
     "speed": lambda scene: f"{scene.impact_speed:.2f} m/s ({scene.impact_speed / units.mph:.1f} mph)",
     "angle": lambda scene: f"{scene.impact_angle:g}°{overlap_text(scene)}",
     "offset": lambda scene: f"offset {scene.impact_offset:g} m" if scene.impact_offset else "no offset",
@@ -64,9 +68,13 @@ def plot_runs(results: Sequence[Result], channels: Sequence[str], labels: Sequen
 def plot_history_bands(bands: HistoryBands) -> Figure:
     """Return the median and the band of each channel over time, some of the runs as thin lines behind.
 
-    The vertical ranges are those of the bands: single runs may leave them.
+    The vertical ranges are those of the bands: single runs may leave them. One run that slides on for
+    seconds makes all last so long: the figure ends where the bands of forces and decelerations get calm.
     """
     names = tuple(bands.median)
+    loads = [name for name in names if HISTORY_CHANNELS[name].unit in _LOADS]
+    courses = [np.maximum(np.abs(bands.low[name]), np.abs(bands.high[name])) for name in loads]
+    calm, whole = calm_from(bands.time, courses), float(bands.time[-1])
     figure, panels = _panels(names)
     ms = bands.time * 1e3
     step = -(-bands.n // _THIN)
@@ -80,11 +88,11 @@ def plot_history_bands(bands: HistoryBands) -> Figure:
             ms, bands.low[name] / size, bands.high[name] / size, color=BLUE, alpha=0.25, lw=0, label=band
         )
         axes.plot(ms, bands.median[name] / size, color=BLUE, ls=SOLID, lw=2.0, label="median")
-        low, high = float(bands.low[name].min()) / size, float(bands.high[name].max()) / size
+        _finish(axes, name)
+        shown = bands.time <= shown_time([axes], calm, whole)
+        low, high = float(bands.low[name][shown].min()) / size, float(bands.high[name][shown].max()) / size
         room = 0.08 * max(high - low, 1e-9)
         axes.set_ylim(low - room, high + room)
-        _finish(axes, name)
-        axes.set_xlim(0.0, float(ms[-1]))
         legend([axes])
     figure.suptitle(bands.title, fontsize="medium")
     return figure

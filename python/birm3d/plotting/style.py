@@ -40,7 +40,6 @@ __all__ = [
     "level_zeros",
     "plot_filtered",
     "prepare",
-    "shown_unit",
     "title",
 ]
 
@@ -63,7 +62,6 @@ DOTTED: Style = (0.0, (1.2, 2.0))
 STYLES = (SOLID, DASHED, DASH_DOT, DOTTED, SOLID, DASHED, SOLID, DASHED)
 # Earlier lines are wider: where a later one lies on them, they show on both sides and in its gaps.
 WIDTHS = (3.2, 2.0, 1.5, 1.8, 1.2, 1.2, 1.0, 1.0)
-_SHOWN_UNITS = {"N": (1e3, "kN"), "N m": (1e3, "kN m"), "J": (1e3, "kJ"), "N s": (1e3, "kN s")}
 # Of a legend's text: mean width of a letter, of a line sample with its gaps, and height of a row, points.
 _LETTER, _SAMPLE, _ROW = 4.7, 42.0, 13.5
 
@@ -73,11 +71,6 @@ def prepare(*panels: Axes) -> None:
     for axes in panels:
         axes.grid(alpha=0.3, lw=0.6)
         axes.set_prop_cycle(cycler(color=CYCLE) + cycler(linestyle=STYLES) + cycler(linewidth=WIDTHS))
-
-
-def shown_unit(unit: str) -> tuple[float, str]:
-    """Return by what numbers in an SI unit are divided for a picture, and the unit they have then."""
-    return _SHOWN_UNITS.get(unit, (1.0, unit))
 
 
 def title(result: Result) -> str:

@@ -10,11 +10,12 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..base.shown_numbers import shown_unit
 from ..result.metrics import METRIC_UNITS
 from ..simulation.parameters import unit_of
 from .figure import new_figure
 from .studies import axis_label
-from .style import BLUE, ORANGE, RED, legend, prepare, shown_unit
+from .style import BLUE, ORANGE, RED, legend, prepare
 
 if TYPE_CHECKING:
     from ..study.impact_point import CriticalImpactPoint

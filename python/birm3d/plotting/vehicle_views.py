@@ -12,6 +12,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Patch, Rectangle
 
+from ..vehicle.title import vehicle_text
 from .figure import new_figure
 from .style import RED, prepare
 
@@ -66,7 +67,7 @@ def plot_vehicle(vehicle: Vehicle) -> Figure:
     nodes = f"{unit.n_nodes:,} nodes, {unit.node_spacing * 1e3:.0f} mm apart"
     base = "" if vehicle.wheelbase is None else f", wheelbase {vehicle.wheelbase:.2f} m"
     figure.suptitle(
-        f"{vehicle.name}: {vehicle.mass:,.0f} kg, {size}{base}; {nodes}\n{_mass_text(unit)}",
+        f"{vehicle_text(vehicle)}, {size}{base}; {nodes}\n{_mass_text(unit)}",
         fontsize="medium",
     )
     met = [name for name in names if name in unit.zones_met]

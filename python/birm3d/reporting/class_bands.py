@@ -18,11 +18,12 @@ from ..result.metric_table import METRICS
 from ..result.result import Result
 from ..result.summary import HEADLINES, shown_as
 from ..simulation import Simulation
-from ..study.predict import Prediction
+from ..study.predict import Prediction, parameter_of
 from ..study.predict_and_look import predict_and_look
 from ..study.whole_runs import look_at_study
 from ..vehicle.class_scatter import joined
 from .blocks import Block, Caution, Table, Text
+from .shares import outcome_table
 
 __all__ = ["ClassBands", "band_of", "class_bands", "class_blocks", "headline_table"]
 
@@ -35,6 +36,7 @@ _PARTS = {
     "mass_center_height": "height of the mass centre",
     "barrier_friction": "friction of vehicle on barrier",
     "tire_friction": "friction of tyres on the ground",
+    "edge_flank": "sideways force at a wall's rounded edge",
 }
 _ROUNDING = 1e-6  # SI and degrees: values below are rounding errors
 _Z = 1.2816  # of the normal distribution, 80 %, two sides
@@ -92,7 +94,7 @@ def class_bands(
         warnings.simplefilter("ignore")  # of vehicles that are not this one; the caution counts them
         if prediction is None:
             if not any(unit.scatter for unit in result.scene.vehicle.units):
-                return f"the file of {result.scene.vehicle.name!r} does not say how its class scatters"
+                return "the vehicle's file does not say how its class scatters"
             simulation = Simulation.from_scene(result.scene)
             prediction, found, failed = predict_and_look(simulation, draws, look)
         else:
@@ -161,6 +163,8 @@ def class_blocks(result: Result, bands: ClassBands | str) -> Iterator[Block]:
     vehicle = result.scene.vehicle
     rows = []
     for name, one in joined([unit.scatter for unit in vehicle.units], vehicle.zones_met).items():
+        if parameter_of(name) not in predicted.drawn:
+            continue
         low, high = (one.median * math.exp(sign * _Z * one.log_sd) for sign in (-1.0, 1.0))
         rows.append((_PARTS[name], f"{one.median:.2f}", f"{low:.2f} to {high:.2f}"))
     head = ("quantity", "median factor on this vehicle's", "80 % of the class")
@@ -177,6 +181,7 @@ def class_blocks(result: Result, bands: ClassBands | str) -> Iterator[Block]:
         cells,
         numbers=True,
     )
+    yield outcome_table(predicted.study, "Outcomes of the vehicles of its class")
     yield Caution(predicted.caution)
 
 

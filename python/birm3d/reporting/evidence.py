@@ -11,6 +11,7 @@ from ..plotting.energies import plot_energies
 from ..plotting.figure import new_figure
 from ..plotting.style import prepare
 from ..result.energy_balance import ENERGY_LIMIT, MOMENTUM_LIMIT
+from ..result.event import outcome_words
 from ..result.summary import shown_as
 from .blocks import Block, Caution, Section, Table, Text
 from .figures import figure
@@ -206,7 +207,7 @@ def _criteria(case: Case) -> Iterator[tuple[str, str, str, str]]:
     )
     worst = max((error for *_, error in computing_error(case) if error is not None), default=0.0)
     yield "headline numbers with a hundredth of the tolerance", percent(worst), "1 %", verdict(worst <= 0.01)
-    yield "the outcome is decided", result.outcome, "", verdict(result.outcome != "undecided")
+    yield "the outcome is decided", outcome_words(result.outcome), "", verdict(result.outcome != "undecided")
     told = len(case.warnings)
     yield "warnings of the run", str(told), "none", "pass" if told == 0 else "see the section on warnings"
 

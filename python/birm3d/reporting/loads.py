@@ -16,6 +16,7 @@ from .study_case import Case
 
 __all__ = ["load_section", "loads_csv", "metrics_csv"]
 
+_IMPULSE = "Impulse: over the whole run, later contacts included."
 _RIGID = (
     "The barrier is rigid: it takes the greatest force that the vehicle can press it with. A barrier that "
     "gives way takes less force over a longer time. A peak after CFC 60 may last some milliseconds: design "
@@ -61,10 +62,9 @@ def _design_blocks(case: Case) -> list[Block]:
     if isinstance(loads, str):
         return [Text(f"Design loads are not computed: {loads}")]
     cells = [cells for row, cells in zip(loads.rows, loads._cells(), strict=True) if row.touched]
+    note = " ".join([*loads._legend(), loads.basis, _IMPULSE])
     return [
-        Table(
-            loads.title, loads._head(), cells, note=" ".join([*loads._legend(), loads.basis]), numbers=True
-        ),
+        Table(loads.title, loads._head(), cells, note=note, numbers=True),
         figure(loads.plot(), "Design loads: elements, histories of the governing one, response spectrum"),
         Caution(loads.caution),
         Items(links=(("Design loads with all digits, SI", "design_loads.csv"),)),

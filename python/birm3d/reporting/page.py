@@ -62,7 +62,7 @@ def page(case: Case, title: str | None, facts: Mapping[str, str], beside: Mappin
     assets = resources("birm3d.html_page")
     result = case.result
     return environment.get_template("dossier.html").render(
-        title=title if title is not None else f"Impact of {scene_text(result.scene)}",
+        title=title if title is not None else f"Impact: {scene_text(result.scene)}",
         scene="" if title is None else scene_text(result.scene),
         facts={name: value for name, value in facts.items() if value},
         version=result.version,
@@ -77,7 +77,10 @@ def page(case: Case, title: str | None, facts: Mapping[str, str], beside: Mappin
 def _motion_section(case: Case, interactive: bool) -> Section:
     result = case.result
     blocks: list[Block] = [
-        Replay("Replay, colours show the crush", replay_data(result, len(result.frames or ()) or 60)),
+        Replay(
+            "Replay, colours show how far the skin has moved on the body, in any direction",
+            replay_data(result, len(result.frames or ()) or 60),
+        ),
         figure(result.plot_histories(), "Histories; filtered channels state their class (SAE J211-1)"),
     ]
     crush = _crush(case)

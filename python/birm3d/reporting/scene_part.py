@@ -7,8 +7,11 @@ from typing import Any
 
 from .. import units
 from ..barrier.text import barrier_text
+from ..base.shown_numbers import shown_value
 from ..result.report import END_REASONS
+from ..simulation.zone_numbers import unit_of_number
 from ..vehicle import Vehicle
+from ..vehicle.title import kind_words, vehicle_text
 from ..vehicle.zone import LAW_NUMBERS
 from .blocks import Block, Caution, Section, Table, Text
 from .figures import figure
@@ -20,6 +23,8 @@ _ARRAYS = (
     "This vehicle was given as arrays: mass, inertia and stiffness of each truss by value. Nothing is known "
     "of the sources of its numbers."
 )
+
+_NO_SOURCE = "no source given"
 
 _QUANTITIES = {
     "mass_kg": "mass [kg]",
@@ -36,7 +41,7 @@ def scene_section(case: Case) -> Section:
     result = case.result
     scene = result.scene
     rows = [
-        ("vehicle", f"{scene.vehicle.name}, {scene.vehicle.mass:,.1f} kg"),
+        ("vehicle", vehicle_text(scene.vehicle, 1)),
         ("barrier", barrier_text(scene.barrier)),
         *_barrier_rows(case),
         (
@@ -51,7 +56,10 @@ def scene_section(case: Case) -> Section:
         ("ended", f"at {result.time[-1]:.4f} s: {END_REASONS[result.end_reason]}"),
     ]
     blocks: list[Block] = [
-        figure(result.plot_plan(), "Plan view of the trajectory"),
+        figure(
+            result.plot_plan(),
+            "Plan view of the trajectory; outlines from above, with what overhangs the barrier",
+        ),
         Table("Scene", ("", "value"), rows),
     ]
     return Section("Scene", "scene", blocks)
@@ -84,7 +92,7 @@ def _unit_blocks(unit: Vehicle) -> Iterator[Block]:
     file: Any = unit._file
     if file is not None:
         yield Text(f"{file.title}. {file.description}")
-    yield Table(f"{unit.name}: facts", ("", "value"), list(_facts(unit)))
+    yield Table(f"{unit.title}: facts", ("", "value", "source"), list(_facts(unit)))
     if file is None:
         yield Caution(_ARRAYS)
         return
@@ -95,24 +103,25 @@ def _unit_blocks(unit: Vehicle) -> Iterator[Block]:
                 f"{_plain(target.value)} ± {_plain(target.tolerance)}",
                 f"{target.at_gvw_kg:,.0f} kg",
                 target.status,
-                ", ".join(target.source),
+                ", ".join(target.source) or _NO_SOURCE,
             )
             for target in file.targets
         ]
         head = ("mass property", "value and band", "at a mass of", "status", "source")
         note = "The file's solids meet these bands."
-        yield Table(f"{unit.name}: mass properties and their bands", head, rows, note=note)
+        yield Table(f"{unit.title}: mass properties and their bands", head, rows, note=note)
     laws = {zone.name: zone for zone in file.zones}
+    laws.update({zone.along_name: zone.along for zone in file.zones if zone.along is not None})
     yield Table(
-        f"{unit.name}: stiffness zones",
+        f"{unit.title}: stiffness zones",
         ("zone", "law per unit of area", "status", "source"),
         [
-            (name.replace("_", " "), _law(law), *_remarks(laws.get(name), law != file.laws.get(name)))
+            (_zone_words(name), _law(law), *_remarks(laws.get(name), law != file.laws.get(name)))
             for name, law in unit.zones.items()
         ],
     )
     sources = [(source.id, source.text, source.status) for source in file.sources]
-    yield Table(f"{unit.name}: sources", ("id", "source", "status"), sources)
+    yield Table(f"{unit.title}: sources", ("id", "source", "status"), sources)
 
 
 def _plain(value: float) -> str:
@@ -122,44 +131,53 @@ def _plain(value: float) -> str:
 def _remarks(zone: Any, changed: bool) -> tuple[str, str]:
     """Return status and sources of a zone; of one that is not the file's that it was changed."""
     if zone is None:
-        return "", ""
+        return _NO_SOURCE, _NO_SOURCE
+    source = ", ".join(zone.source) or _NO_SOURCE
     if changed:
-        return "changed", f"scaled or set by the user; file: {', '.join(zone.source)}"
-    return zone.status, ", ".join(zone.source)
+        return "changed", f"scaled or set by the user; file: {source}"
+    return zone.status, source
 
 
-_SHOWN = {
-    "pressure per length": (1e6, "MPa/m"),
-    "pressure": (1e6, "MPa"),
-    "length": (1.0, "m"),
-    "force": (1e3, "kN"),
-    "number": (1.0, ""),
-}
-"""Quantity of a number of a law -> size in SI of the unit that the report shows, and that unit."""
+def _zone_words(name: str) -> str:
+    """Return a zone in words; ``door.along`` is the law of the door's panel in its own plane."""
+    zone, _, along = name.replace("_", " ").partition(".")
+    return f"{zone}, along the vehicle" if along else zone
 
 
 def _law(law: Any) -> str:
     parts = []
     for name, value in law.items():
         if name == "envelope":
-            points = ", ".join(f"{d:.4g} m: {stress / 1e6:.3g} MPa" for d, stress in value)
+            points = ", ".join(f"{d:.4g} m: {shown_value(stress, 'N per m^2', 3)}" for d, stress in value)
             parts.append(f"points {points}")
         elif value is not None:
-            row = LAW_NUMBERS[name]
-            size, unit = _SHOWN[row.quantity]
-            parts.append(f"{row.words} {value / size:.4g} {unit}".rstrip())
+            number = shown_value(value, unit_of_number(name, of_zone=True))
+            parts.append(f"{LAW_NUMBERS[name].words} {number}")
     return "; ".join(parts)
 
 
-def _facts(unit: Vehicle) -> Iterator[tuple[str, str]]:
-    yield "mass", f"{unit.mass:,.1f} kg"
+def _facts(unit: Vehicle) -> Iterator[tuple[str, str, str]]:
+    """Yield each fact with the identifiers of its sources."""
+    file: Any = unit._file
+    size = wheels = solids = _NO_SOURCE
+    if file is not None:
+        size = ", ".join(file.dimensions.source)
+        wheels, solids = _sources_of(file.wheels), _sources_of(file.solids)
+    given = file is not None and unit.mass == file.gvw_kg
+    yield "mass", f"{unit.mass:,.1f} kg", "stated in the vehicle's file" if given else "set by the user"
     if unit.kind is not None:
-        yield "kind", unit.kind.replace("_", " ")
+        yield "kind", kind_words(unit.kind), "stated in the vehicle's file"
     for name in ("length", "width", "height", "wheelbase", "track"):
-        size = getattr(unit, name)
-        if size is not None:
-            yield name, f"{size:.3f} m"
-    yield "mass centre above the ground", f"{unit.mass_center_height:.3f} m"
+        length = getattr(unit, name)
+        if length is not None:
+            yield name, f"{length:.3f} m", wheels if name == "track" else size
+    own = solids if unit._height is None else "set by the user"
+    yield "mass centre above the ground", f"{unit.mass_center_height:.3f} m", own
     inertia = ", ".join(f"{value:,.0f}" for value in unit.inertia.diagonal())
-    yield "roll, pitch, yaw inertia", f"{inertia} kg m²"
-    yield "skin", f"{unit.n_nodes:,} nodes, {unit.n_trusses:,} trusses, {len(unit.wheels)} wheels"
+    yield "roll, pitch, yaw inertia", f"{inertia} kg m²", solids
+    parts = f"{unit.n_nodes:,} nodes, {unit.n_trusses:,} trusses, {len(unit.wheels)} wheels"
+    yield "skin", parts, "meshed from the outline" if file is not None else _NO_SOURCE
+
+
+def _sources_of(blocks: Any) -> str:
+    return ", ".join(dict.fromkeys(one for block in blocks for one in block.source)) or _NO_SOURCE

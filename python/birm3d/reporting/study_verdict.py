@@ -6,17 +6,13 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 
 from ..assessment import RatingStudy
-from ..base.intervals import wilson
+from ..result.event import outcome_words
 from ..study import Study
 from .blocks import Table
+from .shares import cells_of_share, interval_of_share, share_of_runs, study_note
 from .study_case import Case, why_not_rated
 
-__all__ = ["cells_of_share", "share_of_runs", "study_answers", "study_note", "study_table"]
-
-_FINE = 400  # runs from which a tenth of a percent means something
-
-_INTERVAL_NOTE = "95 % intervals (Wilson) take the runs as independent random draws of the inputs."
-_GRID_NOTE = "The runs are a grid of chosen values. A share of them is no probability and has no interval."
+__all__ = ["study_answers", "study_table"]
 
 
 def study_answers(case: Case) -> Iterator[tuple[str, str]]:
@@ -29,7 +25,7 @@ def study_answers(case: Case) -> Iterator[tuple[str, str]]:
         failed = f"; {len(study) - ended} runs failed and are left out" if ended < len(study) else ""
         yield (
             f"What happens in the {len(study):,} runs of the study?",
-            f"{_shares(study, study.outcomes)}{failed}",
+            f"{_shares(study, {outcome_words(word): n for word, n in study.outcomes.items()})}{failed}",
         )
     rated = case.rating_study
     if rated is not None:
@@ -73,11 +69,6 @@ def study_table(case: Case) -> Table | None:
     )
 
 
-def study_note(study: Study) -> str:
-    """Return what shares of the runs and their intervals mean."""
-    return _INTERVAL_NOTE if study.grid is None else _GRID_NOTE
-
-
 def _of_speed(study: Study) -> str:
     """Return why a class is no property of the barrier alone, where the speed differs."""
     if "impact_speed" not in study.parameters:
@@ -85,30 +76,11 @@ def _of_speed(study: Study) -> str:
     return " Each run is rated at the level of its own speed, so a lower level may only mean a slower run."
 
 
-def share_of_runs(count: int, n: int) -> str:
-    """Return a share in percent, whole below 400 runs, finer where it would wrongly read 0 or 100 %."""
-    share = count / n
-    text = f"{share:.1%}" if n >= _FINE else f"{share:.0%}"
-    return f"{share:.2%}" if float(text[:-1]) in (0.0, 100.0) and 0 < count < n else text
-
-
-def cells_of_share(study: Study, count: int, n: int) -> tuple[str, str]:
-    """Return a share of the runs, and its interval where they are no grid, as two cells."""
-    text = f"{count:,} of {n:,}, {share_of_runs(count, n)}"
-    return text, "–" if study.grid is not None else _interval(count, n)
-
-
-def _interval(count: int, n: int) -> str:
-    digits = 1 if n >= _FINE else 0
-    low, high = (100.0 * end for end in wilson(count / n, n))
-    return f"{low:.{digits}f} to {high:.{digits}f}%"
-
-
 def _shares(study: Study, counts: Mapping[str, int]) -> str:
     n = sum(counts.values())
     parts = []
     for name, count in sorted(counts.items(), key=lambda one: -one[1]):
-        interval = f" (95 % interval {_interval(count, n)})" if study.grid is None else ""
+        interval = f" (95 % interval {interval_of_share(count, n)})" if study.grid is None else ""
         parts.append(f"{name} in {count:,} of {n:,}, {share_of_runs(count, n)}{interval}")
     return "; ".join(parts)
 

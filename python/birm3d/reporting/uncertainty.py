@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from .. import units
-from ..plotting.style import shown_unit
+from ..base.shown_numbers import shown_unit
 from ..result.metrics import METRIC_UNITS
 from ..result.summary import HEADLINES, shown_as
 from ..study import Study
@@ -17,8 +17,8 @@ from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import class_blocks
 from .figures import figure
 from .numbers import percent
+from .shares import cells_of_share, outcome_table, study_note
 from .study_case import Case
-from .study_verdict import cells_of_share, study_note
 
 __all__ = ["computing_error", "uncertainty_section"]
 
@@ -96,16 +96,12 @@ def _study_blocks(case: Case, study: Study) -> Iterator[Block]:
         size, unit = shown_unit(study.units.get(name, ""))
         if values.dtype.kind == "f":
             low, high = float(np.min(values)) / size, float(np.max(values)) / size
-            rows.append((name.replace("_", " "), f"{low:.5g} to {high:.5g}", unit))
+            rows.append((_input_words(name), f"{low:.5g} to {high:.5g}", unit))
         else:
             kinds = ", ".join(dict.fromkeys(str(value) for value in values.tolist()))
-            rows.append((name.replace("_", " "), kinds, unit))
+            rows.append((_input_words(name), kinds, unit))
     yield Table("Inputs of the study", ("input", "range", "unit"), rows)
-    done = sum(study.outcomes.values())
-    counts = [(word, *cells_of_share(study, n, done)) for word, n in study.outcomes.items()]
-    yield Table(
-        "Outcomes of the study", ("outcome", "runs", "95 % interval"), counts, study_note(study), numbers=True
-    )
+    yield outcome_table(study, "Outcomes of the study")
     yield _percentiles(case, study)
     yield from _bands(study)
     if case.rating_study is not None:
@@ -123,6 +119,12 @@ def _study_blocks(case: Case, study: Study) -> Iterator[Block]:
             note=f"{n:,} of {len(study):,} runs were rated. {study_note(study)}",
             numbers=True,
         )
+
+
+def _input_words(name: str) -> str:
+    """Return a parameter in words: ``barrier.friction`` is the friction of the barrier."""
+    group, _, number = name.replace("_", " ").rpartition(".")
+    return f"{group.replace('.', ' ')}: {number}" if group else number
 
 
 def _bands(study: Study) -> Iterator[Block]:

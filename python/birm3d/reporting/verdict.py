@@ -9,9 +9,12 @@ from statistics import median
 
 from ..assessment import DesignLoad, ElementDesign, OccupantRisk, Rating
 from ..assessment.criteria import Criterion
+from ..assessment.design_load import ASSUMED, greatest_of_periods
 from ..assessment.rating import MODEL_CAUTION
 from ..result.element_loads import touched_elements
+from ..result.event import outcome_words
 from ..result.summary import shown_as
+from ..vehicle.title import kind_words
 from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import band_of, headline_table
 from .given_tests import Compared, errors
@@ -24,6 +27,7 @@ __all__ = ["criteria_table", "risk_section", "verdict_section"]
 
 _ALL_ALIKE = 4  # vehicle, barrier, speed, angle
 _HEAVY = 3500.0  # kg; from here on MASH and EN 1317 do not judge what occupants undergo
+_KNOWS = " knows: "  # in the error of a standard that does not know the vehicle
 _NO_BARRIER = "There is no barrier in this scene: nothing is rated."
 
 
@@ -45,7 +49,7 @@ def verdict_section(case: Case) -> Section:
     if table is not None:
         blocks.append(table)
     if case.not_rated:
-        rows = [(name, reason.partition("; got ")[0]) for name, reason in case.not_rated.items()]
+        rows = [(name, _reason(case, reason)) for name, reason in case.not_rated.items()]
         blocks.append(Table("Standards that do not rate this run", ("standard", "why"), rows))
     if case.ratings:
         own = (f"{one.standard}: {one.caution.replace(MODEL_CAUTION, '').strip()}" for one in case.ratings)
@@ -78,7 +82,7 @@ def _with_bands(table: Table, bands: Sequence[tuple[str, str, str, str, str]]) -
 
 def _glance(case: Case) -> Iterator[tuple[str, str]]:
     result = case.result
-    yield "What happens to the vehicle?", f"{result.outcome}: {result.outcome_detail}"
+    yield "What happens to the vehicle?", f"{outcome_words(result.outcome)}: {result.outcome_detail}"
     for rating in case.ratings:
         contained = "contained" if rating.contained else "NOT contained"
         yield (
@@ -86,6 +90,8 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
             f"{rating.designation} (vehicle {rating.vehicle_class}); {contained}, "
             f"{_penetration(rating)}{_chances(case, rating.standard)}",
         )
+    if result.scene.barrier is not None and not case.ratings:
+        yield "Rating, indicative", "none: " + "; ".join(_why_none(case))
     yield from study_answers(case)
     loads = touched_elements(result.element_loads)
     if loads:
@@ -98,7 +104,7 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         )
     if isinstance(case.design_loads, DesignLoad) and loads:
         row, period = case.design_loads.governing, case.design_loads.natural_period
-        assumed = " (assumed)" if "is assumed" in case.design_loads.caution else ""
+        assumed = _assumed(case.design_loads)
         yield (
             "What does its foundation have to carry?",
             f"{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
@@ -119,8 +125,32 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         values = "1 value that was" if len(found) == 1 else f"{len(found)} values that were"
         told.append(f"median error {median(map(abs, found)):.0%} in {values} not fitted")
         told += [f"{one.test.name}, {_quantity(one)}: {one.error:+.0%}" for one in _twins(case.tests)]
+    if told and not any({"vehicle", "barrier"} <= set(one.alike) for one in case.tests):
+        told.append("none of these tests has both this kind of vehicle and this kind of barrier")
     if told:
         yield "How well does the model do in given tests nearby?", "; ".join(told)
+
+
+def _kind(case: Case) -> str:
+    """Return kind and mass of the vehicle, by which standards know it."""
+    vehicle = case.result.scene.vehicle
+    return f"{kind_words(vehicle.kind or 'vehicle')} of {vehicle.mass:,.0f} kg"
+
+
+def _why_none(case: Case) -> Iterator[str]:
+    """Yield why no standard rates the run."""
+    unknown = [name for name, reason in case.not_rated.items() if _KNOWS in reason]
+    if unknown:
+        yield f"{_kind(case)} is no test vehicle of {', '.join(unknown)}"
+    yield from (f"{name}, see below" for name in case.not_rated if name not in unknown)
+    if not case.not_rated:
+        yield "no standard was asked for"
+
+
+def _reason(case: Case, reason: str) -> str:
+    """Return why a standard does not rate the run, without the argument that its error names."""
+    text, _, vehicles = _without_value(reason).partition(_KNOWS)
+    return f"it knows no {_kind(case)}, but {kind_words(vehicles)}" if vehicles else text
 
 
 def _twins(tests: Sequence[Compared]) -> list[Compared]:
@@ -163,6 +193,16 @@ def _load_band(case: Case) -> str:
     if isinstance(case.bands, str) or name not in case.bands.prediction.low:
         return ""
     return f"; 80 % of the class: {band_of(case.bands, name, 1e3, ',.0f')} kN on the most loaded element"
+
+
+def _assumed(loads: DesignLoad) -> str:
+    """Return that the period is assumed, and what another one may ask for."""
+    if ASSUMED not in loads.caution:
+        return ""
+    found = greatest_of_periods(loads)
+    return (
+        " (assumed)" if found is None else f" (assumed; up to {found[0] / 1e3:,.0f} kN at {found[1]:.2g} s)"
+    )
 
 
 def _design_band(row: ElementDesign) -> str:
@@ -217,8 +257,12 @@ def risk_section(case: Case) -> Section:
         if strike is None
         else (f"The occupant strikes the compartment {strike * 1e3:.1f} ms after the first touch.")
     )
+    heavy = (
+        "MASH and EN 1317 do not judge this for so heavy a vehicle: limits are those for cars and pickups."
+    )
     blocks: list[Block] = [
         Text(when),
+        *([Caution(heavy)] if case.result.scene.vehicle.mass >= _HEAVY else []),
         _risk_table(case, case.risk),
         *(Text(text) for text in case.risk.missing),
         Caution(CAUTION),

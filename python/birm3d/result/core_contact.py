@@ -33,13 +33,13 @@ def core_complaints(scene: Scene, statistics: _core.StepStatistics) -> Iterator[
     force = statistics.core_contact_force
     limit = scene.vehicle.mass * units.g(1.0)
     if force > limit:
-        text = partial(_text, scene.vehicle.name, limit, force, statistics.core_contact_time)
+        text = partial(_text, scene.vehicle.title, limit, force, statistics.core_contact_time)
         yield Complaint(CoreContactWarning, "core_contact_force", force, text)
 
 
-def _text(name: str, limit: float, force: float, time: float) -> str:
+def _text(title: str, limit: float, force: float, time: float) -> str:
     return (
-        f"core_contact_force must be at most {1e-3 * limit:,.0f} kN, the weight of {name!r}, got "
+        f"core_contact_force must be at most {1e-3 * limit:,.0f} kN, the vehicle's weight ({title}), got "
         f"{1e-3 * force:,.0f} kN as a mean over 50 ms until {time:.3f} s: the barrier met what "
         "is not crushed, and peaks of force and deceleration are those of a blow between rigid bodies"
     )

@@ -36,10 +36,16 @@ from typing import Any
 from .metrics import METRIC_UNITS, compute_metrics
 from .record import RunRecord
 
-__all__ = ["DECIDED", "OUTCOMES", "Metrics", "metrics_of", "outcome_detail"]
+__all__ = ["DECIDED", "OUTCOMES", "Metrics", "metrics_of", "outcome_detail", "outcome_words"]
 
 OUTCOMES = ("stopped", "redirected", "passed", "overridden", "rolled_over", "undecided")
 """All words that :attr:`birm3d.Result.outcome` may be."""
+
+
+def outcome_words(outcome: str) -> str:
+    """Return an outcome as texts have it: ``"rolled over"``."""
+    return outcome.replace("_", " ")
+
 
 DECIDED = ("separated", "stopped", "sliding")
 """Ends of a run at which nothing can change any more; see :data:`birm3d.result.report.END_REASONS`."""

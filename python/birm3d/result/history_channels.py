@@ -69,7 +69,7 @@ def _travel(result: RunRecord) -> Floats:
 
 HISTORY_CHANNELS = FrozenMapping(
     {
-        "deceleration": HistoryChannel("deceleration along r, CFC 60", "g", units.g, _deceleration),
+        "deceleration": HistoryChannel("deceleration along the vehicle, CFC 60", "g", units.g, _deceleration),
         "barrier_force": HistoryChannel("barrier force, normal, CFC 60", "kN", units.kN, _barrier_force),
         "velocity": HistoryChannel("velocity along the path", "m/s", 1.0, _velocity),
         "travel": HistoryChannel("travel along the path", "m", 1.0, _travel),

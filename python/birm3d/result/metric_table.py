@@ -34,6 +34,7 @@ class Shown(NamedTuple):
     size: float = 1.0
     headline: bool = False  # whether a run or a study is judged by it first
     listed: bool = True  # whether the tables of a run list it; others show it where it is asked for
+    counted: str = ""  # of a count: what tables of several runs call a run in which it is above 0
 
 
 class Metric(NamedTuple):
@@ -86,12 +87,12 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
         "peak_deceleration": Metric(
             *("m/s^2", "motion", "greatest deceleration along r, unfiltered", "motion"),
             *(lambda run: run.motion.deceleration, "run"),
-            shown=_asked("peak deceleration along r, unfiltered", "g", units.g),
+            shown=_asked("peak deceleration along the vehicle, unfiltered", "g", units.g),
         ),
         "peak_deceleration_cfc60": Metric(
             *("m/s^2", "motion", "the same after CFC 60", "filtered_deceleration"),
             *(lambda run: run.extremes.filtered_deceleration, "run"),
-            shown=Shown("peak deceleration along r, CFC 60", ".1f", "g", units.g, headline=True),
+            shown=Shown("peak deceleration along the vehicle, CFC 60", ".1f", "g", units.g, headline=True),
         ),
         "peak_normal_force": Metric(
             "N",
@@ -278,7 +279,11 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
             "changes none of the values at separation",
             "end",
             lambda run: float(run.event.later_contacts),
-            shown=Shown("later contacts, which count for nothing above", ".0f"),
+            shown=Shown(
+                "later contacts, which count for nothing above",
+                ".0f",
+                counted="a later contact, which counts for nothing here",
+            ),
         ),
         "wheel_climb": Metric(
             "m",

@@ -41,6 +41,6 @@ def _text(scene: Scene, statistics: _core.StepStatistics) -> str:
     element = scene.barrier.element_names[statistics.greatest_overlap_element]
     return (
         f"contact_overlap must be at most {OVERLAP_LIMIT:g} m, got {statistics.greatest_overlap:.2f} m: at "
-        f"{statistics.greatest_overlap_time:.3f} s the rigid body of {scene.vehicle.name!r} was inside "
-        f"{element!r}; a finer mesh (with_mesh_density) or with_indentation_length holds it"
+        f"{statistics.greatest_overlap_time:.3f} s the vehicle's rigid body ({scene.vehicle.title}) was "
+        f"inside {element!r}; a finer mesh (with_mesh_density) or with_indentation_length holds it"
     )

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 from .. import units
 from ..barrier.text import barrier_text
 from ..scene.text import overlap_text
+from ..vehicle.title import vehicle_text
 from .core_contact import core_lines
 from .element_loads import touched_elements
+from .event import outcome_words
 from .omitted import omitted_lines
 
 if TYPE_CHECKING:
@@ -33,8 +35,8 @@ def report(result: RunAnalysis) -> str:
     scene, settings, statistics = result.scene, result.scene.settings, result.statistics
     vehicle, metrics = scene.vehicle, result.metrics
     lines = [
-        f"{result.outcome}: {result.outcome_detail}",
-        f"{vehicle.name}, {vehicle.mass:.1f} kg, {vehicle.n_nodes} shell nodes, {len(vehicle.wheels)} wheels",
+        f"{outcome_words(result.outcome)}: {result.outcome_detail}",
+        f"{vehicle_text(vehicle, 1)}, {vehicle.n_nodes} shell nodes, {len(vehicle.wheels)} wheels",
         *(f"  assumed: {one.text}" for unit in vehicle.units for one in unit.assumptions),
         f"{scene.impact_speed:.3f} m/s ({scene.impact_speed / units.mph:.1f} mph) "
         f"at {scene.impact_angle:g} deg{overlap_text(scene)} "

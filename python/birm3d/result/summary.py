@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .element_loads import touched_elements
+from .event import outcome_words
 from .metric_table import GROUPS, METRICS
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def outcome_rows(result: RunAnalysis) -> list[tuple[str, str, str]]:
     """Return label, value and unit: the outcome, then the scalars that a run has."""
     metrics = result.metrics
     return [
-        ("outcome", result.outcome, ""),
+        ("outcome", outcome_words(result.outcome), ""),
         ("", result.outcome_detail, ""),
         *(
             (shown.label, format(metrics[name] / shown.size, shown.form), shown.unit)

@@ -6,20 +6,29 @@ from typing import TYPE_CHECKING
 
 from .. import units
 from ..barrier.text import barrier_text
+from ..vehicle.title import vehicle_text
 
 if TYPE_CHECKING:
     from .scene import Scene
 
-__all__ = ["overlap_text", "scene_text"]
+__all__ = ["impact_text", "overlap_text", "scene_text"]
 
 
 def scene_text(scene: Scene, separator: str = ": ") -> str:
     """Return vehicle, mass, speed and angle, and after the separator kind, count and sizes of the barrier."""
-    speed = f"{scene.impact_speed:.2f} m/s ({scene.impact_speed / units.mph:.1f} mph)"
-    head = f"{scene.vehicle.name}, {scene.vehicle.mass:,.0f} kg, {speed}"
     if scene.barrier is None:
-        return f"{head}, no barrier"
-    return f"{head} at {scene.impact_angle:g}°{overlap_text(scene)}{separator}{barrier_text(scene.barrier)}"
+        return f"{_head(scene)}, no barrier"
+    return f"{impact_text(scene)}{separator}{barrier_text(scene.barrier)}"
+
+
+def impact_text(scene: Scene) -> str:
+    """Return vehicle, mass, speed and angle."""
+    return f"{_head(scene)} at {scene.impact_angle:g}°{overlap_text(scene)}"
+
+
+def _head(scene: Scene) -> str:
+    speed = f"{scene.impact_speed:.2f} m/s ({scene.impact_speed / units.mph:.1f} mph)"
+    return f"{vehicle_text(scene.vehicle)}, {speed}"
 
 
 def overlap_text(scene: Scene) -> str:

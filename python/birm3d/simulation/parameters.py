@@ -207,8 +207,14 @@ def varied(simulation: Simulation, changes: Mapping[str, Any]) -> Simulation:
     ------
     ValueError
         If a name is unknown or a value is out of range; the message names it.
+    MassWarning
+        As a warning, if the vehicle's class can not have the ``vehicle.gvw`` given.
     """
-    return Simulation.from_scene(varied_scene(simulation.scene, changes))
+    scene = varied_scene(simulation.scene, changes)
+    usual = scene.vehicle._description.usual_mass
+    if "vehicle.gvw" in changes and usual is not None:
+        usual.warn("vehicle.gvw", scene.vehicle.mass)
+    return Simulation.from_scene(scene)
 
 
 @checked

@@ -22,7 +22,7 @@ OFFSET_SHARES = (-0.25, 0.0, 0.25, 0.5)
 
 _HEIGHTS, _ABOVE_BREAK, _INCH = (0.15, 1.3), 0.02, 0.0254  # m
 
-# What guidance asks for is from memory: IWA 14-2 and its forerunner PAS 69.
+# What IWA 14-2 and its forerunner PAS 69 ask for, as commonly reported: the texts are not at hand.
 _SKIN = (
     "Computed, not tested. The vehicle's skin does not tear and its parts stay on: leave a margin. Guidance "
     "for security bollards asks for clear gaps of 1.2 m or less, whatever is computed."

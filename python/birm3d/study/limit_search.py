@@ -16,6 +16,7 @@ import numpy as np
 from .. import pictures
 from ..base.checks import number
 from ..base.frozen_mapping import FrozenMapping
+from ..result.event import outcome_words
 from ..simulation.simulation import Simulation
 from .distributions import check_count
 from .limit_class import class_shares, drawn_vehicles
@@ -207,14 +208,14 @@ class Limit:
                     f"{value:.6g}",
                     f"{sum(run.holds for run in runs)} of {len(runs)}",
                     f"{worst.impact_offset:.4g}",
-                    worst.outcome,
+                    outcome_words(worst.outcome),
                     "" if math.isnan(worst.measure) else f"{worst.measure:.3f}",
                     "holds" if worst.holds else "fails",
                 )
             )
         widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
         rows = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in cells]
-        return "\n".join([self.headline, *self.remarks, "", *rows])
+        return "\n".join([self.headline, self.study.scene_title, *self.remarks, "", *rows])
 
     __str__ = summary
 
@@ -262,11 +263,11 @@ class Limit:
             lines.append(
                 f"In {ends} of the runs that hold the vehicle passes the barrier's end: give it more length."
             )
-        return [*lines, self._band, f"Caution: {self.caution}"]
+        return [*lines, self.band, f"Caution: {self.caution}"]
 
     @property
-    def _band(self) -> str:
-        """For how many vehicles of the class the limit holds, and from where on for all."""
+    def band(self) -> str:
+        """A sentence: for how many vehicles of the class the limit holds, and from where on for all."""
         if not self.class_shares:
             return "No band: the answer is that of this one vehicle."
         texts = [
@@ -417,7 +418,7 @@ def _not_in_range(
     others = [f"{value:.6g}" for value in order if flags[value]]
     also = f"; {', '.join(others)} {question.unit} hold, which is not monotonic" if others else ""
     worst = next(run for run in runs if run.value == order[0] and not run.holds)
-    where = f"{worst.outcome} at offset {worst.impact_offset:.4g} m"
+    where = f"{outcome_words(worst.outcome)} at offset {worst.impact_offset:.4g} m"
     measured = "" if math.isnan(worst.measure) else f", {_words(question.measure)} {worst.measure:.3f} m"
     return NotInRangeError(
         f"{question.argument} must have a {end} value that holds ({question.criterion}), got "

@@ -19,7 +19,9 @@ from ..barrier.text import varied_barrier_text
 from ..base.arguments import checked
 from ..base.frozen_mapping import FrozenMapping
 from ..result.event import OUTCOMES
+from ..scene.text import impact_text
 from ..simulation.parameters import unit_of
+from ..vehicle.title import title_of_name
 from .float_rows import FloatRows
 
 if TYPE_CHECKING:
@@ -197,7 +199,13 @@ class Study:
     @property
     def title(self) -> str:
         """Vehicle and barrier: what figures and tables of the study are headed with."""
-        return f"{self.vehicle}: {self.barrier}" if self.barrier else self.vehicle
+        name = title_of_name(self.vehicle) if self._scene is None else self._scene.vehicle.title
+        return f"{name}: {self.barrier}" if self.barrier else name
+
+    @property
+    def scene_title(self) -> str:
+        """The scene that was varied: vehicle, mass, speed, angle, barrier; of a file :attr:`title`."""
+        return self.title if self._scene is None else f"{impact_text(self._scene)}: {self.barrier}"
 
     @property
     def outcomes(self) -> Mapping[str, int]:

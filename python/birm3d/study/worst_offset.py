@@ -13,7 +13,10 @@ from .. import pictures
 from ..barrier.kinds import Bollards
 from ..base.arguments import checked
 from ..base.checks import whole_number
+from ..base.shown_numbers import plain_number, shown_unit, shown_value
+from ..result.event import outcome_words
 from ..result.metrics import METRIC_UNITS
+from ..result.summary import shown_as
 from ..simulation.parameters import varied
 from ..simulation.simulation import Simulation
 from ..unit_check import given
@@ -122,12 +125,12 @@ class WorstOffset:
 
     def summary(self) -> str:
         """Return the table and what it rests on as text."""
-        unit = METRIC_UNITS[self.metric]
+        size, _ = shown_unit(METRIC_UNITS[self.metric])
         head = (
             "spacing [m]",
             "worst offset [m]",
             "from a post / spacing",
-            self._label(unit),
+            self.label,
             "outcome",
             "runs",
         )
@@ -135,17 +138,25 @@ class WorstOffset:
         for row in self.rows:
             runs = len(row.search.grid) + len(row.search.refinement)
             place = (f"{row.spacing:.4g}", f"{row.offset:.3f}", f"{row.share:.2f}")
-            cells.append((*place, f"{row.value:.5g}", row.outcome, str(runs)))
+            cells.append((*place, plain_number(row.value / size), outcome_words(row.outcome), str(runs)))
         widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
         lines = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in cells]
         coarsest = max(self.resolution)
         rest = f"Scanned every {coarsest:.3g} m or finer, then refined: a narrower peak can be missed."
-        return "\n".join([*lines, rest])
+        return "\n".join([f"Scene of the greatest value: {self.worst.search.grid.scene_title}", *lines, rest])
 
     __str__ = summary
 
-    def _label(self, unit: str) -> str:
-        return f"{self.metric.replace('_', ' ')} [{unit}]" if unit else self.metric.replace("_", " ")
+    @property
+    def words(self) -> str:
+        """What tables call the metric."""
+        return shown_as(self.metric)[0]
+
+    @property
+    def label(self) -> str:
+        """The metric in words, with the unit that it is shown in."""
+        unit = shown_unit(METRIC_UNITS[self.metric])[1]
+        return f"{self.words} [{unit}]" if unit else self.words
 
     def plot(self) -> Figure:
         """Return the metric over the offset for each spacing, and its greatest value over the spacing."""
@@ -156,8 +167,9 @@ class WorstOffset:
 
     def __repr__(self) -> str:
         worst = self.worst
+        value = shown_value(worst.value, METRIC_UNITS[self.metric])
         return (
-            f"WorstOffset({self.metric} = {worst.value:.5g} at spacing {worst.spacing:g} m, "
+            f"WorstOffset({self.metric} = {value} at spacing {worst.spacing:g} m, "
             f"offset {worst.offset:.3f} m; {len(self.rows)} spacings)"
         )
 

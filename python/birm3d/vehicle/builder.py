@@ -182,6 +182,8 @@ def _made(
         vehicle = build(recipe_of(file, mass, mesh_density))
     if gvw is not None:
         vehicle._mass_given("gvw", gvw)
+    elif (usual := vehicle._description.usual_mass) is not None:
+        usual.warn("changes.gvw_kg", vehicle.mass)  # without a block [changes] the mass is the file's
     return vehicle
 
 

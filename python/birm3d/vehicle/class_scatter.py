@@ -9,7 +9,14 @@ __all__ = ["QUANTITIES", "STIFFNESSES", "ClassScatter", "joined"]
 
 STIFFNESSES = ("front", "side", "corner", "tires", "springs")
 """Quantities that are factors on zones: on their forces, or on the stiffness of their wheels' springs."""
-QUANTITIES = (*STIFFNESSES[:4], "mass_center_height", "barrier_friction", "tire_friction", "springs")
+QUANTITIES = (
+    *STIFFNESSES[:4],
+    "mass_center_height",
+    "barrier_friction",
+    "tire_friction",
+    "springs",
+    "edge_flank",
+)
 """What may differ, in the order in which it is drawn."""
 
 

@@ -366,6 +366,7 @@ class Scatter(Block):
         "barrier_friction",
         "tire_friction",
         "springs",
+        "edge_flank",
     ]
     zones: tuple[LawName, ...] = ()
     median: Positive = 1.0

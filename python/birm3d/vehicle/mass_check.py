@@ -17,8 +17,8 @@ class MassWarning(UserWarning):
 
     Usual is from half of the file's empty mass, without payload, to 2.5 times the file's mass. Beyond it the
     program still answers: a mass below the empty one makes the structure lighter, one above fills the load
-    space. Stiffness stays that of the file. Unlike :class:`birm3d.UnitWarning`, it also checks
-    masses given as text with a unit.
+    space. Stiffness stays that of the file. :meth:`birm3d.Vehicle.scaled_to` changes it with the mass, and
+    does not warn. Unlike :class:`birm3d.UnitWarning`, it also checks masses given as text with a unit.
     """
 
 

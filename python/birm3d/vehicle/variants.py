@@ -138,8 +138,10 @@ class VehicleVariants(VehicleData):
 
         The masses of all solids and the forces of all zones change in proportion. So a vehicle of the same
         size has the same deceleration and the same crush in the same crash. So predicted, the crush of 37
-        vehicles that no zone was fitted to has a median error of 7 % (``tests/bench/bench_blind.py``). For a
-        load in this vehicle see :meth:`with_gvw` and :meth:`with_payload`, which leave the zones alone.
+        vehicles that no zone was fitted to has a median error of 7 % (``tests/bench/bench_blind.py``). So no
+        :class:`birm3d.MassWarning` is given: it says that stiffness stays behind the mass, and here it does
+        not. For a load in this vehicle see :meth:`with_gvw` and :meth:`with_payload`, which leave the zones
+        alone.
 
         Shape, solids, wheels, core, zones and named points are scaled together. So the inertia follows: each
         radius of gyration scales with the dimensions across its axis. What is crushed is stretched with the
@@ -163,6 +165,8 @@ class VehicleVariants(VehicleData):
         ValueError
             If a number is out of range, the vehicle has no file, or a change by ``dataclasses.replace()``
             would be lost.
+        UnitWarning
+            As a warning, if the mass is most likely in another unit.
         """
         mass = self._mass_given("mass", mass)
         if wheelbase is not None and self.joint is not None:

@@ -117,7 +117,7 @@ class Vehicle(OldVehicleNames):
             If the vehicle can not have that weight or mesh.
         UnitWarning, MassWarning
             As warnings, if ``gvw`` is most likely in another unit, as 7.5 for 7.5 t, or if no vehicle of the
-            class can have it.
+            class can have it. The mass in the file's block ``[changes]`` is checked in the same way.
         """
         from ..io.file_format import reading
         from .builder import read

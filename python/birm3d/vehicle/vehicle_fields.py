@@ -13,6 +13,7 @@ import numpy.typing as npt
 from ..base.frozen_mapping import FrozenMapping
 from .class_scatter import ClassScatter
 from .recipe import sums_of
+from .title import title_of_name, without_mass
 from .zone import Zone
 
 if TYPE_CHECKING:
@@ -86,6 +87,13 @@ class VehicleFields:
     def mesh_density(self) -> float:
         """Number of shell elements relative to the choice of the vehicle's file."""
         return self._mesh_density
+
+    @property
+    def title(self) -> str:
+        """What titles call it, without its mass: by its file, as ``"Cargo truck"``, or by its name."""
+        if self._file is None or self.name != self._file.name:
+            return title_of_name(self.name)
+        return without_mass(self._file.title)
 
     @property
     def kind(self) -> str | None:

@@ -48,7 +48,7 @@ class LawNumber(NamedTuple):
 
 
 LAW_NUMBERS: Mapping[str, LawNumber] = {
-    "k_initial": LawNumber("pressure per length", ">= 0", "k", optional=False),
+    "k_initial": LawNumber("pressure per length", ">= 0", "slope", optional=False),
     "knee": LawNumber("length", "> 0", "knee", optional=False),
     "k_hardening": LawNumber("pressure per length", ">= 0", "then", optional=False),
     "f_max": LawNumber("pressure", "> 0", "plateau", optional=False),

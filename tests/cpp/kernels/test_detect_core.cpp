@@ -9,14 +9,20 @@ using namespace birm3d;
 
 namespace {
 
-const TrussMesh mesh(laboratory::front_face(laboratory::w2_curve(), 13, 10));  // anchors at 1 m
+const auto vehicle = laboratory::block(laboratory::w2_curve(), 13, 10);
+const Unit& unit = vehicle->units[0];
+const TrussMesh& mesh = unit.trusses;                   // anchors at 1 m
 const Shape face = HalfSpace{{-1.0, 0.0, 0.0}, -1.05};  // body axes: the anchors stand 50 mm before it
 
-std::vector<RigidContact> found(const Twist& motion, double dt, const BodyState& state = {}) {
+std::vector<RigidContact> found(const Unit& of, const PlacedShape& shape, const Twist& motion, double dt,
+                                const UnitState& state) {
     std::vector<RigidContact> contacts;
-    const PlacedShape shapes[] = {{&face, {}, 0, 0.0}};
-    find_core_contacts(mesh, 3, state, shapes, motion, dt, contacts);
+    find_core_contacts(of, 3, state, {&shape, 1}, motion, dt, contacts);
     return contacts;
+}
+
+std::vector<RigidContact> found(const Twist& motion, double dt, const UnitState& state = UnitState(unit)) {
+    return found(unit, {&face, {}, 0, 0.0}, motion, dt, state);
 }
 
 }  // namespace
@@ -39,8 +45,8 @@ TEST("a turn brings those of one side only") {
 }
 
 TEST("contacts are given in world axes") {
-    BodyState state;
-    state.orientation = from_roll_pitch_yaw({0.1, -0.2, 0.7});
+    UnitState state(unit);
+    state.body.orientation = from_roll_pitch_yaw({0.1, -0.2, 0.7});
     const std::vector<RigidContact> contacts = found({Vec3(10.0, 0.0, 0.0), Vec3::Zero()}, 0.01, state);
     CHECK(contacts.size() == mesh.count);
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -49,7 +55,28 @@ TEST("contacts are given in world axes") {
         CHECK(c.index == i);
         CHECK(c.body == 3);
         CHECK_CLOSE(c.gap, 0.05, 1e-15, "rounding");
-        CHECK_CLOSE((c.arm - state.orientation * mesh.anchor(i)).norm(), 0.0, 0.0, "exact");
-        CHECK_CLOSE((c.normal + state.orientation * Vec3::UnitX()).norm(), 0.0, 1e-15, "rounding");
+        CHECK_CLOSE((c.arm - state.body.orientation * mesh.anchor(i)).norm(), 0.0, 0.0, "exact");
+        CHECK_CLOSE((c.normal + state.body.orientation * Vec3::UnitX()).norm(), 0.0, 1e-15, "rounding");
     }
+}
+
+TEST("an anchor outside the rigid boxes meets a post once its own truss is closed") {
+    const Twist ahead{Vec3(10.0, 0.0, 0.0), Vec3::Zero()};
+    const Shape post = Post(4.0, 3.0);  // as wide as the face, 50 mm before the anchors in the middle
+    const Placement stands{Mat3::Identity(), Vec3(-5.05, 0.0, 1.0)};
+    const auto count = [&](const Unit& of, bool pushes, const UnitState& state) {
+        return found(of, {&post, stands, 0, 0.0, {}, pushes}, ahead, 0.01, state).size();
+    };
+    UnitState state(unit);
+    const std::size_t all = count(unit, true, state);  // a vehicle without boxes
+    CHECK(all > 10);
+    Unit yielding = unit;
+    yielding.core = {{Vec3::Zero(), Vec3(0.5, 1.2, 0.8)}};  // half a metre behind all anchors
+    CHECK(count(yielding, true, state) == 0);
+    CHECK(count(yielding, false, state) == all);  // no node feels it
+    for (TrussBlockState& block : state.trusses.block)
+        block.x.fill(1.05);  // all nodes on the post
+    CHECK(count(yielding, true, state) == all);
+    yielding.core = {{Vec3(0.5, 0.0, 0.0), Vec3(0.5, 1.2, 0.8)}};  // up to the anchors
+    CHECK(count(yielding, true, UnitState(unit)) == all);
 }

@@ -23,6 +23,8 @@ Placement standing(const Vec3& foot, double lean = 0.0, double sway = 0.0) {
     return {to_own, -(to_own * foot)};
 }
 
+constexpr double edge = 1.25;  // edge_flank_factor
+
 // How nodes hang on an indentation.
 struct Followed : NodeFaces, BlockContact {
     BlockColumn follows;
@@ -40,8 +42,9 @@ Followed indentation_by(const Post& post, const Placement& stands, const Placeme
     BlockColumn rank, contact_gap;
     contact_gap.fill(std::numeric_limits<double>::infinity());
     rank.fill(std::numeric_limits<double>::infinity());
-    follow_indentation(Indentation(post, stands, front, reach), Indentation(post, last, front, reach), nodes,
-                       mesh.block[0].panel, 1, contact_gap, found, found, rank, found.follows);
+    follow_indentation(Indentation(post, stands, front, reach, edge),
+                       Indentation(post, last, front, reach, edge), nodes, mesh.block[0].panel, 1,
+                       contact_gap, found, found, rank, found.follows);
     return found;
 }
 
@@ -160,7 +163,7 @@ TEST("force and torque are what the ways of the nodes ask for by virtual work") 
                 CHECK_CLOSE(torque, -right.gap[i] / h, 1e-4, "the same");
             }
         }
-        const Indentation indentation(post, stands, front, 2.0);
+        const Indentation indentation(post, stands, front, 2.0, edge);
         for (std::size_t i = 0; i < block_size; ++i) {
             above += (node(i) - foot).dot(indentation.along()) > indentation.top ? 1 : 0;
             beside += std::abs((node(i) - foot).dot(indentation.across())) > indentation.radius ? 1 : 0;
@@ -180,7 +183,7 @@ TEST("no node is further inside than what the box says, however deep the post") 
         const double deepest = round % 2 == 0 ? 1.0 : 4.0, reach = 0.6 + 0.3 * share(random);
         const Placement stands = standing({2.8 + deepest * share(random), 2.0 * share(random), -1.0},
                                           0.4 * share(random), 0.4 * share(random));
-        const Indentation indentation(post, stands, front, reach);
+        const Indentation indentation(post, stands, front, reach, edge);
         const Followed found = indentation_by(post, stands, reach);
         const double least = *std::min_element(found.gap.begin(), found.gap.end());
         CHECK(-least <= most_inside(indentation, front.box) + 1e-12);

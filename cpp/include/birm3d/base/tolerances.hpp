@@ -124,6 +124,10 @@ inline constexpr double tail_duration = 0.02;
 // Small: every small hop after an impact makes the run longer.
 inline constexpr double lifted_wheel = 0.1;
 
+// It also goes on while the vehicle tilts further at more than this rate (rad/s). Small: swings on springs that die away make
+// the run longer. Large: the greatest pitch is cut off.
+inline constexpr double tilting_rate = 0.2;
+
 // Below this sine of its angle a path runs along the barrier's line.
 inline constexpr double along_line = 1e-9;
 

@@ -58,6 +58,10 @@ class Prism {
     double y_high() const { return y_high_; }
     bool low_end_is_surface() const { return low_end_; }
     bool high_end_is_surface() const { return high_end_; }
+    // Is `y` (m, own axes) past an end that abuts a neighbour?
+    bool is_past_covered_end(double y) const {
+        return (!low_end_ && y < y_low_) || (!high_end_ && y > y_high_);
+    }
 
   private:
     struct Outline;

@@ -74,11 +74,21 @@ struct StiffnessMoments {
 
 // The part of a skin whose trusses point in, more than in any other way, along +r, -r, +s, -s, +t or -t.
 struct Panel {
-    Vec3 inward;  // that axis
-    Box box;      // around its uncrushed nodes
-    Box anchors;  // and where they are anchored
-    bool any;     // has it any?
+    Vec3 inward;                     // that axis
+    Box box;                         // around its uncrushed nodes
+    Box anchors;                     // and where they are anchored
+    bool any;                        // has it any?
+    std::vector<Box> outlines = {};  // each around the nodes up to one outline_step further in than the last
 };
+inline constexpr double outline_step = 0.1;  // m
+
+// Of a panel with these nodes (body axes) and that axis.
+std::vector<Box> outlines_of(std::vector<Vec3> nodes, const Vec3& inward);
+
+// Box around the nodes of a panel that are no deeper than `depth` behind its outermost one; between the outlines linear in
+// `depth`. A bumper is narrower than the body behind it.
+Box outline_at(const Panel& panel, double depth);
+
 inline constexpr std::size_t panels = 6;
 
 struct alignas(64) TrussBlock {

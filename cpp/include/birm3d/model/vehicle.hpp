@@ -39,6 +39,11 @@ struct Unit {
     // for a vehicle that is given by its trusses only.
     std::vector<Box> core;
 
+    // May a post pass the anchor while its truss is open? It may where no box of the rigid body holds the anchor. Vehicles
+    // without boxes are rigid at all anchors. So are those whose trusses are independent: nodes may slip aside and leave the
+    // anchors alone to stop a post.
+    bool gives_way(const Vec3& anchor) const;
+
     // Of the mass centre above the vehicle's reference point on the ground, position of rest (m).
     Vec3 place() const { return offset + mass_center_height * Vec3::UnitZ(); }
 };

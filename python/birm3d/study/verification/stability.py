@@ -14,6 +14,7 @@ from ...base.progress import progress_bar
 from ...result.energy_balance import warn_if_open
 from ...scene.mesh_check import CoarseSkinWarning
 from ...simulation.simulation import Simulation
+from ...vehicle.mass_check import MassWarning
 from .stability_cases import AXES, Case, default_scenes, laboratory_cases, varied_cases
 from .stability_result import FAULT, HELD, REFUSED, WARNED, Stability, StabilityRow
 from .watched import LIMITS, Limits, step_through
@@ -134,6 +135,7 @@ def _made(case: Case) -> tuple[Simulation, str]:
     """Return the scene of a case, and what was told if its barrier can pass between nodes."""
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", CoarseSkinWarning)
+        warnings.simplefilter("ignore", MassWarning)  # the axis "mass" is of unusual masses
         simulation = case.make()
     coarse = ""
     for one in told:

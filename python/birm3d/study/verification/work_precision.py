@@ -266,6 +266,6 @@ def _first_refusal(runs: Sequence[PrecisionRun]) -> str:
 def _title(simulation: Simulation) -> str:
     scene = simulation.scene
     return (
-        f"{scene.vehicle.name} ({scene.vehicle.n_nodes} nodes), {barrier_text(scene.barrier)}, "
+        f"{scene.vehicle.title} ({scene.vehicle.n_nodes} nodes), {barrier_text(scene.barrier)}, "
         f"{scene.impact_speed:g} m/s, {scene.impact_angle:g} deg"
     )
