@@ -221,3 +221,33 @@ def test_energy_closes_at_every_overlap(name: str, overlap: float) -> None:
     wall = Barrier.rigid_wall(width=4.0, height=1.5, edge_radius=0.15)
     result = Simulation(car, wall, units.km_h(64.4), overlap=overlap, overlap_side="left", duration=0.2).run()
     assert result.metrics["energy_residual"] < 5e-4
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+@pytest.mark.parametrize(
+    ("name", "mesh", "width", "thickness", "speed", "angle", "offset", "yaw"),
+    [
+        pytest.param("passenger_car", 0.2, 0.58, 0.76, 11.5, 12.0, -0.49, -139.8, id="narrow, yawed car"),
+        pytest.param("cargo_truck", 0.3, 0.72, 0.78, 26.2, 90.0, -0.65, 0.0, id="narrow, truck"),
+        pytest.param("passenger_car", 0.3, 3.49, 0.14, 28.0, 53.1, -1.55, -5.6, id="wide, oblique"),
+        pytest.param("minivan", 0.3, 0.82, 0.61, 34.3, 76.0, 0.13, 0.0, id="narrow, fast"),
+    ],
+)
+def test_energy_closes_at_narrow_walls_and_corners(
+    name: str,
+    mesh: float,
+    width: float,
+    thickness: float,
+    speed: float,
+    angle: float,
+    offset: float,
+    yaw: float,
+) -> None:
+    """Both edges come before the panel, or a corner leads: 0.7 to 3.6 % were lost as a side drove the skin.
+
+    The limit is that of sharp edges: 0.25 % at the most in 600 random scenes.
+    """
+    wall = Barrier.rigid_wall(width=width, thickness=thickness, height=1.5, edge_radius=0.05)
+    car = Vehicle.preset(name, mesh_density=mesh)
+    result = Simulation(car, wall, speed, angle, offset, impact_yaw=yaw, duration=0.5).run()
+    assert result.metrics["energy_residual"] < 2.5e-3

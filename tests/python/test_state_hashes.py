@@ -58,11 +58,11 @@ HASHES = {
     "oblique car": "aaa553d62ebb7aed",
     "paper pickup, bollards": "6424b1af3d812f96",
     "pickup, bollards": "bfc87f4f8988d485",
-    "car, Jersey": "0602cfbd283c0671",
+    "car, Jersey": "b5d065603ab052c6",
     "semi, wall": "929b485d318b53d4",
     "truck, pole of triangles": "51ce760097199db9",
     "free-standing": "8b513e5bd4bc08b5",
-    "minivan on its side": "dc2ea54441947379",
+    "minivan on its side": "e656e6bc514f2797",
     "finite-element car, wall": "2c20be024782e205",
     "finite-element truck, wall": "91dca00fe8ed5679",
 }

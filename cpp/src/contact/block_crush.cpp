@@ -63,6 +63,8 @@ bool crush_on(const ContactPass& pass, const PlaneSums& plane, ContactBlock& blo
 
 // The same; `at`: the obstacle that the nodes meet, or several_obstacles.
 bool crush_on(const ContactPass& pass, std::size_t at, ContactBlock& block, CrushSums& to) {
+    for (const Corner& corner : block.corners)
+        to.released_work += corner.lost_work;
     return crush_with_rate(pass, block, at, block.contact.places(), to,
                            [&](const BlockColumn* factor, CrushSums& sums) {
                                return crush(block.faces, pass.unit.body, pass.mesh, block.index, factor,

@@ -148,13 +148,17 @@ void place_in_corner(const ContactPass& pass, const Corner& corner, const Vec3& 
     const Vec3 anchor = anchor_of(truss, i);
     const double deflection = truss.length[i] - (anchor - to).norm();
     const double free = truss.length[i] - (anchor - (to - corner.pushed_displacement())).norm();
+    double lost_work = 0.0;
     if (nodes.force[i] > 0.0 && free < nodes.deflection[i]) {
+        const double before = nodes.force[i];
         // A line goes on from its force. From the residual, as unloading_force(), it would round otherwise.
         nodes.force[i] =
             has_recovery(truss.recovery[i])
                 ? std::min(nodes.force[i], unloading_force(truss, nodes, i, free))
                 : std::max(0.0, nodes.force[i] + nodes.unloading[i] * (free - nodes.deflection[i]));
         nodes.deflection[i] = free;
+        // The vehicle has pushed with the force before, through half of the step.
+        lost_work = 0.5 * (before - nodes.force[i]) * std::max(0.0, deflection - free);
     }
     nodes.x[i] = to.x(), nodes.y[i] = to.y(), nodes.z[i] = to.z();
     block.faces.gap[i] =
@@ -167,6 +171,7 @@ void place_in_corner(const ContactPass& pass, const Corner& corner, const Vec3& 
                          [](const CornerFace& a, const CornerFace& c) { return a.weight < c.weight; });
     block.nearest[i] = most->reachable_index;
     block.corners.push_back(corner);
+    block.corners.back().lost_work = lost_work;
 }
 
 // Finds all faces that the node is in contact with, and moves it onto them.

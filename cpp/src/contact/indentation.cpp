@@ -166,9 +166,27 @@ bool pushed_on_surface(const ContactPass& pass, const ContactBlock& block, std::
     return std::abs(nearest(pass.shape(k), pass.near[k].before.to_own(node)).gap) <= tolerance::touching_gap;
 }
 
+// Was the pushing node inside the plane of its nearest surface as the step began? Then that surface has not moved it there.
+bool lags_behind_surface(const ContactPass& pass, const ContactBlock& block, std::size_t i) {
+    constexpr double least = 1e-4;  // m
+    const TrussBlockState& nodes = *block.start;
+    if (!(nodes.force[i] > 0.0 && block.faces.gap[i] <= 0.0)) return false;
+    const NearObstacle& near = pass.near[block.reachable[block.nearest[i]]];
+    const Vec3 node(nodes.x[i], nodes.y[i], nodes.z[i]);
+    const Vec3 motion = near.before.to_own(node) - near.now.to_own(node);
+    return block.faces.gap[i] + near.now.direction_to_own(block.contact.normal(i)).dot(motion) < -least;
+}
+
+// Is any of the block's indentations that of a wall's edge?
+bool any_edge(const ContactPass& pass, const ContactBlock& block) {
+    return std::any_of(block.indentations.begin(), block.indentations.end(), [&](const BlockIndentation& d) {
+        return std::get<Post>(pass.shape(pass.indentations[d.indentation].near)).opens.has_value();
+    });
+}
+
 // The surfaces that the nodes of a block are in contact with, by the names that follow_indentation gives them.
 struct HoldingSurfaces {
-    alignas(64) BlockColumn contact_gap, least_facing;
+    alignas(64) BlockColumn contact_gap, least_facing, lags;
 };
 
 // Cosine of a surface's normal and a panel's direction above which the surface holds a node of the panel. The flank of another
@@ -178,11 +196,14 @@ constexpr double least_facing_post = -1.0, least_facing_other = 0.5;
 // The gap alone does not tell whether a node is in contact: a surface recedes from a node that pushes on it, by more in a longer
 // step.
 void find_holding_surfaces(const ContactPass& pass, const ContactBlock& block, HoldingSurfaces& held) {
+    const bool may_lag = any_edge(pass, block);
     for (std::size_t i = 0; i < block_size; ++i) {
         const double gap = block.faces.gap[i];
+        const bool lags = may_lag && lags_behind_surface(pass, block, i);
         const bool touches =
             gap <= tolerance::touching_gap || (gap <= pass.margin && pushed_on_surface(pass, block, i));
-        held.contact_gap[i] = touches ? gap : infinity;
+        held.lags[i] = lags ? 1.0 : 0.0;
+        held.contact_gap[i] = touches && !lags ? gap : infinity;
         const bool on_post = std::holds_alternative<Post>(pass.shape(block.reachable[block.nearest[i]]));
         held.least_facing[i] = on_post ? least_facing_post : least_facing_other;
     }
@@ -211,7 +232,8 @@ void follow_indentations(const ContactPass& pass, ContactBlock& block) {
             continue;
         alignas(64) const BlockColumn gap = block.faces.gap;
         follow_indentation(indented.indentation, indented.before, *block.start, panel_of, indented.panel,
-                           held.contact_gap, held.least_facing, block.faces, block.contact, rank, follows);
+                           held.contact_gap, held.least_facing, held.lags, block.faces, block.contact, rank,
+                           follows);
         note_second(follows, gap, block.second_gap);
         note_released(follows, block.released);
         const auto reachable = std::find(block.reachable.begin(), block.reachable.end(), indented.near) -

@@ -182,8 +182,8 @@ double gap_of(const Indentation& indentation, const TrussBlockState& nodes, cons
 
 void follow_indentation(const Indentation& indentation, const Indentation& then, const TrussBlockState& nodes,
                         const BlockColumn& panel_of, std::size_t panel, const BlockColumn& contact_gap,
-                        const BlockColumn& least_facing, NodeFaces& faces, BlockContact& contact,
-                        BlockColumn& rank, BlockColumn& follows) {
+                        const BlockColumn& least_facing, const BlockColumn& lags, NodeFaces& faces,
+                        BlockContact& contact, BlockColumn& rank, BlockColumn& follows) {
     simd.find_indentation(
         indentation, then,
         {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), panel_of.data(),
@@ -191,7 +191,7 @@ void follow_indentation(const Indentation& indentation, const Indentation& then,
         {faces.gap.data(), faces.per_force.data(), faces.bx.data(), faces.by.data(), faces.bz.data(),
          contact.nx.data(), contact.ny.data(), contact.nz.data(), contact.px.data(), contact.py.data(),
          contact.pz.data(), contact.tx.data(), contact.ty.data(), contact.tz.data(), rank.data(),
-         follows.data(), contact_gap.data(), least_facing.data()});
+         follows.data(), contact_gap.data(), least_facing.data(), lags.data()});
 }
 
 double furthest_off(const TrussBlockState& nodes, const BlockColumn& panel_of, std::size_t panel,

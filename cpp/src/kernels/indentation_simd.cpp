@@ -54,11 +54,13 @@ BIRM3D_INLINE Packet no_less_than(const IndentationNumbers& d, const Standing& s
     return s.e - (s.deepest - slope * (beside + (s.l - s.up)));
 }
 
-// `yes` for nodes that are further along the wall than the axis of its edge, else `no`.
-BIRM3D_INLINE Packet where_beside_face(const IndentationNumbers& d, const Standing& s, const Packet& yes,
-                                       const Packet& no) {
+// `yes` for nodes that are further along the wall than the axis of its edge, so that the wall's face holds them, else `no`.
+// A node that lags inside the face goes on with the edge: the face would move it at once, by work that nothing does.
+BIRM3D_INLINE Packet where_beside_face(const IndentationNumbers& d, const KnownFaces& known,
+                                       const Standing& s, const Packet& yes, const Packet& no,
+                                       std::size_t i) {
     const Packet zero = 0.0, along = d.wall_e * (s.e - d.tilt * s.up) + d.wall_w * s.w;
-    return where_above(along, zero, yes, no);
+    return where_above(Packet::load(known.lags + i), zero, no, where_above(along, zero, yes, no));
 }
 
 // The point of the post that each node of a packet follows.
@@ -142,10 +144,11 @@ BIRM3D_INLINE Asked ask(const IndentationNumbers& d, const PanelNodes& nodes, co
     // A node on another surface follows the indentation only once that has reached it.
     const Packet other = where_above(far, gap_of_holding_surface(d, known, i), far, outward);
     const Packet goes = where_above(zero, h.gap, outward, other);
-    const Packet reaches = where_above(s.e - h.gap, surface, where_beside_face(d, s, zero, held), zero);
+    const Packet reaches =
+        where_above(s.e - h.gap, surface, where_beside_face(d, known, s, zero, held, i), zero);
     const Packet off = where_above(pushes, zero, where_above(reaches, zero, zero, one), zero);
     const Packet gap = where_above(pushes, zero, where_above(reaches, zero, goes, away),
-                                   where_beside_face(d, s, far, comes));
+                                   where_beside_face(d, known, s, far, comes, i));
     return {gap, off, where_above(off, zero, away, where_above(far, gap, h.gap, far))};
 }
 
@@ -159,12 +162,14 @@ BIRM3D_INLINE Packet find_state(const IndentationNumbers& d, const PanelNodes& n
                            d.ez * Packet::load(known.nz + i);
     const Packet state = one + asked.releases;
     const Packet drawn_in = where_above(zero, so_far - against * gap, zero, state);
-    const Packet nearer = where_above(zero, against, drawn_in, state);
+    const Packet lags = Packet::load(known.lags + i);
+    const Packet nearer = where_above(lags, zero, state, where_above(zero, against, drawn_in, state));
     const Packet pushes = Packet::load(nodes.force + i), by_surface = gap_of_holding_surface(d, known, i);
     const Packet by_indentation =
         where_above(Packet::load(known.per_force + i), zero, Packet::load(known.rank + i), by_surface);
     const Packet near = in_reach, far = infinitely_far, by_face = where_above(so_far, near, far, so_far);
-    const Packet last = where_above(pushes, zero, where_beside_face(d, s, by_face, by_indentation), so_far);
+    const Packet last =
+        where_above(pushes, zero, where_beside_face(d, known, s, by_face, by_indentation, i), so_far);
     const Packet now = where_above(pushes, zero, asked.rank, gap);
     return where_on(nodes, where_above(last, now, nearer, zero), zero, i);
 }

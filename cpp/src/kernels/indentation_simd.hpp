@@ -37,9 +37,9 @@ struct PanelNodes {
 // node. `follows`: 1 for nodes on this indentation, 2 for nodes that it releases, else 0.
 struct KnownFaces {
     double *gap, *per_force, *bx, *by, *bz, *nx, *ny, *nz, *px, *py, *pz, *tx, *ty, *tz, *rank, *follows;
-    const double* contact_gap;  // to the surface that a node is in contact with; infinite without one (m)
-    const double*
-        least_facing;  // cosine of its normal and the panel's direction above which it holds the node
+    // Of the surface that a node is in contact with: the gap, infinite without one (m); cosine of its normal and the panel's
+    // direction above which it holds the node; 1 if the node was inside it as the step began, else 0.
+    const double *contact_gap, *least_facing, *lags;
 };
 
 // See follow_indentation.

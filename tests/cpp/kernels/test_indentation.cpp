@@ -39,12 +39,14 @@ Followed indentation_by(const Post& post, const Placement& stands, const Placeme
     found.gap.fill(std::numeric_limits<double>::infinity());  // nothing seen so far
     found.per_force.fill(0.0);
     found.set_normal(Vec3::UnitX());
-    BlockColumn rank, contact_gap;
+    BlockColumn rank, contact_gap, least_facing, lags;
+    lags.fill(0.0);
+    least_facing.fill(0.5);
     contact_gap.fill(std::numeric_limits<double>::infinity());
     rank.fill(std::numeric_limits<double>::infinity());
     follow_indentation(Indentation(post, stands, front, reach, edge),
                        Indentation(post, last, front, reach, edge), nodes, mesh.block[0].panel, 1,
-                       contact_gap, found, found, rank, found.follows);
+                       contact_gap, least_facing, lags, found, found, rank, found.follows);
     return found;
 }
 
