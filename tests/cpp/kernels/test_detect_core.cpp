@@ -72,6 +72,8 @@ TEST("an anchor outside the rigid boxes meets a post once its own truss is close
     CHECK(all > 10);
     Unit yielding = unit;
     yielding.core = {{Vec3::Zero(), Vec3(0.5, 1.2, 0.8)}};  // half a metre behind all anchors
+    CHECK(count(yielding, true, state) == all);             // its trusses are independent
+    yielding.trusses.indentation_length = 0.65;
     CHECK(count(yielding, true, state) == 0);
     CHECK(count(yielding, false, state) == all);  // no node feels it
     for (TrussBlockState& block : state.trusses.block)
