@@ -321,7 +321,7 @@ def test_cautions_are_said_where_they_matter() -> None:
     caution = loads.caution
     periods = np.geomspace(0.03, 0.3, 31)
     most = loads.spectrum(periods).max() / 1e3
-    told = f"With another one from 0.03 to 0.3 s, wall carries up to {most:,.0f} kN"
+    told = f"With natural periods from 0.03 to 0.3 s, wall carries up to {most:,.0f} kN"
     assert told in caution, "an assumed period may lie in a notch of the spectrum"
     assert "still acts" in caution
     assert "natural period of 0.1 s is assumed" in caution

@@ -176,3 +176,25 @@ def test_a_post_of_many_sides_comes_near_the_round_one(sides: int, limit: float)
         for barrier in (post, Barrier.from_mesh(vertices, faces))
     )
     assert mesh == pytest.approx(exact, rel=limit)
+
+
+def test_nodes_whose_post_has_moved_on_are_released() -> None:
+    """A fast vehicle slides past a thin pole: within one step the indentation leaves a block that pushes.
+
+    With no other surface near them, the nodes were moved by an infinite distance, and the run failed.
+    """
+    minivan = Vehicle.preset("minivan", mesh_density=0.3)
+    pole = Barrier.pole(diameter=0.1417045696504007, friction=0.3007281492646677)
+    settings = Settings(restitution=0.9864251255314612)
+    result = Simulation(
+        minivan,
+        pole,
+        56.56044353285878,
+        68.3688715345136,
+        0.5155715667487235,
+        impact_yaw=-48.28742291986373,
+        settings=settings,
+        duration=0.12,
+    ).run()
+    assert result.time[-1] == pytest.approx(0.12)
+    assert result.metrics["energy_residual"] < 1e-3

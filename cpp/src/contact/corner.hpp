@@ -40,7 +40,7 @@ struct Corner {
     std::size_t node_index = 0;
     std::size_t count = 0;
     std::array<CornerFace, most> face;
-    // Of the part of the truss's force that is lost as a face drives the node, over the step's compression (J).
+    // Work that is lost as a face drives the node: half the drop of the truss's force times the step's compression (J).
     double lost_work = 0.0;
 
     // False where the face is nearly parallel to the known ones: such faces make no corner.

@@ -86,8 +86,8 @@ CornerFace face_at(const ContactPass& pass, const ContactBlock& block, std::size
     return face;
 }
 
-// Is the place beside the k-th reachable obstacle, past an end where the next one begins? Then the next one's surface is there,
-// and the edge of that end is none.
+// Is the place beside the k-th reachable obstacle, past an end where the next one begins? There the neighbour's surface
+// continues, so that the edge at that end is not a real one.
 bool is_past_covered_end(const ContactPass& pass, const ContactBlock& block, std::size_t k,
                          const Vec3& place) {
     const auto* prism = std::get_if<Prism>(&pass.shape(block.reachable[k]));
@@ -157,7 +157,7 @@ void place_in_corner(const ContactPass& pass, const Corner& corner, const Vec3& 
                 ? std::min(nodes.force[i], unloading_force(truss, nodes, i, free))
                 : std::max(0.0, nodes.force[i] + nodes.unloading[i] * (free - nodes.deflection[i]));
         nodes.deflection[i] = free;
-        // The vehicle has pushed with the force before, through half of the step.
+        // By the trapezoid rule the force before the drop has acted over half of the step.
         lost_work = 0.5 * (before - nodes.force[i]) * std::max(0.0, deflection - free);
     }
     nodes.x[i] = to.x(), nodes.y[i] = to.y(), nodes.z[i] = to.z();

@@ -166,7 +166,7 @@ bool pushed_on_surface(const ContactPass& pass, const ContactBlock& block, std::
     return std::abs(nearest(pass.shape(k), pass.near[k].before.to_own(node)).gap) <= tolerance::touching_gap;
 }
 
-// Was the pushing node inside the plane of its nearest surface as the step began? Then that surface has not moved it there.
+// Was the pushing node inside the plane of its nearest surface as the step began? Then it did not follow that surface so far.
 bool lags_behind_surface(const ContactPass& pass, const ContactBlock& block, std::size_t i) {
     constexpr double least = 1e-4;  // m
     const TrussBlockState& nodes = *block.start;
@@ -184,14 +184,14 @@ bool any_edge(const ContactPass& pass, const ContactBlock& block) {
     });
 }
 
-// The surfaces that the nodes of a block are in contact with, by the names that follow_indentation gives them.
+// For each node of a block: what follow_indentation() asks about the surface that the node touches.
 struct HoldingSurfaces {
     alignas(64) BlockColumn contact_gap, least_facing, lags;
 };
 
 // Cosine of a surface's normal and a panel's direction above which the surface holds a node of the panel. The flank of another
 // post does so at any angle. A bumper slides along the ground below it, which does not hold it.
-constexpr double least_facing_post = -1.0, least_facing_other = 0.5;
+constexpr double holding_cosine_post = -1.0, holding_cosine_other = 0.5;
 
 // The gap alone does not tell whether a node is in contact: a surface recedes from a node that pushes on it, by more in a longer
 // step.
@@ -205,7 +205,7 @@ void find_holding_surfaces(const ContactPass& pass, const ContactBlock& block, H
         held.lags[i] = lags ? 1.0 : 0.0;
         held.contact_gap[i] = touches && !lags ? gap : infinity;
         const bool on_post = std::holds_alternative<Post>(pass.shape(block.reachable[block.nearest[i]]));
-        held.least_facing[i] = on_post ? least_facing_post : least_facing_other;
+        held.least_facing[i] = on_post ? holding_cosine_post : holding_cosine_other;
     }
 }
 

@@ -31,6 +31,15 @@ BIRM3D_BLOCK_LOOP void set_nothing_met(NodeFaces& faces, BlockContact& contact,
     }
 }
 
+// An indentation that held pushing nodes may have moved on so far that nothing is left near them. They are released, for which
+// find_leaving() wants a finite gap.
+BIRM3D_BLOCK_LOOP void bound_gaps(const BlockColumn& force, BlockColumn& gap) {
+    constexpr double away = 10.0;  // m
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < block_size; ++i)
+        gap[i] = force[i] > 0.0 && gap[i] > away ? away : gap[i];
+}
+
 // Takes the k-th obstacle for all nodes to which it is nearer than those before.
 BIRM3D_BLOCK_LOOP void take_nearer(const NearestOfBlock& found, std::size_t k, NodeFaces& faces,
                                    BlockContact& contact, std::array<std::size_t, block_size>& nearest) {
@@ -228,6 +237,7 @@ void find_nearest_surface(const ContactPass& pass, ContactBlock& block) {
                                           [&](std::size_t k) { return only_indented(pass, panel_bits, k); });
     const bool changed = !all_indented && find_surfaces(pass, block);
     follow_indentations(pass, block);
+    if (block.start->touching) bound_gaps(block.start->force, block.faces.gap);
     // The nearest point of a single obstacle is in no corner.
     if (changed || block.reachable.size() > 1) resolve_corner_contacts(pass, block);
 }

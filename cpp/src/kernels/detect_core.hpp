@@ -29,9 +29,9 @@ double core_margin(const TrussMesh& mesh, const Twist& motion, double dt);
 // Adds a contact for each anchor that is at the nearest of the surfaces or, as it now moves, will be within dt;
 // `motion` in body axes, contacts in world axes. Of obstacles that move too the relative motion counts.
 //
-// Anchors that no box of the rigid body holds give way to posts (`gives_way` of a vehicle file). Such an anchor is skipped while
-// its truss is open. For that a node must push on the post, or the anchor lie deeper than `passed_depth` in it. A post in the
-// bumper may stand where trusses of the fender are anchored: the bumper's trusses stop it there.
+// Anchors in no rigid box give way to posts (Unit::gives_way). Such an anchor is skipped while more than 10 % of its truss's
+// depth is left. This holds if any node of the unit pushes on the post, or if the anchor is more than 1 mm inside it. A post in
+// the bumper may stand where trusses of the fender are anchored: the bumper's trusses stop it there.
 void find_core_contacts(const Unit& unit, std::size_t body, const UnitState& state,
                         std::span<const PlacedShape> shapes, const Twist& motion, double dt,
                         std::vector<RigidContact>& contacts);

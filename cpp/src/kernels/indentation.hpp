@@ -27,7 +27,8 @@
 // node. An indentation does not release a node that stands on the flank of another post. Skin slides on a post only along
 // the panel: friction acts across e.
 //
-// The width of a panel counts only nodes that are no deeper than one radius of the post behind its foremost node. A post that
+// A panel's width and lower edge are those of its foremost nodes: up to one radius of the post deep, at least 0.1 m
+// (outline_step). A post that
 // misses the bumper does not indent it by meeting the wider body behind: it meets the nodes there as any surface does. For the
 // edge of a wall all nodes count, as the wall's face crushes what is deeper beside it.
 //
@@ -94,7 +95,7 @@ double gap_of(const Indentation& indentation, const TrussBlockState& nodes, cons
 // `then`: the indentation at the start of the step. `follows`: 1 for nodes that follow, 2 for released ones, else 0.
 // `contact_gap`: to the surface in `faces`, of nodes that are in contact with it as the kernel is called; else infinite (m).
 // `least_facing`: cosine of that surface's normal and the panel's direction above which it holds the node.
-// `lags`: 1 for nodes that were inside that surface as the step began, else 0.
+// `lags`: 1 for pushing nodes that were inside that surface as the step began, if a wall's edge indents the block; else 0.
 // `rank`: of the indentation that each node follows so far, at first infinite. Free nodes outside may be left
 // unchanged.
 void follow_indentation(const Indentation& indentation, const Indentation& then, const TrussBlockState& nodes,

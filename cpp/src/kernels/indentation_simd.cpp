@@ -55,7 +55,7 @@ BIRM3D_INLINE Packet no_less_than(const IndentationNumbers& d, const Standing& s
 }
 
 // `yes` for nodes that are further along the wall than the axis of its edge, so that the wall's face holds them, else `no`.
-// A node that lags inside the face goes on with the edge: the face would move it at once, by work that nothing does.
+// A node that lags inside the face stays with the edge. The face would move it in one step, and the energy would jump.
 BIRM3D_INLINE Packet where_beside_face(const IndentationNumbers& d, const KnownFaces& known,
                                        const Standing& s, const Packet& yes, const Packet& no,
                                        std::size_t i) {

@@ -139,7 +139,7 @@ void place(const Scene& scene, const Vec3& heading, State& state) {
         move(state, free * heading);
         distance += free;
         if (std::abs(free) < tolerance::initial_overlap * 1e-3) break;
-        // A thin post would go on between columns of nodes.
+        // Else a thin post would slip between two columns of nodes.
         if (overlap_of_indentations(scene, state, deepest_start) > 0.0) break;
     }
     if (distance <= longest) {

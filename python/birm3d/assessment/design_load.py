@@ -334,8 +334,8 @@ def _of_other_periods(load: DesignLoad) -> Iterator[str]:
     if found is not None:
         force, period = found
         yield (
-            f"With another one from {_PERIODS[0]:g} to {_PERIODS[1]:g} s, {load.governing.name} carries up "
-            f"to {force / 1e3:,.0f} kN, at {period:.2g} s."
+            f"With natural periods from {_PERIODS[0]:g} to {_PERIODS[1]:g} s, {load.governing.name} carries "
+            f"up to {force / 1e3:,.0f} kN (at {period:.2g} s)."
         )
 
 

@@ -470,8 +470,9 @@ class Indentation(Block):
 class CoreBox(Block):
     """A box of the rigid core, symmetric about y = 0; trusses run from it to the exterior.
 
-    gives_way: the box itself is no obstacle. Trusses end at it all the same: a barrier that closes them meets
-    the core. Such a box is no part of the rigid body whose overlap with the barrier is measured.
+    gives_way: the box itself is no obstacle. Walls meet the inner ends of its trusses. Posts meet them once a
+    truss has at most 10 % of its depth left. Such a box is no part of the rigid body whose overlap with the
+    barrier is measured.
     """
 
     name: Name

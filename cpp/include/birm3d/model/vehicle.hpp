@@ -40,8 +40,8 @@ struct Unit {
     std::vector<Box> core;
 
     // May a post pass the anchor while its truss is open? It may where no box of the rigid body holds the anchor. Vehicles
-    // without boxes are rigid at all anchors. So are those whose trusses are independent: nodes may slip aside and leave the
-    // anchors alone to stop a post.
+    // without boxes, or without indentation (indentation_length 0), are rigid at all anchors: their nodes slip round a post,
+    // and only anchors stop it.
     bool gives_way(const Vec3& anchor) const;
 
     // Of the mass centre above the vehicle's reference point on the ground, position of rest (m).
