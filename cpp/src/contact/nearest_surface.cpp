@@ -9,6 +9,7 @@
 #include "contact/corner_contacts.hpp"
 #include "contact/entered_face.hpp"
 #include "contact/indentation.hpp"
+#include "kernels/indentation_simd.hpp"
 
 namespace birm3d {
 
@@ -34,7 +35,6 @@ BIRM3D_BLOCK_LOOP void set_nothing_met(NodeFaces& faces, BlockContact& contact,
 // An indentation that held pushing nodes may have moved on so far that nothing is left near them. They are released, for which
 // find_leaving() wants a finite gap.
 BIRM3D_BLOCK_LOOP void bound_gaps(const BlockColumn& force, BlockColumn& gap) {
-    constexpr double away = 10.0;  // m
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < block_size; ++i)
         gap[i] = force[i] > 0.0 && gap[i] > away ? away : gap[i];

@@ -28,9 +28,8 @@
 // the panel: friction acts across e.
 //
 // A panel's width and lower edge are those of its foremost nodes: up to one radius of the post deep, at least 0.1 m
-// (outline_step). A post that
-// misses the bumper does not indent it by meeting the wider body behind: it meets the nodes there as any surface does. For the
-// edge of a wall all nodes count, as the wall's face crushes what is deeper beside it.
+// (outline_step). A post that misses the bumper does not indent it by meeting the wider body behind: it meets the nodes there
+// as any surface does. For the edge of a wall all nodes count, as the wall's face crushes what is deeper beside it.
 //
 // A post as wide as the panel acts as a wall does. The round post is cut off slightly above the highest place of its rim.
 // Where f falls more steeply than `steepest`, it falls with that slope.

@@ -7,9 +7,6 @@ namespace birm3d::BIRM3D_INSTRUCTION_SET {
 
 namespace {
 
-// Gap of released nodes: larger than that to any other surface (m).
-constexpr double away = 10.0;
-
 // Least value that marks a node as following an indentation.
 constexpr double least_drawn = 1e-9;
 
@@ -121,7 +118,7 @@ BIRM3D_INLINE Packet outward_displacement(const Standing& now, const Standing& t
     return -0.5 * ((at_end.in + at_start.in) * in + (at_end.across + at_start.across) * across);
 }
 
-// Gap to another surface that stops the node from following the indentation; infinite if there is none.
+// Gap to another surface that stops the node from following the indentation. It is infinite where no surface does.
 BIRM3D_INLINE Packet gap_of_holding_surface(const IndentationNumbers& d, const KnownFaces& known,
                                             std::size_t i) {
     const Packet zero = 0.0, far = infinitely_far, faces = Packet::load(known.least_facing + i);

@@ -27,6 +27,9 @@ BIRM3D_INLINE Slope<Number> slope_at(const Number& depth, double per_reach) {
             where_above(slope, limit, zero, by_depth * per_reach / slope)};
 }
 
+// Gap of released nodes: larger than that to any other surface (m).
+inline constexpr double away = 10.0;
+
 // The nodes of a block that are on one panel.
 struct PanelNodes {
     const double *x, *y, *z, *force, *panel;

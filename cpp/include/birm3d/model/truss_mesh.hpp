@@ -85,8 +85,8 @@ inline constexpr double outline_step = 0.1;  // m
 // Of a panel with these nodes (body axes) and that axis.
 std::vector<Box> outlines_of(std::vector<Vec3> nodes, const Vec3& inward);
 
-// Box around the nodes of a panel that are no deeper than `depth`, at least outline_step, behind its foremost one; between the outlines linear in
-// `depth`. A bumper is narrower than the body behind it.
+// Box around the nodes of a panel that are no deeper than `depth` behind its foremost one. A depth below outline_step counts
+// as that. Between the outlines it is linear in `depth`. A bumper is narrower than the body behind it.
 Box outline_at(const Panel& panel, double depth);
 
 inline constexpr std::size_t panels = 6;
