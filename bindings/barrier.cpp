@@ -58,15 +58,20 @@ void register_barrier(py::module_& m) {
         .def_static(
             "prism",
             [](const InputArray& profile, double y_low, double y_high, bool covered_low_end,
-               bool covered_high_end, const InputArray& position, double heading) {
-                return element(Prism(profile_points(profile), y_low, y_high,
-                                     {.low_end = covered_low_end, .high_end = covered_high_end}),
-                               position, heading);
+               bool covered_high_end, const InputArray& position, double heading, bool continues,
+               bool upright) {
+                Element prism = element(Prism(profile_points(profile), y_low, y_high,
+                                              {.low_end = covered_low_end, .high_end = covered_high_end}),
+                                        position, heading);
+                prism.continues = continues;
+                prism.upright = upright;
+                return prism;
             },
             py::kw_only(), py::arg("profile"), py::arg("y_low"), py::arg("y_high"),
             py::arg("covered_low_end"), py::arg("covered_high_end"), py::arg("position"), py::arg("heading"),
+            py::arg("continues") = false, py::arg("upright") = false,
             "profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered ends "
-            "are no surface.")
+            "are no surface. continues: as of a post. upright: own y points up, own z to the right.")
         .def_static(
             "mesh",
             [](const InputArray& vertices, const std::vector<TriangleMesh::Face>& faces,

@@ -148,9 +148,9 @@ class Element:
         Upright and round, foot of the axis at position; m. continues: its loads are part of those of the element before it. opens: of the edge of a wall, direction of the open space about it (rad).
         """
     @staticmethod
-    def prism(*, profile: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], y_low: typing.SupportsFloat | typing.SupportsIndex, y_high: typing.SupportsFloat | typing.SupportsIndex, covered_low_end: bool, covered_high_end: bool, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
+    def prism(*, profile: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], y_low: typing.SupportsFloat | typing.SupportsIndex, y_high: typing.SupportsFloat | typing.SupportsIndex, covered_low_end: bool, covered_high_end: bool, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, continues: bool = False, upright: bool = False) -> Element:
         """
-        profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered ends are no surface.
+        profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered ends are no surface. continues: as of a post. upright: own y points up, own z to the right.
         """
     @property
     def continues(self) -> bool:

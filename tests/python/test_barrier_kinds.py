@@ -182,6 +182,7 @@ def test_a_planter_is_the_box_of_its_sizes(height: float, angle: float) -> None:
     """The same as a wall of those sizes to the last bit, and as twelve triangles but for the last digits."""
     car = Vehicle.preset("passenger_car", mesh_density=0.3)
     place: dict[str, Any] = {"origin": (1.0, 2.0, 0.0), "heading": 20.0}
+    sharp = place | {"edge_radius": 0.0}
     below, length, width = -1.0, 1.5, 1.2
     box = np.array(
         [[x, y, z] for x in (0.0, width) for y in (-length / 2, length / 2) for z in (below, height)]
@@ -191,8 +192,8 @@ def test_a_planter_is_the_box_of_its_sizes(height: float, angle: float) -> None:
     planter, wall, mesh = (
         Simulation(car, barrier, 12.0, angle, 0.4, duration=0.15).run()
         for barrier in (
-            Barrier.planter(length=length, width=width, height=height, **place),
-            Barrier.rigid_wall(width=length, thickness=width, height=height, **place),
+            Barrier.planter(length=length, width=width, height=height, **sharp),
+            Barrier.rigid_wall(width=length, thickness=width, height=height, **sharp),
             Barrier.from_mesh(box, triangles, **place),
         )
     )

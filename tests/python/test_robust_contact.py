@@ -87,7 +87,7 @@ def test_energy_of_a_tread_in_an_inner_corner_closes_with_the_tolerance() -> Non
 
 
 def wall_in(segments: int) -> Barrier:
-    return Barrier.rigid_wall(width=24.0, height=1.0, segments=segments)
+    return Barrier.rigid_wall(width=24.0, height=1.0, segments=segments, edge_radius=0.0)
 
 
 def jersey_in(segments: int) -> Barrier:

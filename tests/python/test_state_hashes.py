@@ -45,7 +45,11 @@ SCENES: dict[str, Callable[[], Simulation]] = {
         car("passenger_car"), Barrier.jersey(length=18.0, segments=6, free_standing=True), 20.0, 25.0
     ),
     "minivan on its side": lambda: Simulation(
-        car("minivan"), Barrier.rigid_wall(width=2.0, height=0.27), 15.0, 90.0, impact_roll=90.0
+        car("minivan"),
+        Barrier.rigid_wall(width=2.0, height=0.27, edge_radius=0.0),
+        15.0,
+        90.0,
+        impact_roll=90.0,
     ),
     "finite-element car, wall": lambda: Simulation(fitted("fitted_n"), Barrier.rigid_wall(), 10.0, 65.0),
     "finite-element truck, wall": lambda: Simulation(fitted("fitted_truck"), Barrier.rigid_wall(), 8.0),

@@ -37,7 +37,7 @@ double thickness_of(const HalfSpace&) {
     return infinity;
 }
 double thickness_of(const Post& post) {
-    return 2.0 * post.radius;
+    return post.opens ? infinity : 2.0 * post.radius;
 }
 double thickness_of(const Prism& prism) {
     return prism.thickness();

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "birm3d/base/tolerances.hpp"
 #include "geometry/prism_nearest.hpp"
 #include "kernels/detect.hpp"
 
@@ -147,6 +148,15 @@ std::optional<HalfSpace> flat_part(const Shape& shape, const Placement& now, con
     if (!face || nearest.past != 0.0 || !is_nearest_everywhere(*prism, *face, placed)) return std::nullopt;
     const Flat n = normal(*face);
     return now.plane_from_own({{n.x, 0.0, n.z}, n.x * face->x + n.z * face->z});
+}
+
+bool is_behind(const HalfSpace& plane, const Shape& shape, const Placement& now) {
+    const Box box = bounds(shape);
+    const Vec3 normal = now.direction_to_own(plane.normal);
+    double ahead = plane.gap(now.from_own(box.center));
+    for (int k = 0; k < 3; ++k)
+        if (std::abs(normal[k]) > tolerance::behind_plane) ahead += std::abs(normal[k]) * box.half[k];
+    return ahead <= tolerance::behind_plane;
 }
 
 }  // namespace birm3d

@@ -24,6 +24,7 @@ std::vector<Segment> segments_of(const std::vector<Element>& elements, const Fre
         const std::string name = "elements[" + std::to_string(i) + "]";
         const auto* prism = std::get_if<Prism>(&elements[i].shape);
         if (prism == nullptr) refuse(name, "a prism where it is free-standing", "another shape");
+        if (elements[i].upright) refuse(name + " upright", "false where it is free-standing", "true");
         if (elements[i].position.z() != 0.0)
             refuse(name + " height", "0 m where it is free-standing", elements[i].position.z());
         segments.push_back(segment_of(*prism, free.density));
@@ -39,6 +40,16 @@ std::vector<Segment> segments_of(const std::vector<Element>& elements, const Fre
 }
 
 }  // namespace
+
+Mat3 Element::rotation() const {
+    const Mat3 turned = Eigen::AngleAxisd(heading, Vec3::UnitZ()).toRotationMatrix();
+    if (!upright) return turned;
+    Mat3 raised;
+    raised << 1.0, 0.0, 0.0,  //
+        0.0, 0.0, -1.0,       //
+        0.0, 1.0, 0.0;
+    return turned * raised;
+}
 
 Barrier::Barrier(std::vector<Element> elements_, double friction_, const Vec3& origin_, double heading_,
                  const std::optional<FreeStanding>& free_standing_)

@@ -70,8 +70,7 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
     if (!duration && !barrier) refuse("duration", "given (s) where there is no barrier", "none");
     if (barrier)
         for (const Element& element : barrier->elements)
-            obstacles.push_back({element.shape,
-                                 Eigen::AngleAxisd(element.heading, Vec3::UnitZ()).toRotationMatrix(),
+            obstacles.push_back({element.shape, element.rotation(),
                                  element.position + barrier->origin.z() * Vec3::UnitZ(), barrier->friction});
     if (free_segments() > 0 && !settings.ground)
         refuse("ground", "True where the barrier is free-standing", "False");
@@ -159,6 +158,7 @@ std::uint64_t Scene::fingerprint() const {
             hash.add(element.position);
             hash.add(element.heading);
             if (element.continues) hash.add(1.0);
+            if (element.upright) hash.add(2.0);
         }
         if (barrier->free_standing) {
             hash.add(barrier->free_standing->density);

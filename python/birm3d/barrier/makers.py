@@ -12,6 +12,7 @@ import numpy.typing as npt
 from ..base.arguments import checked
 from ..unit_check import given, warn_if_mesh_unusual
 from ..units import Quantity, si
+from .edges import usual_edge_radius
 
 if TYPE_CHECKING:
     from .free_standing import FreeStanding
@@ -35,7 +36,7 @@ class BarrierMakers:
         height: Quantity | None = None,
         thickness: Quantity = 0.5,
         segments: int = 1,
-        edge_radius: Quantity = 0.0,
+        edge_radius: Quantity | None = None,
         friction: float = 0.2,
         origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
         heading: Quantity = 0.0,
@@ -52,8 +53,9 @@ class BarrierMakers:
         segments
             Elements of equal width that a wall of finite width is made of.
         edge_radius
-            Of the upright edges [m], at most half of thickness and width; 0: sharp. The width is counted from
-            the outermost place of one arc to that of the other.
+            Of the upright edges [m], at most half of thickness and width. The width is counted from the
+            outermost place of one arc to that of the other. ``None``: 0.05 m where a width is given and
+            ``segments`` is 1. 0: sharp edges, which cut the skin as a knife does; as of several segments.
         friction, origin, heading
             See :class:`Barrier`.
 
@@ -64,13 +66,17 @@ class BarrierMakers:
         """
         from .kinds import RigidWall
 
-        radius = given("edge_radius", edge_radius)
-        rounded = radius > 0.0
+        depth = given("thickness", thickness)
+        length = math.inf if width is None else given("width", width)
+        if edge_radius is None:
+            radius = usual_edge_radius(depth, length) if math.isfinite(length) and segments == 1 else 0.0
+        else:
+            radius = given("edge_radius", edge_radius)
         return RigidWall(
             *_common(friction, origin, heading),
-            width=(4.0 if rounded else math.inf) if width is None else given("width", width),
+            width=4.0 if width is None and radius > 0.0 else length,
             height=math.inf if height is None else given("height", height),
-            thickness=given("thickness", thickness),
+            thickness=depth,
             segments=segments,
             edge_radius=radius,
         )
@@ -228,6 +234,7 @@ class BarrierMakers:
         length: Quantity = 2.0,
         width: Quantity = 1.0,
         height: Quantity = 1.0,
+        edge_radius: Quantity | None = None,
         friction: float = 0.2,
         origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
         heading: Quantity = 0.0,
@@ -242,6 +249,9 @@ class BarrierMakers:
             Square to the line, away from the traffic [m], > 0.
         height
             [m], > 0.
+        edge_radius
+            Of the upright edges [m], at most half of length and width; ``None``: 0.05 m. 0: sharp edges,
+            which cut the skin as a knife does.
         friction, origin, heading
             See :class:`Barrier`.
 
@@ -252,11 +262,14 @@ class BarrierMakers:
         """
         from .kinds import Planter
 
+        along, across = given("length", length), given("width", width)
+        usual = usual_edge_radius(across, along)
         return Planter(
             *_common(friction, origin, heading),
-            length=given("length", length),
-            width=given("width", width),
+            length=along,
+            width=across,
             height=given("height", height),
+            edge_radius=usual if edge_radius is None else given("edge_radius", edge_radius),
         )
 
     @staticmethod

@@ -10,36 +10,66 @@ import numpy as np
 
 from .. import _core
 from .base import Barrier, Surface
-from .blocks import FOOT, along_line, positive_and_finite, seen_block
+from .blocks import (
+    FOOT,
+    along_line,
+    positive_and_finite,
+    rounded_block,
+    seen_block,
+)
 from .description import SeenPart, Size
+from .edges import check_edge_radius, rounded_outline
 from .fronts import FlatFront, axes_of
-from .surfaces import ends, extruded
+from .surfaces import drawn_up, ends, extruded, placed
 
 __all__ = ["Planter"]
 
 
 @dataclass(frozen=True)
 class Planter(Barrier):
-    """A rigid, fixed, solid block of given footprint and height; its line is the foot of its traffic face."""
+    """A rigid, fixed, solid block of given footprint and height; its line is the foot of its traffic face.
+
+    Its upright edges are sharp, or rounded by ``edge_radius`` as those of a wall.
+    """
 
     length: float = 2.0
     width: float = 1.0
     height: float = 1.0
+    edge_radius: float = 0.0
 
     title: ClassVar = "planter"
     sizes: ClassVar = (
         Size("length", hint="along the line"),
         Size("width", hint="square to the line"),
         Size("height"),
+        Size("edge_radius"),
     )
 
     def elements(self) -> list[_core.Element]:
         """Return the block."""
-        for size in self.sizes:
-            positive_and_finite(size.name, getattr(self, size.name))
+        for name in ("length", "width", "height"):
+            positive_and_finite(name, getattr(self, name))
+        check_edge_radius(self.edge_radius, {"length": self.length, "width": self.width})
         width, top = self.width, self.height
+        if self.edge_radius > 0.0:
+            return rounded_block(self, width, self.length, top, self.edge_radius)
         corners = [(0.0, -FOOT), (width, -FOOT), (width, top), (0.0, top)]
         return along_line(self, np.array(corners), 0.0, self.length, 1)
+
+    @property
+    def draws_in_skin(self) -> bool:
+        """Whether its edges are rounded."""
+        return self.edge_radius > 0.0
+
+    @property
+    def cuts_skin(self) -> bool:
+        """Whether its edges are sharp."""
+        return not self.draws_in_skin
+
+    @property
+    def is_bottomless(self) -> bool:
+        """Whether it goes on below the ground without end."""
+        return self.draws_in_skin
 
     @property
     def element_names(self) -> tuple[str, ...]:
@@ -49,15 +79,23 @@ class Planter(Barrier):
     @property
     def text(self) -> str:
         """Sizes in a few words."""
-        return f"planter, {self.length:g} m long, {self.width:g} m wide, {self.height:g} m high"
+        edges = f", edges rounded by {self.edge_radius:g} m" if self.edge_radius > 0.0 else ""
+        return f"planter, {self.length:g} m long, {self.width:g} m wide, {self.height:g} m high{edges}"
 
     def load_front(self) -> FlatFront:
         """Return the traffic face."""
         axes = axes_of(self.origin, self.heading)
-        return FlatFront(*axes, self.height, np.zeros(1), half_width=0.5 * self.length)
+        return FlatFront(
+            *axes, self.height, np.zeros(1), half_width=0.5 * self.length, radius=self.edge_radius
+        )
 
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return the block."""
+        if self.edge_radius > 0.0:
+            vertices, faces = drawn_up(
+                rounded_outline(self.width, self.length, self.edge_radius), 0.0, self.height
+            )
+            return [(placed(self, vertices), faces)]
         sides = (np.zeros(2), np.full(2, self.width), np.array([0.0, self.height]))
         return extruded(self, *sides, ends(self.length, 1, seen))
 

@@ -19,10 +19,10 @@ from .blocks import (
     positive,
     positive_and_finite,
     rounded_block,
-    rounded_outline,
     seen_block,
 )
 from .description import SeenPart, Size, height_text, length_text, segments_text
+from .edges import check_edge_radius, rounded_outline
 from .fronts import FlatFront, axes_of, feet_of
 from .surfaces import drawn_up, ends, extruded, placed
 
@@ -59,7 +59,7 @@ class RigidWall(Barrier):
         Size("height"),
         Size("thickness", hint="where it has an end or a top"),
         Size("segments", "count", "where it has ends"),
-        Size("edge_radius", hint="of the upright edges"),
+        Size("edge_radius", hint="of the upright edges [default: 0.05]"),
     )
     is_straight: ClassVar = True
 
@@ -86,12 +86,7 @@ class RigidWall(Barrier):
 
     def _check_edges(self) -> None:
         radius = self.edge_radius
-        most = 0.5 * min(self.thickness, self.width)
-        if not 0.0 <= radius <= most:
-            raise ValueError(
-                f"edge_radius must be >= 0 m and at most half of thickness and width ({most:g} m), "
-                f"got {radius}"
-            )
+        check_edge_radius(radius, {"thickness": self.thickness, "width": self.width})
         if radius > 0.0 and math.isinf(self.width):
             raise ValueError(f"edge_radius must be 0 m for a wall of infinite width, got {radius}")
         if radius > 0.0 and self.segments > 1:

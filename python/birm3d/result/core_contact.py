@@ -80,6 +80,6 @@ def core_lines(result: RunAnalysis) -> list[str]:
     lines = [f"  the rigid core was met{behind} in {steps:,} steps: loads then are those of rigid bodies"]
     if result.scene.barrier is not None and result.scene.barrier.cuts_skin:
         lines.append(
-            "  the wall's sharp edges pass between nodes; rounded ones (edge_radius, say 0.05 m) do not"
+            "  sharp edges of the barrier pass between nodes; rounded ones (edge_radius=0.05) do not"
         )
     return lines

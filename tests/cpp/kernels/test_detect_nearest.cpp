@@ -208,6 +208,31 @@ TEST("a vehicle's front before a wall has a flat part, at its end it has none") 
     CHECK(!flat_part(wall, {Mat3::Identity(), {0.0, 3.0, 0.0}}, front));  // past the middle
 }
 
+TEST("a shape behind a plane is nearer to no place than the plane is") {
+    laboratory::Random random(39);
+    for (const Shape& shape : shapes()) {
+        const Box box = bounds(shape);
+        for (int k = 0; k < 200; ++k) {
+            const Placement now = random.placement(2.0);
+            const Vec3 normal = random.point(Vec3::Constant(-1.0), Vec3::Constant(1.0)).normalized();
+            const HalfSpace plane{normal, normal.dot(now.from_own(box.center)) + random.within(0.0, 3.0)};
+            if (!is_behind(plane, shape, now)) continue;
+            CHECK(box.half.allFinite());
+            for (int i = 0; i < 50; ++i) {
+                const Vec3 p = now.from_own(random.point(Vec3::Constant(-2.0), Vec3::Constant(2.0)));
+                CHECK(nearest(shape, now.to_own(p)).gap >= plane.gap(p) - 1e-12);
+            }
+        }
+    }
+    const HalfSpace face{-Vec3::UnitX(), 0.0};  // looks to -x
+    const auto post_at = [&](double x) {
+        return is_behind(face, Post(0.2), {Mat3::Identity(), {-x, 0.0, 0.0}});
+    };
+    CHECK(post_at(0.2));
+    CHECK(post_at(0.3));
+    CHECK(!post_at(0.199));
+}
+
 TEST("block_size of one block have the same bits in any order") {
     laboratory::Random random(37);
     for (const Shape& shape : shapes()) {

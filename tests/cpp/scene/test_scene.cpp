@@ -38,6 +38,25 @@ TEST("the vehicle stands before the wall, its nearest node at the standoff") {
     }
 }
 
+TEST("an upright prism is drawn upwards from its plan") {
+    // Seen from above: 2 m along x, 1 m along y, from the corner at (3, 4), turned by 90 degrees; 1.5 m high.
+    Element block{Prism({{0.0, 0.0}, {2.0, 0.0}, {2.0, -1.0}, {0.0, -1.0}}, -1.0, 1.5, {.low_end = true}),
+                  {3.0, 4.0, 0.0},
+                  0.5 * pi};
+    block.upright = true;
+    const Scene scene(laboratory::block(laboratory::w2_curve()),
+                      std::make_shared<Barrier>(std::vector{block}, 0.0, Vec3::Zero(), 0.0), Approach{20.0},
+                      laboratory::weightless(), {});
+    const auto gap = [&](double x, double y, double z) {
+        return laboratory::gap_to_barrier(scene, Vec3(x, y, z) - scene.base);
+    };
+    CHECK_CLOSE(gap(2.5, 5.0, 0.5), -0.5, 1e-12, "rounding; in the middle of its width");
+    CHECK_CLOSE(gap(2.5, 3.0, 0.5), 1.0, 1e-12, "rounding; before it");
+    CHECK_CLOSE(gap(2.5, 6.5, 0.5), 0.5, 1e-12, "rounding; behind it");
+    CHECK_CLOSE(gap(2.5, 5.0, 1.75), 0.25, 1e-12, "rounding; above its top");
+    CHECK_CLOSE(gap(4.0, 5.0, 0.5), 1.0, 1e-12, "rounding; beside it");
+}
+
 TEST("speed and angle are those asked for, and the nose is ahead") {
     const double angle = 24.0 * pi / 180.0;
     const Scene scene(laboratory::block(laboratory::w2_curve()), laboratory::wall(),

@@ -148,6 +148,9 @@ inline constexpr double solid_volume = 1e-12;
 // moment is above the sum of the other two.
 inline constexpr double symmetric_inertia = 1e-9;
 
+// Solids that stick out of a plane by less than this lie behind it (m): rounding.
+inline constexpr double behind_plane = 1e-9;
+
 // Points nearer than this to an edge or a corner of a shape take the normal of one of its faces (m): the
 // direction from the edge to such a point is rounding. Large: the corner's normal jumps by a visible amount.
 inline constexpr double edge_radius = 1e-12;

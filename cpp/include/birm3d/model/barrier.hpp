@@ -13,11 +13,14 @@ namespace birm3d {
 
 // A wall or a segment of it, a post, a mesh: loads are reported element by element.
 struct Element {
-    Shape shape;  // own axes, z up
+    Shape shape;  // own axes: z up, unless upright
     Vec3 position =
         Vec3::Zero();        // of the own axes' origin, the element's foot: from the barrier's origin (m)
     double heading = 0.0;    // turn of the own axes about z (rad)
     bool continues = false;  // part of the element before it, as a wall's rounded edge: loads are that one's
+    bool upright = false;    // own y points up and own z to the right: a prism drawn upwards from its plan
+
+    Mat3 rotation() const;  // own axes to the barrier's
 };
 
 struct Barrier {
