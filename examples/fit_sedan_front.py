@@ -2,12 +2,12 @@
 
     python examples/fit_sedan_front.py [--output FOLDER] [--mesh-density 0.25]
 
-The front zones share one envelope but for the engine's peak: rails, the engine meeting the fire wall, what
-gives way behind it, and the fire wall. Beside the engine, what the peak has above the rails is SHARE of that
-of the engine. Three stress levels and the two depths at which they begin are fitted to the CFC60 wall force
-and to four scalars. These are no measurements of their own (for one body they follow from the force):
-they say what must not be missed, and make the intervals somewhat narrower than the curve alone would.
-birm3d.calibrate says which of the five one test can tell.
+All front zones have the same envelope of stress over depth, with four parts: the rails; the peak where the
+engine meets the fire wall; what gives way behind it; the fire wall. Only the height of the peak differs.
+Beside the engine its rise above the rails is SHARE of the rise before the engine. Three stresses and the two
+depths at which they begin are fitted to the CFC60 wall force and to four scalars. For one body the scalars
+follow from the force. They are there to be met well, and make the intervals somewhat narrower.
+birm3d.calibrate says which of the five numbers one test can tell.
 
 Five numbers are chosen: SHARE, LEAST, the engine's width, the stress behind it, and the length that the
 structure gives back. The last table has restitution against speed for three lengths. One test would take

@@ -275,8 +275,8 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
         "later_contacts": Metric(
             "",
             "later",
-            "number of contacts that began after the vehicle had left for good: a second event, which "
-            "changes none of the values at separation",
+            "how often the vehicle touched the barrier again after the values at separation were taken: "
+            "these contacts change none of them",
             "end",
             lambda run: float(run.event.later_contacts),
             shown=Shown(

@@ -1,4 +1,4 @@
-"""Counts of events in several runs: how many runs have one. A mean of counts would be no number of events."""
+"""Metrics that count events, over several runs: in how many runs it happens. A mean of counts says little."""
 
 from __future__ import annotations
 
