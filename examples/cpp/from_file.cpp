@@ -15,8 +15,20 @@
 #include <iterator>
 #include <memory>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 #include <utility>
+
+namespace {
+
+double number(const char* text) {
+    char* end = nullptr;
+    const double value = std::strtod(text, &end);
+    if (end == text || *end != '\0') throw std::invalid_argument(std::string("no number: ") + text);
+    return value;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) try {
     using namespace birm3d;
@@ -30,13 +42,13 @@ int main(int argc, char** argv) try {
         return 1;
     }
     const std::string text{std::istreambuf_iterator<char>(file), {}};
-    const double speed = std::strtod(argv[2], nullptr);
-    const double angle = std::strtod(argv[3], nullptr) * (std::numbers::pi / 180.0);
+    const double speed = number(argv[2]);
+    const double angle = number(argv[3]) * (std::numbers::pi / 180.0);
 
     const auto vehicle = std::make_shared<const Vehicle>(vehicle_of_text(text));
     const auto wall = std::make_shared<const Barrier>(Barrier::wall(0.2, Vec3::Zero(), 0.0));
     Settings settings;
-    if (argc == 5) settings.cornering_stiffness = std::strtod(argv[4], nullptr);
+    if (argc == 5) settings.cornering_stiffness = number(argv[4]);
     Simulation simulation(Scene(vehicle, wall, Approach{speed, angle, 0.0, 0.0}, settings, {}));
     simulation.run([] {});
 

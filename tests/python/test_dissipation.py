@@ -36,7 +36,7 @@ def test_elastic_impacts_at_the_end_of_a_thin_plate_make_no_energy(
     name: str, width: float, offset: float, speed: float, yaw: float, friction: float
 ) -> None:
     car = Vehicle.preset(name, mesh_density=0.1)
-    plate = Barrier.rigid_wall(width=width, thickness=0.005, friction=friction)
+    plate = Barrier.rigid_wall(width=width, thickness=0.005, edge_radius=0.0, friction=friction)
     settings = Settings(restitution=1.0)
     run = Simulation(car, plate, speed, 0.0, offset, impact_yaw=yaw, duration=0.4, settings=settings).run()
     kinetic = run.energy["kinetic"]

@@ -42,13 +42,13 @@ std::vector<Segment> segments_of(const std::vector<Element>& elements, const Fre
 }  // namespace
 
 Mat3 Element::rotation() const {
-    const Mat3 turned = Eigen::AngleAxisd(heading, Vec3::UnitZ()).toRotationMatrix();
-    if (!upright) return turned;
     Mat3 raised;
     raised << 1.0, 0.0, 0.0,  //
         0.0, 0.0, -1.0,       //
         0.0, 1.0, 0.0;
-    return turned * raised;
+    Mat3 turned = Eigen::AngleAxisd(heading, Vec3::UnitZ()).toRotationMatrix();
+    if (upright) turned *= raised;
+    return turned;
 }
 
 Barrier::Barrier(std::vector<Element> elements_, double friction_, const Vec3& origin_, double heading_,

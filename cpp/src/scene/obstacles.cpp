@@ -157,8 +157,7 @@ double nearest_gap(const Scene& scene, const State& state, const Nearness& what)
                 shape, in_shape, mesh.skin_blocks,
                 [&](std::size_t b) -> std::optional<Points> {
                     const TrussBlock& block = mesh.block[b];
-                    const Points anchors{mesh.anchor_box[b], &block.anchor_x, &block.anchor_y,
-                                         &block.anchor_z};
+                    Points anchors{mesh.anchor_box[b], &block.anchor_x, &block.anchor_y, &block.anchor_z};
                     if (!std::holds_alternative<Post>(shape)) return anchors;
                     const Unit& model = scene.vehicle->units[u];
                     return selected

@@ -310,8 +310,9 @@ class Vehicle(OldVehicleNames):
         """Write the prepared vehicle to a file that the C++ library reads without Python.
 
         The file holds mesh, laws and mass properties, not what made them: :meth:`from_file` does not read it.
-        It is text of version 1, which ``birm3d/model/vehicle_text.hpp`` describes. Its numbers are exact, so
-        that a run in C++ gives the same bits.
+        It is text, which ``birm3d/model/vehicle_text.hpp`` describes. Its numbers are exact, so that a run in
+        C++ gives the same bits. The cornering stiffness of tyres is a setting there, see
+        :attr:`birm3d.simulation.Scene.cornering_stiffness`.
 
         Parameters
         ----------
