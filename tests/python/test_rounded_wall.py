@@ -130,6 +130,9 @@ def test_wall_with_rounded_edges_is_four_metres_wide_unless_told() -> None:
     assert Barrier.rigid_wall(edge_radius=0.15, width=2.0).width == 2.0
     assert Barrier.rigid_wall(edge_radius="6 in").edge_radius == pytest.approx(0.1524)
     assert "edges rounded by 0.15 m" in barrier_text(Barrier.rigid_wall(edge_radius=0.15))
+    assert "edges" not in barrier_text(Barrier.rigid_wall(width=3.0))
+    assert "sharp edges" in barrier_text(Barrier.rigid_wall(width=3.0, edge_radius=0.0))
+    assert "sharp edges" in barrier_text(Barrier.planter(edge_radius=0.0))
 
 
 @pytest.mark.parametrize(

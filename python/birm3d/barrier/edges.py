@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["check_edge_radius", "rounded_outline", "usual_edge_radius"]
+__all__ = ["check_edge_radius", "edges_text", "rounded_outline", "usual_edge_radius"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -20,6 +20,13 @@ def usual_edge_radius(depth: float, length: float) -> float:
     A sharp edge passes between the nodes of the skin as a knife does. Up to 0.1 m the radius hardly matters.
     """
     return max(0.0, min(_USUAL_EDGE_RADIUS, 0.5 * depth, 0.5 * length))
+
+
+def edges_text(radius: float, depth: float, length: float) -> str:
+    """Return in words what is unusual about edges; "" where nothing is."""
+    if radius == usual_edge_radius(depth, length):
+        return ""
+    return f", edges rounded by {radius:g} m" if radius > 0.0 else ", sharp edges"
 
 
 def check_edge_radius(radius: float, sizes: Mapping[str, float]) -> None:

@@ -18,7 +18,7 @@ from .blocks import (
     seen_block,
 )
 from .description import SeenPart, Size
-from .edges import check_edge_radius, rounded_outline
+from .edges import check_edge_radius, edges_text, rounded_outline
 from .fronts import FlatFront, axes_of
 from .surfaces import drawn_up, ends, extruded, placed
 
@@ -79,7 +79,7 @@ class Planter(Barrier):
     @property
     def text(self) -> str:
         """Sizes in a few words."""
-        edges = f", edges rounded by {self.edge_radius:g} m" if self.edge_radius > 0.0 else ""
+        edges = edges_text(self.edge_radius, self.width, self.length)
         return f"planter, {self.length:g} m long, {self.width:g} m wide, {self.height:g} m high{edges}"
 
     def load_front(self) -> FlatFront:

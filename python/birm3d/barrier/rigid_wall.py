@@ -22,7 +22,7 @@ from .blocks import (
     seen_block,
 )
 from .description import SeenPart, Size, height_text, length_text, segments_text
-from .edges import check_edge_radius, rounded_outline
+from .edges import check_edge_radius, edges_text, rounded_outline
 from .fronts import FlatFront, axes_of, feet_of
 from .surfaces import drawn_up, ends, extruded, placed
 
@@ -123,7 +123,8 @@ class RigidWall(Barrier):
         if self.is_endless:
             return "rigid wall without end"
         length = f"{length_text(self.width)}{segments_text(self.segments)}"
-        edges = f", edges rounded by {self.edge_radius:g} m" if self.edge_radius > 0.0 else ""
+        has_edges = math.isfinite(self.width) and self.segments == 1
+        edges = edges_text(self.edge_radius, self.thickness, self.width) if has_edges else ""
         return f"rigid wall {length}, {height_text(self.height)}, {self.thickness:g} m thick{edges}"
 
     def load_front(self) -> FlatFront:
