@@ -104,7 +104,8 @@ class ImpulseSolver {
     std::vector<std::size_t> active_, kept_;
     bool by_bodies_ = false;   // are the factors those of the bodies' system, or of the rows'?
     bool factorised_ = false;  // are they those of the active rows?
-    Eigen::LLT<Eigen::MatrixXd> factors_;
+    // Of some matrix at first: without one, its status is not set, and must not be copied.
+    Eigen::LLT<Eigen::MatrixXd> factors_{Eigen::MatrixXd::Identity(1, 1)};
     Eigen::MatrixXd system_;
     Eigen::VectorXd motion_;  // (6 bodies) by the present impulses
     Eigen::VectorXd working_, unknown_;
