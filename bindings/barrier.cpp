@@ -34,7 +34,7 @@ Prism::Profile profile_points(const InputArray& array) {
 
 void register_barrier(py::module_& m) {
     py::class_<Element>(m, "Element", "A piece of a barrier: own axes at position, turned by heading (rad).")
-        .def_readonly("continues", &Element::continues, "part of the element before it")
+        .def_readonly("part_of", &Element::part_of, "index of the element that it is a part of, or None")
         .def_static(
             "plane",
             [](const InputArray& position, double heading) {
@@ -44,45 +44,42 @@ void register_barrier(py::module_& m) {
             "A flat face without end; at heading 0 it looks to -x.")
         .def_static(
             "post",
-            [](double radius, double height, const InputArray& position, double heading, bool continues,
-               std::optional<double> opens) {
+            [](double radius, double height, const InputArray& position, double heading,
+               std::optional<std::size_t> part_of, std::optional<double> opens) {
                 Element post = element(Post(radius, height, opens), position, heading);
-                post.continues = continues;
+                post.part_of = part_of;
                 return post;
             },
             py::kw_only(), py::arg("radius"), py::arg("height"), py::arg("position"), py::arg("heading"),
-            py::arg("continues") = false, py::arg("opens") = std::nullopt,
-            "Upright and round, foot of the axis at position; m. continues: its loads are part of those of "
-            "the "
-            "element before it. opens: of the edge of a wall, direction of the open space about it (rad).")
+            py::arg("part_of") = std::nullopt, py::arg("opens") = std::nullopt,
+            "Upright and round, foot of the axis at position; m. part_of: index of the element whose loads "
+            "its own "
+            "are added to. opens: of the edge of a wall, direction of the open space about it (rad).")
         .def_static(
             "prism",
             [](const InputArray& profile, double y_low, double y_high, bool covered_low_end,
-               bool covered_high_end, const InputArray& position, double heading, bool continues,
-               bool upright) {
+               bool covered_high_end, const InputArray& position, double heading,
+               std::optional<std::size_t> part_of, bool upright) {
                 Element prism = element(Prism(profile_points(profile), y_low, y_high,
                                               {.low_end = covered_low_end, .high_end = covered_high_end}),
                                         position, heading);
-                prism.continues = continues;
+                prism.part_of = part_of;
                 prism.upright = upright;
                 return prism;
             },
             py::kw_only(), py::arg("profile"), py::arg("y_low"), py::arg("y_high"),
             py::arg("covered_low_end"), py::arg("covered_high_end"), py::arg("position"), py::arg("heading"),
-            py::arg("continues") = false, py::arg("upright") = false,
+            py::arg("part_of") = std::nullopt, py::arg("upright") = false,
             "profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered ends "
-            "are no surface. continues: as of a post. upright: own y points up, own z to the right.")
+            "are no surface. part_of: as of a post. upright: own y points up, own z to lower y.")
         .def_static(
             "mesh",
             [](const InputArray& vertices, const std::vector<TriangleMesh::Face>& faces,
-               const InputArray& position, double heading, bool continues) {
-                Element mesh = element(TriangleMesh(points(vertices, "vertices"), faces), position, heading);
-                mesh.continues = continues;
-                return mesh;
+               const InputArray& position, double heading) {
+                return element(TriangleMesh(points(vertices, "vertices"), faces), position, heading);
             },
             py::kw_only(), py::arg("vertices"), py::arg("faces"), py::arg("position"), py::arg("heading"),
-            py::arg("continues") = false,
-            "vertices (n, 3) m, faces (m, 3), counter-clockwise seen from outside. continues: as of a post.");
+            "vertices (n, 3) m, faces (m, 3), counter-clockwise seen from outside.");
 
     py::enum_<SegmentJoint>(m, "SegmentJoint")
         .value("pinned", SegmentJoint::pinned)

@@ -6,7 +6,7 @@ All front zones have the same envelope of stress over depth, with four parts: th
 engine meets the fire wall; what gives way behind it; the fire wall. Only the height of the peak differs.
 Beside the engine its rise above the rails is SHARE of the rise before the engine. Three stresses and the two
 depths at which they begin are fitted to the CFC60 wall force and to four scalars. For one body the scalars
-follow from the force. They are there to be met well, and make the intervals somewhat narrower.
+follow from the force. They make sure that these numbers are met well, and narrow the intervals somewhat.
 birm3d.calibrate says which of the five numbers one test can tell.
 
 Five numbers are chosen: SHARE, LEAST, the engine's width, the stress behind it, and the length that the

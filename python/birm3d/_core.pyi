@@ -133,9 +133,9 @@ class Element:
     A piece of a barrier: own axes at position, turned by heading (rad).
     """
     @staticmethod
-    def mesh(*, vertices: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], faces: collections.abc.Sequence[typing.Annotated[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(3)"]], position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, continues: bool = False) -> Element:
+    def mesh(*, vertices: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], faces: collections.abc.Sequence[typing.Annotated[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(3)"]], position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
         """
-        vertices (n, 3) m, faces (m, 3), counter-clockwise seen from outside. continues: as of a post.
+        vertices (n, 3) m, faces (m, 3), counter-clockwise seen from outside.
         """
     @staticmethod
     def plane(*, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex) -> Element:
@@ -143,19 +143,19 @@ class Element:
         A flat face without end; at heading 0 it looks to -x.
         """
     @staticmethod
-    def post(*, radius: typing.SupportsFloat | typing.SupportsIndex, height: typing.SupportsFloat | typing.SupportsIndex, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, continues: bool = False, opens: typing.SupportsFloat | typing.SupportsIndex | None = None) -> Element:
+    def post(*, radius: typing.SupportsFloat | typing.SupportsIndex, height: typing.SupportsFloat | typing.SupportsIndex, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, part_of: typing.SupportsInt | typing.SupportsIndex | None = None, opens: typing.SupportsFloat | typing.SupportsIndex | None = None) -> Element:
         """
-        Upright and round, foot of the axis at position; m. continues: its loads are part of those of the element before it. opens: of the edge of a wall, direction of the open space about it (rad).
+        Upright and round, foot of the axis at position; m. part_of: index of the element whose loads its own are added to. opens: of the edge of a wall, direction of the open space about it (rad).
         """
     @staticmethod
-    def prism(*, profile: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], y_low: typing.SupportsFloat | typing.SupportsIndex, y_high: typing.SupportsFloat | typing.SupportsIndex, covered_low_end: bool, covered_high_end: bool, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, continues: bool = False, upright: bool = False) -> Element:
+    def prism(*, profile: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], y_low: typing.SupportsFloat | typing.SupportsIndex, y_high: typing.SupportsFloat | typing.SupportsIndex, covered_low_end: bool, covered_high_end: bool, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, part_of: typing.SupportsInt | typing.SupportsIndex | None = None, upright: bool = False) -> Element:
         """
-        profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered ends are no surface. continues: as of a post. upright: own y points up, own z to the right.
+        profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered ends are no surface. part_of: as of a post. upright: own y points up, own z to lower y.
         """
     @property
-    def continues(self) -> bool:
+    def part_of(self) -> int | None:
         """
-        part of the element before it
+        index of the element that it is a part of, or None
         """
 class EndReason:
     """

@@ -138,8 +138,10 @@ def test_a_fall_is_told_by_its_name() -> None:
 
 CARS = [Vehicle.preset(name, mesh_density=0.1) for name in ("passenger_car", "pickup", "paper_pickup")]
 BARRIERS = [
-    Barrier.rigid_wall(width=2.0, height=0.27),
-    Barrier.rigid_wall(width=3.0, height=0.6, thickness=0.01),
+    Barrier.rigid_wall(width=2.0, height=0.27, edge_radius=0.0),
+    Barrier.rigid_wall(width=3.0, height=0.6, thickness=0.01, edge_radius=0.0),
+    Barrier.planter(length=2.0, height=0.6),
+    Barrier.rigid_wall(width=3.0, height=0.8, segments=2),
     Barrier.rigid_wall(),
     Barrier.jersey(length=10.0),
     Barrier.bollards(count=5, diameter=0.3, height=0.6, spacing=0.9),

@@ -121,7 +121,7 @@ def test_results_of_all_kinds_are_kept(kind: str, tmp_path: Path) -> None:
 @EVERY
 def test_names_are_as_many_as_elements(kind: str) -> None:
     barrier, _ = KINDS[kind]
-    whole = [element for element in barrier.elements() if not element.continues]
+    whole = [element for element in barrier.elements() if element.part_of is None]
     assert len(set(barrier.element_names)) == len(whole)
 
 

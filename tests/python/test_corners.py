@@ -33,7 +33,7 @@ def upturned() -> Vehicle:
 
 
 def laboratory(tolerance: float) -> Result:
-    wall = Barrier.rigid_wall(width=2.0, height=0.27, friction=0.0)
+    wall = Barrier.rigid_wall(width=2.0, height=0.27, friction=0.0, edge_radius=0.0)
     settings = Settings(tolerance=tolerance, mu_body=0.0)
     return Simulation(upturned(), wall, 5.0, impact_roll=180.0, duration=0.5, settings=settings).run()
 
@@ -58,7 +58,7 @@ def test_what_the_wall_lets_go_is_stopped_by_the_ground() -> None:
 def test_a_low_wall_on_the_ground_closes_the_balance_in_any_pose(
     name: str, roll: float, tolerance: float
 ) -> None:
-    wall = Barrier.rigid_wall(width=2.0, height=0.27)
+    wall = Barrier.rigid_wall(width=2.0, height=0.27, edge_radius=0.0)
     settings = Settings(tolerance=tolerance)
     run = Simulation(car(name), wall, 20.0, impact_roll=roll, duration=0.25, settings=settings).run()
     assert run.metrics["energy_residual"] < {1e-2: 5e-3, 1e-4: 1e-3, 1e-5: 1e-3}[tolerance]
@@ -70,7 +70,7 @@ def test_a_low_wall_on_the_ground_closes_the_balance_in_any_pose(
     [
         ("passenger_car", Barrier.jersey(length=10.0), 90.0, 27.0),
         ("paper_pickup", Barrier.jersey(length=10.0), -90.0, 35.0),
-        ("cargo_truck", Barrier.rigid_wall(width=4.0, height=0.4), 90.0, 28.0),
+        ("cargo_truck", Barrier.rigid_wall(width=4.0, height=0.4, edge_radius=0.0), 90.0, 28.0),
         ("pickup", Barrier.bollards(count=9, diameter=0.05, height=0.4, spacing=0.3), 90.0, 20.0),
         ("passenger_car", Barrier.bollards(count=9, diameter=0.05, height=0.4, spacing=0.3), 180.0, 20.0),
     ],

@@ -65,7 +65,7 @@ def test_no_dissipation_falls_in_any_pose(
     friction: float,
 ) -> None:
     car = Vehicle.preset(name, mesh_density=0.1)
-    wall = Barrier.rigid_wall(width=4.0, height=height, friction=friction)
+    wall = Barrier.rigid_wall(width=4.0, height=height, friction=friction, edge_radius=0.0)
     settings = Settings(restitution=restitution)
     run = Simulation(
         car, wall, speed, angle, impact_yaw=yaw, impact_roll=roll, duration=0.4, settings=settings

@@ -30,8 +30,8 @@ def car(name: str = "passenger_car") -> Vehicle:
 @pytest.mark.parametrize(
     ("name", "barrier", "speed", "angle", "limit"),
     [
-        ("passenger_car", Barrier.rigid_wall(width=6.0, height=1.0), 25.0, 10.0, 1e-3),
-        ("passenger_car", Barrier.rigid_wall(width=6.0, height=1.0), 40.0, 45.0, 1e-3),
+        ("passenger_car", Barrier.rigid_wall(width=6.0, height=1.0, edge_radius=0.0), 25.0, 10.0, 1e-3),
+        ("passenger_car", Barrier.rigid_wall(width=6.0, height=1.0, edge_radius=0.0), 40.0, 45.0, 1e-3),
         ("passenger_car", Barrier.bollards(), 40.0, 25.0, 1e-3),
         ("cargo_truck", Barrier.bollards(), 40.0, 10.0, 1e-3),
         ("paper_pickup", Barrier.jersey(length=30.0), 40.0, 45.0, DEPTH),
@@ -118,7 +118,7 @@ def test_segments_are_the_same_wall(barrier: Callable[[int], Barrier], speed: fl
 def test_gliding_along_a_wall_costs_few_steps() -> None:
     """A car that has left a wall glides along it, millimetres away: steps may be long all the same."""
     endless = Simulation(car(), Barrier.rigid_wall(), 26.7, 25.0).run()
-    finite = Simulation(car(), Barrier.rigid_wall(width=6.0, height=1.0), 26.7, 25.0).run()
+    finite = Simulation(car(), Barrier.rigid_wall(width=6.0, height=1.0, edge_radius=0.0), 26.7, 25.0).run()
     assert endless.statistics.steps < 250
     assert finite.statistics.steps < 1.5 * endless.statistics.steps
 
@@ -126,7 +126,11 @@ def test_gliding_along_a_wall_costs_few_steps() -> None:
 @pytest.mark.parametrize("name", ["passenger_car", "minivan", "pickup", "cargo_truck", "semi_truck"])
 @pytest.mark.parametrize(
     "barrier",
-    [Barrier.rigid_wall(width=6.0, height=1.0, segments=2), Barrier.bollards(), Barrier.jersey(length=30.0)],
+    [
+        Barrier.rigid_wall(width=6.0, height=1.0, segments=2, edge_radius=0.0),
+        Barrier.bollards(),
+        Barrier.jersey(length=30.0),
+    ],
     ids=["wall", "bollards", "jersey"],
 )
 def test_left_and_right_mirror_each_other(name: str, barrier: Barrier) -> None:
@@ -146,7 +150,9 @@ def test_a_wall_of_triangles_is_the_same_wall() -> None:
         for i in range(4):
             a, b = ring + i, ring + (i + 1) % 4
             faces += [(a, b, b + 4), (a, b + 4, a + 4)]
-    exact = Simulation(car(), Barrier.rigid_wall(width=20.0, height=1.0), 25.0, 25.0, duration=0.25).run()
+    exact = Simulation(
+        car(), Barrier.rigid_wall(width=20.0, height=1.0, edge_radius=0.0), 25.0, 25.0, duration=0.25
+    ).run()
     outwards = [face[::-1] for face in faces]
     mesh = Simulation(car(), Barrier.from_mesh(vertices, outwards), 25.0, 25.0, duration=0.25).run()
     for metric in ("dynamic_crush", "peak_force_50ms", "delta_v"):

@@ -51,6 +51,10 @@ SCENES: dict[str, Callable[[], Simulation]] = {
         90.0,
         impact_roll=90.0,
     ),
+    "car, corner of a planter": lambda: Simulation(car("passenger_car"), Barrier.planter(), 12.0, 60.0, 1.2),
+    "pickup, end of a wall": lambda: Simulation(
+        car("pickup"), Barrier.rigid_wall(width=4.0, height=1.0, segments=2), 17.9, overlap=0.4
+    ),
     "finite-element car, wall": lambda: Simulation(fitted("fitted_n"), Barrier.rigid_wall(), 10.0, 65.0),
     "finite-element truck, wall": lambda: Simulation(fitted("fitted_truck"), Barrier.rigid_wall(), 8.0),
 }
@@ -67,6 +71,8 @@ HASHES = {
     "truck, pole of triangles": "51ce760097199db9",
     "free-standing": "8b513e5bd4bc08b5",
     "minivan on its side": "e656e6bc514f2797",
+    "car, corner of a planter": "7068ea637b442401",
+    "pickup, end of a wall": "0a2b3fdc2584ed57",
     "finite-element car, wall": "2c20be024782e205",
     "finite-element truck, wall": "91dca00fe8ed5679",
 }

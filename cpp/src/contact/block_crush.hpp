@@ -5,7 +5,8 @@
 
 namespace birm3d {
 
-// Returns the sums of the plane if the block can meet nothing but one plane, else null.
+// Returns the sums of the plane if the block can meet nothing but one plane, else null. Parts of the same element may be in
+// reach behind that plane.
 PlaneSums* only_plane(const ContactPass& pass, const ContactBlock& block, ContactSums& sums);
 
 void crush_on_plane(const ContactPass& pass, PlaneSums& plane, ContactState& state);

@@ -34,8 +34,8 @@ bool within_reach(const Shape& shape, const Placement& now, const Box& box, doub
 // never.
 std::optional<HalfSpace> flat_part(const Shape& shape, const Placement& now, const Box& box);
 
-// Does all of the shape lie behind the plane (body axes), or touch it? Then it is nearer to no point than the plane is.
-// False may be wrong, true never is.
+// Does all of the shape lie behind the plane (body axes), or touch it? Then the plane is nearer to every point than the
+// shape is. False may be wrong; true may be by tolerance::behind_plane.
 bool is_behind(const HalfSpace& plane, const Shape& shape, const Placement& now);
 
 }  // namespace birm3d

@@ -153,9 +153,11 @@ std::optional<HalfSpace> flat_part(const Shape& shape, const Placement& now, con
 bool is_behind(const HalfSpace& plane, const Shape& shape, const Placement& now) {
     const Box box = bounds(shape);
     const Vec3 normal = now.direction_to_own(plane.normal);
+    // Below this, a part of a normal is rounding: an upright plane has posts behind it that go down endlessly.
+    constexpr double none = 1e-9;
     double ahead = plane.gap(now.from_own(box.center));
     for (int k = 0; k < 3; ++k)
-        if (std::abs(normal[k]) > tolerance::behind_plane) ahead += std::abs(normal[k]) * box.half[k];
+        if (std::abs(normal[k]) > none) ahead += std::abs(normal[k]) * box.half[k];
     return ahead <= tolerance::behind_plane;
 }
 

@@ -24,6 +24,7 @@ std::vector<Segment> segments_of(const std::vector<Element>& elements, const Fre
         const std::string name = "elements[" + std::to_string(i) + "]";
         const auto* prism = std::get_if<Prism>(&elements[i].shape);
         if (prism == nullptr) refuse(name, "a prism where it is free-standing", "another shape");
+        if (elements[i].part_of) refuse(name + " part_of", "none where it is free-standing", "an index");
         if (elements[i].upright) refuse(name + " upright", "false where it is free-standing", "true");
         if (elements[i].position.z() != 0.0)
             refuse(name + " height", "0 m where it is free-standing", elements[i].position.z());
@@ -67,7 +68,10 @@ Barrier::Barrier(std::vector<Element> elements_, double friction_, const Vec3& o
         if (!elements[i].position.allFinite())
             refuse(name + "position", "finite", "a coordinate that is not");
         require_finite((name + "heading").c_str(), elements[i].heading);
-        if (i == 0 && elements[i].continues) refuse(name + "continues", "false: none is before it", "true");
+        const auto& whole = elements[i].part_of;
+        if (whole && !(*whole < i && !elements[*whole].part_of))
+            refuse(name + "part_of", "an element before it that is no part itself",
+                   static_cast<double>(*whole));
     }
     if (free_standing) segments = segments_of(elements, *free_standing);
 }

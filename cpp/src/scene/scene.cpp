@@ -75,10 +75,12 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
     if (free_segments() > 0 && !settings.ground)
         refuse("ground", "True where the barrier is free-standing", "False");
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
-        const bool part = barrier->elements[i].continues;
-        const bool joined = part || (i > 0 && free_segments() == 0 && continues(obstacles[i].shape));
-        obstacles[i].structure = joined ? obstacles[i - 1].structure : i;
-        obstacles[i].element = part ? obstacles[i - 1].element : i;
+        const auto& whole = barrier->elements[i].part_of;
+        const bool joined = i > 0 && free_segments() == 0 && continues(obstacles[i].shape);
+        obstacles[i].structure = whole    ? obstacles[*whole].structure
+                                 : joined ? obstacles[i - 1].structure
+                                          : i;
+        obstacles[i].element = whole.value_or(i);
     }
     joints = vehicle->joints;
     if (free_segments() > 0 && barrier->free_standing->joint == SegmentJoint::pinned)
@@ -157,8 +159,8 @@ std::uint64_t Scene::fingerprint() const {
             std::visit([&](const auto& shape) { add_to(hash, shape); }, element.shape);
             hash.add(element.position);
             hash.add(element.heading);
-            if (element.continues) hash.add(1.0);
-            if (element.upright) hash.add(2.0);
+            if (element.part_of) hash.add(static_cast<double>(*element.part_of));
+            if (element.upright) hash.add(1.0);
         }
         if (barrier->free_standing) {
             hash.add(barrier->free_standing->density);

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from .. import _core
 from .base import Barrier
 from .description import SeenPart
-from .edges import rounded_outline
+from .edges import cut_outline, rounded_outline
 
 __all__ = [
     "FOOT",
@@ -69,55 +69,86 @@ def along_line(
 
 
 def rounded_block(
-    barrier: Barrier, depth: float, length: float, top: float, radius: float
+    barrier: Barrier, depth: float, length: float, top: float, radius: float, segments: int = 1
 ) -> list[_core.Element]:
-    """Return a block along the line with rounded upright edges: one element in several parts.
+    """Return a block along the line with rounded upright edges: its segments, then parts of the outer ones.
 
     The edges on the traffic's side are posts, which draw in the skin beside them. Between them stands the
-    face, its ends hidden in the posts. Behind both is the block, with chords for the arcs that posts fill.
+    face, its ends hidden in the posts. Behind them is the block, with chords for the arcs that posts fill.
     """
-    heading = math.radians(barrier.heading)
-    beside = 0.5 * length - radius
+    half, last = 0.5 * length, segments - 1
+    edges = [
+        _core.Element.post(
+            radius=radius,
+            height=top,
+            position=barrier.from_origin(radius, side * (half - radius)),
+            heading=math.radians(barrier.heading),
+            part_of=whole,
+            opens=side * 0.75 * math.pi,
+        )
+        for side, whole in ((-1.0, 0), (1.0, last))
+    ]
+    plan = _plan_behind(depth, length, radius)
+    if segments > 1:
+        # What is behind an edge reaches into the box of its segment, which is as deep as the block.
+        inner = half - radius - 0.5 * min(depth, length / segments - radius)
+        return [
+            *_faces(barrier, depth, length, top, radius, segments),
+            *edges,
+            _upright(barrier, cut_outline(plan, -1, -inner), top, 0),
+            _upright(barrier, cut_outline(plan, 1, inner), top, last),
+        ]
+    if half - radius > 1e-9:
+        faces = _faces(barrier, depth - radius, length, top, radius, 1)
+        return [*faces, *edges, _upright(barrier, plan, top, 0)]
+    return [_upright(barrier, plan, top, None), *edges]
+
+
+def _plan_behind(depth: float, length: float, radius: float) -> Floats:
+    """Return the plan of a rounded block without what its posts fill, set back behind its face."""
     ring = rounded_outline(depth, length, radius, _SIDES_BEHIND)
+    beside = 0.5 * length - radius
     filled = (ring[:, 0] > 1e-9) & (ring[:, 0] < radius - 1e-9) & (np.abs(ring[:, 1]) > beside + 1e-9)
     plan = ring[~filled]
     plan[:, 0] = np.maximum(plan[:, 0], _BEHIND_FACE * radius)
-    wide = beside > 1e-9
-    behind = _core.Element.prism(
-        profile=plan * (1.0, -1.0),
+    return np.asarray(plan)
+
+
+def _faces(
+    barrier: Barrier, depth: float, length: float, top: float, radius: float, segments: int
+) -> list[_core.Element]:
+    """Return boxes along the line without the rounded edges at its ends."""
+    ends = np.linspace(-0.5, 0.5, segments + 1) * length
+    middles = 0.5 * (ends[1:] + ends[:-1])
+    ends[0] += radius
+    ends[-1] -= radius
+    return [
+        _core.Element.prism(
+            profile=np.array([(0.0, -FOOT), (depth, -FOOT), (depth, top), (0.0, top)]),
+            y_low=low - middle,
+            y_high=high - middle,
+            covered_low_end=True,
+            covered_high_end=True,
+            position=barrier.from_origin(0.0, middle),
+            heading=math.radians(barrier.heading),
+        )
+        for low, middle, high in zip(ends[:-1], middles, ends[1:], strict=True)
+    ]
+
+
+def _upright(barrier: Barrier, plan: Floats, top: float, whole: int | None) -> _core.Element:
+    """Return a part of an element, drawn upwards from its plan: places across and along, (n, 2) [m]."""
+    return _core.Element.prism(
+        profile=plan * (1.0, -1.0),  # own z points to lower y
         y_low=-FOOT,
         y_high=top,
         covered_low_end=True,
         covered_high_end=False,
         position=barrier.from_origin(0.0, 0.0),
-        heading=heading,
-        continues=wide,
+        heading=math.radians(barrier.heading),
+        part_of=whole,
         upright=True,
     )
-    edges = [
-        _core.Element.post(
-            radius=radius,
-            height=top,
-            position=barrier.from_origin(radius, along),
-            heading=heading,
-            continues=True,
-            opens=math.copysign(0.75 * math.pi, along),
-        )
-        for along in (-beside, beside)
-    ]
-    if not wide:
-        return [behind, *edges]
-    reach = depth - radius  # into the block behind
-    face = _core.Element.prism(
-        profile=np.array([(0.0, -FOOT), (reach, -FOOT), (reach, top), (0.0, top)]),
-        y_low=-beside,
-        y_high=beside,
-        covered_low_end=True,
-        covered_high_end=True,
-        position=barrier.from_origin(0.0, 0.0),
-        heading=heading,
-    )
-    return [face, *edges, behind]
 
 
 def numbered(whole: str, part: str, count: int) -> tuple[str, ...]:

@@ -1,13 +1,21 @@
-"""Upright edges of walls and planters: how round they are."""
+"""Upright edges of blocks: their radius, and plans of blocks that have them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["check_edge_radius", "edges_text", "rounded_outline", "usual_edge_radius"]
+__all__ = [
+    "check_edge_radius",
+    "cut_outline",
+    "edges_text",
+    "rounded_outline",
+    "segment_outlines",
+    "usual_edge_radius",
+]
 
 Floats = npt.NDArray[np.float64]
 
@@ -15,9 +23,10 @@ _USUAL_EDGE_RADIUS = 0.05  # of a block of concrete [m]
 
 
 def usual_edge_radius(depth: float, length: float) -> float:
-    """Return the radius of the upright edges of a block that is given none [m].
+    """Return the radius of the upright edges of a block where nothing is said of it [m].
 
-    A sharp edge passes between the nodes of the skin as a knife does. Up to 0.1 m the radius hardly matters.
+    A sharp edge passes between the nodes of the skin. From 0.03 to 0.1 m the radius changes the force of a
+    car at a corner by less than 15 %.
     """
     return max(0.0, min(_USUAL_EDGE_RADIUS, 0.5 * depth, 0.5 * length))
 
@@ -55,3 +64,21 @@ def rounded_outline(depth: float, length: float, radius: float, sides_of_quarter
     # Where the radius is half of the block, arcs end where the next ones begin.
     apart = np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1) > 1e-9
     return np.asarray(ring[apart])
+
+
+def cut_outline(ring: Floats, side: int, inner: float) -> Floats:
+    """Return the end of an outline on one side of its middle (-1, 1), from `inner` along the line on [m]."""
+    outer = ring[side * ring[:, 1] > 0.0]
+    return np.vstack([outer, [(outer[-1, 0], inner), (outer[0, 0], inner)]])
+
+
+def segment_outlines(depth: float, length: float, radius: float, segments: int) -> list[Floats]:
+    """Return the plans of the segments of a block with rounded edges, each (n, 2): across and along [m]."""
+    ring = rounded_outline(depth, length, radius)
+    if segments == 1:
+        return [ring]
+    ends = np.linspace(-0.5, 0.5, segments + 1) * length
+    between = [
+        np.array([(depth, low), (depth, high), (0.0, high), (0.0, low)]) for low, high in pairwise(ends[1:-1])
+    ]
+    return [cut_outline(ring, -1, float(ends[1])), *between, cut_outline(ring, 1, float(ends[-2]))]

@@ -12,7 +12,6 @@ import numpy.typing as npt
 from ..base.arguments import checked
 from ..unit_check import given, warn_if_mesh_unusual
 from ..units import Quantity, si
-from .edges import usual_edge_radius
 
 if TYPE_CHECKING:
     from .free_standing import FreeStanding
@@ -53,9 +52,10 @@ class BarrierMakers:
         segments
             Elements of equal width that a wall of finite width is made of.
         edge_radius
-            Of the upright edges [m], at most half of thickness and width. The width is counted from the
-            outermost place of one arc to that of the other. ``None``: 0.05 m where a width is given and
-            ``segments`` is 1. 0: sharp edges, which cut the skin as a knife does; as of several segments.
+            Of the upright edges at the wall's ends [m], at most half of the thickness and of the width of a
+            segment. The width is counted from the outermost place of one arc to that of the other. ``None``:
+            0.05 m where the wall has ends, or half of what is thinner. 0: sharp edges, which pass between
+            nodes. Edges on the traffic's side draw in the skin beside them, those behind do not.
         friction, origin, heading
             See :class:`Barrier`.
 
@@ -66,17 +66,13 @@ class BarrierMakers:
         """
         from .kinds import RigidWall
 
-        depth = given("thickness", thickness)
-        length = math.inf if width is None else given("width", width)
-        if edge_radius is None:
-            radius = usual_edge_radius(depth, length) if math.isfinite(length) and segments == 1 else 0.0
-        else:
-            radius = given("edge_radius", edge_radius)
+        radius = None if edge_radius is None else given("edge_radius", edge_radius)
+        rounded = radius is not None and radius > 0.0
         return RigidWall(
             *_common(friction, origin, heading),
-            width=4.0 if width is None and radius > 0.0 else length,
+            width=(4.0 if rounded else math.inf) if width is None else given("width", width),
             height=math.inf if height is None else given("height", height),
-            thickness=depth,
+            thickness=given("thickness", thickness),
             segments=segments,
             edge_radius=radius,
         )
@@ -250,8 +246,8 @@ class BarrierMakers:
         height
             [m], > 0.
         edge_radius
-            Of the upright edges [m], at most half of length and width; ``None``: 0.05 m. 0: sharp edges,
-            which cut the skin as a knife does.
+            Of the upright edges [m], at most half of length and width. ``None``: 0.05 m, or half of what is
+            thinner. 0: sharp edges, which pass between nodes.
         friction, origin, heading
             See :class:`Barrier`.
 
@@ -262,14 +258,12 @@ class BarrierMakers:
         """
         from .kinds import Planter
 
-        along, across = given("length", length), given("width", width)
-        usual = usual_edge_radius(across, along)
         return Planter(
             *_common(friction, origin, heading),
-            length=along,
-            width=across,
+            length=given("length", length),
+            width=given("width", width),
             height=given("height", height),
-            edge_radius=usual if edge_radius is None else given("edge_radius", edge_radius),
+            edge_radius=None if edge_radius is None else given("edge_radius", edge_radius),
         )
 
     @staticmethod

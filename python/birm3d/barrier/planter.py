@@ -18,7 +18,7 @@ from .blocks import (
     seen_block,
 )
 from .description import SeenPart, Size
-from .edges import check_edge_radius, edges_text, rounded_outline
+from .edges import check_edge_radius, edges_text, rounded_outline, usual_edge_radius
 from .fronts import FlatFront, axes_of
 from .surfaces import drawn_up, ends, extruded, placed
 
@@ -29,13 +29,13 @@ __all__ = ["Planter"]
 class Planter(Barrier):
     """A rigid, fixed, solid block of given footprint and height; its line is the foot of its traffic face.
 
-    Its upright edges are sharp, or rounded by ``edge_radius`` as those of a wall.
+    Its upright edges are sharp, or rounded as those of a wall.
     """
 
     length: float = 2.0
     width: float = 1.0
     height: float = 1.0
-    edge_radius: float = 0.0
+    edge_radius: float | None = 0.0  # as files have it that know of no edges; None: the usual one
 
     title: ClassVar = "planter"
     sizes: ClassVar = (
@@ -49,17 +49,22 @@ class Planter(Barrier):
         """Return the block."""
         for name in ("length", "width", "height"):
             positive_and_finite(name, getattr(self, name))
-        check_edge_radius(self.edge_radius, {"length": self.length, "width": self.width})
+        check_edge_radius(self.rounding, {"length": self.length, "width": self.width})
         width, top = self.width, self.height
-        if self.edge_radius > 0.0:
-            return rounded_block(self, width, self.length, top, self.edge_radius)
+        if self.rounding > 0.0:
+            return rounded_block(self, width, self.length, top, self.rounding)
         corners = [(0.0, -FOOT), (width, -FOOT), (width, top), (0.0, top)]
         return along_line(self, np.array(corners), 0.0, self.length, 1)
 
     @property
+    def rounding(self) -> float:
+        """Radius of the upright edges [m]; 0: sharp."""
+        return usual_edge_radius(self.width, self.length) if self.edge_radius is None else self.edge_radius
+
+    @property
     def draws_in_skin(self) -> bool:
         """Whether its edges are rounded."""
-        return self.edge_radius > 0.0
+        return self.rounding > 0.0
 
     @property
     def cuts_skin(self) -> bool:
@@ -79,21 +84,19 @@ class Planter(Barrier):
     @property
     def text(self) -> str:
         """Sizes in a few words."""
-        edges = edges_text(self.edge_radius, self.width, self.length)
+        edges = edges_text(self.rounding, self.width, self.length)
         return f"planter, {self.length:g} m long, {self.width:g} m wide, {self.height:g} m high{edges}"
 
     def load_front(self) -> FlatFront:
         """Return the traffic face."""
         axes = axes_of(self.origin, self.heading)
-        return FlatFront(
-            *axes, self.height, np.zeros(1), half_width=0.5 * self.length, radius=self.edge_radius
-        )
+        return FlatFront(*axes, self.height, np.zeros(1), half_width=0.5 * self.length, radius=self.rounding)
 
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return the block."""
-        if self.edge_radius > 0.0:
+        if self.rounding > 0.0:
             vertices, faces = drawn_up(
-                rounded_outline(self.width, self.length, self.edge_radius), 0.0, self.height
+                rounded_outline(self.width, self.length, self.rounding), 0.0, self.height
             )
             return [(placed(self, vertices), faces)]
         sides = (np.zeros(2), np.full(2, self.width), np.array([0.0, self.height]))

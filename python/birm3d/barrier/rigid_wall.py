@@ -22,7 +22,7 @@ from .blocks import (
     seen_block,
 )
 from .description import SeenPart, Size, height_text, length_text, segments_text
-from .edges import check_edge_radius, edges_text, rounded_outline
+from .edges import check_edge_radius, edges_text, rounded_outline, segment_outlines, usual_edge_radius
 from .fronts import FlatFront, axes_of, feet_of
 from .surfaces import drawn_up, ends, extruded, placed
 
@@ -41,7 +41,7 @@ class RigidWall(Barrier):
     """A flat, rigid, vertical wall.
 
     Without end in width and height it is a half-space. Else it has a ``thickness``, with ends, a top and a
-    back that can be met like the face. Its upright edges are sharp, or rounded by ``edge_radius``, see
+    back that can be met like the face. Its upright edges are sharp, or rounded, see :attr:`rounding` and
     :meth:`outline`. A sharp edge cuts the skin. Rounded edges on the traffic's side are posts: like bollards
     they draw in the skin beside them. The wall's load has theirs.
     """
@@ -50,7 +50,7 @@ class RigidWall(Barrier):
     height: float = math.inf
     thickness: float = 0.5
     segments: int = 1
-    edge_radius: float = 0.0
+    edge_radius: float | None = 0.0  # as files have it that know of no edges; None: the usual one
 
     _counts: ClassVar = ("segments",)
     title: ClassVar = "wall"
@@ -59,7 +59,7 @@ class RigidWall(Barrier):
         Size("height"),
         Size("thickness", hint="where it has an end or a top"),
         Size("segments", "count", "where it has ends"),
-        Size("edge_radius", hint="of the upright edges [default: 0.05]"),
+        Size("edge_radius", hint="of the upright edges [default: 0.05 where it ends]"),
     )
     is_straight: ClassVar = True
 
@@ -71,8 +71,8 @@ class RigidWall(Barrier):
         self._check_edges()
         heading = math.radians(self.heading)
         top = self.height if math.isfinite(self.height) else _HIGH
-        if self.edge_radius > 0.0:
-            return rounded_block(self, self.thickness, self.width, top, self.edge_radius)
+        if self.rounding > 0.0:
+            return rounded_block(self, self.thickness, self.width, top, self.rounding, self.segments)
         if math.isinf(self.width) and self.segments > 1:
             raise ValueError(f"segments must be 1 for a wall of infinite width, got {self.segments}")
         if math.isinf(self.width) and math.isinf(self.height):
@@ -80,22 +80,29 @@ class RigidWall(Barrier):
         corners = [(0.0, -FOOT), (self.thickness, -FOOT), (self.thickness, top), (0.0, top)]
         return along_line(self, np.array(corners), 0.0, self.width, self.segments)
 
+    @property
+    def rounding(self) -> float:
+        """Radius of the upright edges [m]; 0: sharp."""
+        if self.edge_radius is not None:
+            return self.edge_radius
+        ends = math.isfinite(self.width)
+        return usual_edge_radius(self.thickness, self.width / self.segments) if ends else 0.0
+
     def outline(self) -> Floats:
         """Return the plan of a wall with rounded edges: across and along of its corners, shape (n, 2) [m]."""
-        return rounded_outline(self.thickness, self.width, self.edge_radius)
+        return rounded_outline(self.thickness, self.width, self.rounding)
 
     def _check_edges(self) -> None:
-        radius = self.edge_radius
-        check_edge_radius(radius, {"thickness": self.thickness, "width": self.width})
+        radius = self.rounding
+        name = "width" if self.segments == 1 else "the width of a segment"
+        check_edge_radius(radius, {"thickness": self.thickness, name: self.width / self.segments})
         if radius > 0.0 and math.isinf(self.width):
             raise ValueError(f"edge_radius must be 0 m for a wall of infinite width, got {radius}")
-        if radius > 0.0 and self.segments > 1:
-            raise ValueError(f"edge_radius must be 0 m for a wall of several segments, got {radius}")
 
     @property
     def draws_in_skin(self) -> bool:
         """Whether its edges are rounded."""
-        return self.edge_radius > 0.0
+        return self.rounding > 0.0
 
     @property
     def cuts_skin(self) -> bool:
@@ -115,7 +122,7 @@ class RigidWall(Barrier):
     @property
     def is_bottomless(self) -> bool:
         """Whether it goes on below the ground without end."""
-        return self.is_endless or self.edge_radius > 0.0
+        return self.is_endless or self.rounding > 0.0
 
     @property
     def text(self) -> str:
@@ -123,21 +130,22 @@ class RigidWall(Barrier):
         if self.is_endless:
             return "rigid wall without end"
         length = f"{length_text(self.width)}{segments_text(self.segments)}"
-        has_edges = math.isfinite(self.width) and self.segments == 1
-        edges = edges_text(self.edge_radius, self.thickness, self.width) if has_edges else ""
+        has_edges = math.isfinite(self.width)
+        edges = edges_text(self.rounding, self.thickness, self.width / self.segments) if has_edges else ""
         return f"rigid wall {length}, {height_text(self.height)}, {self.thickness:g} m thick{edges}"
 
     def load_front(self) -> FlatFront:
         """Return the traffic face with its rounded edges."""
         axes, feet = axes_of(self.origin, self.heading), feet_of(self.width, self.segments)
-        return FlatFront(*axes, self.height, feet, half_width=0.5 * self.width, radius=self.edge_radius)
+        return FlatFront(*axes, self.height, feet, half_width=0.5 * self.width, radius=self.rounding)
 
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return closed segments."""
         height = min(self.height, top)
-        if self.edge_radius > 0.0:
-            vertices, faces = drawn_up(self.outline(), 0.0, height)
-            return [(placed(self, vertices), faces)]
+        if self.rounding > 0.0:
+            plans = segment_outlines(self.thickness, self.width, self.rounding, self.segments)
+            drawn = [drawn_up(plan, 0.0, height) for plan in plans]
+            return [(placed(self, vertices), faces) for vertices, faces in drawn]
         depth = _DRAWN_DEPTH if self.is_endless else self.thickness
         sides = (np.zeros(2), np.full(2, depth), np.array([0.0, height]))
         return extruded(self, *sides, ends(self.width, self.segments, seen))

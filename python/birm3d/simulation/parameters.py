@@ -186,7 +186,7 @@ def value_of(simulation: Simulation, name: str) -> Any:
     if name not in parameter_names(simulation):
         raise _unknown(scene, name)
     if group == "barrier":
-        return getattr(scene.barrier, rest)
+        return getattr(scene.barrier, "rounding" if rest == "edge_radius" else rest)
     if group == "settings":
         return getattr(scene.settings, rest)
     if group == "truss":

@@ -1,4 +1,4 @@
-"""Metrics that count events, over several runs: in how many runs it happens. A mean of counts says little."""
+"""Metrics that count events, over several runs: in how many the event happens. A mean count says little."""
 
 from __future__ import annotations
 

@@ -288,7 +288,7 @@ def drawn_parameters(simulation: Simulation, power: int) -> dict[str, Floats]:
             f"got {vehicle.name!r}"
         )
     normal, known = draws(power), parameter_names(simulation)
-    has_edges = getattr(simulation.scene.barrier, "edge_radius", 0.0) > 0.0
+    has_edges = getattr(simulation.scene.barrier, "rounding", 0.0) > 0.0
     columns = {}
     for name, one in scatter.items():
         parameter = parameter_of(name)

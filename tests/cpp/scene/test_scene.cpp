@@ -120,3 +120,20 @@ TEST("what can not be run is refused") {
     CHECK_THROWS(Scene(vehicle, nullptr, Approach{20.0, 1.0, 0.0, 0.0}, good, {}), std::invalid_argument);
     CHECK_THROWS(Barrier::wall(-0.1, Vec3::Zero(), 0.0), std::invalid_argument);
 }
+
+TEST("parts are of an element before them, and stand fast") {
+    const Element face{Prism::box(0.5, 2.0, 1.0, 1.0)};
+    const auto refused = [&](std::size_t whole, std::optional<FreeStanding> free) {
+        Element part = face;
+        part.part_of = whole;
+        try {
+            const Barrier barrier({face, part}, 0.0, Vec3::Zero(), 0.0, free);
+        } catch (const std::invalid_argument&) {
+            return true;
+        }
+        return false;
+    };
+    CHECK(!refused(0, {}));
+    CHECK(refused(1, {}));
+    CHECK(refused(0, FreeStanding{2400.0, 0.5, SegmentJoint::loose}));
+}

@@ -24,7 +24,7 @@ Box bounds(const Shape& shape);
 
 // How thick the shape is where it is thinnest (m): a point that got in by less than half of it is nearer to
 // the side it came from than to the opposite one. Infinite where there is no opposite side.
-//   post: its diameter, but infinite of a wall's edge, as the wall stands behind it;
+//   post: its diameter; of a post that is a wall's edge infinite, as the wall stands behind it;
 //   prism: least distance between two uncovered faces, not neighbours, that look away from each other;
 //   mesh: least distance from the middle of a triangle straight through the body.
 double thickness(const Shape& shape);

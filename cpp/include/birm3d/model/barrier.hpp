@@ -15,10 +15,12 @@ namespace birm3d {
 struct Element {
     Shape shape;  // own axes: z up, unless upright
     Vec3 position =
-        Vec3::Zero();        // of the own axes' origin, the element's foot: from the barrier's origin (m)
-    double heading = 0.0;    // turn of the own axes about z (rad)
-    bool continues = false;  // part of the element before it, as a wall's rounded edge: loads are that one's
-    bool upright = false;    // own y points up and own z to the right: a prism drawn upwards from its plan
+        Vec3::Zero();      // of the own axes' origin, the element's foot: from the barrier's origin (m)
+    double heading = 0.0;  // turn of the own axes about z (rad)
+    bool upright = false;  // own y points up and own z to lower y: a prism drawn upwards from its plan
+    // Index of an element before it that this one is a part of, as a wall's rounded edge: loads are that one's. None: it is
+    // no part.
+    std::optional<std::size_t> part_of = {};
 
     Mat3 rotation() const;  // own axes to the barrier's
 };
