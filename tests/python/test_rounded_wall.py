@@ -338,3 +338,15 @@ def test_a_rounded_corner_spares_the_core(car: Vehicle, angle: float) -> None:
     assert all(metrics["core_contact_force"] == 0.0 for metrics in forces)
     peaks = [metrics["peak_force_50ms"] for metrics in forces]
     assert max(peaks) < 1.15 * min(peaks)
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+def test_a_wall_that_enters_the_side_makes_no_energy() -> None:
+    """Anchors that had passed the edge were thrown out by the block behind it: 4,000 times the energy."""
+    wall = Barrier.rigid_wall(width=4.0, height=0.8, edge_radius=0.25)
+    car = Vehicle.preset("pickup")
+    result = Simulation(car, wall, 25.6, 166.0, -1.69, impact_yaw=90.0, duration=0.3).run()
+    assert result.statistics.body_steps > 0
+    kinetic = result.energy["kinetic"]
+    assert kinetic.max() < (1.0 + 1e-6) * kinetic[0]
+    assert result.metrics["energy_residual"] < 1e-3

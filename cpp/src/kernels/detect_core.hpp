@@ -19,8 +19,9 @@ struct PlacedShape {
     Placement placement;
     std::size_t obstacle = 0;
     double friction = 0.0;
-    Twist motion = {};    // of the obstacle, as a twist about the body's origin, body axes
-    bool pushes = false;  // on any node of the unit
+    Twist motion = {};       // of the obstacle, as a twist about the body's origin, body axes
+    bool pushes = false;     // on any node of the unit
+    bool has_edges = false;  // is it a part of a block with rounded edges?
 };
 
 // Distance within which an anchor can reach a surface in dt, in any direction (m); `motion` in body axes.
@@ -31,7 +32,8 @@ double core_margin(const TrussMesh& mesh, const Twist& motion, double dt);
 //
 // Anchors in no rigid box give way to posts (Unit::gives_way). Such an anchor is skipped while more than 10 % of its truss's
 // depth is left. This holds if any node of the unit pushes on the post, or if the anchor is more than 1 mm inside it. A post in
-// the bumper may stand where trusses of the fender are anchored: the bumper's trusses stop it there.
+// the bumper may stand where trusses of the fender are anchored: the bumper's trusses stop it there. An anchor that has passed
+// the edge of a wall so rests where it is on the other parts of the wall, too: pushed out, it would be thrown.
 void find_core_contacts(const Unit& unit, std::size_t body, const UnitState& state,
                         std::span<const PlacedShape> shapes, const Twist& motion, double dt,
                         std::vector<RigidContact>& contacts);

@@ -61,8 +61,8 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
             const Twist relative{motion.velocity - other.velocity,
                                  motion.angular_velocity - other.angular_velocity};
             if (within_reach(obstacle.shape, in_shape, anchors, core_margin(unit.trusses, relative, dt)))
-                placed.push_back(
-                    {&obstacle.shape, in_shape, i, obstacle.friction, other, pushes(state.units[u], i)});
+                placed.push_back({&obstacle.shape, in_shape, i, obstacle.friction, other,
+                                  pushes(state.units[u], i), obstacle.has_edges});
         }
         if (placed.empty()) continue;
         const std::size_t first = contacts.size();
