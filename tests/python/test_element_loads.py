@@ -42,7 +42,7 @@ def test_elements_carry_the_force_on_the_vehicle(barrier: Barrier, angle: float)
     result = Simulation(car(), barrier, 15.0, angle).run()
     loads = result.element_loads
     assert [load.name for load in loads] == list(barrier.element_names)
-    assert len(loads) == len(barrier.elements())
+    assert len(loads) == (barrier.segments if hasattr(barrier, "segments") else len(barrier.elements()))
     assert any(load.touched for load in loads)
     total = sum(load.force for load in loads)
     scale = np.abs(result.barrier_force).max()
