@@ -35,7 +35,8 @@ class Planter(Barrier):
     length: float = 2.0
     width: float = 1.0
     height: float = 1.0
-    edge_radius: float | None = 0.0  # as files have it that know of no edges; None: the usual one
+    # None: the usual one. Files of earlier versions say nothing of a planter's edges: they were sharp.
+    edge_radius: float | None = 0.0
 
     title: ClassVar = "planter"
     sizes: ClassVar = (

@@ -42,15 +42,15 @@ class RigidWall(Barrier):
 
     Without end in width and height it is a half-space. Else it has a ``thickness``, with ends, a top and a
     back that can be met like the face. Its upright edges are sharp, or rounded, see :attr:`rounding` and
-    :meth:`outline`. A sharp edge cuts the skin. Rounded edges on the traffic's side are posts: like bollards
-    they draw in the skin beside them. The wall's load has theirs.
+    :meth:`outline`. A sharp edge passes between nodes of the skin. Rounded edges on the traffic's side are
+    posts: like bollards they draw in the skin beside them. The wall's load has theirs.
     """
 
     width: float = math.inf
     height: float = math.inf
     thickness: float = 0.5
     segments: int = 1
-    edge_radius: float | None = 0.0  # as files have it that know of no edges; None: the usual one
+    edge_radius: float | None = 0.0  # None: the usual one, as rigid_wall() asks for
 
     _counts: ClassVar = ("segments",)
     title: ClassVar = "wall"
