@@ -110,36 +110,27 @@ void crush_stopped(const ContactPass& pass, ContactState& state) {
     add_friction_and_distribute(pass, several_obstacles, state.block, state.sums);
 }
 
-// The sums of a face that covers the whole block, where the other parts of its element lie behind it. Else null.
-PlaneSums* plane_before_others(const ContactPass& pass, const ContactBlock& block, ContactSums& sums) {
-    const auto element_of = [&](std::size_t k) { return pass.scene.obstacles[pass.near[k].index].element; };
-    const std::size_t element = element_of(block.reachable[0]);
-    for (const std::size_t k : block.reachable)
-        if (element_of(k) != element) return nullptr;
-    for (const std::size_t k : block.reachable) {
-        const auto plane = flat_part(pass.shape(k), pass.near[k].now, block.start->box);
-        if (!plane) continue;
-        const bool before_all =
-            std::all_of(block.reachable.begin(), block.reachable.end(), [&](std::size_t other) {
-                return other == k || is_behind(*plane, pass.shape(other), pass.near[other].now);
-            });
-        if (before_all) return &sums_of_plane(pass, k, *plane, sums.planes);
-    }
-    return nullptr;
-}
-
 }  // namespace
 
 PlaneSums* only_plane(const ContactPass& pass, const ContactBlock& block, ContactSums& sums) {
-    if (!block.indentations.empty()) return nullptr;
-    if (block.reachable.size() > 1) return plane_before_others(pass, block, sums);
-    if (block.reachable.empty()) return nullptr;
-    const std::size_t k = block.reachable[0];
-    const Shape& shape = pass.shape(k);
-    if (std::holds_alternative<HalfSpace>(shape) && !sums.planes.empty() && sums.planes.back().near == k)
+    const std::vector<std::size_t>& reachable = block.reachable;
+    if (reachable.empty() || !block.indentations.empty()) return nullptr;
+    const bool known =
+        reachable.size() == 1 && !sums.planes.empty() && sums.planes.back().near == reachable[0];
+    if (known && std::holds_alternative<HalfSpace>(pass.shape(reachable[0])))
         return &sums.planes.back();  // the same plane to all blocks
-    const auto plane = flat_part(shape, pass.near[k].now, block.start->box);
-    return plane ? &sums_of_plane(pass, k, *plane, sums.planes) : nullptr;
+    const auto element_of = [&](std::size_t k) { return pass.scene.obstacles[pass.near[k].index].element; };
+    for (const std::size_t k : reachable)
+        if (element_of(k) != element_of(reachable[0])) return nullptr;
+    for (const std::size_t k : reachable) {
+        const auto plane = flat_part(pass.shape(k), pass.near[k].now, block.start->box);
+        if (!plane) continue;
+        const bool before_all = std::all_of(reachable.begin(), reachable.end(), [&](std::size_t other) {
+            return other == k || is_behind(*plane, pass.shape(other), pass.near[other].now);
+        });
+        if (before_all) return &sums_of_plane(pass, k, *plane, sums.planes);
+    }
+    return nullptr;
 }
 
 void crush_on_plane(const ContactPass& pass, PlaneSums& plane, ContactState& state) {

@@ -164,7 +164,7 @@ std::uint64_t Scene::fingerprint() const {
             hash.add(element.position);
             hash.add(element.heading);
             if (element.part_of) hash.add(static_cast<double>(*element.part_of));
-            if (element.upright) hash.add(1.0);
+            if (element.upright) hash.add(-1.0);  // no index of an element
         }
         if (barrier->free_standing) {
             hash.add(barrier->free_standing->density);

@@ -46,21 +46,32 @@ def positive_and_finite(name: str, value: float) -> None:
 
 
 def along_line(
-    barrier: Barrier, corners: Floats, across: float, length: float, segments: int, *, abutting: bool = True
+    barrier: Barrier,
+    corners: Floats,
+    across: float,
+    length: float,
+    segments: int,
+    *,
+    abutting: bool = True,
+    rounded: float = 0.0,
 ) -> list[_core.Element]:
-    """Extrude a profile along the line. Abutting ends are no surface."""
+    """Extrude a profile along the line. Abutting ends are no surface.
+
+    At the ends of the line the profile is set back where rounded edges of that radius hide it [m].
+    """
     ends = [-math.inf, math.inf] if math.isinf(length) else np.linspace(-0.5, 0.5, segments + 1) * length
     elements = []
     for i in range(segments):
         low, high = float(ends[i]), float(ends[i + 1])
         middle = 0.5 * (low + high) if math.isfinite(low) else 0.0
+        first, last = i == 0, i == segments - 1
         elements.append(
             _core.Element.prism(
                 profile=corners,
-                y_low=low - middle,
-                y_high=high - middle,
-                covered_low_end=abutting and i > 0,
-                covered_high_end=abutting and i < segments - 1,
+                y_low=low + (rounded if first else 0.0) - middle,
+                y_high=high - (rounded if last else 0.0) - middle,
+                covered_low_end=rounded > 0.0 if first else abutting,
+                covered_high_end=rounded > 0.0 if last else abutting,
                 position=barrier.from_origin(across, middle),
                 heading=math.radians(barrier.heading),
             )
@@ -77,6 +88,11 @@ def rounded_block(
     face, its ends hidden in the posts. Behind them is the block, with chords for the arcs that posts fill.
     """
     half, last = 0.5 * length, segments - 1
+
+    def faces(reach: float) -> list[_core.Element]:
+        corners = np.array([(0.0, -FOOT), (reach, -FOOT), (reach, top), (0.0, top)])
+        return along_line(barrier, corners, 0.0, length, segments, rounded=radius)
+
     edges = [
         _core.Element.post(
             radius=radius,
@@ -93,14 +109,13 @@ def rounded_block(
         # What is behind an edge reaches into the box of its segment, which is as deep as the block.
         inner = half - radius - 0.5 * min(depth, length / segments - radius)
         return [
-            *_faces(barrier, depth, length, top, radius, segments),
+            *faces(depth),
             *edges,
             _upright(barrier, cut_outline(plan, -1, -inner), top, 0),
             _upright(barrier, cut_outline(plan, 1, inner), top, last),
         ]
     if half - radius > 1e-9:
-        faces = _faces(barrier, depth - radius, length, top, radius, 1)
-        return [*faces, *edges, _upright(barrier, plan, top, 0)]
+        return [*faces(depth - radius), *edges, _upright(barrier, plan, top, 0)]
     return [_upright(barrier, plan, top, None), *edges]
 
 
@@ -112,28 +127,6 @@ def _plan_behind(depth: float, length: float, radius: float) -> Floats:
     plan = ring[~filled]
     plan[:, 0] = np.maximum(plan[:, 0], _BEHIND_FACE * radius)
     return np.asarray(plan)
-
-
-def _faces(
-    barrier: Barrier, depth: float, length: float, top: float, radius: float, segments: int
-) -> list[_core.Element]:
-    """Return boxes along the line without the rounded edges at its ends."""
-    ends = np.linspace(-0.5, 0.5, segments + 1) * length
-    middles = 0.5 * (ends[1:] + ends[:-1])
-    ends[0] += radius
-    ends[-1] -= radius
-    return [
-        _core.Element.prism(
-            profile=np.array([(0.0, -FOOT), (depth, -FOOT), (depth, top), (0.0, top)]),
-            y_low=low - middle,
-            y_high=high - middle,
-            covered_low_end=True,
-            covered_high_end=True,
-            position=barrier.from_origin(0.0, middle),
-            heading=math.radians(barrier.heading),
-        )
-        for low, middle, high in zip(ends[:-1], middles, ends[1:], strict=True)
-    ]
 
 
 def _upright(barrier: Barrier, plan: Floats, top: float, whole: int | None) -> _core.Element:
