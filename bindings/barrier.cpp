@@ -59,19 +59,22 @@ void register_barrier(py::module_& m) {
             "prism",
             [](const InputArray& profile, double y_low, double y_high, bool covered_low_end,
                bool covered_high_end, const InputArray& position, double heading,
-               std::optional<std::size_t> part_of, bool upright) {
+               std::optional<std::size_t> part_of, bool upright, bool draws_in_above) {
                 Element prism = element(Prism(profile_points(profile), y_low, y_high,
                                               {.low_end = covered_low_end, .high_end = covered_high_end}),
                                         position, heading);
                 prism.part_of = part_of;
                 prism.upright = upright;
+                prism.draws_in_above = draws_in_above;
                 return prism;
             },
             py::kw_only(), py::arg("profile"), py::arg("y_low"), py::arg("y_high"),
             py::arg("covered_low_end"), py::arg("covered_high_end"), py::arg("position"), py::arg("heading"),
-            py::arg("part_of") = std::nullopt, py::arg("upright") = false,
+            py::arg("part_of") = std::nullopt, py::arg("upright") = false, py::arg("draws_in_above") = false,
             "profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered ends "
-            "are no surface. part_of: as of a post. upright: own y points up, own z to lower y.")
+            "are no surface. part_of: as of a post. upright: own y points up, own z to lower y. "
+            "draws_in_above: the "
+            "skin above its vertical face towards -x is drawn in.")
         .def_static(
             "mesh",
             [](const InputArray& vertices, const std::vector<TriangleMesh::Face>& faces,

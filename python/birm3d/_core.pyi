@@ -83,6 +83,10 @@ class ContactModel:
     __members__: typing.ClassVar[dict[str, ContactModel]]  # value = {'projected': <ContactModel.projected: 0>, 'along_truss': <ContactModel.along_truss: 1>}
     along_truss: typing.ClassVar[ContactModel]  # value = <ContactModel.along_truss: 1>
     projected: typing.ClassVar[ContactModel]  # value = <ContactModel.projected: 0>
+    @typing.overload
+    def __eq__(self, other: ContactModel) -> bool:
+        ...
+    @typing.overload
     def __eq__(self, other: typing.Any) -> bool:
         ...
     def __getstate__(self) -> int:
@@ -95,6 +99,10 @@ class ContactModel:
         ...
     def __int__(self) -> int:
         ...
+    @typing.overload
+    def __ne__(self, other: ContactModel) -> bool:
+        ...
+    @typing.overload
     def __ne__(self, other: typing.Any) -> bool:
         ...
     def __repr__(self) -> str:
@@ -148,9 +156,9 @@ class Element:
         Upright and round, foot of the axis at position; m. part_of: index of the element whose loads its own are added to. opens: of the edge of a wall, direction of the open space about it (rad).
         """
     @staticmethod
-    def prism(*, profile: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], y_low: typing.SupportsFloat | typing.SupportsIndex, y_high: typing.SupportsFloat | typing.SupportsIndex, covered_low_end: bool, covered_high_end: bool, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, part_of: typing.SupportsInt | typing.SupportsIndex | None = None, upright: bool = False) -> Element:
+    def prism(*, profile: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], y_low: typing.SupportsFloat | typing.SupportsIndex, y_high: typing.SupportsFloat | typing.SupportsIndex, covered_low_end: bool, covered_high_end: bool, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, part_of: typing.SupportsInt | typing.SupportsIndex | None = None, upright: bool = False, draws_in_above: bool = False) -> Element:
         """
-        profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered ends are no surface. part_of: as of a post. upright: own y points up, own z to lower y.
+        profile: (n, 2) x and z of the corners (m), drawn along y from y_low to y_high; covered ends are no surface. part_of: as of a post. upright: own y points up, own z to lower y. draws_in_above: the skin above its vertical face towards -x is drawn in.
         """
     @property
     def part_of(self) -> int | None:
@@ -180,6 +188,10 @@ class EndReason:
     separated: typing.ClassVar[EndReason]  # value = <EndReason.separated: 2>
     sliding: typing.ClassVar[EndReason]  # value = <EndReason.sliding: 4>
     stopped: typing.ClassVar[EndReason]  # value = <EndReason.stopped: 3>
+    @typing.overload
+    def __eq__(self, other: EndReason) -> bool:
+        ...
+    @typing.overload
     def __eq__(self, other: typing.Any) -> bool:
         ...
     def __getstate__(self) -> int:
@@ -192,6 +204,10 @@ class EndReason:
         ...
     def __int__(self) -> int:
         ...
+    @typing.overload
+    def __ne__(self, other: EndReason) -> bool:
+        ...
+    @typing.overload
     def __ne__(self, other: typing.Any) -> bool:
         ...
     def __repr__(self) -> str:
@@ -611,6 +627,10 @@ class JointKind:
     __members__: typing.ClassVar[dict[str, JointKind]]  # value = {'fifth_wheel': <JointKind.fifth_wheel: 0>, 'welded': <JointKind.welded: 1>}
     fifth_wheel: typing.ClassVar[JointKind]  # value = <JointKind.fifth_wheel: 0>
     welded: typing.ClassVar[JointKind]  # value = <JointKind.welded: 1>
+    @typing.overload
+    def __eq__(self, other: JointKind) -> bool:
+        ...
+    @typing.overload
     def __eq__(self, other: typing.Any) -> bool:
         ...
     def __getstate__(self) -> int:
@@ -623,6 +643,10 @@ class JointKind:
         ...
     def __int__(self) -> int:
         ...
+    @typing.overload
+    def __ne__(self, other: JointKind) -> bool:
+        ...
+    @typing.overload
     def __ne__(self, other: typing.Any) -> bool:
         ...
     def __repr__(self) -> str:
@@ -784,6 +808,10 @@ class SegmentJoint:
     __members__: typing.ClassVar[dict[str, SegmentJoint]]  # value = {'pinned': <SegmentJoint.pinned: 0>, 'loose': <SegmentJoint.loose: 1>}
     loose: typing.ClassVar[SegmentJoint]  # value = <SegmentJoint.loose: 1>
     pinned: typing.ClassVar[SegmentJoint]  # value = <SegmentJoint.pinned: 0>
+    @typing.overload
+    def __eq__(self, other: SegmentJoint) -> bool:
+        ...
+    @typing.overload
     def __eq__(self, other: typing.Any) -> bool:
         ...
     def __getstate__(self) -> int:
@@ -796,6 +824,10 @@ class SegmentJoint:
         ...
     def __int__(self) -> int:
         ...
+    @typing.overload
+    def __ne__(self, other: SegmentJoint) -> bool:
+        ...
+    @typing.overload
     def __ne__(self, other: typing.Any) -> bool:
         ...
     def __repr__(self) -> str:
@@ -851,7 +883,7 @@ class Simulation:
         ...
     def restore(self, snapshot: Snapshot) -> None:
         ...
-    def run(self, tick: collections.abc.Callable[[typing.SupportsFloat | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex], None] | None = None) -> None:
+    def run(self, tick: collections.abc.Callable[[float, int], None] | None = None) -> None:
         """
         From the present state to the end; Ctrl-C stops it. `tick` is called now and then with the time (s) and the number of steps.
         """
@@ -1045,6 +1077,10 @@ class TireModel:
     __members__: typing.ClassVar[dict[str, TireModel]]  # value = {'slip': <TireModel.slip: 0>, 'skid': <TireModel.skid: 1>}
     skid: typing.ClassVar[TireModel]  # value = <TireModel.skid: 1>
     slip: typing.ClassVar[TireModel]  # value = <TireModel.slip: 0>
+    @typing.overload
+    def __eq__(self, other: TireModel) -> bool:
+        ...
+    @typing.overload
     def __eq__(self, other: typing.Any) -> bool:
         ...
     def __getstate__(self) -> int:
@@ -1057,6 +1093,10 @@ class TireModel:
         ...
     def __int__(self) -> int:
         ...
+    @typing.overload
+    def __ne__(self, other: TireModel) -> bool:
+        ...
+    @typing.overload
     def __ne__(self, other: typing.Any) -> bool:
         ...
     def __repr__(self) -> str:

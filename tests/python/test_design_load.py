@@ -463,7 +463,7 @@ def test_runs_that_miss_the_barrier_are_told() -> None:
     missed = birm3d.design_load(Simulation(car, Barrier.bollards(count=2, spacing=4.0), 20.0), draws=0)
     assert missed.governing.peak_force == 0.0
     assert "does not touch the barrier" in missed.caution
-    low = Simulation(Vehicle.preset("mash_2270p"), Barrier.rigid_wall(height=0.4), "50 mph")
+    low = Simulation(Vehicle.preset("mash_2270p"), Barrier.rigid_wall(height=0.4, edge_radius=0.0), "50 mph")
     over = birm3d.design_load(low, draws=0)
     assert over.governing.peak_force > 0.0
     assert "wheels meet nothing ahead of them, so loads are missing" in over.caution

@@ -273,7 +273,7 @@ def test_edges_are_rounded_unless_told_otherwise() -> None:
         Barrier.planter(edge_radius=0.0),
     ):
         assert wall.rounding == 0.0
-    with pytest.raises(ValueError, match=r"edge_radius must be >= 0 m and at most half of length and width"):
+    with pytest.raises(ValueError, match=r"edge_radius must be >= 0 m and at most half of width and length"):
         Barrier.planter(length=2.0, width=0.4, edge_radius=0.3)
 
 

@@ -107,7 +107,8 @@ bool find_group_candidates(const ContactPass& pass, std::size_t g, ContactMemory
         if (can_meet(pass, panel_bits, k, group.box, margin)) memory.group_near.push_back(k);
     memory.group_indentations.clear();
     for (std::size_t d = 0; d < pass.indentations.size(); ++d)
-        if (gap_to_indentation(pass.indentations[d], panel_bits, group.box, group.touching) < infinity)
+        if (gap_to_indentation(pass.indentations[d], panel_bits, group.box, group.touching, group.hangs) <
+            infinity)
             memory.group_indentations.push_back(d);
     return group.touching || group.slack || !memory.group_near.empty() || !memory.group_indentations.empty();
 }

@@ -40,6 +40,8 @@ struct ContactPass {
 
     const Obstacle& obstacle(std::size_t k) const { return scene.obstacles[near[k].index]; }
     const Shape& shape(std::size_t k) const { return obstacle(k).shape; }
+    // Do nodes of an indented panel follow the indentation instead of the surface of what makes it? They do at a post.
+    bool is_hidden(const IndentedPanel& indented) const { return !obstacle(indented.near).top_edge; }
     // Tire nodes meet the barrier only: the wheels stand on the ground as rigid contacts.
     bool meets(std::size_t block, std::size_t k) const {
         return block < mesh.shell_blocks || near[k].index != scene.ground;
@@ -100,6 +102,7 @@ struct ContactBlock {
     std::array<std::size_t, block_size> nearest;  // index in `reachable` of each node's obstacle
     alignas(64) BlockColumn second_gap;  // of each node, to the second nearest of several obstacles (m)
     alignas(64) BlockColumn released;    // nodes that an indentation releases (1, else 0)
+    bool hangs;                          // does any of its nodes follow a top edge?
     std::optional<Vec3> flat_normal;     // of all nodes in `contact`, where they met one plane
     std::vector<Corner> corners;         // nodes that are on several surfaces
     std::vector<StoppedNode> stopped;

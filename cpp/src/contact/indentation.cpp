@@ -19,8 +19,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Did the post stand in front of the panel at the start of the step?
 bool stood_before(const ContactPass& pass, std::size_t k, std::size_t p) {
     const Panel& panel = pass.mesh.panel[p];
-    const Indentation then = indentation_by(std::get<Post>(pass.shape(k)), pass.near[k].before, panel,
-                                            pass.mesh, pass.scene.settings);
+    const Indentation then =
+        indentation_by(pass.obstacle(k), pass.near[k].before, panel, pass.mesh, pass.scene.settings);
     return then.beside() < 0.0 && gap_of_panel(then, p, pass.mesh, pass.before, 0.0, 0.0) > 0.0;
 }
 
@@ -37,7 +37,7 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
                                     std::vector<IndentedPanel>& list) {
     const TrussMesh& mesh = pass.mesh;
     const NearObstacle& near = pass.near[k];
-    const Post& post = std::get<Post>(pass.shape(k));
+    const Obstacle& obstacle = pass.obstacle(k);
     const std::vector<IndentedPanels>& all = pass.before.indented;
     const auto known = std::find_if(all.begin(), all.end(),
                                     [&](const IndentedPanels& d) { return d.obstacle == near.index; });
@@ -48,8 +48,8 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
         const Panel& panel = mesh.panel[p];
         const auto bit = static_cast<std::uint8_t>(1U << p);
         const bool indents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
-        if (!panel.any || !can_indent(post, near.now, panel, indents)) continue;
-        const Indentation indentation = indentation_by(post, near.now, panel, mesh, pass.scene.settings);
+        if (!panel.any || !can_indent(obstacle, near.now, panel, indents)) continue;
+        const Indentation indentation = indentation_by(obstacle, near.now, panel, mesh, pass.scene.settings);
         if (!indents && !(indentation.beside() < 0.0)) continue;
         if (!indents && indentation.is_beyond(panel)) {
             now.passed |= bit;
@@ -64,7 +64,7 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
         if (indents || (!passed && (gap > -deepest || stood_before(pass, k, p)))) {
             now.panels |= bit;
             list.push_back({k, p, indentation,
-                            indentation_by(post, near.before, panel, mesh, pass.scene.settings), growth});
+                            indentation_by(obstacle, near.before, panel, mesh, pass.scene.settings), growth});
         } else {
             now.passed |= bit;
         }
@@ -81,7 +81,7 @@ void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list,
     pass.greatest_following = infinity;
     if (pass.mesh.indentation_length == 0.0) return;
     for (std::size_t k = 0; k < pass.near.size(); ++k) {
-        if (!std::holds_alternative<Post>(pass.shape(k))) continue;
+        if (!draws_in_skin(pass.obstacle(k))) continue;
         const IndentedPanels indented = find_indented_panels(pass, k, list);
         if ((indented.panels | indented.passed) != 0) now.push_back(indented);
     }
@@ -95,10 +95,10 @@ void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list,
 }
 
 double gap_to_indentation(const IndentedPanel& indented, std::uint8_t panel_bits, const Box& box,
-                          bool touching) {
+                          bool touching, bool hangs) {
     if ((panel_bits >> indented.panel & 1U) == 0) return infinity;
-    const double gap = -most_inside(indented.indentation, box);
-    if (touching && spans(indented.indentation, box)) return -infinity;
+    const double gap = -most_inside(indented.indentation, box, hangs);
+    if (touching && spans(indented.indentation, box, hangs)) return -infinity;
     return gap <= (touching ? indented.growth : 0.0) ? gap : infinity;
 }
 
@@ -108,7 +108,7 @@ void find_block_indentations(const ContactPass& pass, const std::vector<std::siz
     for (const std::size_t d : of_group) {
         const IndentedPanel& indented = pass.indentations[d];
         const double gap = gap_to_indentation(indented, pass.mesh.panels_of[block.index], block.start->box,
-                                              block.start->touching);
+                                              block.start->touching, block.start->hangs);
         if (gap == infinity) continue;
         block.indentations.push_back({d, gap});
         if (std::find(block.reachable.begin(), block.reachable.end(), indented.near) == block.reachable.end())
@@ -123,10 +123,10 @@ void find_block_indentations(const ContactPass& pass, const std::vector<std::siz
 }
 
 bool only_indented(const ContactPass& pass, std::uint8_t panel_bits, std::size_t k) {
-    return std::any_of(pass.indentations.begin(), pass.indentations.end(),
-                       [&](const IndentedPanel& indented) {
-                           return indented.near == k && panel_bits == 1U << indented.panel;
-                       });
+    return std::any_of(
+        pass.indentations.begin(), pass.indentations.end(), [&](const IndentedPanel& indented) {
+            return indented.near == k && pass.is_hidden(indented) && panel_bits == 1U << indented.panel;
+        });
 }
 
 namespace {
@@ -180,7 +180,8 @@ bool lags_behind_surface(const ContactPass& pass, const ContactBlock& block, std
 // Is any of the block's indentations that of a wall's edge?
 bool any_edge(const ContactPass& pass, const ContactBlock& block) {
     return std::any_of(block.indentations.begin(), block.indentations.end(), [&](const BlockIndentation& d) {
-        return std::get<Post>(pass.shape(pass.indentations[d.indentation].near)).opens.has_value();
+        const Obstacle& obstacle = pass.obstacle(pass.indentations[d.indentation].near);
+        return obstacle.top_edge || std::get<Post>(obstacle.shape).opens;
     });
 }
 
@@ -213,12 +214,14 @@ void find_holding_surfaces(const ContactPass& pass, const ContactBlock& block, H
 
 void omit_indented(const ContactPass& pass, std::size_t b, std::size_t k, NearestOfBlock& found) {
     for (const IndentedPanel& indented : pass.indentations)
-        if (indented.near == k && (pass.mesh.panels_of[b] >> indented.panel & 1U) != 0)
+        if (indented.near == k && pass.is_hidden(indented) &&
+            (pass.mesh.panels_of[b] >> indented.panel & 1U) != 0)
             omit_panel(pass.mesh.block[b].panel, static_cast<double>(indented.panel), found.gap);
 }
 
 void follow_indentations(const ContactPass& pass, ContactBlock& block) {
     block.released.fill(0.0);
+    block.hangs = false;
     if (block.indentations.empty()) return;
     alignas(64) BlockColumn follows, rank;
     HoldingSurfaces held;
@@ -236,6 +239,7 @@ void follow_indentations(const ContactPass& pass, ContactBlock& block) {
                            follows);
         note_second(follows, gap, block.second_gap);
         note_released(follows, block.released);
+        block.hangs = block.hangs || (indented.indentation.is_face && block_max(follows) > 0.0);
         const auto reachable = std::find(block.reachable.begin(), block.reachable.end(), indented.near) -
                                block.reachable.begin();
         if (block.reachable.size() > 1)

@@ -10,8 +10,9 @@ void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list, std:
 
 // Lower bound of the gaps of the nodes within a box to an indentation (m); infinite where it can not reach them.
 // `panel_bits`: panels of the nodes. A block that pushes stays at its indentation until it is released.
+// `hangs`: does any of the nodes follow a top edge?
 double gap_to_indentation(const IndentedPanel& indented, std::uint8_t panel_bits, const Box& box,
-                          bool touching);
+                          bool touching, bool hangs);
 
 // Sets the block's indentations, the nearest first, and adds their posts to its reachable obstacles.
 void find_block_indentations(const ContactPass& pass, const std::vector<std::size_t>& of_group,

@@ -191,10 +191,11 @@ void snap_back(const ContactPass& pass, ContactBlock& block) {
 
 bool is_solid_to(const ContactPass& pass, std::size_t b, std::size_t i, std::size_t k) {
     if (!pass.meets(b, k)) return false;
-    return std::none_of(
-        pass.indentations.begin(), pass.indentations.end(), [&](const IndentedPanel& indented) {
-            return indented.near == k && pass.mesh.block[b].panel[i] == static_cast<double>(indented.panel);
-        });
+    return std::none_of(pass.indentations.begin(), pass.indentations.end(),
+                        [&](const IndentedPanel& indented) {
+                            return indented.near == k && pass.is_hidden(indented) &&
+                                   pass.mesh.block[b].panel[i] == static_cast<double>(indented.panel);
+                        });
 }
 
 bool may_release(const ContactPass& pass, const ContactBlock& block, bool ceased) {

@@ -3,15 +3,19 @@
 
 namespace birm3d {
 
-// A post seen from a panel of the skin. Places from the foot of its axis: across it (w), along it (l) and into the panel
-// (e); body axes, m.
+// A post, or a face with a top edge, seen from a panel of the skin. Places from the foot of the post's axis or of the face:
+// across it (w), along it (l) and into the panel (e); body axes, m.
 struct IndentationNumbers {
     double ex, ey, ez, wx, wy, wz, lx, ly, lz;  // unit, square to each other
     double ox, oy, oz;                          // the foot
     double low, high;                           // of the panel, across from the axis
-    double top;                                 // along, of the highest place of the rim
-    double top_rate;                            // of that for each unit of change of the axis's part along e
-    double tilt;                                // e of the axis for each unit of l
+    double least_w, most_w;                     // of the post or the face, across
+    double top;                                 // along, of the highest place of the rim, of a face at w = 0
+    // Of a face for each unit of w; of a post zero: l of the top edge, e of the face and e of the edge.
+    double top_slope = 0.0, face_slope = 0.0, edge_slope = 0.0;
+    bool is_face = false;
+    double top_rate;         // of that for each unit of change of the axis's part along e
+    double tilt;             // e of the axis for each unit of l
     double radius, stretch;  // the post's, and that of its section with a plane of e and w over it
     double surface;          // into, of the outermost node of the panel
     double per_reach, per_stretch;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <limits>
 
 #include "base/block_loop.hpp"
 #include "kernels/simd_table.hpp"
@@ -10,6 +10,12 @@
 namespace birm3d {
 
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Range {
+    double low, high;
+};
 
 // Below this sine of the tilt, the highest point of the rim is rounded off. Otherwise the torque would jump there.
 constexpr double rounded = 0.05;
@@ -59,33 +65,66 @@ BIRM3D_BLOCK_LOOP double furthest(const BlockColumn& panel_of, double panel, con
 
 }  // namespace
 
-Indentation::Indentation(const Post& post, const Placement& stands, const Panel& panel, double length_,
-                         double edge_flank_factor)
-    : length(length_) {
-    const Vec3 &e = panel.inward, o = stands.from_own(Vec3::Zero());
-    const Vec3 axis_up = stands.direction_from_own(Vec3::UnitZ());
-    const double leaning = axis_up.dot(e), upright = axis_up.cross(e).norm();
-    stretch = 1.0 / upright;
+void Indentation::set_axes(const Vec3& foot, const Vec3& axis_up, const Panel& panel) {
+    const Vec3 &e = panel.inward, &o = foot;
+    const double leaning = axis_up.dot(e);
+    stretch = 1.0 / axis_up.cross(e).norm();
     const Vec3 w = stretch * axis_up.cross(e), l = stretch * (axis_up - leaning * e);
     ex = e.x(), ey = e.y(), ez = e.z();
     wx = w.x(), wy = w.y(), wz = w.z();
     lx = l.x(), ly = l.y(), lz = l.z();
     ox = o.x(), oy = o.y(), oz = o.z();
-    radius = post.radius;
     tilt = stretch * leaning;
-    const double rim = std::sqrt(leaning * leaning + rounded * rounded);
-    top = post.height * upright + radius * rim;
-    top_rate = radius * leaning / rim - post.height * tilt;
     surface = (panel.box.center - o).dot(e) - panel.box.half.dot(e.cwiseAbs());
-    const Box outline = post.opens ? panel.box : outline_at(panel, radius);
+    per_reach = 1.0 / length;
+    per_stretch = axis_up.cross(e).norm();
+}
+
+void Indentation::set_outline(const Box& outline) {
+    const Vec3 w = across(), l = along();
     // The middles of the edges at either side. Corners of the box would alternate with small rotations of the post.
     Eigen::Index side = 0;
     w.cwiseAbs().maxCoeff(&side);
     const Vec3 edge = std::copysign(outline.half[side], w[side]) * Vec3::Unit(side);
-    const Vec3 middle = outline.center - o, least = middle - edge, most = middle + edge;
+    const Vec3 middle = outline.center - foot(), least = middle - edge, most = middle + edge;
     low = least.dot(w);
     high = most.dot(w);
     bottom = middle.dot(l) - outline.half.dot(l.cwiseAbs());
+    ceiling = middle.dot(l) + outline.half.dot(l.cwiseAbs());
+}
+
+Indentation::Indentation(const TopEdge& edge, const Placement& stands, const Panel& panel, double length_)
+    : length(length_) {
+    const Vec3 axis_up = stands.direction_from_own(Vec3::UnitZ());
+    set_axes(stands.from_own({edge.x, 0.0, 0.0}), axis_up, panel);
+    set_outline(panel.box);
+    const Vec3 y = stands.direction_from_own(Vec3::UnitY());
+    const double y_e = y.dot(into()), y_w = y.dot(across()), y_l = y.dot(along());
+    least_w = std::min(edge.low * y_w, edge.high * y_w);
+    most_w = std::max(edge.low * y_w, edge.high * y_w);
+    top = edge.height * per_stretch;
+    top_slope = y_l / y_w;
+    edge_slope = y_e / y_w;
+    face_slope = edge_slope - tilt * top_slope;
+    is_face = true;
+    grip = 1.0;
+    radius = top_rate = flank_low = flank_high = wall_e = wall_w = steep_arc = rise_there = 0.0;
+}
+
+Indentation::Indentation(const Post& post, const Placement& stands, const Panel& panel, double length_,
+                         double edge_flank_factor)
+    : length(length_) {
+    const Vec3& e = panel.inward;
+    const Vec3 axis_up = stands.direction_from_own(Vec3::UnitZ());
+    set_axes(stands.from_own(Vec3::Zero()), axis_up, panel);
+    const Vec3 w = across();
+    const double leaning = axis_up.dot(e), upright = per_stretch;
+    radius = post.radius;
+    least_w = -radius, most_w = radius;
+    const double rim = std::sqrt(leaning * leaning + rounded * rounded);
+    top = post.height * upright + radius * rim;
+    top_rate = radius * leaning / rim - post.height * tilt;
+    set_outline(post.opens ? panel.box : outline_at(panel, radius));
     const double off = std::min(1.0, std::max({low, -high, 0.0}) / post.radius);
     grip = 1.0 - off * off;
     // A panel that ends before the edge's axis meets only its rounding. Then the edge counts as a post.
@@ -96,28 +135,52 @@ Indentation::Indentation(const Post& post, const Placement& stands, const Panel&
     const Vec3 along_wall = post.opens ? direction_along_wall(stands, *post.opens) : Vec3(Vec3::Zero());
     wall_e = e.dot(along_wall);
     wall_w = w.dot(along_wall);
-    per_reach = 1.0 / length;
-    per_stretch = upright;
     const double slope_there = steepest * upright, cosine = 1.0 / std::sqrt(1.0 + slope_there * slope_there);
     steep_arc = slope_there * cosine * radius;
     rise_there = stretch * radius * cosine;
 }
 
+namespace {
+
+// Of a linear function over a range: its value is base + slope x.
+Range linear(double base, double slope, const Range& x) {
+    const double a = slope == 0.0 ? base : base + slope * x.low,
+                 b = slope == 0.0 ? base : base + slope * x.high;
+    return {std::min(a, b), std::max(a, b)};
+}
+
+Range extent(const Indentation& d, const Box& box, const Vec3& axis) {
+    const double middle = (box.center - d.foot()).dot(axis), half = box.half.dot(axis.cwiseAbs());
+    return {middle - half, middle + half};
+}
+
+// The part of the face or post that is before a range across.
+Range before(const Indentation& d, const Range& w) {
+    return {std::clamp(w.low, d.least_w, d.most_w), std::clamp(w.high, d.least_w, d.most_w)};
+}
+
+// Places along `into` of the post's axis at the heights of a box; of a face, of its top edge before the box.
+Range middle_over(const Indentation& d, const Box& box) {
+    if (d.is_face) return linear(d.tilt * d.top, d.edge_slope, before(d, extent(d, box, d.across())));
+    const Range l = extent(d, box, d.along());
+    return linear(0.0, d.tilt, {std::min(l.low, d.top), std::min(l.high, d.top)});
+}
+
+}  // namespace
+
 double Indentation::deepest_place(const Panel& panel) const {
-    const double at = (panel.box.center - foot()).dot(along()), half = panel.box.half.dot(along().cwiseAbs());
-    return stretch * radius + std::max(tilt * std::min(at - half, top), tilt * std::min(at + half, top));
+    return stretch * radius + middle_over(*this, panel.box).high;
 }
 
 double Indentation::beside() const {
-    return std::max({low - radius, -radius - high, bottom - top});
+    const Range tops = linear(top, top_slope, before(*this, {low, high}));
+    const double below = is_face ? tops.low - ceiling : bottom - top;
+    return std::max({low - most_w, least_w - high, bottom - tops.high, below});
 }
 
 bool Indentation::is_beyond(const Panel& panel) const {
-    const Box& box = panel.anchors;
-    const Vec3 middle = box.center - foot();
-    const double at = middle.dot(along()), half = box.half.dot(along().cwiseAbs());
-    const double nearest = std::min(tilt * std::min(at - half, top), tilt * std::min(at + half, top));
-    return middle.dot(into()) + box.half.dot(into().cwiseAbs()) < nearest - stretch * radius;
+    return extent(*this, panel.anchors, into()).high <
+           middle_over(*this, panel.anchors).low - stretch * radius;
 }
 
 // From the post's displacement, its flanks, and the growth of the slope.
@@ -125,10 +188,25 @@ double Indentation::fastest_growth(const Panel& panel) const {
     return 2.0 + slope_at<double>(deepest_place(panel) - surface, per_reach).slope;
 }
 
-bool can_indent(const Post& post, const Placement& stands, const Panel& panel, bool indents) {
+namespace {
+
+bool is_upright(const Placement& stands, const Panel& panel, bool indents) {
     const double sine = std::abs(stands.direction_from_own(Vec3::UnitZ()).dot(panel.inward));
-    if (!(sine < (indents ? overturned : most_tilted))) return false;
-    return !post.opens || facing(panel.inward, stands) > (indents ? turned_away : least_facing);
+    return sine < (indents ? overturned : most_tilted);
+}
+
+bool faces(const Placement& stands, const Panel& panel, bool indents) {
+    return facing(panel.inward, stands) > (indents ? turned_away : least_facing);
+}
+
+}  // namespace
+
+bool can_indent(const Post& post, const Placement& stands, const Panel& panel, bool indents) {
+    return is_upright(stands, panel, indents) && (!post.opens || faces(stands, panel, indents));
+}
+
+bool can_indent(const TopEdge&, const Placement& stands, const Panel& panel, bool indents) {
+    return is_upright(stands, panel, indents) && faces(stands, panel, indents);
 }
 
 namespace {
@@ -147,30 +225,27 @@ struct BoxInIndentation {
     double outermost, depth, drawn_in;
 };
 
-BoxInIndentation box_in_indentation(const Indentation& d, const Box& box) {
-    const auto range = [&](const Vec3& axis) {
-        const double middle = (box.center - d.foot()).dot(axis), half = box.half.dot(axis.cwiseAbs());
-        return std::pair(middle - half, middle + half);
-    };
-    const double outermost = range(d.into()).first;
-    const auto [w0, w1] = range(d.across());
-    const auto [l0, l1] = range(d.along());
-    const double deepest =
-        d.stretch * d.radius + std::max(d.tilt * std::min(l0, d.top), d.tilt * std::min(l1, d.top));
-    const double beside = std::max({w0 - d.radius, -d.radius - w1, 0.0}) + std::max(l0 - d.top, 0.0);
-    const double depth = deepest - d.surface;
-    return {outermost, depth, most_drawn_in(depth, beside, d.length)};
+BoxInIndentation box_in_indentation(const Indentation& d, const Box& box, bool hangs) {
+    const double outermost = extent(d, box, d.into()).low;
+    const Range w = extent(d, box, d.across()), l = extent(d, box, d.along());
+    const double deepest = d.stretch * d.radius + middle_over(d, box).high, depth = deepest - d.surface;
+    const Range tops = linear(d.top, d.top_slope, before(d, w));
+    const double off = std::max({w.low - d.most_w, d.least_w - w.high, 0.0});
+    // A face draws in what is or was above its top edge, and nothing beside its ends.
+    if (d.is_face && (off > 0.0 || (l.high <= tops.low - at_edge && !hangs)))
+        return {outermost, depth, -infinity};
+    return {outermost, depth, most_drawn_in(depth, off + std::max(l.low - tops.high, 0.0), d.length)};
 }
 
 }  // namespace
 
-double most_inside(const Indentation& d, const Box& box) {
-    const BoxInIndentation in = box_in_indentation(d, box);
+double most_inside(const Indentation& d, const Box& box, bool hangs) {
+    const BoxInIndentation in = box_in_indentation(d, box, hangs);
     return d.surface + in.drawn_in - in.outermost;
 }
 
-bool spans(const Indentation& d, const Box& box) {
-    return box_in_indentation(d, box).drawn_in > 0.0;
+bool spans(const Indentation& d, const Box& box, bool hangs) {
+    return box_in_indentation(d, box, hangs).drawn_in > 0.0;
 }
 
 double gap_of(const Indentation& indentation, const TrussBlockState& nodes, const BlockColumn& panel_of,

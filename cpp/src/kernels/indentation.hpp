@@ -1,4 +1,5 @@
-// A post indents a panel and drags the skin beside it along: the skin is drawn in with a slope s beside the post.
+// A post indents a panel and drags the skin beside it along: the skin is drawn in with a slope s beside the post. So does the top
+// edge of a wall with the skin above it.
 //
 // The panel's direction e points into the vehicle. Seen along e, the post reaches to a depth f over the panel. The skin
 // beside a post that goes straight in comes to
@@ -31,6 +32,12 @@
 // (outline_step). A post that misses the bumper does not indent it by meeting the wider body behind: it meets the nodes there
 // as any surface does. For the edge of a wall all nodes count, as the wall's face crushes what is deeper beside it.
 //
+// A vertical face with a top edge (top_edge.hpp) holds the skin before it, and draws in the skin above its top:
+//   D(w, l) = F(w) - s (l - top)+
+// F is the place of the edge, a line that may be oblique to the panel. The skin goes in with the edge, straight along e. It does
+// not slide over the edge as over a wedge. Skin that sinks below the edge while it hangs over it stays with the edge. Beside the
+// face's ends nothing is drawn in; rounded edges there are posts.
+//
 // A post as wide as the panel acts as a wall does. The round post is cut off slightly above the highest place of its rim.
 // Where f falls more steeply than `steepest`, it falls with that slope.
 //
@@ -39,6 +46,7 @@
 #pragma once
 
 #include "birm3d/geometry/post.hpp"
+#include "birm3d/geometry/top_edge.hpp"
 #include "birm3d/model/truss_mesh.hpp"
 #include "birm3d/state/contacts.hpp"
 #include "birm3d/state/truss_state.hpp"
@@ -53,8 +61,10 @@ struct Indentation : IndentationNumbers {
     Indentation(const Post& post, const Placement& stands, const Panel& panel, double length_,
                 double edge_flank_factor);
 
-    double length;  // see with_indentation_length in Python (m)
-    double bottom;  // of the panel, along from the foot (m)
+    Indentation(const TopEdge& edge, const Placement& stands, const Panel& panel, double length_);
+
+    double length;           // see with_indentation_length in Python (m)
+    double bottom, ceiling;  // of the panel, along from the foot (m)
 
     Vec3 into() const { return {ex, ey, ez}; }
     Vec3 across() const { return {wx, wy, wz}; }
@@ -73,17 +83,24 @@ struct Indentation : IndentationNumbers {
 
     // Greatest speed of the indentation at any node while the post approaches with 1 m/s.
     double fastest_growth(const Panel& panel) const;
+
+  private:
+    void set_axes(const Vec3& foot, const Vec3& axis_up, const Panel& panel);
+    void set_outline(const Box& outline);
 };
 
 // Is the post upright enough before the panel to indent it? If it is a wall's edge, does the wall's face point at the panel?
 // `indents`: does it do so already?
 bool can_indent(const Post& post, const Placement& stands, const Panel& panel, bool indents);
+// Is the face upright enough before the panel, and does it point at it?
+bool can_indent(const TopEdge& edge, const Placement& stands, const Panel& panel, bool indents);
 
 // Upper bound of the depth of all nodes of the box (body axes) in the indentation (m). Negative if none is reached.
-double most_inside(const Indentation& indentation, const Box& box);
+// `hangs`: does any of them follow a top edge? It may have sunk below the edge.
+double most_inside(const Indentation& indentation, const Box& box, bool hangs = false);
 
 // Can nodes above or before the box, or in it, follow the indentation?
-bool spans(const Indentation& indentation, const Box& box);
+bool spans(const Indentation& indentation, const Box& box, bool hangs = false);
 
 // Least gap of the nodes of a block that are on the panel (m); infinite if there are none.
 double gap_of(const Indentation& indentation, const TrussBlockState& nodes, const BlockColumn& panel_of,

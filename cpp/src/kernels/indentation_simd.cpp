@@ -10,6 +10,9 @@ namespace {
 // Least value that marks a node as following an indentation.
 constexpr double least_drawn = 1e-9;
 
+// A node that was further inside a face than this as the step began is not held by it (m).
+constexpr double least_lag = 1e-8;
+
 // The face of a wall holds a node that pushes beside its edge if it is no further away: more than a step's motion (m).
 constexpr double in_reach = 0.01;
 
@@ -34,12 +37,11 @@ BIRM3D_INLINE Standing stand(const IndentationNumbers& d, const PanelNodes& node
     Standing s;
     const Packet rx = Packet::load(nodes.x + i) - d.ox, ry = Packet::load(nodes.y + i) - d.oy,
                  rz = Packet::load(nodes.z + i) - d.oz;
-    const Packet top = d.top;
     s.e = d.ex * rx + d.ey * ry + d.ez * rz;
     s.w = d.wx * rx + d.wy * ry + d.wz * rz;
     s.l = d.lx * rx + d.ly * ry + d.lz * rz;
-    s.up = lesser(s.l, top);
-    s.deepest = d.tilt * s.up + d.stretch * d.radius;
+    s.up = lesser(s.l, d.top + d.top_slope * s.w);
+    s.deepest = d.tilt * s.up + (d.stretch * d.radius + d.face_slope * s.w);
     return s;
 }
 
@@ -47,7 +49,7 @@ BIRM3D_INLINE Standing stand(const IndentationNumbers& d, const PanelNodes& node
 BIRM3D_INLINE Packet no_less_than(const IndentationNumbers& d, const Standing& s) {
     const Packet zero = 0.0, by_depth = (s.deepest - d.surface) * d.per_reach;
     const Packet slope = lesser(greater(by_depth, least_slope), steepest);
-    const Packet beside = greater(where_above(s.w, zero, s.w, -1.0 * s.w) - d.radius, zero);
+    const Packet beside = greater(greater(s.w - d.most_w, d.least_w - s.w), zero);
     return s.e - (s.deepest - slope * (beside + (s.l - s.up)));
 }
 
@@ -66,7 +68,21 @@ struct FollowedPlace {
     Packet a, at, beyond, gap;
     Rise rise;
 };
+
+// Of a face: the place of its top edge straight below each node.
+BIRM3D_INLINE FollowedPlace follow_edge(const IndentationNumbers& d, const Standing& s) {
+    FollowedPlace h;
+    h.slope = slope_at<Packet>(s.deepest - d.surface, d.per_reach);
+    h.a = s.w;
+    h.rise = {0.0, 0.0};
+    h.at = s.deepest;
+    h.beyond = s.l - s.up;
+    h.gap = s.e - (h.at - h.slope.slope * h.beyond);
+    return h;
+}
+
 BIRM3D_INLINE FollowedPlace find_followed(const IndentationNumbers& d, const Standing& s) {
+    if (d.is_face) return follow_edge(d, s);
     FollowedPlace h;
     h.slope = slope_at<Packet>(s.deepest - d.surface, d.per_reach);
     const Packet low = d.low, high = d.high;
@@ -81,6 +97,18 @@ BIRM3D_INLINE FollowedPlace find_followed(const IndentationNumbers& d, const Sta
     h.beyond = where_above(s.w, h.a, s.w - h.a, h.a - s.w) + (s.l - s.up);
     h.gap = s.e - (h.at - h.slope.slope * h.beyond);
     return h;
+}
+
+// `yes` for nodes that the post or the top edge can draw in, else `no`. Below its top edge a face holds the skin itself, apart
+// from nodes that sank below the edge: they lag behind the face. `lag`: by how much (m).
+BIRM3D_INLINE Packet where_drawn(const IndentationNumbers& d, const Standing& s, const Packet& lag,
+                                 const Packet& yes, const Packet& no) {
+    if (!d.is_face) return yes;
+    const Packet zero = 0.0, one = 1.0, most = d.most_w, least = d.least_w;
+    const Packet rise = s.l - (d.top + d.top_slope * s.w) + at_edge;
+    const Packet above = greater(rise, lag - least_lag);
+    const Packet within = where_above(s.w, most, zero, where_above(least, s.w, zero, one));
+    return where_above(lesser(above, within), zero, yes, no);
 }
 
 // `yes` for nodes of the panel, else `no`.
@@ -153,7 +181,7 @@ BIRM3D_INLINE Asked ask(const IndentationNumbers& d, const PanelNodes& nodes, co
 // several indentations the deepest one at the node governs. A choice by displacements would alternate from step to
 // step.
 BIRM3D_INLINE Packet find_state(const IndentationNumbers& d, const PanelNodes& nodes, const KnownFaces& known,
-                                const Standing& s, const Asked& asked, std::size_t i) {
+                                const Standing& s, const Standing& was, const Asked& asked, std::size_t i) {
     const Packet zero = 0.0, one = 1.0, so_far = Packet::load(known.gap + i), gap = asked.gap;
     const Packet against = d.ex * Packet::load(known.nx + i) + d.ey * Packet::load(known.ny + i) +
                            d.ez * Packet::load(known.nz + i);
@@ -168,7 +196,35 @@ BIRM3D_INLINE Packet find_state(const IndentationNumbers& d, const PanelNodes& n
     const Packet last =
         where_above(pushes, zero, where_beside_face(d, known, s, by_face, by_indentation, i), so_far);
     const Packet now = where_above(pushes, zero, asked.rank, gap);
-    return where_on(nodes, where_above(last, now, nearer, zero), zero, i);
+    const Packet lag = where_above(pushes, zero, was.deepest - was.e, zero);
+    const Packet found = where_drawn(d, s, lag, where_above(last, now, nearer, zero), zero);
+    return where_on(nodes, found, zero, i);
+}
+
+// Displacement of nodes, as a vector in body axes, for a unit rotation of the post or the face about its foot.
+struct Turn {
+    Packet x, y, z;
+};
+
+// By rotation of the post about e, and by tilt of its axis along e.
+BIRM3D_INLINE Turn turn_of_post(const IndentationNumbers& d, const Standing& n, const Packet& fe,
+                                const Packet& fw, const Packet& fl) {
+    const Packet zero = 0.0, top = d.top, top_leans = d.top_rate * d.per_stretch;
+    const Packet about = fl * n.w - fw * n.l;
+    const Packet leaning = fe * (d.stretch * d.stretch * n.up + d.stretch * d.tilt * d.radius +
+                                 where_above(n.l, top, d.tilt * top_leans, zero));
+    return {about * (d.tilt * d.lx - d.ex) + leaning * d.wx, about * (d.tilt * d.ly - d.ey) + leaning * d.wy,
+            about * (d.tilt * d.lz - d.ez) + leaning * d.wz};
+}
+
+// The place on the face times the direction of its push. By a rotation about e, or about l of a face that
+// leans, the place below a node moves along the edge too.
+BIRM3D_INLINE Turn turn_of_face(const IndentationNumbers& d, const Standing& n, const FollowedPlace& h,
+                                const Packet& fe, const Packet& fw, const Packet& fl) {
+    const Packet below = (n.l - n.up) * fw;
+    const Packet e = n.up * fw - n.w * fl + below, w = n.up * fe + h.at * fl,
+                 l = -1.0 * (h.at * fw + n.w * fe + d.tilt * below);
+    return {e * d.ex + w * d.wx + l * d.lx, e * d.ey + w * d.wy + l * d.ly, e * d.ez + w * d.wz + l * d.lz};
 }
 
 }  // namespace
@@ -179,7 +235,7 @@ double find_indentation_gap(const IndentationNumbers& d, const PanelNodes& nodes
 
 void find_indentation(const IndentationNumbers& d, const IndentationNumbers& then, const PanelNodes& nodes,
                       const KnownFaces& known) {
-    const Packet zero = 0.0, top = d.top, top_leans = d.top_rate * d.per_stretch;
+    const Packet zero = 0.0;
     for (std::size_t i = 0; i < block_size; i += packet_length) {
         zero.store(known.follows + i);
         const Standing n = stand(d, nodes, i), was = stand(then, nodes, i);
@@ -188,13 +244,15 @@ void find_indentation(const IndentationNumbers& d, const IndentationNumbers& the
         const Drawn by = drawn(d, h);
         const Packet outward = outward_displacement(n, was, by, drawn(then, find_followed(then, was)));
         const Asked asked = ask(d, nodes, known, n, h, outward, i);
-        const Packet state = find_state(d, nodes, known, n, asked, i);
+        const Packet state = find_state(d, nodes, known, n, was, asked, i);
         if (!any_above(state, zero)) continue;
         state.store(known.follows + i);
         const auto put = [&](double* column, const Packet& found) {
             where_above(state, zero, found, Packet::load(column + i)).store(column + i);
         };
-        const Packet fe = by.in, fw = by.across, fl = where_above(n.l, top, zero, fe * d.tilt);
+        const Packet over = n.l - n.up, fe = by.in,
+                     fw = by.across + where_above(over, zero, d.edge_slope, d.face_slope) * fe,
+                     fl = where_above(over, zero, zero, fe * d.tilt);
         const Packet nx = fe * d.ex - fw * d.wx - fl * d.lx, ny = fe * d.ey - fw * d.wy - fl * d.ly,
                      nz = fe * d.ez - fw * d.wz - fl * d.lz;
         const Packet size = square_root(fe * fe + fw * fw + fl * fl), per = 1.0 / size;
@@ -211,23 +269,20 @@ void find_indentation(const IndentationNumbers& d, const IndentationNumbers& the
         put(known.py, d.oy + (h.at * d.ey + h.a * d.wy + n.up * d.ly));
         put(known.pz, d.oz + (h.at * d.ez + h.a * d.wz + n.up * d.lz));
 
-        // Displacement of the node by rotation of the post about e, and by tilt of its axis along e.
-        const Packet about = fl * n.w - fw * n.l;
-        const Packet leaning = fe * (d.stretch * d.stretch * n.up + d.stretch * d.tilt * d.radius +
-                                     where_above(n.l, top, d.tilt * top_leans, zero));
-        const Packet qx = about * (d.tilt * d.lx - d.ex) + leaning * d.wx,
-                     qy = about * (d.tilt * d.ly - d.ey) + leaning * d.wy,
-                     qz = about * (d.tilt * d.lz - d.ez) + leaning * d.wz;
-        put(known.tx, per * (d.oy * nz - d.oz * ny + qx));
-        put(known.ty, per * (d.oz * nx - d.ox * nz + qy));
-        put(known.tz, per * (d.ox * ny - d.oy * nx + qz));
+        const Turn q = d.is_face ? turn_of_face(d, n, h, fe, fw, fl) : turn_of_post(d, n, fe, fw, fl);
+        put(known.tx, per * (d.oy * nz - d.oz * ny + q.x));
+        put(known.ty, per * (d.oz * nx - d.ox * nz + q.y));
+        put(known.tz, per * (d.ox * ny - d.oy * nx + q.z));
     }
 }
 
 double find_indentation_gap(const IndentationNumbers& d, const PanelNodes& nodes) {
     Packet least = infinitely_far;
-    for (std::size_t i = 0; i < block_size; i += packet_length)
-        least = lesser(least, where_on(nodes, find_followed(d, stand(d, nodes, i)).gap, infinitely_far, i));
+    for (std::size_t i = 0; i < block_size; i += packet_length) {
+        const Standing s = stand(d, nodes, i);
+        const Packet zero = 0.0, gap = where_drawn(d, s, zero, find_followed(d, s).gap, infinitely_far);
+        least = lesser(least, where_on(nodes, gap, infinitely_far, i));
+    }
     return least_of(least);
 }
 

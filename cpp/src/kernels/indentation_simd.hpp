@@ -27,6 +27,9 @@ BIRM3D_INLINE Slope<Number> slope_at(const Number& depth, double per_reach) {
             where_above(slope, limit, zero, by_depth * per_reach / slope)};
 }
 
+// Nodes that are less than this below a top edge count as above it: the surface that is nearest to them may be the top (m).
+inline constexpr double at_edge = 1e-6;
+
 // Gap of released nodes: larger than that to any other surface (m).
 inline constexpr double away = 10.0;
 

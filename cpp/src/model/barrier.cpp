@@ -7,6 +7,7 @@
 
 #include "birm3d/base/error.hpp"
 #include "birm3d/base/tolerances.hpp"
+#include "birm3d/geometry/top_edge.hpp"
 
 namespace birm3d {
 
@@ -26,6 +27,8 @@ std::vector<Segment> segments_of(const std::vector<Element>& elements, const Fre
         if (prism == nullptr) refuse(name, "a prism where it is free-standing", "another shape");
         if (elements[i].part_of) refuse(name + " part_of", "none where it is free-standing", "an index");
         if (elements[i].upright) refuse(name + " upright", "false where it is free-standing", "true");
+        if (elements[i].draws_in_above)
+            refuse(name + " draws_in_above", "false where it is free-standing", "true");
         if (elements[i].position.z() != 0.0)
             refuse(name + " height", "0 m where it is free-standing", elements[i].position.z());
         segments.push_back(segment_of(*prism, free.density));
@@ -72,6 +75,11 @@ Barrier::Barrier(std::vector<Element> elements_, double friction_, const Vec3& o
         if (whole && !(*whole < i && !elements[*whole].part_of))
             refuse(name + "part_of", "an element before it that is no part itself",
                    static_cast<double>(*whole));
+        if (!elements[i].draws_in_above) continue;
+        const auto* prism = std::get_if<Prism>(&elements[i].shape);
+        if (prism == nullptr || elements[i].upright)
+            refuse(name + "draws_in_above", "false where it is no prism along the line", "true");
+        top_edge_of(*prism);
     }
     if (free_standing) segments = segments_of(elements, *free_standing);
 }

@@ -35,9 +35,20 @@ std::vector<Bound> groups_by_gap(const Indentation& indentation, std::size_t pan
 
 }  // namespace
 
-Indentation indentation_by(const Post& post, const Placement& stands, const Panel& panel,
+bool draws_in_skin(const Obstacle& obstacle) {
+    return obstacle.top_edge.has_value() || std::holds_alternative<Post>(obstacle.shape);
+}
+
+bool can_indent(const Obstacle& obstacle, const Placement& stands, const Panel& panel, bool indents) {
+    return obstacle.top_edge ? can_indent(*obstacle.top_edge, stands, panel, indents)
+                             : can_indent(std::get<Post>(obstacle.shape), stands, panel, indents);
+}
+
+Indentation indentation_by(const Obstacle& obstacle, const Placement& stands, const Panel& panel,
                            const TrussMesh& mesh, const Settings& settings) {
-    return {post, stands, panel, mesh.indentation_length, settings.edge_flank_factor};
+    if (obstacle.top_edge) return {*obstacle.top_edge, stands, panel, mesh.indentation_length};
+    return {std::get<Post>(obstacle.shape), stands, panel, mesh.indentation_length,
+            settings.edge_flank_factor};
 }
 
 double gap_of_panel(const Indentation& indentation, std::size_t panel, const TrussMesh& mesh,
@@ -73,14 +84,13 @@ void for_each_indentation(const Scene& scene, const UnitState& unit, const Truss
                           const std::vector<std::size_t>& about, double distance, const Use& use) {
     for (const std::size_t i : about) {
         const Obstacle& obstacle = scene.obstacles[i];
-        const Post* post = std::get_if<Post>(&obstacle.shape);
-        if (post == nullptr) continue;
+        if (!draws_in_skin(obstacle)) continue;
         const Placement in_shape =
-            placement({obstacle.rotation, obstacle.position}, unit.body);  // posts are fixed
+            placement({obstacle.rotation, obstacle.position}, unit.body);  // it is fixed
         for (std::size_t p = 0; p < panels; ++p) {
             const Panel& panel = mesh.panel[p];
-            if (!panel.any || !can_indent(*post, in_shape, panel, false)) continue;
-            Indentation indentation = indentation_by(*post, in_shape, panel, mesh, scene.settings);
+            if (!panel.any || !can_indent(obstacle, in_shape, panel, false)) continue;
+            Indentation indentation = indentation_by(obstacle, in_shape, panel, mesh, scene.settings);
             if (!(indentation.beside() < distance) || indentation.is_beyond(panel)) continue;
             if (distance > 0.0) {
                 indentation.low = -infinity;

@@ -1,4 +1,4 @@
-// Gaps between the nodes of panels and the indentations that posts make, or would make.
+// Gaps between the nodes of panels and the indentations that posts and top edges make, or would make.
 #pragma once
 
 #include "birm3d/scene/scene.hpp"
@@ -6,8 +6,14 @@
 
 namespace birm3d {
 
-// The indentation of a panel by a post that stands there, seen from the body.
-Indentation indentation_by(const Post& post, const Placement& stands, const Panel& panel,
+// Is the obstacle a post, or has it a top edge that draws in skin?
+bool draws_in_skin(const Obstacle& obstacle);
+
+// Is it so placed that it can indent the panel? See can_indent() in kernels/indentation.hpp.
+bool can_indent(const Obstacle& obstacle, const Placement& stands, const Panel& panel, bool indents);
+
+// The indentation of a panel by a post or a top edge that stands there, seen from the body.
+Indentation indentation_by(const Obstacle& obstacle, const Placement& stands, const Panel& panel,
                            const TrussMesh& mesh, const Settings& settings);
 
 // Least gap of the nodes of a panel from an indentation (m); infinite if all are further away than `far`. The search

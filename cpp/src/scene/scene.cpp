@@ -81,6 +81,8 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
                                  : joined ? obstacles[i - 1].structure
                                           : i;
         obstacles[i].element = whole.value_or(i);
+        if (barrier->elements[i].draws_in_above)
+            obstacles[i].top_edge = top_edge_of(std::get<Prism>(obstacles[i].shape));
         const auto* post = std::get_if<Post>(&obstacles[i].shape);
         if (post != nullptr && post->opens) obstacles[obstacles[i].element].has_edges = true;
     }
@@ -165,6 +167,7 @@ std::uint64_t Scene::fingerprint() const {
             hash.add(element.heading);
             if (element.part_of) hash.add(static_cast<double>(*element.part_of));
             if (element.upright) hash.add(-1.0);  // no index of an element
+            if (element.draws_in_above) hash.add(-2.0);
         }
         if (barrier->free_standing) {
             hash.add(barrier->free_standing->density);

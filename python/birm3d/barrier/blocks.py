@@ -54,10 +54,12 @@ def along_line(
     *,
     abutting: bool = True,
     rounded: float = 0.0,
+    draws_in_above: bool = False,
 ) -> list[_core.Element]:
     """Extrude a profile along the line. Abutting ends are no surface.
 
     At the ends of the line the profile is set back where rounded edges of that radius hide it [m].
+    ``draws_in_above``: skin above the top edge of its vertical face is drawn in.
     """
     ends = [-math.inf, math.inf] if math.isinf(length) else np.linspace(-0.5, 0.5, segments + 1) * length
     elements = []
@@ -74,13 +76,21 @@ def along_line(
                 covered_high_end=rounded > 0.0 if last else abutting,
                 position=barrier.from_origin(across, middle),
                 heading=math.radians(barrier.heading),
+                draws_in_above=draws_in_above,
             )
         )
     return elements
 
 
 def rounded_block(
-    barrier: Barrier, depth: float, length: float, top: float, radius: float, segments: int = 1
+    barrier: Barrier,
+    depth: float,
+    length: float,
+    top: float,
+    radius: float,
+    segments: int = 1,
+    *,
+    draws_in_above: bool,
 ) -> list[_core.Element]:
     """Return a block along the line with rounded upright edges: its segments, then parts of the outer ones.
 
@@ -91,7 +101,9 @@ def rounded_block(
 
     def faces(reach: float) -> list[_core.Element]:
         corners = np.array([(0.0, -FOOT), (reach, -FOOT), (reach, top), (0.0, top)])
-        return along_line(barrier, corners, 0.0, length, segments, rounded=radius)
+        return along_line(
+            barrier, corners, 0.0, length, segments, rounded=radius, draws_in_above=draws_in_above
+        )
 
     edges = [
         _core.Element.post(

@@ -55,7 +55,8 @@ class BarrierMakers:
             Of the upright edges at the wall's ends [m], at most half of the thickness and of the width of a
             segment. The width is counted from the outermost place of one arc to that of the other. ``None``:
             0.05 m where the wall has ends, or half of what is thinner. 0: sharp edges, which pass between
-            nodes. Edges on the traffic's side draw in the skin beside them, those behind do not.
+            nodes. Edges on the traffic's side draw in the skin beside them, those behind do not. The
+            top of the traffic face draws in the skin above it, unless this is 0.
         friction, origin, heading
             See :class:`Barrier`.
 
@@ -247,7 +248,7 @@ class BarrierMakers:
             [m], > 0.
         edge_radius
             Of the upright edges [m], at most half of length and width. ``None``: 0.05 m, or half of what is
-            thinner. 0: sharp edges, which pass between nodes.
+            thinner. 0: sharp edges, which pass between nodes. They do not draw in skin, nor does the top.
         friction, origin, heading
             See :class:`Barrier`.
 

@@ -9,27 +9,21 @@ from typing import ClassVar
 import numpy as np
 
 from .. import _core
-from .base import Barrier, Surface
-from .blocks import (
-    FOOT,
-    along_line,
-    positive_and_finite,
-    rounded_block,
-    seen_block,
-)
+from .base import Surface
+from .blocks import FOOT, along_line, positive_and_finite, seen_block
 from .description import SeenPart, Size
-from .edges import check_edge_radius, edges_text, rounded_outline, usual_edge_radius
 from .fronts import FlatFront, axes_of
-from .surfaces import drawn_up, ends, extruded, placed
+from .rounded_block import RoundedBlock
+from .surfaces import ends, extruded
 
 __all__ = ["Planter"]
 
 
 @dataclass(frozen=True)
-class Planter(Barrier):
+class Planter(RoundedBlock):
     """A rigid, fixed, solid block of given footprint and height; its line is the foot of its traffic face.
 
-    Its upright edges are sharp, or rounded as those of a wall.
+    Its edges are those of a :class:`~birm3d.barrier.rounded_block.RoundedBlock`.
     """
 
     length: float = 2.0
@@ -50,32 +44,16 @@ class Planter(Barrier):
         """Return the block."""
         for name in ("length", "width", "height"):
             positive_and_finite(name, getattr(self, name))
-        check_edge_radius(self.rounding, {"length": self.length, "width": self.width})
+        self.check_edges()
         width, top = self.width, self.height
         if self.rounding > 0.0:
-            return rounded_block(self, width, self.length, top, self.rounding)
+            return self.rounded_elements(top)
         corners = [(0.0, -FOOT), (width, -FOOT), (width, top), (0.0, top)]
         return along_line(self, np.array(corners), 0.0, self.length, 1)
 
-    @property
-    def rounding(self) -> float:
-        """Radius of the upright edges [m]; 0: sharp."""
-        return usual_edge_radius(self.width, self.length) if self.edge_radius is None else self.edge_radius
-
-    @property
-    def draws_in_skin(self) -> bool:
-        """Whether its edges are rounded."""
-        return self.rounding > 0.0
-
-    @property
-    def cuts_skin(self) -> bool:
-        """Whether its edges are sharp."""
-        return not self.draws_in_skin
-
-    @property
-    def is_bottomless(self) -> bool:
-        """Whether it goes on below the ground without end."""
-        return self.draws_in_skin
+    def plan_sizes(self) -> dict[str, float]:
+        """Return the name and size of the plan, across the line and along it [m]."""
+        return {"width": self.width, "length": self.length}
 
     @property
     def element_names(self) -> tuple[str, ...]:
@@ -85,8 +63,8 @@ class Planter(Barrier):
     @property
     def text(self) -> str:
         """Sizes in a few words."""
-        edges = edges_text(self.rounding, self.width, self.length)
-        return f"planter, {self.length:g} m long, {self.width:g} m wide, {self.height:g} m high{edges}"
+        size = f"{self.length:g} m long, {self.width:g} m wide, {self.height:g} m high"
+        return f"planter, {size}{self.edges_text()}"
 
     def load_front(self) -> FlatFront:
         """Return the traffic face."""
@@ -96,10 +74,7 @@ class Planter(Barrier):
     def surfaces(self, top: float, seen: tuple[float, float]) -> list[Surface]:
         """Return the block."""
         if self.rounding > 0.0:
-            vertices, faces = drawn_up(
-                rounded_outline(self.width, self.length, self.rounding), 0.0, self.height
-            )
-            return [(placed(self, vertices), faces)]
+            return self.rounded_surfaces(self.height)
         sides = (np.zeros(2), np.full(2, self.width), np.array([0.0, self.height]))
         return extruded(self, *sides, ends(self.length, 1, seen))
 

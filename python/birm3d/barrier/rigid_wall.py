@@ -11,20 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .base import Barrier, Surface
-from .blocks import (
-    FOOT,
-    along_line,
-    numbered,
-    positive,
-    positive_and_finite,
-    rounded_block,
-    seen_block,
-)
+from .base import Surface
+from .blocks import FOOT, along_line, numbered, positive, positive_and_finite, seen_block
 from .description import SeenPart, Size, height_text, length_text, segments_text
-from .edges import check_edge_radius, edges_text, rounded_outline, segment_outlines, usual_edge_radius
 from .fronts import FlatFront, axes_of, feet_of
-from .surfaces import drawn_up, ends, extruded, placed
+from .rounded_block import RoundedBlock
+from .surfaces import ends, extruded
 
 __all__ = ["RigidWall"]
 
@@ -37,13 +29,12 @@ _DRAWN_DEPTH = 0.4
 
 
 @dataclass(frozen=True)
-class RigidWall(Barrier):
+class RigidWall(RoundedBlock):
     """A flat, rigid, vertical wall.
 
     Without end in width and height it is a half-space. Else it has a ``thickness``, with ends, a top and a
-    back that can be met like the face. Its upright edges are sharp, or rounded, see :attr:`rounding` and
-    :meth:`outline`. A sharp edge passes between nodes of the skin. Rounded edges on the traffic's side are
-    posts: like bollards they draw in the skin beside them. The wall's load has theirs.
+    back that can be met like the face. Its edges are those of a
+    :class:`~birm3d.barrier.rounded_block.RoundedBlock`. The wall's load has theirs.
     """
 
     width: float = math.inf
@@ -68,46 +59,24 @@ class RigidWall(Barrier):
         positive("width", self.width)
         positive("height", self.height)
         positive_and_finite("thickness", self.thickness)
-        self._check_edges()
+        self.check_edges()
         heading = math.radians(self.heading)
         top = self.height if math.isfinite(self.height) else _HIGH
         if self.rounding > 0.0:
-            return rounded_block(self, self.thickness, self.width, top, self.rounding, self.segments)
+            return self.rounded_elements(top)
         if math.isinf(self.width) and self.segments > 1:
             raise ValueError(f"segments must be 1 for a wall of infinite width, got {self.segments}")
         if math.isinf(self.width) and math.isinf(self.height):
             return [_core.Element.plane(position=self.from_origin(0.0, 0.0), heading=heading)]
         corners = [(0.0, -FOOT), (self.thickness, -FOOT), (self.thickness, top), (0.0, top)]
-        return along_line(self, np.array(corners), 0.0, self.width, self.segments)
+        return along_line(
+            self, np.array(corners), 0.0, self.width, self.segments, draws_in_above=self.draws_in_above
+        )
 
-    @property
-    def rounding(self) -> float:
-        """Radius of the upright edges [m]; 0: sharp."""
-        if self.edge_radius is not None:
-            return self.edge_radius
-        ends = math.isfinite(self.width)
-        return usual_edge_radius(self.thickness, self.width / self.segments) if ends else 0.0
-
-    def outline(self) -> Floats:
-        """Return the plan of a wall with rounded edges: across and along of its corners, shape (n, 2) [m]."""
-        return rounded_outline(self.thickness, self.width, self.rounding)
-
-    def _check_edges(self) -> None:
-        radius = self.rounding
+    def plan_sizes(self) -> dict[str, float]:
+        """Return the name and size of a segment's plan, across the line and along it [m]."""
         name = "width" if self.segments == 1 else "the width of a segment"
-        check_edge_radius(radius, {"thickness": self.thickness, name: self.width / self.segments})
-        if radius > 0.0 and math.isinf(self.width):
-            raise ValueError(f"edge_radius must be 0 m for a wall of infinite width, got {radius}")
-
-    @property
-    def draws_in_skin(self) -> bool:
-        """Whether its edges are rounded."""
-        return self.rounding > 0.0
-
-    @property
-    def cuts_skin(self) -> bool:
-        """Whether it ends, and its edges are sharp."""
-        return math.isfinite(self.width) and not self.draws_in_skin
+        return {"thickness": self.thickness, name: self.width / self.segments}
 
     @property
     def element_names(self) -> tuple[str, ...]:
@@ -122,7 +91,7 @@ class RigidWall(Barrier):
     @property
     def is_bottomless(self) -> bool:
         """Whether it goes on below the ground without end."""
-        return self.is_endless or self.rounding > 0.0
+        return self.is_endless or super().is_bottomless
 
     @property
     def text(self) -> str:
@@ -130,9 +99,8 @@ class RigidWall(Barrier):
         if self.is_endless:
             return "rigid wall without end"
         length = f"{length_text(self.width)}{segments_text(self.segments)}"
-        has_edges = math.isfinite(self.width)
-        edges = edges_text(self.rounding, self.thickness, self.width / self.segments) if has_edges else ""
-        return f"rigid wall {length}, {height_text(self.height)}, {self.thickness:g} m thick{edges}"
+        size = f"{length}, {height_text(self.height)}, {self.thickness:g} m thick"
+        return f"rigid wall {size}{self.edges_text()}"
 
     def load_front(self) -> FlatFront:
         """Return the traffic face with its rounded edges."""
@@ -143,9 +111,7 @@ class RigidWall(Barrier):
         """Return closed segments."""
         height = min(self.height, top)
         if self.rounding > 0.0:
-            plans = segment_outlines(self.thickness, self.width, self.rounding, self.segments)
-            drawn = [drawn_up(plan, 0.0, height) for plan in plans]
-            return [(placed(self, vertices), faces) for vertices, faces in drawn]
+            return self.rounded_surfaces(height)
         depth = _DRAWN_DEPTH if self.is_endless else self.thickness
         sides = (np.zeros(2), np.full(2, depth), np.array([0.0, height]))
         return extruded(self, *sides, ends(self.width, self.segments, seen))

@@ -198,7 +198,7 @@ class VehicleVariants(VehicleData):
         about indentation_length [m] beyond the post, as far as the beams and panels there carry; ``>= 0``.
         The paper's trusses are independent of each other, so that a narrow post passes between them to the
         rigid core.
-        Walls and meshes make no indentation.
+        The top of a wall draws in the skin above it in the same way. Meshes make no indentation.
         """
         length = given("indentation_length", indentation_length)
         return self._changed(self._description.each(indentation_length=length))

@@ -30,9 +30,8 @@ struct Followed : NodeFaces, BlockContact {
     BlockColumn follows;
 };
 
-// Of nodes that push with `force`; `last`: how the post stood an instant before.
-Followed indentation_by(const Post& post, const Placement& stands, const Placement& last, double reach,
-                        double force) {
+// Of nodes that push with `force`; `last`: the indentation an instant before.
+Followed follow(const Indentation& now, const Indentation& last, double force) {
     TrussBlockState nodes = uncrushed.block[0];
     nodes.force.fill(force);
     Followed found;
@@ -44,10 +43,15 @@ Followed indentation_by(const Post& post, const Placement& stands, const Placeme
     least_facing.fill(0.5);
     contact_gap.fill(std::numeric_limits<double>::infinity());
     rank.fill(std::numeric_limits<double>::infinity());
-    follow_indentation(Indentation(post, stands, front, reach, edge),
-                       Indentation(post, last, front, reach, edge), nodes, mesh.block[0].panel, 1,
-                       contact_gap, least_facing, lags, found, found, rank, found.follows);
+    follow_indentation(now, last, nodes, mesh.block[0].panel, 1, contact_gap, least_facing, lags, found,
+                       found, rank, found.follows);
     return found;
+}
+
+Followed indentation_by(const Post& post, const Placement& stands, const Placement& last, double reach,
+                        double force) {
+    return follow(Indentation(post, stands, front, reach, edge), Indentation(post, last, front, reach, edge),
+                  force);
 }
 
 // Of nodes without force that the post has just come to, from far in front.
@@ -174,6 +178,61 @@ TEST("force and torque are what the ways of the nodes ask for by virtual work") 
     CHECK(above > 1000);
     CHECK(beside > 1000);
     CHECK(held > 10000);
+}
+
+TEST("force and torque of a top edge are what the ways of the nodes ask for by virtual work") {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> share(-1.0, 1.0);
+    const double h = 1e-6;
+    int above = 0, sunk = 0;
+    for (int round = 0; round < 200; ++round) {
+        const TopEdge top{0.0, -3.0, 3.0, 1.0 + 0.8 * share(random)};
+        const Quat turned_to = Eigen::AngleAxisd(0.6 * share(random), Vec3::UnitZ()) *
+                               Eigen::AngleAxisd(0.2 * share(random), Vec3::UnitY()) *
+                               Eigen::AngleAxisd(0.2 * share(random), Vec3::UnitX());
+        const Mat3 to_own = turned_to.toRotationMatrix().transpose();
+        const Placement stands{to_own, -(to_own * Vec3(2.5 + 0.2 * share(random), share(random), -1.0))};
+        const Indentation now(top, stands, front, 2.0);
+        const Followed here = follow(now, now, 1.0);
+        for (int axis = 0; axis < 3; ++axis) {
+            const Vec3 way = Vec3::Unit(axis);
+            const Placement moved{stands.rotation, stands.position - stands.rotation * (h * way)};
+            const Mat3 turn = Eigen::AngleAxisd(h, way).toRotationMatrix();
+            const Placement turned{stands.rotation * turn.transpose(), stands.position};
+            const Followed forth = follow(Indentation(top, moved, front, 2.0), now, 1.0);
+            const Followed right = follow(Indentation(top, turned, front, 2.0), now, 1.0);
+            for (std::size_t i = 0; i < block_size; ++i) {
+                if (here.follows[i] != 1.0 || forth.follows[i] != 1.0 || right.follows[i] != 1.0) continue;
+                const double force = here.per_force[i] * Vec3(here.nx[i], here.ny[i], here.nz[i])[axis];
+                const double torque = here.per_force[i] * Vec3(here.tx[i], here.ty[i], here.tz[i])[axis];
+                CHECK_CLOSE(force, -forth.gap[i] / h, 1e-4, "the difference's error");
+                CHECK_CLOSE(torque, -right.gap[i] / h, 1e-4, "the same");
+                const bool is_above = stands.to_own(node(i)).z() > top.height;
+                ++(is_above ? above : sunk);
+            }
+        }
+    }
+    CHECK(above > 1000);
+    CHECK(sunk > 1000);
+}
+
+TEST("above a wall the skin is drawn in with the slope, below its top the face holds it") {
+    const double at = 2.7, reach = 1.0;
+    const TopEdge top{0.0, -0.7, 0.6, 1.05};
+    const Placement stands = standing({at, 0.0, -1.0}), far = standing({at + 100.0, 0.0, -1.0});
+    const Followed found =
+        follow(Indentation(top, stands, front, reach), Indentation(top, far, front, reach), 0.0);
+    int drawn_in = 0;
+    for (std::size_t i = 0; i < block_size; ++i) {
+        const double above = node(i).z() + 1.0 - top.height, y = node(i).y();
+        const double depth = 3.0 - at - slope_by(at, reach) * above;
+        const bool follows = above > 0.0 && y > top.low && y < top.high && depth > 0.0;
+        CHECK(found.follows[i] == (follows ? 1.0 : 0.0));
+        if (!follows) continue;
+        ++drawn_in;
+        CHECK_CLOSE(found.gap[i], -depth, 1e-12, "rounding");
+    }
+    CHECK(drawn_in > 3);
 }
 
 TEST("no node is further inside than what the box says, however deep the post") {

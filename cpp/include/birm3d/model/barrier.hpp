@@ -21,6 +21,8 @@ struct Element {
     // Index of an element before it that this one is a part of, as a wall's rounded edge: loads are that one's. None: it is
     // no part.
     std::optional<std::size_t> part_of = {};
+    // Is the skin above the top edge of its vertical traffic face drawn in with the skin before the face? Only of a prism.
+    bool draws_in_above = false;
 
     Mat3 rotation() const;  // own axes to the barrier's
 };

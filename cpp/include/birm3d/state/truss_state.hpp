@@ -22,6 +22,7 @@ struct alignas(64) TrussBlockState {
     bool touching;                          // does any node push on an obstacle?
     bool slack;  // does an obstacle hold any node beyond the free length of its truss?
     bool met;    // has anything come into it, in any step?
+    bool hangs;  // does any node follow a top edge (top_edge.hpp)? It may sink below the edge.
 };
 
 // Force of a truss below its envelope (truss_law.hpp): along a line, or with a recovery along the curve (N).
@@ -43,12 +44,14 @@ struct BlockGroup {
     Box box;                // around the boxes of its blocks
     bool touching = false;  // any of them?
     bool slack = false;     // the same
+    bool hangs = false;     // the same
 
     // `first`: of the group.
     void add(const TrussBlockState& block, bool first) {
         box = first ? block.box : box.with(block.box);
         touching |= block.touching;
         slack |= block.slack;
+        hangs |= block.hangs;
     }
 };
 

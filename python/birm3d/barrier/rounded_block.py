@@ -1,0 +1,104 @@
+"""What walls and planters share: upright edges, rounded or sharp, and how the block draws in skin."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from .base import Barrier, Surface
+from .blocks import rounded_block
+from .edges import check_edge_radius, edges_text, rounded_outline, segment_outlines, usual_edge_radius
+from .surfaces import drawn_up, placed
+
+if TYPE_CHECKING:
+    from .. import _core
+
+__all__ = ["RoundedBlock"]
+
+Floats = npt.NDArray[np.float64]
+
+
+class RoundedBlock(Barrier):
+    """A solid block along the line. Its upright edges are sharp, or rounded by :attr:`rounding`.
+
+    Sharp edges pass between nodes of the skin. Rounded edges on the traffic's side are posts: like bollards
+    they draw in the skin beside them. So does the top of the traffic face with the skin above it.
+    """
+
+    segments = 1
+    height: float
+    edge_radius: float | None  # None: the usual one; 0: sharp edges, as in files of earlier versions
+
+    def plan_sizes(self) -> dict[str, float]:
+        """Return the name and size of a segment's plan, across the line and along it [m]."""
+        raise NotImplementedError
+
+    @property
+    def rounding(self) -> float:
+        """Radius of the upright edges [m]; 0: sharp."""
+        if self.edge_radius is not None:
+            return self.edge_radius
+        depth, length = self.plan_sizes().values()
+        return usual_edge_radius(depth, length) if math.isfinite(length) else 0.0
+
+    @property
+    def draws_in_above(self) -> bool:
+        """Whether it draws in the skin above its top as a bollard does. With sharp edges it does not."""
+        return math.isfinite(self.height) and self.edge_radius != 0.0
+
+    @property
+    def draws_in_skin(self) -> bool:
+        """Whether it draws in skin, beside rounded edges or above its top."""
+        return self.rounding > 0.0 or self.draws_in_above
+
+    @property
+    def cuts_skin(self) -> bool:
+        """Whether it has upright edges, and they are sharp."""
+        _, length = self.plan_sizes().values()
+        return math.isfinite(length) and self.rounding == 0.0
+
+    @property
+    def is_bottomless(self) -> bool:
+        """Whether it goes on below the ground without end."""
+        return self.rounding > 0.0
+
+    def check_edges(self) -> None:
+        """Refuse a radius of the edges that does not fit."""
+        sizes = self.plan_sizes()
+        check_edge_radius(self.rounding, sizes)
+        _, length = sizes.values()
+        if self.rounding > 0.0 and math.isinf(length):
+            raise ValueError(f"edge_radius must be 0 m for a wall of infinite width, got {self.rounding}")
+
+    def edges_text(self) -> str:
+        """Return in words what is unusual about the edges; "" where nothing is."""
+        depth, length = self.plan_sizes().values()
+        return edges_text(self.rounding, depth, length) if math.isfinite(length) else ""
+
+    def rounded_elements(self, top: float) -> list[_core.Element]:
+        """Return the elements of a block with rounded edges."""
+        depth, length = self.plan_sizes().values()
+        return rounded_block(
+            self,
+            depth,
+            length * self.segments,
+            top,
+            self.rounding,
+            self.segments,
+            draws_in_above=self.draws_in_above,
+        )
+
+    def outline(self) -> Floats:
+        """Return the plan of the block with rounded edges: across and along of its corners, (n, 2) [m]."""
+        depth, length = self.plan_sizes().values()
+        return rounded_outline(depth, length * self.segments, self.rounding)
+
+    def rounded_surfaces(self, height: float) -> list[Surface]:
+        """Return closed segments of a block with rounded edges."""
+        depth, length = self.plan_sizes().values()
+        plans = segment_outlines(depth, length * self.segments, self.rounding, self.segments)
+        drawn = [drawn_up(plan, 0.0, height) for plan in plans]
+        return [(placed(self, vertices), faces) for vertices, faces in drawn]

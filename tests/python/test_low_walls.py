@@ -1,0 +1,100 @@
+"""Walls lower than the vehicle draw in the skin above their top, as bollards do."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from functools import cache
+
+import birm3d
+import numpy as np
+import pytest
+from birm3d import Barrier, Settings, Simulation, Vehicle
+from birm3d.barrier.rigid_wall import RigidWall
+
+SPEED = 13.4  # m/s
+
+
+@cache
+def truck() -> Vehicle:
+    return Vehicle.preset("cargo_truck")
+
+
+def at(barrier: Barrier, **settings: float) -> birm3d.Result:
+    return Simulation(truck(), barrier, SPEED, settings=Settings(**settings)).run()
+
+
+@pytest.mark.parametrize("height", [0.5, 0.6, 0.7, 0.9])
+def test_a_wall_stops_a_truck_sooner_than_bollards_of_its_height(height: float) -> None:
+    """Once it stopped it later: nodes above the top of the wall met nothing."""
+    wall = at(Barrier.rigid_wall(height=height)).metrics
+    bollards = at(Barrier.bollards(count=3, diameter=0.3, spacing=0.8, height=height)).metrics
+    assert wall["max_displacement"] < bollards["max_displacement"]
+    assert wall["peak_force_50ms"] > bollards["peak_force_50ms"]
+
+
+def test_no_row_of_nodes_decides() -> None:
+    """Once the travel fell from 1.49 to 0.77 m between heights of 0.60 and 0.61 m: a row of nodes."""
+    heights = np.arange(0.5, 0.81, 0.02)
+    travel = [at(Barrier.rigid_wall(height=h)).metrics["max_displacement"] for h in heights]
+    assert np.abs(np.diff(travel)).max() < 0.05 * travel[0]
+
+
+def test_energy_converges_as_skin_sinks_below_the_top() -> None:
+    """The nose dips by 13 deg, so that drawn-in skin sinks below the top while it hangs over it."""
+    left = []
+    for tolerance in (1e-2, 1e-3, 1e-4):
+        result = at(Barrier.rigid_wall(height=0.57), tolerance=tolerance)
+        left.append(abs(result.metrics["energy_residual"]))
+    assert left[0] < 1e-3
+    assert left[2] < left[1] < left[0]
+    assert left[2] < 1e-4  # the error of the steps, of first order in the tolerance's root
+
+
+@pytest.mark.parametrize(("name", "yaw", "angle"), [("pickup", 45.0, 104.0), ("passenger_car", 0.0, 60.0)])
+def test_energy_at_an_oblique_low_wall(name: str, yaw: float, angle: float) -> None:
+    """A face that is not square to the panel, and a vehicle that rolls: within 0.1 % at 1e-4."""
+    wall = Barrier.rigid_wall(height=0.5, friction=0.0)
+    result = Simulation(
+        Vehicle.preset(name), wall, 10.6, angle, impact_yaw=yaw, settings=Settings(tolerance=1e-4)
+    ).run()
+    assert abs(result.metrics["energy_residual"]) < 1e-3
+
+
+def test_mirrored() -> None:
+    pickup = Vehicle.preset("pickup")
+    left, right = (
+        Simulation(pickup, Barrier.rigid_wall(height=0.6), 12.0, angle).run() for angle in (70.0, 110.0)
+    )
+    # The mesh is symmetric to rounding; over a crash that grows.
+    assert right.metrics["peak_force_50ms"] == pytest.approx(left.metrics["peak_force_50ms"], rel=1e-3)
+    assert right.metrics["max_yaw"] == pytest.approx(left.metrics["max_yaw"], rel=1e-2)
+
+
+def test_a_wall_above_the_vehicle_is_one_without_a_top() -> None:
+    car = Vehicle.preset("passenger_car")
+    high, endless = (
+        Simulation(car, Barrier.rigid_wall(height=height), SPEED).run() for height in (3.0, math.inf)
+    )
+    assert high.metrics["peak_normal_force"] == pytest.approx(endless.metrics["peak_normal_force"], rel=1e-9)
+
+
+def test_segments_have_the_load_together() -> None:
+    """Each segment draws in the skin above itself and takes its load."""
+    whole, parts = (at(Barrier.rigid_wall(width=4.0, height=0.6, segments=segments)) for segments in (1, 4))
+    assert parts.metrics["peak_force_50ms"] == pytest.approx(whole.metrics["peak_force_50ms"], rel=0.01)
+    together = sum(load.force for load in parts.element_loads)
+    np.testing.assert_allclose(together, -parts.barrier_force, atol=1e-6 * np.abs(parts.barrier_force).max())
+
+
+def test_planters_do_so_and_sharp_edges_do_not() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", birm3d.CoreContactWarning)  # sharp edges cut the skin
+        usual, sharp = (
+            at(Barrier.planter(length=4.0, width=1.0, height=0.6, **edges)).metrics["max_displacement"]
+            for edges in ({}, {"edge_radius": 0.0})
+        )
+    assert usual < 0.6 * sharp
+    assert not RigidWall(height=0.6).draws_in_above  # as in files of earlier versions
+    assert RigidWall(height=0.6, edge_radius=None).draws_in_above
+    assert not RigidWall(edge_radius=None).draws_in_above
