@@ -61,20 +61,20 @@ SCENES: dict[str, Callable[[], Simulation]] = {
 HASHES = {
     "w1": "29183f9152b02fd9",
     "w2": "8c7e455abd3ff793",
-    "paper's pickup at 30 mph": "6be6293de1250684",
+    "paper's pickup at 30 mph": "c8d274cd1c275780",
     "rolling": "ef995e5faea0f7cc",
     "oblique car": "aaa553d62ebb7aed",
-    "paper pickup, bollards": "6424b1af3d812f96",
+    "paper pickup, bollards": "dcdddd4efacfd792",
     "pickup, bollards": "bfc87f4f8988d485",
     "car, Jersey": "b5d065603ab052c6",
     "semi, wall": "929b485d318b53d4",
-    "truck, pole of triangles": "51ce760097199db9",
+    "truck, pole of triangles": "d5988d7afa6ea2fd",
     "free-standing": "8b513e5bd4bc08b5",
     "minivan on its side": "e656e6bc514f2797",
     "car, corner of a planter": "7068ea637b442401",
     "pickup, end of a wall": "0a2b3fdc2584ed57",
-    "finite-element car, wall": "2c20be024782e205",
-    "finite-element truck, wall": "91dca00fe8ed5679",
+    "finite-element car, wall": "d15cee9593f73df4",
+    "finite-element truck, wall": "f2516accc663599a",
 }
 
 

@@ -89,6 +89,10 @@ double twice_area(const Prism::Profile& p) {
     return sum;
 }
 
+// Cosine of the angle between two edges, above which they are sides of a corner and not of a wall. Chords of a rounded
+// corner so are no thickness.
+constexpr double sides_of_corner = -0.5;
+
 // Least distance of two edges that look away from each other and are no neighbours. `all`: the edges of the profile
 // in order. A wedge has no such pair: the least depth of the profile behind an edge.
 double least_thickness(const std::vector<PrismEdge>& all, const std::vector<bool>& covered) {
@@ -102,7 +106,7 @@ double least_thickness(const std::vector<PrismEdge>& all, const std::vector<bool
         for (std::size_t k = 0; k < n; ++k) {
             depth = std::max(depth, -nearer_edge(all[i], all[k].x, all[k].z, NearestEdge<double>{}).ahead);
             const bool neighbours = k == i || (k + 1) % n == i || (i + 1) % n == k;
-            const bool away = all[i].tx * all[k].tx + all[i].tz * all[k].tz < 0.0;
+            const bool away = all[i].tx * all[k].tx + all[i].tz * all[k].tz < sides_of_corner;
             if (!neighbours && !covered[k] && away && behind(all[i], all[k]) && behind(all[k], all[i]))
                 pairs = std::min(pairs, distance(all[i], all[k]));
         }

@@ -87,9 +87,10 @@ void find_core_contacts(const Unit& unit, std::size_t body, const UnitState& sta
             const double approach = -normal.dot(there.velocity + there.angular_velocity.cross(anchor));
             const double reach = reach_within_step(mesh, there, std::max(0.0, approach), dt);
             if (gap >= reach) continue;
-            const bool post = std::holds_alternative<Post>(*at[i]->shape), passed = gap < -passed_depth;
-            if ((post || (passed && at[i]->has_edges)) && unit.gives_way(anchor)) {
-                if ((passed || at[i]->pushes) && !is_closed(mesh, state.trusses, b, i, reach)) continue;
+            const bool passed = gap < -passed_depth,
+                       indents = at[i]->pushes && std::holds_alternative<Post>(*at[i]->shape);
+            if ((passed || indents) && unit.gives_way(anchor)) {
+                if (!is_closed(mesh, state.trusses, b, i, reach)) continue;
                 if (passed) gap = 0.0;  // the anchor rests where it is now
             }
             RigidContact contact;

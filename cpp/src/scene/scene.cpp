@@ -83,11 +83,7 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
         obstacles[i].element = whole.value_or(i);
         if (barrier->elements[i].draws_in_above)
             obstacles[i].top_edge = top_edge_of(std::get<Prism>(obstacles[i].shape));
-        const auto* post = std::get_if<Post>(&obstacles[i].shape);
-        if (post != nullptr && post->opens) obstacles[obstacles[i].element].has_edges = true;
     }
-    for (Obstacle& obstacle : obstacles)
-        obstacle.has_edges = obstacles[obstacle.element].has_edges;
     joints = vehicle->joints;
     if (free_segments() > 0 && barrier->free_standing->joint == SegmentJoint::pinned)
         for (std::size_t i = 1; i < free_segments(); ++i) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "birm3d/base/tolerances.hpp"
+#include "contact/drift_targets.hpp"
 #include "contact/impulse_iteration.hpp"
 #include "contact/rigid_contacts.hpp"
 #include "contact/rigid_impact.hpp"
@@ -61,8 +62,8 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
             const Twist relative{motion.velocity - other.velocity,
                                  motion.angular_velocity - other.angular_velocity};
             if (within_reach(obstacle.shape, in_shape, anchors, core_margin(unit.trusses, relative, dt)))
-                placed.push_back({&obstacle.shape, in_shape, i, obstacle.friction, other,
-                                  pushes(state.units[u], i), obstacle.has_edges});
+                placed.push_back(
+                    {&obstacle.shape, in_shape, i, obstacle.friction, other, pushes(state.units[u], i)});
         }
         if (placed.empty()) continue;
         const std::size_t first = contacts.size();
@@ -81,22 +82,10 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
                         body_state(state, joints[j].trailing), contacts);
 }
 
-// Sets the separation velocities that lasting contacts have to reach, and removes those that do not act.
-// Before the drift, a contact lets the body come to its surface and no further; after it, the contact stops the approach.
-// A joint closes its gap in the drift; after it, both bodies have the same velocity at the joint.
-void set_lasting_targets(Stage stage, double dt, double gravity,
-                         const std::vector<ContactImpulses>& before_drift,
-                         std::span<const ContactBody> bodies, std::vector<RigidContact>& contacts) {
-    if (stage == Stage::before_drift) {
-        for (RigidContact& contact : contacts) {
-            contact.target = -contact.gap / dt;
-            if (!contact.bilateral)
-                contact.target =
-                    std::min(contact.target, std::clamp(-contact.gap / tolerance::recovery_time,
-                                                        tolerance::slow_recovery, tolerance::recovery_speed));
-        }
-        return;
-    }
+// After the drift, contacts stop the approach, and both bodies have the same velocity at a joint. Removes the contacts
+// that do not act.
+void keep_lasting_contacts(double dt, double gravity, const std::vector<ContactImpulses>& before_drift,
+                           std::span<const ContactBody> bodies, std::vector<RigidContact>& contacts) {
     // A tyre that is too high to land within a step is left out. If this half of a step stopped it, short steps would
     // keep it above the ground: their first halves would carry nothing, and their second ones twice the load.
     const double tire_gap = std::clamp(0.5 * gravity * dt * dt, rounding_gap, tolerance::touching_gap);
@@ -266,8 +255,10 @@ void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Tria
         trial.impact_after = time_to_impact(tolerance::resting_approach * trial.dt, bodies, memory.contacts);
     if (trial.impact_within()) return;
     memory.kick.contacts = memory.contacts;
-    set_lasting_targets(stage, trial.dt, scene.settings.gravity, trial.impulses, bodies,
-                        memory.kick.contacts);
+    if (start)
+        set_drift_targets(trial.dt, bodies, state, memory.kick.contacts);
+    else
+        keep_lasting_contacts(trial.dt, scene.settings.gravity, trial.impulses, bodies, memory.kick.contacts);
     // Tyre friction needs the velocity at that end of the step. For the end after the drift, the contacts' change of
     // velocity is taken to be the one before the drift.
     if (start) {

@@ -1,5 +1,7 @@
 #include "birm3d/geometry/prism.hpp"
 
+#include <cmath>
+
 #include "birm3d/base/error.hpp"
 #include "check.hpp"
 #include "geometry/shape_laws.hpp"
@@ -112,6 +114,13 @@ TEST("walls without ends or top") {
     check_nearest(low, {0.2, 1e5, 1.0}, 0.1, Vec3::UnitZ());
     const Prism tall = Prism::box(0.4, 3.0, infinity);
     check_nearest(tall, {0.2, 1.6, 1e4}, 0.1, Vec3::UnitY());
+}
+
+TEST("chords of a rounded corner are no thickness") {
+    // The normals are at 0, 16, 69, 110 and 180 degrees: the second and the fourth look away from each other.
+    const Prism wall({{0.0, -1.0}, {0.4, -1.0}, {0.4, 0.9}, {0.38, 0.97}, {0.3, 1.0}, {0.0, 0.89}}, -1.0, 1.0,
+                     {});
+    CHECK_CLOSE(wall.thickness(), std::hypot(0.38, 0.08), 1e-15, "from the first chord to the other side");
 }
 
 TEST("a Jersey profile: slopes, the concave break, the top") {

@@ -91,14 +91,6 @@ inline constexpr double ground_mass_ratio = 1e3;
 // sum. Large: rounding decides the number of iterations, and mirrored scenes give different results.
 inline constexpr double friction_settled = 1e-9;
 
-// Rigid contacts: a point found inside a surface is pushed out within the step, but no faster than this (m/s).
-// Otherwise a depth of a micrometre, left by rotation, would cause a jump in a short step.
-inline constexpr double slow_recovery = 0.02;
-
-// A point that is deep inside is pushed out within this time (s), and no faster than this (m/s).
-inline constexpr double recovery_time = 1e-3;
-inline constexpr double recovery_speed = 0.5;
-
 // Points nearer than this to a rigid surface count as touching it (m).
 inline constexpr double touching_gap = 1e-6;
 

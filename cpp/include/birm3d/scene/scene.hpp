@@ -38,7 +38,6 @@ struct Obstacle {
     // Indices of the first obstacle that this one is joined to, and of the element that its loads are added to. Both
     // are its own index where it stands alone.
     std::size_t structure = 0, element = 0;
-    bool has_edges = false;                // has its element rounded edges?
     std::optional<TopEdge> top_edge = {};  // of a face that draws in the skin above it
 };
 
