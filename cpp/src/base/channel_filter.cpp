@@ -10,27 +10,25 @@ namespace birm3d {
 
 namespace {
 
-// Two poles in the transposed direct form II, and their states for two signals.
+// Two poles in the direct form I, and the last two rows of two signals before and behind them. In this form only one
+// product and one difference wait for the row before.
 struct Biquad {
     double b0, b1, b2, a1, a2;
-    TwoSignals z1{}, z2{};
+    TwoSignals in1{}, in2{}, out1{}, out2{};
 
     // State after an infinitely long constant signal.
     void settle(const TwoSignals& value) {
-        for (std::size_t i = 0; i < 2; ++i) {
-            const double out = (b0 + b1 + b2) / (1.0 + a1 + a2) * value[i];
-            z2[i] = b2 * value[i] - a2 * out;
-            z1[i] = b1 * value[i] - a1 * out + z2[i];
-        }
+        in1 = in2 = value;
+        for (std::size_t i = 0; i < 2; ++i)
+            out1[i] = out2[i] = (b0 + b1 + b2) / (1.0 + a1 + a2) * value[i];
     }
     TwoSignals next(const TwoSignals& value) {
-        TwoSignals out;
         for (std::size_t i = 0; i < 2; ++i) {
-            out[i] = b0 * value[i] + z1[i];
-            z1[i] = b1 * value[i] - a1 * out[i] + z2[i];
-            z2[i] = b2 * value[i] - a2 * out[i];
+            const double out = (b0 * value[i] + b1 * in1[i] + b2 * in2[i] - a2 * out2[i]) - a1 * out1[i];
+            in2[i] = in1[i], in1[i] = value[i];
+            out2[i] = out1[i], out1[i] = out;
         }
-        return out;
+        return out1;
     }
 };
 

@@ -97,12 +97,17 @@ std::optional<Vec3> first_stop(const ContactPass& pass, const DistantObstacles& 
     return path.at(outside);
 }
 
+// Did a post indent any panel that the block has nodes of?
+bool was_indented(const ContactPass& pass, const ContactBlock& block) {
+    return (pass.mesh.panels_of[block.index] & pass.indented_before) != 0;
+}
+
 // Marks with 1 the nodes that an indentation has released, and those that it held when it vanished within this step. It
 // vanishes as its post tips across the panel. Such a node is far from the surface that it would follow now: further
 // than the motions of the step allow.
 void find_leaving(const ContactPass& pass, const ContactBlock& block, BlockColumn& leaves) {
     leaves.fill(0.0);
-    if ((pass.mesh.panels_of[block.index] & pass.indented_before) == 0) return;
+    if (!was_indented(pass, block)) return;
     alignas(64) BlockColumn recession;
     find_recessions(*block.start, *block.end, block.contact, recession);
     for (std::size_t i = 0; i < block_size; ++i) {
@@ -131,21 +136,57 @@ void set_truss(const StoppedNode& node, TrussBlockState& nodes) {
     nodes.force[i] = node.force;
 }
 
-// Has a surface released the node? Then another one may stop it.
-void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i, ContactBlock& block,
-               DistantObstacles& distant) {
+// Places to which the surface held the nodes until the end of the step (body axes).
+struct HeldNodes {
+    alignas(64) BlockColumn x, y, z;
+};
+
+BIRM3D_BLOCK_LOOP void find_held_on_plane(const TrussBlockState& last, double nx, double ny, double nz,
+                                          double offset, double hx, double hy, double hz, HeldNodes& held) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < block_size; ++i) {
+        const double gap = (nx * last.x[i] + (ny * last.y[i] + nz * last.z[i])) - offset;
+        held.x[i] = last.x[i] - gap * hx;
+        held.y[i] = last.y[i] - gap * hy;
+        held.z[i] = last.z[i] - gap * hz;
+    }
+}
+
+// Marks with 1 the nodes that the surface has released though their trusses do not point into it.
+BIRM3D_BLOCK_LOOP void find_released(const TrussBlock& truss, const TrussBlockState& last,
+                                     const TrussBlockState& next, const BlockContact& contact,
+                                     const HeldNodes& held, BlockColumn& released) {
+    BIRM3D_INDEPENDENT
+    for (std::size_t i = 0; i < block_size; ++i) {
+        const double into = (truss.anchor_x[i] - held.x[i]) * contact.nx[i] +
+                            ((truss.anchor_y[i] - held.y[i]) * contact.ny[i] +
+                             (truss.anchor_z[i] - held.z[i]) * contact.nz[i]);
+        released[i] = last.force[i] > 0.0 && next.force[i] == 0.0 && !(into > 0.0) ? 1.0 : 0.0;
+    }
+}
+
+// The face held the nodes to the end of the step, unless they left by themselves: see release() in crush_simd.cpp.
+void find_released(const ContactPass& pass, const FlatContact* plane, const ContactBlock& block,
+                   HeldNodes& held, BlockColumn& released) {
+    if (plane != nullptr) {
+        const Vec3 &n = plane->face.normal, &h = plane->holding;
+        find_held_on_plane(*block.start, n.x(), n.y(), n.z(), plane->face.offset, h.x(), h.y(), h.z(), held);
+    } else {
+        held = {block.contact.px, block.contact.py, block.contact.pz};
+    }
+    find_released(pass.mesh.block[block.index], *block.start, *block.end, block.contact, held, released);
+}
+
+// A surface has released the node: another one may stop it.
+void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i, const Vec3& held,
+               ContactBlock& block, DistantObstacles& distant) {
     const TrussBlock& truss = pass.mesh.block[block.index];
     const TrussBlockState &last = *block.start, &next = *block.end;
-    if (!(last.force[i] > 0.0 && next.force[i] == 0.0)) return;
     if (plane == nullptr && block.faces.per_force[i] > 0.0) return;  // an indentation holds it
     const Vec3 anchor = anchor_of(truss, i);
     const Vec3 to(next.x[i], next.y[i], next.z[i]), was(last.x[i], last.y[i], last.z[i]);
-    // The face held the node to the end of the step, unless it left by itself: see release() in crush_simd.cpp.
-    const Vec3 held = plane != nullptr
-                          ? Vec3(was - (plane->face.normal.dot(was) - plane->face.offset) * plane->holding)
-                          : Vec3(block.contact.px[i], block.contact.py[i], block.contact.pz[i]);
-    const Vec3 n = plane != nullptr ? plane->face.normal : block.contact.normal(i);
-    if ((anchor - held).dot(n) > 0.0 || (to - held).norm() <= tolerance::touching_gap) return;
+    const Vec3 n = block.contact.normal(i);
+    if ((to - held).norm() <= tolerance::touching_gap) return;
     find_distant(pass, distant);
     const auto stop = first_stop(pass, distant, {block.index, i, held, to});
     if (!stop) return;
@@ -199,7 +240,7 @@ bool is_solid_to(const ContactPass& pass, std::size_t b, std::size_t i, std::siz
 }
 
 bool may_release(const ContactPass& pass, const ContactBlock& block, bool ceased) {
-    if (ceased) return true;
+    if (ceased || !was_indented(pass, block)) return ceased;
     alignas(64) BlockColumn leaves;
     find_leaving(pass, block, leaves);
     return block_max(leaves) > 0.0;
@@ -209,14 +250,16 @@ bool find_stopped(const ContactPass& pass, const FlatContact* plane, ContactBloc
                   DistantObstacles& distant) {
     block.stopped.clear();
     const TrussBlockState& last = *block.start;
-    alignas(64) BlockColumn leaves;
+    alignas(64) BlockColumn leaves, released;
+    HeldNodes held;
     find_leaving(pass, block, leaves);
+    find_released(pass, plane, block, held, released);
     for (std::size_t i = 0; i < block_size; ++i) {
         if (leaves[i] > 0.0)
             block.stopped.push_back({i, free_place(pass.mesh.block[block.index], last, i), last.residual[i],
                                      last.residual[i], last.peak_deflection[i], 0.0, last.unloading[i], 0.0});
-        else
-            find_stop(pass, plane, i, block, distant);
+        else if (released[i] > 0.0)
+            find_stop(pass, plane, i, {held.x[i], held.y[i], held.z[i]}, block, distant);
     }
     return !block.stopped.empty() && !distant.were_met;
 }

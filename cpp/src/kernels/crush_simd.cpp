@@ -27,24 +27,19 @@ BIRM3D_INLINE Packet dot(const Vector& a, const Vector& b) {
 // In place of the projection of a force that would push its node off the surface.
 constexpr double pushes_off = -1.0;
 
-// Direction in which a node moves onto the surface, for each unit of gap; and the vector `projector`, whose product
-// with the truss's unit vector turns the truss force into a normal force (see crush.hpp).
-struct Directions {
-    Vector direction, projector;
-};
-
-// Flat and Curved have the same members. at(i) gives the directions of the eight nodes from i on. Nodes that arrive
-// at a flat surface are moved along n.
+// Flat and Curved have the same members. direction(i) is that in which each of the eight nodes from i on moves onto the
+// surface, for each unit of gap. The product of projector(i) with the truss's unit vector turns the truss force into a
+// normal force (see crush.hpp). Nodes that arrive at a flat surface are moved along n.
 struct Flat {
     BIRM3D_INLINE explicit Flat(const FlatPress& s)
         : n{s.nx, s.ny, s.nz}, h{s.hx, s.hy, s.hz}, offset(s.offset) {}
     BIRM3D_INLINE Packet gap(std::size_t, const Vector& node) const { return dot(n, node) - offset; }
-    BIRM3D_INLINE Directions at(std::size_t, const Packet& F0) const {
+    BIRM3D_INLINE Vector direction(std::size_t, const Packet& F0) const {
         const Packet zero = 0.0;
-        return {{where_above(F0, zero, h.x, n.x), where_above(F0, zero, h.y, n.y),
-                 where_above(F0, zero, h.z, n.z)},
-                n};
+        return {where_above(F0, zero, h.x, n.x), where_above(F0, zero, h.y, n.y),
+                where_above(F0, zero, h.z, n.z)};
     }
+    BIRM3D_INLINE const Vector& projector(std::size_t) const { return n; }
     // Above zero for nodes that follow an indentation.
     BIRM3D_INLINE Packet drawn(std::size_t) const { return 0.0; }
     Vector n, h;
@@ -58,21 +53,27 @@ struct Curved {
         return {Packet::load(s.nx + i), Packet::load(s.ny + i), Packet::load(s.nz + i)};
     }
     // At an edge normals differ sharply; then the normal before is not used for the path.
-    BIRM3D_INLINE Directions at(std::size_t i, const Packet& F0) const {
+    BIRM3D_INLINE Vector before(std::size_t i) const {
+        return {Packet::load(s.bx + i), Packet::load(s.by + i), Packet::load(s.bz + i)};
+    }
+    BIRM3D_INLINE Vector direction(std::size_t i, const Packet& F0) const {
         const Packet zero = 0.0, one = 1.0;
-        const Vector n = normal(i);
-        const Vector b{Packet::load(s.bx + i), Packet::load(s.by + i), Packet::load(s.bz + i)};
+        const Vector n = normal(i), b = before(i);
         const Packet cosine = dot(n, b), per_force = Packet::load(s.per_force + i);
         const Packet follows = where_above(F0, zero, where_above(cosine, sharp_edge, one, zero), zero);
         const Packet mean = 1.0 / (1.0 + follows * cosine);
-        const auto path = [&](const Packet& own, const Packet& before) {
-            return where_above(per_force, zero, before, (own + follows * before) * mean);
+        const auto path = [&](const Packet& own, const Packet& last) {
+            return where_above(per_force, zero, last, (own + follows * last) * mean);
         };
-        const auto projector = [&](const Packet& own, const Packet& before) {
-            return where_above(per_force, zero, before * per_force, own);
+        return {path(n.x, b.x), path(n.y, b.y), path(n.z, b.z)};
+    }
+    BIRM3D_INLINE Vector projector(std::size_t i) const {
+        const Packet zero = 0.0, per_force = Packet::load(s.per_force + i);
+        const Vector n = normal(i), b = before(i);
+        const auto along = [&](const Packet& own, const Packet& last) {
+            return where_above(per_force, zero, last * per_force, own);
         };
-        return {{path(n.x, b.x), path(n.y, b.y), path(n.z, b.z)},
-                {projector(n.x, b.x), projector(n.y, b.y), projector(n.z, b.z)}};
+        return {along(n.x, b.x), along(n.y, b.y), along(n.z, b.z)};
     }
     BIRM3D_INLINE Packet drawn(std::size_t i) const { return Packet::load(s.per_force + i); }
     // Torque of a unit normal force. Stores it and the place of the node, which friction needs.
@@ -201,7 +202,7 @@ Packet release(const PressColumns& truss, const Surface& surface, const PressSta
                         Packet::load(truss.anchor_z + i)};
     const Vector from{Packet::load(before.x + i), Packet::load(before.y + i), Packet::load(before.z + i)};
     const Vector to{Packet::load(now.x + i), Packet::load(now.y + i), Packet::load(now.z + i)};
-    const Vector projector = surface.at(i, F0).projector;
+    const Vector& projector = surface.projector(i);
     const Packet drawn = surface.drawn(i);
     const Packet points =
         dot({anchor.x - to.x, anchor.y - to.y, anchor.z - to.z}, projector);  // above zero: into the surface
@@ -253,16 +254,17 @@ BIRM3D_INLINE void hold(const PressColumns& truss, const Surface& surface,
             if constexpr (!flat) surface.leave(i);
             continue;
         }
-        const Directions directions = surface.at(i, F0);
+        const Vector direction = surface.direction(i, F0);
+        const Vector& projector = surface.projector(i);
         const Packet depth = where_above(zero, gap, gap, where_above(F0, zero, gap, zero));
-        const Vector node{from.x - depth * directions.direction.x, from.y - depth * directions.direction.y,
-                          from.z - depth * directions.direction.z};
+        const Vector node{from.x - depth * direction.x, from.y - depth * direction.y,
+                          from.z - depth * direction.z};
 
         // From the node to its anchor. A bottomed-out truss has no direction; its force acts along n. A truss that
         // lies in the surface, as where the rigid body stands at it, keeps its force, of which nothing acts along n.
         const Vector b{Packet::load(truss.anchor_x + i) - node.x, Packet::load(truss.anchor_y + i) - node.y,
                        Packet::load(truss.anchor_z + i) - node.z};
-        const Packet length = square_root(dot(b, b)), outside = dot(b, directions.projector);
+        const Packet length = square_root(dot(b, b)), outside = dot(b, projector);
         const Packet along_normal =
             where_above(outside, in_surface, greater(outside, zero) / length, pushes_off);
         const Packet projection = where_above(length, least, along_normal, one);

@@ -1,13 +1,12 @@
 #include "birm3d/record/extremes.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "base/channel_filter.hpp"
 #include "base/wide_loops.hpp"
+#include "record/greatest.hpp"
 
 namespace birm3d {
 
@@ -15,73 +14,46 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-Extremes::NormalForce normal_force(const History& history) {
-    Extremes::NormalForce found{-infinity, 0.0};
-    for (std::size_t k = 0; k < history.time.size(); ++k) {
-        found.last = 0.0;
-        for (const UnitHistory& unit : history.units)
-            found.last += unit.barrier_normal_force[k];
-        found.peak = std::max(found.peak, found.last);
-    }
-    return found;
-}
-
-// Each thread keeps its work buffers, so that the metrics of a run allocate nothing.
-Column& scratch() {
-    thread_local Column values;
-    return values;
-}
-
-Extremes::Energy energy(const History& history) {
-    Column& total = scratch();
-    total.assign(history.time.size(), 0.0);
-    for (const Column* term :
-         {&history.kinetic, &history.potential, &history.stored, &history.crushed, &history.barrier_friction,
-          &history.tire_friction, &history.ground_friction, &history.impacts, &history.segment_friction,
-          &history.joint_work, &history.suspension})
-        for (std::size_t k = 0; k < total.size(); ++k)
-            total[k] += (*term)[k];
-    Extremes::Energy found{history.kinetic[0], 0.0};
-    for (const double sum : total)
-        found.residual = std::max(found.residual, std::abs(sum - total[0]));
-    return found;
-}
-
 // The first two rows are the interval.
 double interval_of(const History& history) {
     return history.time.size() > 1 ? history.time[1] - history.time[0] : infinity;
 }
 
-// Both filters at once: each waits for its own last result.
-void filter(const History& history, const ExtremeGroups& wanted, Extremes& found) {
-    if (!wanted.filtered_force && !wanted.filtered_deceleration) return;
-    thread_local std::vector<TwoSignals>
-        signal;  // component of the force (N) and deceleration along r (m/s^2)
+// Component of the barrier's force on all units (N). Each thread keeps its work buffers, so that the metrics of a run
+// allocate nothing.
+const Column& force_on_all(const History& history) {
+    thread_local Column force;
+    force.assign(history.time.size(), 0.0);
+    for (const UnitHistory& unit : history.units)
+        for (std::size_t k = 0; k < force.size(); ++k)
+            force[k] += unit.barrier_normal_force[k];
+    return force;
+}
+
+// Peaks of the force, if there is any, and of the deceleration along r. Both filters at once: each waits for its own
+// last result.
+std::optional<TwoSignals> filtered_peaks(const History& history, const Column* force, bool deceleration) {
+    thread_local std::vector<TwoSignals> signal;
     signal.assign(history.time.size(), {0.0, 0.0});
-    if (wanted.filtered_force)
-        for (const UnitHistory& unit : history.units)
-            for (std::size_t k = 0; k < signal.size(); ++k)
-                signal[k][0] += unit.barrier_normal_force[k];
-    if (wanted.filtered_deceleration)
+    if (force != nullptr)
+        for (std::size_t k = 0; k < signal.size(); ++k)
+            signal[k][0] = (*force)[k];
+    if (deceleration)
         for (std::size_t k = 0; k < signal.size(); ++k)
             signal[k][1] = -history.units.front().acceleration[k].x();
-    const double interval = interval_of(history);
-    const std::optional<TwoSignals> peak = peaks_of_filtered(signal, cfc60, interval);
-    if (wanted.filtered_force) {
-        Column& force = scratch();
-        force.resize(signal.size());
-        for (std::size_t k = 0; k < signal.size(); ++k)
-            force[k] = signal[k][0];
-        found.filtered_force = {peak ? std::optional((*peak)[0]) : std::nullopt,
-                                peak_of_means(force, window_50ms, interval)};
-    }
-    if (wanted.filtered_deceleration && peak) found.filtered_deceleration = (*peak)[1];
+    return peaks_of_filtered(signal, cfc60, interval_of(history));
 }
 
 void find_extremes_of_columns(const History& history, const ExtremeGroups& wanted, Extremes& found) {
-    if (wanted.normal_force) found.normal_force = normal_force(history);
-    if (wanted.energy) found.energy = energy(history);
-    filter(history, wanted, found);
+    const Column* const force =
+        wanted.normal_force || wanted.filtered_force ? &force_on_all(history) : nullptr;
+    if (wanted.normal_force) found.normal_force = {greatest_of(force->data(), force->size()), force->back()};
+    if (!wanted.filtered_force && !wanted.filtered_deceleration) return;
+    const std::optional<TwoSignals> peak = filtered_peaks(history, force, wanted.filtered_deceleration);
+    if (wanted.filtered_force)
+        found.filtered_force = {peak ? std::optional((*peak)[0]) : std::nullopt,
+                                peak_of_means(*force, window_50ms, interval_of(history))};
+    if (wanted.filtered_deceleration && peak) found.filtered_deceleration = (*peak)[1];
 }
 
 }  // namespace
@@ -92,6 +64,7 @@ Extremes extremes_of(const History& history, const Vehicle& vehicle, const Barri
     found.rows = history.time.size();
     found.end_time = history.time.back();
     run_wide([&] { find_extremes_of_columns(history, wanted, found); });
+    if (wanted.energy) found.energy = {history.kinetic_at_start, history.energy_residual};
     if (wanted.motion) found.motion = greatest_motion(history, event);
     if (wanted.attitude) found.attitude = greatest_attitude(history, event);
     if (wanted.wheel_climb) found.wheel_climb = greatest_wheel_climb(history, vehicle);

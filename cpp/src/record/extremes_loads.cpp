@@ -50,20 +50,20 @@ Extremes::ElementLoads greatest_element_loads(const History& history, const Barr
     for (const ObstacleHistory& loads : history.obstacles) {
         Vec3 force = Vec3::Zero(), moment = Vec3::Zero();   // sums of the rows up to now
         Vec3 force_before = force, moment_before = moment;  // and of those that have left the window
-        double force_squared = 0.0, mean_squared = 0.0;
-        Overturning at_once(barrier, barrier.elements[loads.obstacle].shape), mean = at_once;
+        double force_squared = 0.0, sum_squared = 0.0;
+        Overturning at_once(barrier, barrier.elements[loads.obstacle].shape), sums = at_once;
         for (std::size_t k = 0; k < count; ++k) {
             force += loads.force[k], moment += loads.moment[k];
             if (k >= window)
                 force_before += loads.force[k - window], moment_before += loads.moment[k - window];
             force_squared = std::max(force_squared, loads.force[k].squaredNorm());
-            mean_squared = std::max(mean_squared, ((force - force_before) / rows).squaredNorm());
-            at_once.add(loads.moment[k]), mean.add((moment - moment_before) / rows);
+            sum_squared = std::max(sum_squared, (force - force_before).squaredNorm());
+            at_once.add(loads.moment[k]), sums.add(moment - moment_before);
         }
         found.moment = std::max(found.moment, at_once.greatest());
-        found.moment_50ms = std::max(found.moment_50ms, mean.greatest());
+        found.moment_50ms = std::max(found.moment_50ms, sums.greatest() / rows);
         found.force = std::max(found.force, std::sqrt(force_squared));
-        found.force_50ms = std::max(found.force_50ms, std::sqrt(mean_squared));
+        found.force_50ms = std::max(found.force_50ms, std::sqrt(sum_squared) / rows);
     }
     return found;
 }

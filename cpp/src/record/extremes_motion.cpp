@@ -5,9 +5,11 @@
 #include <numbers>
 #include <optional>
 
+#include "base/wide_loops.hpp"
 #include "birm3d/base/rotation.hpp"
 #include "birm3d/record/extremes.hpp"
 #include "record/greatest.hpp"
+#include "record/resample_rows.hpp"
 
 namespace birm3d {
 
@@ -49,6 +51,26 @@ Extremes::Attitude attitude_at_large(const History& history, double end) {
     return {roll.greatest(), pitch.greatest(), yaw.greatest()};
 }
 
+// Tangents and sines of angles at some instants, and what they are made of. Loops over them fill whole registers.
+struct SmallAngles {
+    SpanColumn up_y, up_z, roll;               // of the rotation's last row; tangent of the roll's magnitude
+    SpanColumn sine;                           // of the pitch's magnitude
+    SpanColumn front_x, front_y, left, right;  // of its first column; tangents of the yaw to either side
+    SpanColumn lean;                           // above minus the least cosine: an angle is large
+
+    void set(const Quat* orientation, std::size_t n) {
+        for (std::size_t i = 0; i < n; ++i) {
+            const Mat3 R = orientation[i].toRotationMatrix();
+            up_y[i] = R(2, 1), up_z[i] = R(2, 2), roll[i] = std::abs(R(2, 1)) / R(2, 2);
+            sine[i] = std::abs(R(2, 0));
+            front_x[i] = R(0, 0), front_y[i] = R(1, 0);
+            left[i] = R(1, 0) / R(0, 0), right[i] = -left[i];
+            const double least = R(2, 2) < R(0, 0) ? R(2, 2) : R(0, 0);
+            lean[i] = 1.0 - sine[i] < least ? sine[i] - 1.0 : -least;
+        }
+    }
+};
+
 // Greatest angles if all stay well below a quarter of a revolution, else none. Tangents and sines have the same order
 // as the angles, so that few inverse functions are computed.
 std::optional<Extremes::Attitude> attitude_in_small(const History& history, double end) {
@@ -61,16 +83,20 @@ std::optional<Extremes::Attitude> attitude_in_small(const History& history, doub
     GreatestOf roll(magnitude);
     GreatestOf pitch(slope);
     GreatestOf left(change, zero != 0.0 ? 1.0 : 0.0), right = left;
-    for (std::size_t k = 0; k < orientation.size(); ++k) {
-        const Mat3 R = orientation[k].toRotationMatrix();
-        const double sine = std::abs(R(2, 0));
-        if (!(R(2, 2) > least_cosine && R(0, 0) > least_cosine && sine < 1.0 - least_cosine))
-            return std::nullopt;
-        roll.add(std::abs(R(2, 1)) / R(2, 2), R(2, 1), R(2, 2));
-        pitch.add(sine, sine, 0.0);
-        if (history.time[k] > end) continue;
-        const double tangent = R(1, 0) / R(0, 0);
-        left.add(tangent, R(1, 0), R(0, 0)), right.add(-tangent, R(1, 0), R(0, 0));
+    // No instant before this one is after the end.
+    const auto counting = static_cast<std::size_t>(
+        std::upper_bound(history.time.begin(), history.time.end(), end) - history.time.begin());
+    SmallAngles angles;
+    for (std::size_t first = 0; first < orientation.size(); first += most_together) {
+        const std::size_t n = std::min(most_together, orientation.size() - first);
+        angles.set(orientation.data() + first, n);
+        if (!(greatest_of(angles.lean.data(), n) < -least_cosine)) return std::nullopt;
+        roll.add(angles.roll.data(), angles.up_y.data(), angles.up_z.data(), n);
+        pitch.add(angles.sine.data(), angles.sine.data(), angles.sine.data(), n);
+        if (first >= counting) continue;
+        const std::size_t turning = std::min(n, counting - first);
+        left.add(angles.left.data(), angles.front_y.data(), angles.front_x.data(), turning);
+        right.add(angles.right.data(), angles.front_y.data(), angles.front_x.data(), turning);
     }
     // The first instant is not after the end.
     return Extremes::Attitude{roll.value(), pitch.value(), std::max({0.0, left.value(), right.value()})};
@@ -106,7 +132,8 @@ Extremes::Motion greatest_motion(const History& history, const Event& event) {
 
 Extremes::Attitude greatest_attitude(const History& history, const Event& event) {
     const double end = end_of(event);
-    const std::optional<Extremes::Attitude> small = attitude_in_small(history, end);
+    std::optional<Extremes::Attitude> small;
+    run_wide([&] { small = attitude_in_small(history, end); });
     return small ? *small : attitude_at_large(history, end);
 }
 

@@ -1,5 +1,7 @@
 // Evenly spaced output, put together; here that of energies and contact forces.
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "base/wide_loops.hpp"
@@ -33,11 +35,14 @@ void Recorder::resample(const Scene& scene, const Channels& wanted, History& his
     const OutputInstants output(values_, width_, history.time);
     history.towards = scene.towards();
     if (wanted.energies) run_wide([&] { resample_energies(output, history); });
+    if (wanted.energy_residual) find_energy_residual(output, history);
     resample_units(output, scene, wanted, history);
-    history.obstacles.clear();
     history.joints.clear();
     history.segments.clear();
-    if (wanted.elements) resample_obstacles(scene, output, history);
+    if (wanted.elements)
+        resample_obstacles(scene, output, history);
+    else
+        history.obstacles.clear();
     if (wanted.joints) resample_joints(scene, output, history);
     if (wanted.segments) resample_segments(scene, output, history);
 }
@@ -55,6 +60,29 @@ void Recorder::resample_energies(const OutputInstants& output, History& history)
                 (*column)[k] = a + output.fraction[k] * (b - a);
         }
         ++e;
+    }
+}
+
+// Within a step each energy changes evenly, so that the greatest departure is at an end of a span.
+void Recorder::find_energy_residual(const OutputInstants& output, History& history) const {
+    const double* kinetic = values_.data() + at_energies;
+    const auto total = [&](std::size_t row) {
+        const double* energies = kinetic + row * width_;
+        return std::accumulate(energies, energies + (at_units - at_energies), 0.0);
+    };
+    history.kinetic_at_start = *kinetic;
+    history.energy_residual = 0.0;
+    double start = total(0);
+    for (const Span& span : output.span) {
+        const double a = total(span.row), b = total(span.row + 1);
+        if (span.first == 0) {
+            const double fraction = output.fraction[0], first = kinetic[span.row * width_];
+            start = a + fraction * (b - a);
+            history.kinetic_at_start = first + fraction * (kinetic[(span.row + 1) * width_] - first);
+        }
+        for (const std::size_t k : {span.first, span.end - 1})
+            history.energy_residual =
+                std::max(history.energy_residual, std::abs(a + output.fraction[k] * (b - a) - start));
     }
 }
 

@@ -53,16 +53,17 @@ namespace {
 
 using ObstacleNumbers = std::array<double, obstacle_width>;
 
-// Means over the output intervals of the force and torque on one obstacle. `loads`: of each row, null where there is none.
-void add_means(const OutputInstants& output, const std::vector<const ObstacleNumbers*>& loads,
-               ObstacleHistory& means) {
+// Means over the output intervals of the force and torque on one obstacle. `lever` leads from the point of the means'
+// torque to that of the record's. `loads`: of each row, null where there is none.
+void set_means(const OutputInstants& output, const std::vector<const ObstacleNumbers*>& loads,
+               const Vec3& lever, ObstacleHistory& means) {
     static constexpr ObstacleNumbers nothing{};
     const auto view = [&](std::size_t r) {
         const auto values = [&](std::size_t i) { return loads[i] ? loads[i]->data() : nothing.data(); };
         return StepView{values(r), values(r + 1), output.time_at(r + 1) - output.time_at(r)};
     };
     std::array<double, 6> before_step{}, previous{};
-    std::array<SpanColumn, 6> now;
+    std::array<SpanColumn, 6> now, mean;
     std::size_t row = 0;
     for (const Span& span : output.span) {
         for (; row < span.row; ++row) {
@@ -82,18 +83,22 @@ void add_means(const OutputInstants& output, const std::vector<const ObstacleNum
         }
         const std::size_t n = span.size(), skipped = span.first == 0 ? 1 : 0;
         for (std::size_t i = 0; i < 6; ++i) {
-            const SpanColumn& sum = now[i];
-            const double* interval = output.interval.data() + span.first;
-            SpanColumn mean;
-            mean[0] = (sum[0] - previous[i]) / interval[0];
-            for (std::size_t k = 1; k < n; ++k)
-                mean[k] = (sum[k] - sum[k - 1]) / interval[k];
+            output.means(span, now[i], previous[i], mean[i]);
+            previous[i] = now[i][n - 1];
+        }
+        for (std::size_t k = 0; k < n; ++k) {
+            mean[3][k] += lever.y() * mean[2][k] - lever.z() * mean[1][k];
+            mean[4][k] += lever.z() * mean[0][k] - lever.x() * mean[2][k];
+            mean[5][k] += lever.x() * mean[1][k] - lever.y() * mean[0][k];
+        }
+        for (std::size_t i = 0; i < 6; ++i) {
             Vec3* to = (i < 3 ? means.force : means.moment).data() + span.first;
             for (std::size_t k = skipped; k < n; ++k)
-                to[k][static_cast<Eigen::Index>(i % 3)] = mean[k];
-            previous[i] = sum[n - 1];
+                to[k][static_cast<Eigen::Index>(i % 3)] = mean[i][k];
         }
     }
+    show_first_mean(means.force);
+    show_first_mean(means.moment);
 }
 
 }  // namespace
@@ -106,16 +111,15 @@ void Recorder::resample_obstacles(const Scene& scene, const OutputInstants& outp
         rows_of.resize(rows(), nullptr);
         rows_of[row.row] = &row.values;
     }
-    const std::size_t count = history.time.size();
+    history.obstacles.resize(touched.size());
+    std::size_t place = 0;
     for (const auto& [obstacle, rows_of] : touched) {
-        ObstacleHistory means{obstacle, std::vector<Vec3>(count, Vec3::Zero()),
-                              std::vector<Vec3>(count, Vec3::Zero())};
+        ObstacleHistory& means = history.obstacles[place++];
+        means.obstacle = obstacle;
+        means.force.assign(history.time.size(), Vec3::Zero());
+        means.moment.assign(history.time.size(), Vec3::Zero());
         const auto& loads = rows_of;  // lambdas take no structured bindings
-        run_wide([&] { add_means(output, loads, means); });
-        for (std::size_t k = 0; k < count; ++k)
-            means.moment[k] += scene.from_origin.cross(means.force[k]);
-        if (count > 1) means.force[0] = means.force[1], means.moment[0] = means.moment[1];
-        history.obstacles.push_back(std::move(means));
+        run_wide([&] { set_means(output, loads, scene.from_origin, means); });
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/wide_loops.hpp"
 #include "birm3d/base/tolerances.hpp"
+#include "record/greatest.hpp"
 #include "record/span_motion.hpp"
 
 namespace birm3d {
@@ -52,9 +53,11 @@ class UnitRows {
                                         at_barrier_impulse, now_.barrier);
             if (motion_) add_motion(span, step);
             if (forces_ || momentum_)
-                now_.add(before_step_, span.size(), pushes_);
+                now_.add(before_step_, span, pushes_);
             else if (wanted_.normal_force)
-                now_.barrier.add(before_step_.barrier, span.size());
+                now_.barrier.add(before_step_.barrier, span);
+            if (wanted_.normal_force || momentum_)
+                means(span, now_.barrier, previous_.barrier, barrier_mean_);
             if (wanted_.normal_force) add_normal_force(span, towards);
             if (forces_) add_forces(span);
             if (momentum_) look_at_momentum(span);
@@ -122,10 +125,10 @@ class UnitRows {
     void add_motion(const Span& span, const StepView& step) {
         const std::size_t n = span.size(), first = span.first;
         SpanVectors total;
-        total.set(now_.barrier, n);
-        for_others([&](const SpanVectors& impulse, const Vec3&) { total.add(impulse, n); });
+        total.set(now_.barrier, span);
+        for_others([&](const SpanVectors& impulse, const Vec3&) { total.add(impulse, span); });
         for (const SpanColumn& tire : now_.tire)
-            for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t i = 0; i < span.filled(); ++i)
                 total.z[i] += tire[i];
         moved_.set_velocity(output_, span, step, total, model_.body.inverse_mass, down_);
         moved_.set_place(output_, span, step);
@@ -150,12 +153,11 @@ class UnitRows {
     }
 
     void add_normal_force(const Span& span, const Vec3& towards) {
-        Vec3 previous = previous_.barrier;
-        for (std::size_t k = span.first; k < span.end; ++k) {
-            const Vec3 now = now_.barrier.at(k - span.first);
-            if (k > 0) unit_.barrier_normal_force[k] = output_.per[k] * (previous - now).dot(towards);
-            previous = now;
-        }
+        double* to = unit_.barrier_normal_force.data() + span.first;
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = span.first == 0 ? 1 : 0, n = span.size(); i < n; ++i)
+            to[i] = 0.0 - (barrier_mean_.x[i] * towards.x() + barrier_mean_.y[i] * towards.y() +
+                           barrier_mean_.z[i] * towards.z());
     }
 
     void add_forces(const Span& span) {
@@ -180,43 +182,47 @@ class UnitRows {
         }
     }
 
-    // Means over the intervals that end at the instants, of one component.
-    void means(const Span& span, const SpanColumn& impulse, double previous, SpanColumn& to) const {
-        const double* per = output_.per.data() + span.first;
-        to[0] = per[0] * (impulse[0] - previous);
-        for (std::size_t i = 1, n = span.size(); i < n; ++i)
-            to[i] = per[i] * (impulse[i] - impulse[i - 1]);
-    }
+    // Means over the intervals that end at the instants.
     void means(const Span& span, const SpanVectors& impulse, const Vec3& previous, SpanVectors& to) const {
-        means(span, impulse.x, previous.x(), to.x);
-        means(span, impulse.y, previous.y(), to.y);
-        means(span, impulse.z, previous.z(), to.z);
+        output_.means(span, impulse.x, previous.x(), to.x);
+        output_.means(span, impulse.y, previous.y(), to.y);
+        output_.means(span, impulse.z, previous.z(), to.z);
     }
 
     void look_at_momentum(const Span& span) {
         const double mass = model_.body.mass;
         const Vec3 weight = mass * down_;
-        SpanVectors barrier, force, part;
-        means(span, now_.barrier, previous_.barrier, barrier);
+        SpanVectors force{}, part{};
         const std::size_t n = span.size();
-        force.set(barrier, n);
+        force.set(barrier_mean_, span);
         for_others([&](const SpanVectors& impulse, const Vec3& previous) {
             means(span, impulse, previous, part);
-            force.add(part, n);
+            force.add(part, span);
         });
-        force.add(weight, n);
+        force.add(weight, span);
         for (std::size_t w = 0; w < now_.tire.size(); ++w) {
-            means(span, now_.tire[w], previous_.tire[w], part.z);
+            output_.means(span, now_.tire[w], previous_.tire[w], part.z);
             for (std::size_t i = 0; i < n; ++i)
                 force.z[i] += part.z[i];
         }
-        double worst = 0.0, largest = 0.0;  // squared
-        for (std::size_t i = span.first == 0 ? 1 : 0; i < n; ++i) {
-            worst = std::max(worst, (mass * moved_.acceleration.at(i) - force.at(i)).squaredNorm());
-            largest = std::max({largest, force.at(i).squaredNorm(), barrier.at(i).squaredNorm()});
+        // No interval ends at the first instant.
+        const std::size_t from = span.first == 0 ? 1 : 0;
+        const auto greatest = [&](const SpanVectors& vectors) {
+            SpanColumn squared;
+            BIRM3D_INDEPENDENT
+            for (std::size_t i = 0; i < span.filled(); ++i)
+                squared[i] =
+                    vectors.x[i] * vectors.x[i] + vectors.y[i] * vectors.y[i] + vectors.z[i] * vectors.z[i];
+            return std::sqrt(std::max(0.0, greatest_of(squared.data() + from, n - from)));
+        };
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < span.filled(); ++i) {
+            part.x[i] = mass * moved_.acceleration.x[i] - force.x[i];
+            part.y[i] = mass * moved_.acceleration.y[i] - force.y[i];
+            part.z[i] = mass * moved_.acceleration.z[i] - force.z[i];
         }
-        worst_ = std::max(worst_, std::sqrt(worst));
-        largest_ = std::max({largest_, std::sqrt(largest), weight.norm()});
+        worst_ = std::max(worst_, greatest(part));
+        largest_ = std::max({largest_, greatest(force), greatest(barrier_mean_), weight.norm()});
     }
 
     void keep_last(const Span& span) {
@@ -250,7 +256,9 @@ class UnitRows {
     bool motion_, forces_, momentum_;
     Pushes pushes_;
     SpanImpulses now_;
-    SpanMotion moved_;
+    SpanVectors
+        barrier_mean_{};  // force of the barrier over the intervals that end at the instants of a span
+    SpanMotion moved_{};
     Impulses before_step_;  // up to the start of the step that holds the span
     Impulses passed_;       // of one step
     Impulses previous_;     // up to the last instant of the span before

@@ -9,21 +9,24 @@
 
 namespace birm3d {
 
-// A vector at each instant of a span, component by component: loops over it fill whole registers.
+// A vector at each instant of a span, component by component: loops over it fill whole registers (Span::filled).
 struct SpanVectors {
     SpanColumn x, y, z;
     Vec3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
     std::array<double*, 3> columns() { return {x.data(), y.data(), z.data()}; }
-    void set(const SpanVectors& from, std::size_t n) {
-        for (std::size_t i = 0; i < n; ++i)
+    void set(const SpanVectors& from, const Span& span) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < span.filled(); ++i)
             x[i] = from.x[i], y[i] = from.y[i], z[i] = from.z[i];
     }
-    void add(const Vec3& by, std::size_t n) {
-        for (std::size_t i = 0; i < n; ++i)
+    void add(const Vec3& by, const Span& span) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < span.filled(); ++i)
             x[i] += by.x(), y[i] += by.y(), z[i] += by.z();
     }
-    void add(const SpanVectors& by, std::size_t n) {
-        for (std::size_t i = 0; i < n; ++i)
+    void add(const SpanVectors& by, const Span& span) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < span.filled(); ++i)
             x[i] += by.x[i], y[i] += by.y[i], z[i] += by.z[i];
     }
 };
@@ -52,13 +55,13 @@ struct SpanImpulses {
         for (std::size_t w = 0; w < tire.size(); ++w)
             output.spread(span, step.b[at_tire_impulses + w], tire[w].data());
     }
-    void add(const Impulses& by, std::size_t n, const Pushes& pushes) {
-        barrier.add(by.barrier, n);
-        if (pushes.ground) ground.add(by.ground, n);
-        if (pushes.tire_friction) tire_friction.add(by.tire_friction, n);
-        if (pushes.joints) joints.add(by.joints, n);
+    void add(const Impulses& by, const Span& span, const Pushes& pushes) {
+        barrier.add(by.barrier, span);
+        if (pushes.ground) ground.add(by.ground, span);
+        if (pushes.tire_friction) tire_friction.add(by.tire_friction, span);
+        if (pushes.joints) joints.add(by.joints, span);
         for (std::size_t w = 0; w < tire.size(); ++w)
-            for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t i = 0; i < span.filled(); ++i)
                 tire[w][i] += by.tire[w];
     }
     static void integrate(const OutputInstants& output, const Span& span, const StepView& step,

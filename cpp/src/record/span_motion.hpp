@@ -26,7 +26,8 @@ struct SpanMotion {
             const double a = step.a[at_velocity + c], b = step.b[at_velocity + c];
             const double g = down[static_cast<Eigen::Index>(c)];
             double* to = velocity.columns()[c];
-            for (std::size_t i = 0; i < span.size(); ++i) {
+            BIRM3D_INDEPENDENT
+            for (std::size_t i = 0; i < span.filled(); ++i) {
                 const double v = a + inverse_mass * from[c][i] + within[i] * g;
                 to[i] = fraction[i] < 1.0 ? v : b;
             }
@@ -37,12 +38,12 @@ struct SpanMotion {
     void set_place(const OutputInstants& output, const Span& span, const StepView& step) {
         const double *fraction = output.fraction.data() + span.first,
                      *smooth = output.smooth.data() + span.first;
-        const std::size_t n = span.size();
         for (std::size_t c = 0; c < 3; ++c) {
             const double a = step.a[at_position + c], b = step.b[at_position + c];
             const double va = step.a[at_velocity + c], vb = step.b[at_velocity + c];
             double* to = position.columns()[c];
-            for (std::size_t i = 0; i < n; ++i) {
+            BIRM3D_INDEPENDENT
+            for (std::size_t i = 0; i < span.filled(); ++i) {
                 const double s = fraction[i];
                 to[i] = a + (b - a) * smooth[i] + step.dt * s * (1.0 - s) * ((1.0 - s) * va - s * vb);
             }
@@ -51,11 +52,14 @@ struct SpanMotion {
         const double side =
             Eigen::Map<const Eigen::Vector4d>(qa).dot(Eigen::Map<const Eigen::Vector4d>(qb)) < 0.0 ? -1.0
                                                                                                    : 1.0;
-        for (std::size_t c = 0; c < 4; ++c)
-            for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t c = 0; c < 4; ++c) {
+            BIRM3D_INDEPENDENT
+            for (std::size_t i = 0; i < span.filled(); ++i)
                 orientation[c][i] = (1.0 - fraction[i]) * qa[c] + fraction[i] * side * qb[c];
+        }
         auto& [x, y, z, w] = orientation;
-        for (std::size_t i = 0; i < n; ++i) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < span.filled(); ++i) {
             const double norm = std::sqrt((x[i] * x[i] + z[i] * z[i]) + (y[i] * y[i] + w[i] * w[i]));
             x[i] /= norm, y[i] /= norm, z[i] /= norm, w[i] /= norm;
         }
@@ -63,18 +67,13 @@ struct SpanMotion {
 
     // `before`: velocity at the instant before the span.
     void set_acceleration(const OutputInstants& output, const Span& span, const Vec3& before) {
-        const double* per = output.per.data() + span.first;
-        const std::size_t n = span.size();
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double* v = velocity.columns()[c];
-            double* to = acceleration.columns()[c];
-            to[0] = per[0] * (v[0] - before[static_cast<Eigen::Index>(c)]);
-            for (std::size_t i = 1; i < n; ++i)
-                to[i] = per[i] * (v[i] - v[i - 1]);
-        }
+        output.means(span, velocity.x, before.x(), acceleration.x);
+        output.means(span, velocity.y, before.y(), acceleration.y);
+        output.means(span, velocity.z, before.z(), acceleration.z);
         // By the conjugate of the orientation q: v + w u + q x u with u = 2 q x v.
         const auto& [qx, qy, qz, qw] = orientation;
-        for (std::size_t i = 0; i < n; ++i) {
+        BIRM3D_INDEPENDENT
+        for (std::size_t i = 0; i < span.filled(); ++i) {
             const double x = -qx[i], y = -qy[i], z = -qz[i], w = qw[i];
             const double ax = acceleration.x[i], ay = acceleration.y[i], az = acceleration.z[i];
             double ux = y * az - z * ay, uy = z * ax - x * az, uz = x * ay - y * ax;

@@ -18,7 +18,8 @@ struct ExtremeGroups {
          segments = true;
 
     Channels channels() const {
-        return {.energies = energy,
+        return {.energies = false,
+                .energy_residual = energy,
                 .normal_force = normal_force || filtered_force,
                 .motion = motion || attitude || filtered_deceleration || penetration || wheel_climb ||
                           momentum || joint,

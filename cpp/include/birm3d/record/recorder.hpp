@@ -64,12 +64,16 @@ struct History {
     Column kinetic, potential, stored, crushed;                                    // J
     Column barrier_friction, tire_friction, ground_friction, impacts, joint_work;  // J
     Column segment_friction, suspension;                                           // J
+    double kinetic_at_start = 0.0;                                                 // at the first instant (J)
+    double energy_residual =
+        0.0;  // greatest departure of the sum of all energies from that at that instant (J)
     double momentum_residual = 0.0;  // max |m a - sum of forces| / max |force|, over all units
 };
 
 // Which columns of a history are wanted.
 struct Channels {
     bool energies = true;
+    bool energy_residual = true;  // History::energy_residual and kinetic_at_start
     bool normal_force = true;
     bool motion = true;
     bool angular_velocity = true;  // only with the motion
@@ -117,6 +121,7 @@ class Recorder {
     void add_row(const Scene& scene, double time, const Energies& energies, const Loads& loads);
     ObstacleRow& obstacle_row(std::size_t row, std::size_t obstacle);
     void resample_energies(const OutputInstants& output, History& history) const;
+    void find_energy_residual(const OutputInstants& output, History& history) const;
     void resample_contact_forces(const OutputInstants& output, std::size_t offset, UnitHistory& unit) const;
     void resample_units(const OutputInstants& output, const Scene& scene, const Channels& wanted,
                         History& history) const;

@@ -122,16 +122,18 @@ struct TrussState {
 
   private:
     void uncrush(const TrussMesh& mesh, std::size_t b) {
-        block[b] = {};
-        block[b].x = mesh.block[b].node_x;
-        block[b].y = mesh.block[b].node_y;
-        block[b].z = mesh.block[b].node_z;
-        block[b].unloading = mesh.block[b].k_unloading;
+        const TrussBlock& truss = mesh.block[b];
+        TrussBlockState& state = block[b];
+        state.x = truss.node_x, state.y = truss.node_y, state.z = truss.node_z;
+        for (BlockColumn* column : {&state.deflection, &state.force, &state.peak_deflection, &state.residual})
+            column->fill(0.0);
+        state.unloading = truss.k_unloading;
+        state.touching = state.slack = state.met = false;
         // The curve of a truss that was never loaded is above its envelope.
         if (mesh.recovers)
             for (std::size_t i = 0; i < block_size; ++i)
-                if (has_recovery(mesh.block[b].recovery[i])) block[b].unloading[i] = uncrushed_coefficient;
-        block[b].box = mesh.node_box[b];
+                if (has_recovery(truss.recovery[i])) state.unloading[i] = uncrushed_coefficient;
+        state.box = mesh.node_box[b];
     }
     void group(const TrussMesh& mesh, std::size_t g) {
         groups[g] = {};
