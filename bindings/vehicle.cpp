@@ -78,8 +78,8 @@ void register_vehicle(py::module_& m) {
         .def(
             py::init([](double mass, const InputArray& inertia, const TrussMesh& trusses,
                         const InputArray& origin, const InputArray& wheels, const InputArray& breakaway,
-                        const InputArray& suspension, const InputArray& tires, double mass_center_height, const InputArray& offset,
-                        const InputArray& core) {
+                        const InputArray& suspension, const InputArray& tires, double mass_center_height,
+                        const InputArray& offset, const InputArray& core) {
                 if (core.ndim() != 2 || core.shape(1) != 6) refuse("core shape", "(k, 6)", shape_text(core));
                 std::vector<Box> boxes;
                 boxes.reserve(static_cast<std::size_t>(core.shape(0)));
@@ -111,7 +111,8 @@ void register_vehicle(py::module_& m) {
             "up, m.\n"
             "suspension: shape (w, 4), stiffness, N/m (0: fixed to the body), damping, N s/m, compression at "
             "rest, m, travel from there to the bump stop, m.\n"
-            "tires: shape (w, 2), time in which a wheel with free steering follows its direction of travel, s "
+            "tires: shape (w, 2), time in which a wheel with free steering follows its direction of travel, "
+            "s "
             "(inf: it does not steer), radius of the tread's cross-section, m.\n"
             "origin: shape (3,), m, of the body axes in those of the trusses; copies share what does not "
             "move.\n"

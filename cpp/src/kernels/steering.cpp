@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/integrate.hpp"
-
 namespace birm3d {
 
 namespace {
@@ -19,16 +17,15 @@ bool steers(const Unit& unit) {
                        [](const Wheel& wheel) { return wheel.steers(); });
 }
 
-double steered(const Unit& unit, const BodyState& body, double angle, double dt,
+double steered(const Unit& unit, const Quat& orientation, const Twist& motion, double angle, double dt,
                std::span<const double> normal_impulses) {
-    const Mat3 R = body.orientation.toRotationMatrix();
-    const Vec3 spin = angular_velocity(unit.body, body);
+    const Mat3 R = orientation.toRotationMatrix();
     const Vec3 left = Vec3(R(0, 1), R(1, 1), 0.0), forward(left.y(), -left.x(), 0.0);
     double sum = 0.0, step = 0.0;
     for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
         const Wheel& wheel = unit.wheels[i];
         if (!wheel.steers() || !(normal_impulses[i] > 0.0)) continue;
-        const Vec3 velocity = body.velocity + spin.cross(R * wheel.center);
+        const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(R * wheel.center);
         const double along = velocity.dot(forward);
         if (!(along > 0.0)) continue;
         const double travels = std::atan2(velocity.dot(left), along);

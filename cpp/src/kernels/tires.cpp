@@ -82,8 +82,9 @@ WheelSet overloaded(const Unit& unit, double dt, std::span<const double> normal_
     return found;
 }
 
-Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState& state, double steering_angle,
-                     const TireMotion& motion, std::span<const double> normal_impulses) {
+Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState& state,
+                     double steering_angle, const TireMotion& motion,
+                     std::span<const double> normal_impulses) {
     Wrench sum;
     const double mu = settings.mu_tire;
     double total = 0.0;

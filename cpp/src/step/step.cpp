@@ -45,8 +45,9 @@ void move_unit(const Scene& scene, std::size_t u, const State& from, Trial& tria
     now.energies.potential += trial.dt * unit.body.mass * scene.settings.gravity * moved.body.velocity.z();
     // Steering by the mean of the travel angles before and after the drift, at the velocity of the middle of the step.
     const auto steer = [&](double dt) {
+        const Twist motion{moved.body.velocity, angular_velocity(unit.body, moved.body)};
         moved.steering_angle =
-            steered(unit, moved.body, moved.steering_angle, dt, trial.impulses[u].tire);
+            steered(unit, moved.body.orientation, motion, moved.steering_angle, dt, trial.impulses[u].tire);
     };
     const bool does_steer = steers(unit);
     if (does_steer) steer(0.5 * trial.dt);

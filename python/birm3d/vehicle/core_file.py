@@ -50,7 +50,9 @@ def _of_unit(unit: dict[str, Any]) -> Iterator[str]:
     yield f"inertia {_numbers(np.asarray(unit['inertia']).ravel())}"
     yield f"mass_center_height {_numbers([unit['mass_center_height']])}"
     yield f"offset {_numbers(unit['offset'])}"
-    yield from _rows("wheels", np.hstack([unit["wheels"], unit["breakaway"], unit["suspension"], unit["tires"]]).tolist())
+    yield from _rows(
+        "wheels", np.hstack([unit["wheels"], unit["breakaway"], unit["suspension"], unit["tires"]]).tolist()
+    )
     yield from _rows("boxes", unit["core"])
     yield f"mesh_origin {_numbers(unit['origin'])}"
     mesh = unit["trusses"]
