@@ -78,8 +78,8 @@ void register_vehicle(py::module_& m) {
         .def(
             py::init([](double mass, const InputArray& inertia, const TrussMesh& trusses,
                         const InputArray& origin, const InputArray& wheels, const InputArray& breakaway,
-                        const InputArray& suspension, double mass_center_height, const InputArray& offset,
-                        const InputArray& core) {
+                        const InputArray& suspension, const InputArray& tires, double mass_center_height,
+                        const InputArray& offset, const InputArray& core) {
                 if (core.ndim() != 2 || core.shape(1) != 6) refuse("core shape", "(k, 6)", shape_text(core));
                 std::vector<Box> boxes;
                 boxes.reserve(static_cast<std::size_t>(core.shape(0)));
@@ -90,24 +90,30 @@ void register_vehicle(py::module_& m) {
                 std::vector<Wheel> own = discs(wheels);
                 require_row_for_each(own, breakaway, 2, "breakaway");
                 require_row_for_each(own, suspension, 4, "suspension");
+                require_row_for_each(own, tires, 2, "tires");
                 for (py::ssize_t i = 0; i < breakaway.shape(0); ++i) {
                     Wheel& wheel = own[static_cast<std::size_t>(i)];
                     wheel.breakaway = breakaway.at(i, 0);
                     wheel.travel = breakaway.at(i, 1);
                     wheel.suspension = {suspension.at(i, 0), suspension.at(i, 1), suspension.at(i, 2),
                                         suspension.at(i, 3)};
+                    wheel.steering_time = tires.at(i, 0);
+                    wheel.tread_radius = tires.at(i, 1);
                 }
                 return Unit(body, trusses.moved(vector(origin, "origin")), std::move(own), mass_center_height,
                             vector(offset, "offset"), std::move(boxes));
             }),
             py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("trusses"), py::arg("origin"),
-            py::arg("wheels"), py::arg("breakaway"), py::arg("suspension"), py::arg("mass_center_height"),
-            py::arg("offset"), py::arg("core"),
+            py::arg("wheels"), py::arg("breakaway"), py::arg("suspension"), py::arg("tires"),
+            py::arg("mass_center_height"), py::arg("offset"), py::arg("core"),
             "mass: kg. inertia: shape (3, 3), kg m^2. wheels: shape (w, 4), centre and radius, m.\n"
             "breakaway: shape (w, 2), load at which each wheel gives way, N, and how far it is then pushed "
             "up, m.\n"
             "suspension: shape (w, 4), stiffness, N/m (0: fixed to the body), damping, N s/m, compression at "
             "rest, m, travel from there to the bump stop, m.\n"
+            "tires: shape (w, 2), time in which a wheel with free steering follows its direction of travel, "
+            "s "
+            "(inf: it does not steer), radius of the tread's cross-section, m.\n"
             "origin: shape (3,), m, of the body axes in those of the trusses; copies share what does not "
             "move.\n"
             "mass_center_height: m above the ground. offset: shape (3,), m, of the mass centre from the "

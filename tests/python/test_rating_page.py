@@ -50,6 +50,7 @@ def test_security_cases(module: ModuleType, name: str, designation: str) -> None
     assert rating.penetration < 0.0  # rigid posts: the load bed stays before them
 
 
+@pytest.mark.filterwarnings("ignore:core_contact_force must be")  # a truck falls on the barrier with its load
 def test_every_case_runs_and_the_page_is_fresh(module: ModuleType) -> None:
     """Verdict beside the published one, computed anew; a rating that changed is written by the command."""
     text = (FOLDER / "ratings.md").read_text(encoding="utf-8")
@@ -106,7 +107,7 @@ def test_dossier_of_each_published_test(
     cells = [unescape(cell).strip() for cell in re.findall(r"<td[^>]*>(.*?)</td>", page, re.DOTALL)]
     assert not {"nan", "inf", "-inf"} & {cell.lower() for cell in cells}
     result = case.simulation().run()
-    assert f"{result.outcome}: {result.outcome_detail}" in cells
+    assert f"{result.outcome.replace('_', ' ')}: {result.outcome_detail}" in cells
     if not case.standard:
         return
     rating = module.rated(case)

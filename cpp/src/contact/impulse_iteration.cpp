@@ -140,9 +140,10 @@ void kick_by_friction(const Scene& scene, const KickedBy& by, KickMemory& memory
             all += kicked.on_cores[u];
             const bool is_held = !memory.held.empty();
             const Twist& now = is_held ? memory.held[u] : motion[u];
-            on_ground = without_reversal(
-                tire_friction(unit, scene.settings, body, {now, by.at_end[u]}, memory.tire[u]),
-                memory.bodies[u], is_held ? now : motion_without(all, memory.bodies[u]));
+            on_ground =
+                without_reversal(tire_friction(unit, scene.settings, body, state.units[u].steering_angle,
+                                               {now, by.at_end[u]}, memory.tire[u]),
+                                 memory.bodies[u], is_held ? now : motion_without(all, memory.bodies[u]));
         }
         on_cores[u] = core_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u],
                                     greatest_other_inverse_mass(kicked.contacts, u, memory.bodies));

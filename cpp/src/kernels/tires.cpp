@@ -35,6 +35,12 @@ Vec3 point_on_ground(const Wheel& wheel, const Mat3& R, double height) {
     return arm;
 }
 
+// A direction along the ground, turned to the left.
+Vec3 turned_by(double angle, const Vec3& direction) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * direction.x() - s * direction.y(), s * direction.x() + c * direction.y(), 0.0};
+}
+
 // Greatest change of a wheel's velocity along its axle by a unit impulse there (1/kg). It is at least twice that of the
 // mass centre, as the body also turns. Wheels on springs let it roll, too; fixed wheels do not.
 double inverse_mass_at_wheels(const Unit& unit, const Mat3& R, double height) {
@@ -77,7 +83,8 @@ WheelSet overloaded(const Unit& unit, double dt, std::span<const double> normal_
 }
 
 Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState& state,
-                     const TireMotion& motion, std::span<const double> normal_impulses) {
+                     double steering_angle, const TireMotion& motion,
+                     std::span<const double> normal_impulses) {
     Wrench sum;
     const double mu = settings.mu_tire;
     double total = 0.0;
@@ -117,13 +124,15 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
     const Vec3 across_raw(R(0, 1), R(1, 1), 0.0);  // the axle's direction along the ground
     const double horizontal = across_raw.norm();
     if (horizontal < 1e-9) return sum;
-    const Vec3 across = across_raw / horizontal;
-    const Vec3 along(across.y(), -across.x(), 0.0);
+    const Vec3 left = across_raw / horizontal;
+    const Vec3 turned_left = turned_by(steering_angle, left);
     const double brakes = settings.braking, steers = std::sqrt(1.0 - brakes * brakes);
     for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
         if (normal_impulses[i] == 0.0) continue;
         const Vec3 arm = point_on_ground(unit.wheels[i], R, state.position.z());
         const Vec3 velocity = velocity_at(arm);
+        const Vec3& across = unit.wheels[i].steers() ? turned_left : left;
+        const Vec3 along(across.y(), -across.x(), 0.0);
         const double tan_slip = velocity.dot(across) / std::max(std::abs(velocity.dot(along)), slowest);
         const double fraction = brush(settings.cornering_stiffness * tan_slip / (3.0 * mu));
         // The braking part acts against the velocity; the remaining friction acts across the wheel.

@@ -40,8 +40,10 @@ struct TireMotion {
 };
 
 // Friction that goes with the normal impulses of the wheels (N s): linear and angular impulse about the mass
-// centre, world axes. An impact's friction is as sudden as the impact.
+// centre, world axes. An impact's friction is as sudden as the impact. `steering_angle`: of the wheels that steer, to the
+// left (rad); the paper's rule does not have it.
 Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState& state,
-                     const TireMotion& motion, std::span<const double> normal_impulses);
+                     double steering_angle, const TireMotion& motion,
+                     std::span<const double> normal_impulses);
 
 }  // namespace birm3d

@@ -73,6 +73,10 @@ Unit::Unit(const RigidBody& body_, TrussMesh trusses_, std::vector<Wheel> wheels
         require_at_least_zero("damping", "N s/m", wheels[i].suspension.damping);
         require_at_least_zero("compression at rest", "m", wheels[i].suspension.at_rest);
         require_at_least_zero("bump travel", "m", wheels[i].suspension.bump);
+        if (!(wheels[i].steering_time > 0.0))
+            refuse(name + " steering time", "> 0 s", wheels[i].steering_time);
+        if (!(wheels[i].tread_radius >= 0.0 && wheels[i].tread_radius <= wheels[i].radius))
+            refuse(name + " tread radius", ">= 0 m and at most the wheel's", wheels[i].tread_radius);
         if (i >= most_breakaway_wheels && std::isfinite(wheels[i].breakaway))
             refuse(name + " breakaway", "inf beyond the first 64 wheels", wheels[i].breakaway);
         if (!wheels[i].center.allFinite()) refuse(name + " center", "finite", "a coordinate that is not");

@@ -8,7 +8,8 @@ Vec3 lowest_point(const Wheel& wheel, const Mat3& R, double raised) {
     const double size = down.norm();
     const Vec3 center = R * (wheel.center + raised * Vec3::UnitZ());
     // A wheel that lies flat touches all around: its centre stands for the rim.
-    return size > 1e-9 ? Vec3(center + (wheel.radius / size) * down) : center;
+    const double rim = size > 1e-9 ? (wheel.radius - wheel.tread_radius) / size : 0.0;
+    return center + rim * down - wheel.tread_radius * Vec3::UnitZ();
 }
 
 }  // namespace birm3d

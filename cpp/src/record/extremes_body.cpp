@@ -101,7 +101,9 @@ double greatest_wheel_climb(const History& history, const Vehicle& vehicle) {
             for (const Wheel& wheel : wheels) {
                 // A sprung wheel that leaves the ground is fully extended.
                 const double center = wheel.center.dot(up) - wheel.suspension.at_rest * up.z();
-                greatest = std::max(greatest, unit.position[k].z() + center - wheel.radius * upright);
+                greatest = std::max(greatest, unit.position[k].z() + center -
+                                                  (wheel.radius - wheel.tread_radius) * upright -
+                                                  wheel.tread_radius);
             }
         }
     }

@@ -17,6 +17,8 @@ void add_to(Hash& hash, const Wheel& wheel) {
     hash.add(wheel.center);
     hash.add(wheel.radius);
     if (std::isfinite(wheel.breakaway)) hash.add(wheel.breakaway), hash.add(wheel.travel);
+    if (wheel.steers()) hash.add(wheel.steering_time);
+    if (wheel.tread_radius > 0.0) hash.add(-wheel.tread_radius);  // no other number of a wheel is negative
     const Suspension& held = wheel.suspension;
     if (!held.springs()) return;
     for (const double number : {held.stiffness, held.damping, held.at_rest, held.bump})

@@ -4,6 +4,7 @@
 
 #include "contact/contact_forces.hpp"
 #include "kernels/integrate.hpp"
+#include "kernels/steering.hpp"
 #include "kernels/suspension.hpp"
 #include "kernels/tires.hpp"
 #include "step/energy_balance.hpp"
@@ -42,7 +43,16 @@ void move_unit(const Scene& scene, std::size_t u, const State& from, Trial& tria
     State& now = trial.state;
     UnitState& moved = now.units[u];
     now.energies.potential += trial.dt * unit.body.mass * scene.settings.gravity * moved.body.velocity.z();
+    // Steering by the mean of the travel angles before and after the drift, at the velocity of the middle of the step.
+    const auto steer = [&](double dt) {
+        const Twist motion{moved.body.velocity, angular_velocity(unit.body, moved.body)};
+        moved.steering_angle =
+            steered(unit, moved.body.orientation, motion, moved.steering_angle, dt, trial.impulses[u].tire);
+    };
+    const bool does_steer = steers(unit);
+    if (does_steer) steer(0.5 * trial.dt);
     drift(unit.body, trial.dt, moved.body);
+    if (does_steer) steer(0.5 * trial.dt);
     if (!scene.obstacles.empty()) find_contact_forces(scene, u, from, trial);
     if (skin_touches_barrier(scene, moved)) now.touched = true;
     trial.error = std::max(trial.error, correct_loads(scene, u, from.units[u], trial));

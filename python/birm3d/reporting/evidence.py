@@ -112,7 +112,12 @@ def _phenomena(case: Case) -> Iterator[tuple[str, str, str]]:
         else "wheels are fixed to the body"
     )
     yield "suspension", "yes" if springs else "no", told
-    yield "steering, brakes of single wheels", "no", "wheels roll or slide, see the settings"
+    free = any(zone.steering_time is not None for zone in result.scene.vehicle.zones.values())
+    told = (
+        "front wheels follow their direction of travel; nobody steers" if free else "wheels are held straight"
+    )
+    yield "free steering", "yes" if free else "no", told
+    yield "brakes of single wheels", "no", "wheels roll or slide, see the settings"
     gone = result.statistics.wheels_given_way
     told = f"; {gone} wheels were loaded beyond what they carry, and gave way" if gone else ""
     yield "wheels and parts that come off", "no", f"nothing leaves the vehicle{told}"

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from .. import _core
 from .payload import core_ranges
-from .wheel_arguments import breakaway, suspension
+from .wheel_arguments import breakaway, suspension, tires
 
 if TYPE_CHECKING:
     from .vehicle_fields import VehicleFields
@@ -69,6 +69,7 @@ def _body_arguments(
         "wheels": vehicle.wheels,
         "breakaway": breakaway(vehicle),
         "suspension": suspension(vehicle, joint),
+        "tires": tires(vehicle),
         "mass_center_height": vehicle.mass_center_height,
         "offset": offset,
         "core": _core_boxes(vehicle),

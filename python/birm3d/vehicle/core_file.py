@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["export_core"]
 
-VERSION = 4
+VERSION = 5
 
 
 def export_core(vehicle: VehicleVariants, path: str | Path) -> None:
@@ -50,11 +50,13 @@ def _of_unit(unit: dict[str, Any]) -> Iterator[str]:
     yield f"inertia {_numbers(np.asarray(unit['inertia']).ravel())}"
     yield f"mass_center_height {_numbers([unit['mass_center_height']])}"
     yield f"offset {_numbers(unit['offset'])}"
-    yield from _rows("wheels", np.hstack([unit["wheels"], unit["breakaway"], unit["suspension"]]).tolist())
+    yield from _rows(
+        "wheels", np.hstack([unit["wheels"], unit["breakaway"], unit["suspension"], unit["tires"]]).tolist()
+    )
     yield from _rows("boxes", unit["core"])
     yield f"mesh_origin {_numbers(unit['origin'])}"
     mesh = unit["trusses"]
-    fixed = np.tile([np.inf, *np.zeros(5)], (len(mesh["wheels"]), 1))
+    fixed = np.tile([np.inf, *np.zeros(5), np.inf, 0.0], (len(mesh["wheels"]), 1))
     yield from _rows("mesh_wheels", np.hstack([mesh["wheels"], fixed]).tolist())
     yield f"rate_sensitivity {_numbers([mesh['rate_sensitivity']])}"
     yield f"indentation_length {_numbers([mesh['indentation_length']])}"

@@ -31,6 +31,7 @@ __all__ = [
     "Kind",
     "Name",
     "NamedPoint",
+    "Overhang",
     "Panel",
     "Point",
     "Positive",
@@ -465,6 +466,23 @@ class Indentation(Block):
     """How far a post draws in the skin beside itself, see :meth:`birm3d.Vehicle.with_indentation_length`."""
 
     length_m: Positive
+
+
+class Overhang(Block):
+    """What reaches out over the frame, as the floor of a cargo box: behind it the body is stepped.
+
+    Within x_m, and further than beyond_y_m from the middle plane, z_m is the height of the underside in place
+    of the stations'. A low barrier passes below it, or it bears on the barrier's top.
+    """
+
+    x_m: Range
+    beyond_y_m: Positive
+    z_m: Positive
+
+    @model_validator(mode="after")
+    def _check(self) -> Overhang:
+        _check_order("x_m", self.x_m, "must increase")
+        return self
 
 
 class CoreBox(Block):

@@ -113,6 +113,7 @@ class _Surface:
         self._shell = shell
         self._size = shell.element_size_m / math.sqrt(density)
         self._stations = np.array(shell.stations_m)
+        self._overhang = vehicle.overhang
         self._x, marks = self._columns(vehicle)
         self._eta = self._across(vehicle)
         self._zeta = self._rows(vehicle)
@@ -194,6 +195,9 @@ class _Surface:
         )
         eta, zeta = self._eta[j], self._zeta[k]
         x = self._x[i]
+        if (over := self._overhang) is not None:
+            out = (np.abs(eta * half_width) > over.beyond_y_m) & (over.x_m[0] <= x) & (x < over.x_m[1])
+            bottom = np.where(out, over.z_m, bottom)
         x_front, x_rear = self._stations[0, 0], self._stations[-1, 0]
         front = _setback(self._shell.front, self._stations[0], eta, zeta)
         rear = _setback(self._shell.rear, self._stations[-1], eta, zeta)

@@ -14,6 +14,7 @@ from .file_schema import (
     Exterior,
     Indentation,
     NamedPoint,
+    Overhang,
     Point,
     Range,
     Solid,
@@ -117,6 +118,17 @@ class Resize:
         if indentation is None:
             return None
         return indentation.changed({"length_m": self._to.indentation(self._extent) * indentation.length_m})
+
+    def overhang(self, overhang: Overhang | None) -> Overhang | None:
+        """Return what reaches out over the frame."""
+        if overhang is None:
+            return None
+        changes = {
+            "x_m": _both(self._to.x, overhang.x_m),
+            "beyond_y_m": self._to.y * overhang.beyond_y_m,
+            "z_m": self._to.z(overhang.z_m),
+        }
+        return overhang.changed(changes)
 
     def dimensions(self, dimensions: Dimensions) -> Dimensions:
         """Return the stated dimensions."""

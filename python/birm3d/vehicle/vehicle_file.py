@@ -34,6 +34,7 @@ from .file_schema import (
     Kind,
     Name,
     NamedPoint,
+    Overhang,
     Panel,
     Positive,
     Scaled,
@@ -109,6 +110,7 @@ class VehicleFile(Strict):
     wheels: Annotated[tuple[Wheel, ...], Field(alias="wheel")] = ()
     points: Annotated[tuple[NamedPoint, ...], Field(alias="point")] = ()
     exterior: Exterior
+    overhang: Overhang | None = None
     indentation: Indentation | None = None
     core: Annotated[tuple[CoreBox, ...], Field(min_length=1)]
     zones: Annotated[tuple[Zone, ...], Field(alias="zone", min_length=1)]
@@ -136,6 +138,7 @@ class VehicleFile(Strict):
         for i, one in enumerate(self.scatter):
             check_known(f"scatter.{i}.zones", one.zones, set(self.laws))
         self._check_cores()
+        self._check_overhang()
         for name in () if self.changes is None else self.changes.zone:
             check_known(f"changes.zone.{name}", (name,), set(self.laws))
         known = {source.id for source in self.sources}
@@ -156,11 +159,23 @@ class VehicleFile(Strict):
                     f"must be in the list 'core' of a zone, or the box has no effect; got '{box.name}'",
                 )
 
+    def _check_overhang(self) -> None:
+        """Require the step to leave some of the body."""
+        if self.overhang is None:
+            return
+        if self.exterior.mesh is not None:
+            reject("overhang", "must not go with exterior.mesh, which has the underside of the skin")
+        lowest = min(row[3] for row in self.exterior.stations_m)
+        if not self.overhang.z_m < lowest:
+            limit = f"below the upper edge of the body, {lowest:g} m"
+            reject("overhang.z_m", f"must be {limit}, got {self.overhang.z_m:g}")
+
     def _blocks(self) -> Iterator[tuple[str, Block]]:
         yield "dimensions", self.dimensions
         yield "exterior", self.exterior
-        if self.indentation is not None:
-            yield "indentation", self.indentation
+        for name, block in (("overhang", self.overhang), ("indentation", self.indentation)):
+            if block is not None:
+                yield name, block
         groups: Mapping[str, tuple[Block, ...]] = {
             "target": self.targets,
             "solid": self.solids,
@@ -226,6 +241,7 @@ class VehicleFile(Strict):
             ),
             "dimensions": to.dimensions(self.dimensions),
             "exterior": to.exterior(self.exterior),
+            "overhang": to.overhang(self.overhang),
             "indentation": to.indentation(self.indentation),
         }
         return self.changed(changes)

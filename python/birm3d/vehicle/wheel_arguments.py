@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .vehicle_fields import VehicleFields
     from .zone import Zone
 
-__all__ = ["breakaway", "load_on_joint", "suspension", "wheel_loads"]
+__all__ = ["breakaway", "load_on_joint", "suspension", "tires", "wheel_loads"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -53,6 +53,19 @@ def suspension(vehicle: VehicleFields, joint: tuple[Floats, float] | None = None
         stiffness = loads[wheel] / deflection
         damping = 2.0 * zone.damping_ratio * loads[wheel] / np.sqrt(units.g(deflection))
         rows[wheel] = stiffness, damping, deflection, zone.bump_travel
+    return rows
+
+
+def tires(vehicle: VehicleFields) -> Floats:
+    """Return steering time [s] and radius of the tread's cross-section [m] of each wheel (w, 2), by its zone.
+
+    Wheels ahead of the mass centre steer, where their zone has a time; the others have inf.
+    """
+    rows = np.tile([np.inf, 0.0], (len(vehicle.wheels), 1))
+    for wheel, zone in _zones_of_wheels(vehicle):
+        if zone.steering_time is not None and vehicle.wheels[wheel, 0] > 0.0:
+            rows[wheel, 0] = zone.steering_time
+        rows[wheel, 1] = zone.tread_radius or 0.0
     return rows
 
 

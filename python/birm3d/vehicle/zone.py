@@ -63,6 +63,8 @@ LAW_NUMBERS: Mapping[str, LawNumber] = {
     "damping_ratio": LawNumber("number", "in [0, 1]", "damping ratio", of_wheel=True),
     "bump_travel": LawNumber("length", "> 0", "to the bump stop", of_wheel=True),
     "cornering_stiffness": LawNumber("number", "> 0", "cornering stiffness", of_wheel=True),
+    "steering_time": LawNumber("time", "> 0", "free steering follows in", of_wheel=True),
+    "tread_radius": LawNumber("length", "> 0", "tread rounded by", of_wheel=True),
 }
 """Numbers of a zone's law, in the order of files. Files, names of parameters and reports come from here."""
 
@@ -116,6 +118,12 @@ class Zone(Mapping[str, Any]):
     cornering_stiffness
         Of a zone of tyres: lateral force on the road per normal load and radian of slip, at small slip
         [1/rad]. ``None``: that of a car's tyres, see :attr:`birm3d.simulation.Scene.cornering_stiffness`.
+    steering_time
+        Of a zone of tyres: time in which the wheels ahead of the mass centre turn into their direction of
+        travel, as nobody holds the steering wheel [s]. ``None``: they are held straight.
+    tread_radius
+        Of a zone of tyres: radius of the tread's cross-section [m], about half the width that stands on the
+        road. So a tilted wheel stands towards its edge. ``None``: a wheel is a disc without width.
     """
 
     k_initial: float | None = None
@@ -134,6 +142,8 @@ class Zone(Mapping[str, Any]):
     damping_ratio: float | None = None
     bump_travel: float | None = None
     cornering_stiffness: float | None = None
+    steering_time: float | None = None
+    tread_radius: float | None = None
 
     def __post_init__(self) -> None:
         if self.envelope is None:
@@ -163,8 +173,9 @@ class Zone(Mapping[str, Any]):
             for name in names:
                 if given and name not in given:
                     raise ValueError(f"{name} must be given beside {given[0]}, got None")
-        if self.cornering_stiffness is not None:
-            positive("cornering_stiffness", self.cornering_stiffness)
+        for name in ("cornering_stiffness", "steering_time", "tread_radius"):
+            if getattr(self, name) is not None:
+                positive(name, getattr(self, name))
         if self.damping_ratio is not None and not 0.0 <= self.damping_ratio <= 1.0:
             raise ValueError(f"damping_ratio must be in [0, 1], got {self.damping_ratio}")
 

@@ -17,7 +17,14 @@ Positive: TypeAlias = Annotated[float, Field(gt=0.0)]
 NonNegative: TypeAlias = Annotated[float, Field(ge=0.0)]
 EnvelopePoint: TypeAlias = tuple[NonNegative, NonNegative]
 
-_SUFFIX = {"pressure per length": "_Pa_per_m", "pressure": "_Pa", "length": "_m", "force": "_N", "number": ""}
+_SUFFIX = {
+    "pressure per length": "_Pa_per_m",
+    "pressure": "_Pa",
+    "length": "_m",
+    "force": "_N",
+    "time": "_s",
+    "number": "",
+}
 _LIMITS = {"> 0": Field(gt=0.0), ">= 0": Field(ge=0.0), "in [0, 1]": Field(ge=0.0, le=1.0)}
 
 

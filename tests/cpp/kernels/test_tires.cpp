@@ -32,7 +32,7 @@ double lowest_rim_point(const Wheel& wheel, const Quat& q) {
 // Friction at 1000 N s under each wheel.
 Wrench friction(const Settings& settings, const BodyState& state, const Twist& motion,
                 double normal = 1000.0) {
-    return tire_friction(unit, settings, state, {motion, motion}, std::vector<double>(4, normal));
+    return tire_friction(unit, settings, state, 0.0, {motion, motion}, std::vector<double>(4, normal));
 }
 
 }  // namespace
@@ -55,6 +55,24 @@ TEST("a tilted wheel touches the ground with its lowest point") {
             CHECK_CLOSE(spoke.norm(), 0.4, 1e-15, "on the rim");
             CHECK_CLOSE(spoke.dot(state.orientation * Vec3::UnitY()), 0.0, 1e-15, "in the wheel's plane");
         }
+    }
+}
+
+TEST("a tilted wheel with a round tread stands beside its plane, on the lowest point of the torus") {
+    Wheel wheel = unit.wheels[0];
+    wheel.tread_radius = 0.15;
+    for (const Angles& angles : {Angles{}, {0.3, 0.0, 0.0}, {-0.2, 0.4, 1.0}, {1.2, -0.5, 2.0}}) {
+        const Mat3 R = from_roll_pitch_yaw(angles).toRotationMatrix();
+        const Vec3 point = lowest_point(wheel, R, 0.0);
+        double lowest = 1e9;
+        for (int i = 0; i < 100000; ++i) {
+            const double a = 2.0 * pi * i / 100000;
+            const Vec3 ring = wheel.center + 0.25 * Vec3(std::cos(a), 0.0, std::sin(a));
+            lowest = std::min(lowest, (R * ring).z() - 0.15);
+        }
+        CHECK_CLOSE(point.z(), lowest, 1e-9, "nearest of 100,000 points: radius * (pi/1e5)^2 / 2");
+        const double beside = (point - R * wheel.center).dot(R.col(1));
+        CHECK_CLOSE(beside, -0.15 * R(2, 1), 1e-15, "tread radius times the sine of the tilt");
     }
 }
 

@@ -18,7 +18,8 @@ struct Suspension {
     bool springs() const { return stiffness > 0.0; }
 };
 
-// A disc that rolls about the body's s axis; only its lowest point meets the ground.
+// A disc that rolls about the body's s axis; only its lowest point meets the ground. With a tread of some radius it is a
+// torus, and a tilted wheel stands beside its plane.
 struct Wheel {
     Vec3 center = Vec3::Zero();  // body axes (m)
     double radius = 0.0;         // m
@@ -27,6 +28,11 @@ struct Wheel {
     double breakaway = std::numeric_limits<double>::infinity();
     double travel = 0.0;
     Suspension suspension{};  // `center` is where it holds the wheel at rest
+    // In which a wheel with free steering follows its direction of travel (s). Infinite: it does not steer.
+    double steering_time = std::numeric_limits<double>::infinity();
+    double tread_radius = 0.0;  // of the tread's cross-section, at most `radius` (m)
+
+    bool steers() const { return steering_time < std::numeric_limits<double>::infinity(); }
 };
 
 // From the mass centre to the lowest point of a wheel, for the body's rotation R; world axes (m). The wheel is pushed up

@@ -21,6 +21,7 @@ struct UnitMotion {
     std::vector<ContactLoad> contact_loads;  // in the order of the obstacles
     std::vector<IndentedPanels> indented;    // the same
     WheelSet given_way = 0;                  // wheels that were loaded beyond what they carry
+    double steering_angle = 0.0;             // of the wheels that steer, to the left (rad)
 };
 
 struct UnitState : UnitMotion {
@@ -33,6 +34,7 @@ struct UnitState : UnitMotion {
         contact_loads.clear();
         indented.clear();
         given_way = 0;
+        steering_angle = 0.0;
         trusses.reset(unit.trusses);
     }
 
@@ -143,6 +145,7 @@ struct State : Progress {
             add_body(unit.body);
             unit.trusses.add_to(hash);
             if (unit.given_way != 0) hash.add(static_cast<double>(unit.given_way));
+            if (unit.steering_angle != 0.0) hash.add(unit.steering_angle);
             for (const IndentedPanels& indented : unit.indented)
                 hash.add(Vec3(static_cast<double>(indented.obstacle), indented.panels, indented.passed));
         }
