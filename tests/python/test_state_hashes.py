@@ -72,7 +72,7 @@ HASHES = {
     "free-standing": "8b513e5bd4bc08b5",
     "minivan on its side": "e656e6bc514f2797",
     "car, corner of a planter": "7068ea637b442401",
-    "pickup, end of a wall": "0a2b3fdc2584ed57",
+    "pickup, end of a wall": "7ef8a94f8eb45ca9",
     "finite-element car, wall": "d15cee9593f73df4",
     "finite-element truck, wall": "f2516accc663599a",
 }

@@ -19,7 +19,7 @@ tests, and a rigid wall should give at least AASHTO's. AASHTO's heights of TL-4 
 rail's top, above any possible resultant on a wall of that height. Proposals of NCHRP 22-20(2) for the
 vehicles of MASH are shown as commonly reported. Their source is not at hand, and they are not judged.
 
-At 0.91 m the front of the 10-t truck acts at 0.51 m, and its rear at 0.64 m, 0.15 s later. The greater of the
+At 0.91 m the front of the 10-t truck acts lower than its rear, which strikes 0.15 s later. The greater of the
 two forces is compared, at its own height.
 
 What the model can not do here: the load of a truck shifts towards the wall; a trailer's floor and its tandem
