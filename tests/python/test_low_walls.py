@@ -9,7 +9,7 @@ from functools import cache
 import birm3d
 import numpy as np
 import pytest
-from birm3d import Barrier, Settings, Simulation, Vehicle
+from birm3d import Barrier, Settings, Simulation, Vehicle, _core
 from birm3d.barrier.rigid_wall import RigidWall
 
 SPEED = 13.4  # m/s
@@ -85,6 +85,39 @@ def test_segments_have_the_load_together() -> None:
     assert parts.metrics["peak_force_50ms"] == pytest.approx(whole.metrics["peak_force_50ms"], rel=0.01)
     together = sum(load.force for load in parts.element_loads)
     np.testing.assert_allclose(together, -parts.barrier_force, atol=1e-6 * np.abs(parts.barrier_force).max())
+
+
+@pytest.mark.parametrize(
+    ("upright", "corners", "limit"),
+    [
+        (False, [(0.0, -1.0), (0.6, -1.0), (0.4, 0.8), (0.2, 0.8)], "a vertical face towards -x"),
+        (True, [(0.0, -1.0), (0.6, -1.0), (0.6, 0.8), (0.0, 0.8)], "draws_in_above must be false"),
+    ],
+)
+def test_shapes_without_such_a_face_are_refused(
+    upright: bool, corners: list[tuple[float, float]], limit: str
+) -> None:
+    element = _core.Element.prism(
+        profile=np.array(corners),
+        y_low=-1.0,
+        y_high=1.0,
+        covered_low_end=False,
+        covered_high_end=False,
+        position=(0.0, 0.0, 0.0),
+        heading=0.0,
+        upright=upright,
+        draws_in_above=True,
+    )
+    with pytest.raises(ValueError, match=limit):
+        _core.Barrier(elements=[element], friction=0.2, origin=(0.0, 0.0, 0.0), heading=0.0, free_standing=[])
+
+
+def test_a_run_leaves_nothing_to_the_next() -> None:
+    """Blocks that hung over a top are as new when the memory of a run serves another one."""
+    scenes = [Simulation(truck(), Barrier.rigid_wall(height=h), SPEED) for h in (0.57, 0.57, 1.2)]
+    alone = [scene.run().state_hash for scene in scenes]
+    scene = Simulation(truck(), Barrier.rigid_wall(height=0.57), SPEED)
+    assert [scene.run().state_hash for _ in range(2)] == alone[:2]
 
 
 def test_planters_do_so_and_sharp_edges_do_not() -> None:

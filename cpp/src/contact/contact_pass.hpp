@@ -41,7 +41,7 @@ struct ContactPass {
     const Obstacle& obstacle(std::size_t k) const { return scene.obstacles[near[k].index]; }
     const Shape& shape(std::size_t k) const { return obstacle(k).shape; }
     // Do nodes of an indented panel follow the indentation instead of the surface of what makes it? They do at a post.
-    bool is_hidden(const IndentedPanel& indented) const { return !obstacle(indented.near).top_edge; }
+    bool replaces_surface(const IndentedPanel& indented) const { return !obstacle(indented.near).top_edge; }
     // Tire nodes meet the barrier only: the wheels stand on the ground as rigid contacts.
     bool meets(std::size_t block, std::size_t k) const {
         return block < mesh.shell_blocks || near[k].index != scene.ground;

@@ -12,7 +12,7 @@ namespace birm3d {
 
 // Sets the separation velocities that contacts have to reach in the drift of `dt`. A joint closes its gap.
 // A point comes to its surface and no further. One that is inside gets no deeper, but nothing pushes it out: that would
-// make kinetic energy. Only turning asks for a separation, which has become an approach when the drift ends.
+// make kinetic energy. A point of a turning body moves on an arc: it starts away from the surface, so that the arc ends on it.
 void set_drift_targets(double dt, std::span<const ContactBody> bodies, const State& state,
                        std::vector<RigidContact>& contacts);
 

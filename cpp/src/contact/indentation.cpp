@@ -123,10 +123,11 @@ void find_block_indentations(const ContactPass& pass, const std::vector<std::siz
 }
 
 bool only_indented(const ContactPass& pass, std::uint8_t panel_bits, std::size_t k) {
-    return std::any_of(
-        pass.indentations.begin(), pass.indentations.end(), [&](const IndentedPanel& indented) {
-            return indented.near == k && pass.is_hidden(indented) && panel_bits == 1U << indented.panel;
-        });
+    return std::any_of(pass.indentations.begin(), pass.indentations.end(),
+                       [&](const IndentedPanel& indented) {
+                           return indented.near == k && pass.replaces_surface(indented) &&
+                                  panel_bits == 1U << indented.panel;
+                       });
 }
 
 namespace {
@@ -214,7 +215,7 @@ void find_holding_surfaces(const ContactPass& pass, const ContactBlock& block, H
 
 void omit_indented(const ContactPass& pass, std::size_t b, std::size_t k, NearestOfBlock& found) {
     for (const IndentedPanel& indented : pass.indentations)
-        if (indented.near == k && pass.is_hidden(indented) &&
+        if (indented.near == k && pass.replaces_surface(indented) &&
             (pass.mesh.panels_of[b] >> indented.panel & 1U) != 0)
             omit_panel(pass.mesh.block[b].panel, static_cast<double>(indented.panel), found.gap);
 }

@@ -234,7 +234,7 @@ bool is_solid_to(const ContactPass& pass, std::size_t b, std::size_t i, std::siz
     if (!pass.meets(b, k)) return false;
     return std::none_of(pass.indentations.begin(), pass.indentations.end(),
                         [&](const IndentedPanel& indented) {
-                            return indented.near == k && pass.is_hidden(indented) &&
+                            return indented.near == k && pass.replaces_surface(indented) &&
                                    pass.mesh.block[b].panel[i] == static_cast<double>(indented.panel);
                         });
 }

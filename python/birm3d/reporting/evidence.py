@@ -112,7 +112,8 @@ def _phenomena(case: Case) -> Iterator[tuple[str, str, str]]:
         else "wheels are fixed to the body"
     )
     yield "suspension", "yes" if springs else "no", told
-    free = any(zone.steering_time is not None for zone in result.scene.vehicle.zones.values())
+    slips = result.scene.settings.tire_model == "slip"  # "skid" has no wheel planes
+    free = slips and any(zone.steering_time is not None for zone in result.scene.vehicle.zones.values())
     told = (
         "front wheels follow their direction of travel; nobody steers" if free else "wheels are held straight"
     )

@@ -29,7 +29,7 @@ def omitted_lines(result: RunAnalysis) -> list[str]:
         "ground and tyres": [*_ground(result)],
         "output": [*_output(result)],
         "the run": [*_end(result)],
-        "the model": ["steering, occupants (not part of it)"],
+        "the model": ["a driver who steers, occupants (not part of it)"],
     }
     return [
         line for name, lines in groups.items() if lines for line in (name, *(f"  {each}" for each in lines))

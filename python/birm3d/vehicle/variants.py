@@ -198,7 +198,8 @@ class VehicleVariants(VehicleData):
         about indentation_length [m] beyond the post, as far as the beams and panels there carry; ``>= 0``.
         The paper's trusses are independent of each other, so that a narrow post passes between them to the
         rigid core.
-        The top of a wall draws in the skin above it in the same way. Meshes make no indentation.
+        Rounded edges of walls draw in the skin beside them, and tops of walls the skin above them. Meshes do
+        not.
         """
         length = given("indentation_length", indentation_length)
         return self._changed(self._description.each(indentation_length=length))

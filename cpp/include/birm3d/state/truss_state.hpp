@@ -128,7 +128,7 @@ struct TrussState {
         for (BlockColumn* column : {&state.deflection, &state.force, &state.peak_deflection, &state.residual})
             column->fill(0.0);
         state.unloading = truss.k_unloading;
-        state.touching = state.slack = state.met = false;
+        state.touching = state.slack = state.met = state.hangs = false;
         // The curve of a truss that was never loaded is above its envelope.
         if (mesh.recovers)
             for (std::size_t i = 0; i < block_size; ++i)

@@ -188,6 +188,7 @@ def _finished(
         "exterior": exterior.changed({"source": ("mesh",)}),
         "assumptions": (*_kept(file, facts), *(Assumption(quantity="mesh", text=text) for text in told)),
         "targets": (),
+        "overhang": None,  # the mesh has the underside
     }
     whole = VehicleFile.model_validate(_as_data(file.changed(changes)))
     return dataclasses.replace(recipe, name=name, file=whole, mesh_density=mesh_density)
