@@ -11,7 +11,7 @@ enum class Reach {
     distant  // and those that a released node can get to
 };
 
-// Finds the near obstacles, the panels that posts indent, and the predicted motion of the unit relative to each
+// Finds the near obstacles, the panels that posts and top edges indent, and the predicted motion of the unit relative to each
 // obstacle.
 ContactPass prepare_pass(const Scene& scene, std::size_t unit, const State& from, Reach reach, Trial& trial);
 

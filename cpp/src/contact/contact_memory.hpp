@@ -45,7 +45,7 @@ struct ContactSums {
     }
 };
 
-// A post and a panel that it indents.
+// A post, or a face with a top edge, and a panel that it indents.
 struct IndentedPanel {
     std::size_t near;
     std::size_t panel;

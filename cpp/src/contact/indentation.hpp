@@ -1,4 +1,4 @@
-// Which panels posts indent, and which nodes follow: see kernels/indentation.hpp.
+// Which panels posts and top edges indent, and which nodes follow: see kernels/indentation.hpp.
 #pragma once
 
 #include "contact/contact_pass.hpp"
@@ -14,7 +14,7 @@ void find_indentations(ContactPass& pass, std::vector<IndentedPanel>& list, std:
 double gap_to_indentation(const IndentedPanel& indented, std::uint8_t panel_bits, const Box& box,
                           bool touching, bool hangs);
 
-// Sets the block's indentations, the nearest first, and adds their posts to its reachable obstacles.
+// Sets the block's indentations, the nearest first, and adds what makes them to its reachable obstacles.
 void find_block_indentations(const ContactPass& pass, const std::vector<std::size_t>& of_group,
                              ContactBlock& block);
 

@@ -97,7 +97,7 @@ std::optional<Vec3> first_stop(const ContactPass& pass, const DistantObstacles& 
     return path.at(outside);
 }
 
-// Did a post indent any panel that the block has nodes of?
+// Did a post or a top edge indent any panel that the block has nodes of?
 bool was_indented(const ContactPass& pass, const ContactBlock& block) {
     return (pass.mesh.panels_of[block.index] & pass.indented_before) != 0;
 }

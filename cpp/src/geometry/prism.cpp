@@ -89,8 +89,7 @@ double twice_area(const Prism::Profile& p) {
     return sum;
 }
 
-// Cosine of the angle between two edges, above which they are sides of a corner and not of a wall. Chords of a rounded
-// corner so are no thickness.
+// Edges whose normals have a greater cosine than this belong to one corner. Their distance is no thickness.
 constexpr double sides_of_corner = -0.5;
 
 // Least distance of two edges that look away from each other and are no neighbours. `all`: the edges of the profile

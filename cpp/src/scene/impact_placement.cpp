@@ -66,7 +66,7 @@ void raise_to_ground(const Scene& scene, State& state) {
 // Greatest depth of an indentation at the start (m). A deeper post has passed the panel's edge and is ignored.
 constexpr double deepest_start = 0.3;
 
-// Moves the vehicle back to before any post indents it.
+// Moves the vehicle back to before any post or top edge indents it.
 void stand_back(const Scene& scene, const Vec3& heading, State& state) {
     constexpr int most_steps = 50;
     for (int i = 0; i < most_steps; ++i) {

@@ -76,7 +76,7 @@ double gap_of_panel(const Indentation& indentation, std::size_t panel, const Tru
 
 namespace {
 
-// Calls `use` with each indentation that a post makes or would make, and with the indices of the post and the panel.
+// Calls `use` with each indentation that is made or would be made, and with the indices of the obstacle and the panel.
 // `about`: indices of the obstacles. `distance`: posts that are no further than this beside, in front of or below a
 // panel count too (m).
 template <class Use>

@@ -28,7 +28,7 @@ struct Wheel {
     double breakaway = std::numeric_limits<double>::infinity();
     double travel = 0.0;
     Suspension suspension{};  // `center` is where it holds the wheel at rest
-    // In which a wheel with free steering follows its direction of travel (s). Infinite: it does not steer.
+    // After which a free wheel has turned 63 % of the way to its direction of travel (s). Infinite: it does not steer.
     double steering_time = std::numeric_limits<double>::infinity();
     double tread_radius = 0.0;  // of the tread's cross-section, at most `radius` (m)
 
