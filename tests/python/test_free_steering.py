@@ -130,3 +130,32 @@ def test_the_8_t_truck_stays_upright_at_the_low_barrier() -> None:
     truck = Vehicle.preset(TRUCK).with_gvw(8000.0)
     result = Simulation(truck, Barrier.jersey(height=0.81), units.km_h(80.0), 15.0).run()
     assert result.outcome == "redirected"
+
+
+@pytest.mark.parametrize(
+    ("was", "given", "complaint"),
+    [
+        (
+            "z_m = 1.095",
+            "z_m = 9.0",
+            r"overhang.z_m: must be between .* body there, 0.55 and 1.245 m, got 9",
+        ),
+        (
+            "tread_radius_m = 0.2",
+            "tread_radius_m = 0.9",
+            r"tread radius must be >= 0 m and at most the wheel's",
+        ),
+        (
+            "steering_time_s = 0.08",
+            "steering_time_s = -0.1",
+            r"steering_time_s: must be greater than 0, got -0.1",
+        ),
+    ],
+)
+def test_numbers_that_can_not_be_are_refused(was: str, given: str, complaint: str, tmp_path: Path) -> None:
+    text = preset_path("mash_10000s").read_text(encoding="utf-8")
+    assert was in text
+    path = tmp_path / "truck.toml"
+    path.write_text(text.replace(was, given), encoding="utf-8")
+    with pytest.raises(ValueError, match=complaint):
+        Vehicle.from_file(path)

@@ -18,6 +18,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
+import numpy as np
 from pydantic import Field, field_validator, model_validator
 
 from ..base.deprecated import warn_deprecated
@@ -165,9 +166,12 @@ class VehicleFile(Strict):
             return
         if self.exterior.mesh is not None:
             reject("overhang", "must not go with exterior.mesh, which has the underside of the skin")
-        lowest = min(row[3] for row in self.exterior.stations_m)
-        if not self.overhang.z_m < lowest:
-            limit = f"below the upper edge of the body, {lowest:g} m"
+        x, _, bottoms, tops = np.array(self.exterior.stations_m)[::-1].T
+        low, high = self.overhang.x_m
+        there = [low, *x[(low < x) & (x < high)], high]
+        bottom, top = np.interp(there, x, bottoms).max(), np.interp(there, x, tops).min()
+        if not bottom < self.overhang.z_m < top:
+            limit = f"between underside and upper edge of the body there, {bottom:g} and {top:g} m"
             reject("overhang.z_m", f"must be {limit}, got {self.overhang.z_m:g}")
 
     def _blocks(self) -> Iterator[tuple[str, Block]]:
