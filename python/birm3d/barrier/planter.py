@@ -13,7 +13,7 @@ from .base import Surface
 from .blocks import FOOT, along_line, positive_and_finite, seen_block
 from .description import SeenPart, Size
 from .fronts import FlatFront, axes_of
-from .rounded_block import RoundedBlock
+from .rounded_block import RoundedBlock, SegmentPlan
 from .surfaces import ends, extruded
 
 __all__ = ["Planter"]
@@ -51,9 +51,10 @@ class Planter(RoundedBlock):
         corners = [(0.0, -FOOT), (width, -FOOT), (width, top), (0.0, top)]
         return along_line(self, np.array(corners), 0.0, self.length, 1)
 
-    def plan_sizes(self) -> dict[str, float]:
-        """Return the name and size of the plan, across the line and along it [m]."""
-        return {"width": self.width, "length": self.length}
+    @property
+    def plan(self) -> SegmentPlan:
+        """Sizes of the block seen from above."""
+        return SegmentPlan(self.width, self.length, ("width", "length"))
 
     @property
     def element_names(self) -> tuple[str, ...]:

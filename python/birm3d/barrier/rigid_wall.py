@@ -15,7 +15,7 @@ from .base import Surface
 from .blocks import FOOT, along_line, numbered, positive, positive_and_finite, seen_block
 from .description import SeenPart, Size, height_text, length_text, segments_text
 from .fronts import FlatFront, axes_of, feet_of
-from .rounded_block import RoundedBlock
+from .rounded_block import RoundedBlock, SegmentPlan
 from .surfaces import ends, extruded
 
 __all__ = ["RigidWall"]
@@ -73,10 +73,11 @@ class RigidWall(RoundedBlock):
             self, np.array(corners), 0.0, self.width, self.segments, draws_in_above=self.draws_in_above
         )
 
-    def plan_sizes(self) -> dict[str, float]:
-        """Return the name and size of a segment's plan, across the line and along it [m]."""
+    @property
+    def plan(self) -> SegmentPlan:
+        """Sizes of a segment seen from above."""
         name = "width" if self.segments == 1 else "the width of a segment"
-        return {"thickness": self.thickness, name: self.width / self.segments}
+        return SegmentPlan(self.thickness, self.width / self.segments, ("thickness", name))
 
     @property
     def element_names(self) -> tuple[str, ...]:

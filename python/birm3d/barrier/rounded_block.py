@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -16,9 +16,17 @@ from .surfaces import drawn_up, placed
 if TYPE_CHECKING:
     from .. import _core
 
-__all__ = ["RoundedBlock"]
+__all__ = ["RoundedBlock", "SegmentPlan"]
 
 Floats = npt.NDArray[np.float64]
+
+
+class SegmentPlan(NamedTuple):
+    """A segment seen from above: sizes across the line and along it [m], and what users call them."""
+
+    depth: float
+    length: float
+    names: tuple[str, str]
 
 
 class RoundedBlock(Barrier):
@@ -28,12 +36,13 @@ class RoundedBlock(Barrier):
     they draw in the skin beside them. So does the top of the traffic face with the skin above it.
     """
 
-    segments = 1
+    segments = 1  # of equal length along the line
     height: float
     edge_radius: float | None  # None: the usual one; 0: sharp edges, as in files of earlier versions
 
-    def plan_sizes(self) -> dict[str, float]:
-        """Return the name and size of a segment's plan, across the line and along it [m]."""
+    @property
+    def plan(self) -> SegmentPlan:
+        """Sizes of a segment seen from above."""
         raise NotImplementedError
 
     @property
@@ -41,7 +50,7 @@ class RoundedBlock(Barrier):
         """Radius of the upright edges [m]; 0: sharp."""
         if self.edge_radius is not None:
             return self.edge_radius
-        depth, length = self.plan_sizes().values()
+        depth, length, _ = self.plan
         return usual_edge_radius(depth, length) if math.isfinite(length) else 0.0
 
     @property
@@ -57,8 +66,7 @@ class RoundedBlock(Barrier):
     @property
     def cuts_skin(self) -> bool:
         """Whether it has upright edges, and they are sharp."""
-        _, length = self.plan_sizes().values()
-        return math.isfinite(length) and self.rounding == 0.0
+        return math.isfinite(self.plan.length) and self.rounding == 0.0
 
     @property
     def is_bottomless(self) -> bool:
@@ -67,20 +75,19 @@ class RoundedBlock(Barrier):
 
     def check_edges(self) -> None:
         """Refuse a radius of the edges that does not fit."""
-        sizes = self.plan_sizes()
-        check_edge_radius(self.rounding, sizes)
-        _, length = sizes.values()
+        depth, length, names = self.plan
+        check_edge_radius(self.rounding, dict(zip(names, (depth, length), strict=True)))
         if self.rounding > 0.0 and math.isinf(length):
             raise ValueError(f"edge_radius must be 0 m for a wall of infinite width, got {self.rounding}")
 
     def edges_text(self) -> str:
         """Return in words what is unusual about the edges; "" where nothing is."""
-        depth, length = self.plan_sizes().values()
+        depth, length, _ = self.plan
         return edges_text(self.rounding, depth, length) if math.isfinite(length) else ""
 
     def rounded_elements(self, top: float) -> list[_core.Element]:
         """Return the elements of a block with rounded edges."""
-        depth, length = self.plan_sizes().values()
+        depth, length, _ = self.plan
         return rounded_block(
             self,
             depth,
@@ -93,12 +100,12 @@ class RoundedBlock(Barrier):
 
     def outline(self) -> Floats:
         """Return the plan of the block with rounded edges: across and along of its corners, (n, 2) [m]."""
-        depth, length = self.plan_sizes().values()
+        depth, length, _ = self.plan
         return rounded_outline(depth, length * self.segments, self.rounding)
 
     def rounded_surfaces(self, height: float) -> list[Surface]:
         """Return closed segments of a block with rounded edges."""
-        depth, length = self.plan_sizes().values()
+        depth, length, _ = self.plan
         plans = segment_outlines(depth, length * self.segments, self.rounding, self.segments)
         drawn = [drawn_up(plan, 0.0, height) for plan in plans]
         return [(placed(self, vertices), faces) for vertices, faces in drawn]
