@@ -60,7 +60,7 @@ void apply_contact(const ContactPass& pass, std::size_t b, ContactState& state, 
     else
         crush_on_surfaces(pass, state);
     block.end->met = true;
-    block.end->hangs = plane == nullptr && !block.reachable.empty() && block.hangs;
+    block.end->hangs = block.hangs;
     block.end->box = box_around(block.end->x, block.end->y, block.end->z);
 }
 

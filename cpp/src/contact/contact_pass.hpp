@@ -75,6 +75,7 @@ struct ContactBlock {
         index = block;
         start = &at_start;
         end = &at_end;
+        hangs = false;
     }
     // The start of the step in a copy, where nodes can be placed elsewhere.
     TrussBlockState& alter() {

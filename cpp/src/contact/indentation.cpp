@@ -222,7 +222,6 @@ void omit_indented(const ContactPass& pass, std::size_t b, std::size_t k, Neares
 
 void follow_indentations(const ContactPass& pass, ContactBlock& block) {
     block.released.fill(0.0);
-    block.hangs = false;
     if (block.indentations.empty()) return;
     alignas(64) BlockColumn follows, rank;
     HoldingSurfaces held;

@@ -68,7 +68,8 @@ BIRM3D_BLOCK_LOOP double furthest(const BlockColumn& panel_of, double panel, con
 void Indentation::set_axes(const Vec3& foot, const Vec3& axis_up, const Panel& panel) {
     const Vec3 &e = panel.inward, &o = foot;
     const double leaning = axis_up.dot(e);
-    stretch = 1.0 / axis_up.cross(e).norm();
+    per_stretch = axis_up.cross(e).norm();
+    stretch = 1.0 / per_stretch;
     const Vec3 w = stretch * axis_up.cross(e), l = stretch * (axis_up - leaning * e);
     ex = e.x(), ey = e.y(), ez = e.z();
     wx = w.x(), wy = w.y(), wz = w.z();
@@ -77,7 +78,6 @@ void Indentation::set_axes(const Vec3& foot, const Vec3& axis_up, const Panel& p
     tilt = stretch * leaning;
     surface = (panel.box.center - o).dot(e) - panel.box.half.dot(e.cwiseAbs());
     per_reach = 1.0 / length;
-    per_stretch = axis_up.cross(e).norm();
 }
 
 void Indentation::set_outline(const Box& outline) {

@@ -53,8 +53,9 @@ namespace {
 
 using ObstacleNumbers = std::array<double, obstacle_width>;
 
-// Means over the output intervals of the force and torque on one obstacle. `lever` leads from the point of the means'
-// torque to that of the record's. `loads`: of each row, null where there is none.
+// Means over the output intervals of the force and torque on one obstacle.
+// `loads`: the numbers of each row; null where the obstacle has none.
+// `lever`: from the point of the means' torque to that of the record's (m).
 void set_means(const OutputInstants& output, const std::vector<const ObstacleNumbers*>& loads,
                const Vec3& lever, ObstacleHistory& means) {
     static constexpr ObstacleNumbers nothing{};

@@ -15,6 +15,7 @@ from .edges import cut_outline, rounded_outline
 __all__ = [
     "FOOT",
     "along_line",
+    "block_profile",
     "numbered",
     "positive",
     "positive_and_finite",
@@ -82,6 +83,11 @@ def along_line(
     return elements
 
 
+def block_profile(depth: float, top: float) -> Floats:
+    """Return the corners of a block across the line, its traffic face at 0: across and up, (4, 2) [m]."""
+    return np.array([(0.0, -FOOT), (depth, -FOOT), (depth, top), (0.0, top)])
+
+
 def rounded_block(
     barrier: Barrier,
     depth: float,
@@ -100,9 +106,14 @@ def rounded_block(
     half, last = 0.5 * length, segments - 1
 
     def faces(reach: float) -> list[_core.Element]:
-        corners = np.array([(0.0, -FOOT), (reach, -FOOT), (reach, top), (0.0, top)])
         return along_line(
-            barrier, corners, 0.0, length, segments, rounded=radius, draws_in_above=draws_in_above
+            barrier,
+            block_profile(reach, top),
+            0.0,
+            length,
+            segments,
+            rounded=radius,
+            draws_in_above=draws_in_above,
         )
 
     edges = [

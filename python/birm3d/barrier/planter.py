@@ -10,10 +10,10 @@ import numpy as np
 
 from .. import _core
 from .base import Surface
-from .blocks import FOOT, along_line, positive_and_finite, seen_block
+from .blocks import positive_and_finite, seen_block
 from .description import SeenPart, Size
 from .fronts import FlatFront, axes_of
-from .rounded_block import RoundedBlock, SegmentPlan
+from .rounded_block import BlockPlan, RoundedBlock
 from .surfaces import ends, extruded
 
 __all__ = ["Planter"]
@@ -45,16 +45,12 @@ class Planter(RoundedBlock):
         for name in ("length", "width", "height"):
             positive_and_finite(name, getattr(self, name))
         self.check_edges()
-        width, top = self.width, self.height
-        if self.rounding > 0.0:
-            return self.rounded_elements(top)
-        corners = [(0.0, -FOOT), (width, -FOOT), (width, top), (0.0, top)]
-        return along_line(self, np.array(corners), 0.0, self.length, 1)
+        return self.block_elements(self.height)
 
     @property
-    def plan(self) -> SegmentPlan:
-        """Sizes of the block seen from above."""
-        return SegmentPlan(self.width, self.length, ("width", "length"))
+    def plan(self) -> BlockPlan:
+        """Sizes seen from above."""
+        return BlockPlan(self.width, self.length, ("width", "length"))
 
     @property
     def element_names(self) -> tuple[str, ...]:

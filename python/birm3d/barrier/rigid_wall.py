@@ -12,10 +12,10 @@ import numpy.typing as npt
 
 from .. import _core
 from .base import Surface
-from .blocks import FOOT, along_line, numbered, positive, positive_and_finite, seen_block
+from .blocks import numbered, positive, positive_and_finite, seen_block
 from .description import SeenPart, Size, height_text, length_text, segments_text
 from .fronts import FlatFront, axes_of, feet_of
-from .rounded_block import RoundedBlock, SegmentPlan
+from .rounded_block import BlockPlan, RoundedBlock
 from .surfaces import ends, extruded
 
 __all__ = ["RigidWall"]
@@ -60,24 +60,18 @@ class RigidWall(RoundedBlock):
         positive("height", self.height)
         positive_and_finite("thickness", self.thickness)
         self.check_edges()
-        heading = math.radians(self.heading)
-        top = self.height if math.isfinite(self.height) else _HIGH
-        if self.rounding > 0.0:
-            return self.rounded_elements(top)
         if math.isinf(self.width) and self.segments > 1:
             raise ValueError(f"segments must be 1 for a wall of infinite width, got {self.segments}")
-        if math.isinf(self.width) and math.isinf(self.height):
+        if self.is_endless:
+            heading = math.radians(self.heading)
             return [_core.Element.plane(position=self.from_origin(0.0, 0.0), heading=heading)]
-        corners = [(0.0, -FOOT), (self.thickness, -FOOT), (self.thickness, top), (0.0, top)]
-        return along_line(
-            self, np.array(corners), 0.0, self.width, self.segments, draws_in_above=self.draws_in_above
-        )
+        return self.block_elements(self.height if math.isfinite(self.height) else _HIGH)
 
     @property
-    def plan(self) -> SegmentPlan:
-        """Sizes of a segment seen from above."""
+    def plan(self) -> BlockPlan:
+        """Sizes seen from above."""
         name = "width" if self.segments == 1 else "the width of a segment"
-        return SegmentPlan(self.thickness, self.width / self.segments, ("thickness", name))
+        return BlockPlan(self.thickness, self.width, ("thickness", name))
 
     @property
     def element_names(self) -> tuple[str, ...]:

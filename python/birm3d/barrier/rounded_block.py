@@ -9,20 +9,20 @@ import numpy as np
 import numpy.typing as npt
 
 from .base import Barrier, Surface
-from .blocks import rounded_block
+from .blocks import along_line, block_profile, rounded_block
 from .edges import check_edge_radius, edges_text, rounded_outline, segment_outlines, usual_edge_radius
 from .surfaces import drawn_up, placed
 
 if TYPE_CHECKING:
     from .. import _core
 
-__all__ = ["RoundedBlock", "SegmentPlan"]
+__all__ = ["BlockPlan", "RoundedBlock"]
 
 Floats = npt.NDArray[np.float64]
 
 
-class SegmentPlan(NamedTuple):
-    """A segment seen from above: sizes across the line and along it [m], and what users call them."""
+class BlockPlan(NamedTuple):
+    """A block seen from above: sizes across and along the line [m], and users' words for a segment's."""
 
     depth: float
     length: float
@@ -41,8 +41,8 @@ class RoundedBlock(Barrier):
     edge_radius: float | None  # None: the usual one; 0: sharp edges, as in files of earlier versions
 
     @property
-    def plan(self) -> SegmentPlan:
-        """Sizes of a segment seen from above."""
+    def plan(self) -> BlockPlan:
+        """Sizes seen from above."""
         raise NotImplementedError
 
     @property
@@ -51,7 +51,7 @@ class RoundedBlock(Barrier):
         if self.edge_radius is not None:
             return self.edge_radius
         depth, length, _ = self.plan
-        return usual_edge_radius(depth, length) if math.isfinite(length) else 0.0
+        return usual_edge_radius(depth, length / self.segments) if math.isfinite(length) else 0.0
 
     @property
     def draws_in_above(self) -> bool:
@@ -76,36 +76,34 @@ class RoundedBlock(Barrier):
     def check_edges(self) -> None:
         """Refuse a radius of the edges that does not fit."""
         depth, length, names = self.plan
-        check_edge_radius(self.rounding, dict(zip(names, (depth, length), strict=True)))
+        check_edge_radius(self.rounding, dict(zip(names, (depth, length / self.segments), strict=True)))
         if self.rounding > 0.0 and math.isinf(length):
             raise ValueError(f"edge_radius must be 0 m for a wall of infinite width, got {self.rounding}")
 
     def edges_text(self) -> str:
         """Return in words what is unusual about the edges; "" where nothing is."""
         depth, length, _ = self.plan
-        return edges_text(self.rounding, depth, length) if math.isfinite(length) else ""
+        return edges_text(self.rounding, depth, length / self.segments) if math.isfinite(length) else ""
 
-    def rounded_elements(self, top: float) -> list[_core.Element]:
-        """Return the elements of a block with rounded edges."""
+    def block_elements(self, top: float) -> list[_core.Element]:
+        """Return the elements of the block up to a height [m]."""
         depth, length, _ = self.plan
-        return rounded_block(
-            self,
-            depth,
-            length * self.segments,
-            top,
-            self.rounding,
-            self.segments,
-            draws_in_above=self.draws_in_above,
+        if self.rounding > 0.0:
+            return rounded_block(
+                self, depth, length, top, self.rounding, self.segments, draws_in_above=self.draws_in_above
+            )
+        return along_line(
+            self, block_profile(depth, top), 0.0, length, self.segments, draws_in_above=self.draws_in_above
         )
 
     def outline(self) -> Floats:
         """Return the plan of the block with rounded edges: across and along of its corners, (n, 2) [m]."""
         depth, length, _ = self.plan
-        return rounded_outline(depth, length * self.segments, self.rounding)
+        return rounded_outline(depth, length, self.rounding)
 
     def rounded_surfaces(self, height: float) -> list[Surface]:
         """Return closed segments of a block with rounded edges."""
         depth, length, _ = self.plan
-        plans = segment_outlines(depth, length * self.segments, self.rounding, self.segments)
+        plans = segment_outlines(depth, length, self.rounding, self.segments)
         drawn = [drawn_up(plan, 0.0, height) for plan in plans]
         return [(placed(self, vertices), faces) for vertices, faces in drawn]

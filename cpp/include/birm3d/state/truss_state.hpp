@@ -13,16 +13,20 @@
 
 namespace birm3d {
 
-struct alignas(64) TrussBlockState {
+// What a block of trusses has met. All are false of an uncrushed block.
+struct BlockFlags {
+    bool touching = false;  // does any node push on an obstacle?
+    bool slack = false;     // does an obstacle hold any node beyond the free length of its truss?
+    bool met = false;       // has anything come into it, in any step?
+    bool hangs = false;     // does any node follow a top edge (top_edge.hpp)? It may sink below the edge.
+};
+
+struct alignas(64) TrussBlockState : BlockFlags {
     BlockColumn x, y, z;                    // shell nodes in body axes (m)
     BlockColumn deflection, force;          // of the truss, now (m, N)
     BlockColumn peak_deflection, residual;  // greatest so far; where unloading meets zero force (m)
     BlockColumn unloading;                  // coefficient of unloading, see unloading_force() (N/m or N/m^n)
     Box box;                                // around the nodes, body axes
-    bool touching;                          // does any node push on an obstacle?
-    bool slack;  // does an obstacle hold any node beyond the free length of its truss?
-    bool met;    // has anything come into it, in any step?
-    bool hangs;  // does any node follow a top edge (top_edge.hpp)? It may sink below the edge.
 };
 
 // Force of a truss below its envelope (truss_law.hpp): along a line, or with a recovery along the curve (N).
@@ -128,7 +132,7 @@ struct TrussState {
         for (BlockColumn* column : {&state.deflection, &state.force, &state.peak_deflection, &state.residual})
             column->fill(0.0);
         state.unloading = truss.k_unloading;
-        state.touching = state.slack = state.met = state.hangs = false;
+        static_cast<BlockFlags&>(state) = {};
         // The curve of a truss that was never loaded is above its envelope.
         if (mesh.recovers)
             for (std::size_t i = 0; i < block_size; ++i)
