@@ -83,10 +83,6 @@ class ContactModel:
     __members__: typing.ClassVar[dict[str, ContactModel]]  # value = {'projected': <ContactModel.projected: 0>, 'along_truss': <ContactModel.along_truss: 1>}
     along_truss: typing.ClassVar[ContactModel]  # value = <ContactModel.along_truss: 1>
     projected: typing.ClassVar[ContactModel]  # value = <ContactModel.projected: 0>
-    @typing.overload
-    def __eq__(self, other: ContactModel) -> bool:
-        ...
-    @typing.overload
     def __eq__(self, other: typing.Any) -> bool:
         ...
     def __getstate__(self) -> int:
@@ -99,10 +95,6 @@ class ContactModel:
         ...
     def __int__(self) -> int:
         ...
-    @typing.overload
-    def __ne__(self, other: ContactModel) -> bool:
-        ...
-    @typing.overload
     def __ne__(self, other: typing.Any) -> bool:
         ...
     def __repr__(self) -> str:
@@ -188,10 +180,6 @@ class EndReason:
     separated: typing.ClassVar[EndReason]  # value = <EndReason.separated: 2>
     sliding: typing.ClassVar[EndReason]  # value = <EndReason.sliding: 4>
     stopped: typing.ClassVar[EndReason]  # value = <EndReason.stopped: 3>
-    @typing.overload
-    def __eq__(self, other: EndReason) -> bool:
-        ...
-    @typing.overload
     def __eq__(self, other: typing.Any) -> bool:
         ...
     def __getstate__(self) -> int:
@@ -204,10 +192,6 @@ class EndReason:
         ...
     def __int__(self) -> int:
         ...
-    @typing.overload
-    def __ne__(self, other: EndReason) -> bool:
-        ...
-    @typing.overload
     def __ne__(self, other: typing.Any) -> bool:
         ...
     def __repr__(self) -> str:
@@ -627,10 +611,6 @@ class JointKind:
     __members__: typing.ClassVar[dict[str, JointKind]]  # value = {'fifth_wheel': <JointKind.fifth_wheel: 0>, 'welded': <JointKind.welded: 1>}
     fifth_wheel: typing.ClassVar[JointKind]  # value = <JointKind.fifth_wheel: 0>
     welded: typing.ClassVar[JointKind]  # value = <JointKind.welded: 1>
-    @typing.overload
-    def __eq__(self, other: JointKind) -> bool:
-        ...
-    @typing.overload
     def __eq__(self, other: typing.Any) -> bool:
         ...
     def __getstate__(self) -> int:
@@ -643,10 +623,6 @@ class JointKind:
         ...
     def __int__(self) -> int:
         ...
-    @typing.overload
-    def __ne__(self, other: JointKind) -> bool:
-        ...
-    @typing.overload
     def __ne__(self, other: typing.Any) -> bool:
         ...
     def __repr__(self) -> str:
@@ -808,10 +784,6 @@ class SegmentJoint:
     __members__: typing.ClassVar[dict[str, SegmentJoint]]  # value = {'pinned': <SegmentJoint.pinned: 0>, 'loose': <SegmentJoint.loose: 1>}
     loose: typing.ClassVar[SegmentJoint]  # value = <SegmentJoint.loose: 1>
     pinned: typing.ClassVar[SegmentJoint]  # value = <SegmentJoint.pinned: 0>
-    @typing.overload
-    def __eq__(self, other: SegmentJoint) -> bool:
-        ...
-    @typing.overload
     def __eq__(self, other: typing.Any) -> bool:
         ...
     def __getstate__(self) -> int:
@@ -824,10 +796,6 @@ class SegmentJoint:
         ...
     def __int__(self) -> int:
         ...
-    @typing.overload
-    def __ne__(self, other: SegmentJoint) -> bool:
-        ...
-    @typing.overload
     def __ne__(self, other: typing.Any) -> bool:
         ...
     def __repr__(self) -> str:
@@ -883,7 +851,7 @@ class Simulation:
         ...
     def restore(self, snapshot: Snapshot) -> None:
         ...
-    def run(self, tick: collections.abc.Callable[[float, int], None] | None = None) -> None:
+    def run(self, tick: collections.abc.Callable[[typing.SupportsFloat | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex], None] | None = None) -> None:
         """
         From the present state to the end; Ctrl-C stops it. `tick` is called now and then with the time (s) and the number of steps.
         """
@@ -1077,10 +1045,6 @@ class TireModel:
     __members__: typing.ClassVar[dict[str, TireModel]]  # value = {'slip': <TireModel.slip: 0>, 'skid': <TireModel.skid: 1>}
     skid: typing.ClassVar[TireModel]  # value = <TireModel.skid: 1>
     slip: typing.ClassVar[TireModel]  # value = <TireModel.slip: 0>
-    @typing.overload
-    def __eq__(self, other: TireModel) -> bool:
-        ...
-    @typing.overload
     def __eq__(self, other: typing.Any) -> bool:
         ...
     def __getstate__(self) -> int:
@@ -1093,10 +1057,6 @@ class TireModel:
         ...
     def __int__(self) -> int:
         ...
-    @typing.overload
-    def __ne__(self, other: TireModel) -> bool:
-        ...
-    @typing.overload
     def __ne__(self, other: typing.Any) -> bool:
         ...
     def __repr__(self) -> str:
