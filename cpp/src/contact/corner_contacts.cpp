@@ -248,8 +248,9 @@ void resolve_corner_contacts(const ContactPass& pass, ContactBlock& block) {
             note_inside(block.faces, found.gap, cornered);
         }
     }
+    // A node that its indentation releases is on no face: the gap that is asked of it is that of a node far away.
     for (std::size_t i = 0; i < block_size; ++i)
-        if (cornered[i] > 0.0) resolve_corner(pass, i, block);
+        if (cornered[i] > 0.0 && !(block.released[i] > 0.0)) resolve_corner(pass, i, block);
 }
 
 void resolve_known_corner(const ContactPass& pass, Corner corner, ContactBlock& block) {
