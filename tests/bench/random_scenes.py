@@ -215,13 +215,12 @@ def examine(seed: int, limit: float = 60.0) -> Row:
     )
     warned = any(issubclass(one.category, BalanceWarning) for one in told)
     depth = simulation._core.statistics.deepest_point
-    place, _ = simulation._core.pose(0)
     faults = [fault] if fault else []
     if energy > ENERGY_LIMIT and not warned:
         faults.append("energy in silence")
     if fall > FALL_LIMIT:
         faults.append(f"{term} falls")
-    if depth > DEEP or (drawn.kind == "wall" and place[0] > 0.0):
+    if depth > DEEP:  # the mass centre is no part of the body: a tractor may be crushed up to it
         faults.append("through")
     return Row(
         **asdict(drawn),

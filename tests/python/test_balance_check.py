@@ -192,3 +192,26 @@ def test_accounts_close_in_any_pose_at_any_barrier(
     assert balances.energy.size < 1e-2 * balances.at_disposal
     assert max(fall.size for fall in balances.falls.values()) < 2e-3 * balances.at_disposal
     assert run.metrics["momentum_residual"] < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("vehicle", "speed", "offset", "roll", "tolerance", "restitution"),
+    [("pickup", 7.652869796481362, -0.08, 180.0, 0.9, 0.1), ("cargo_truck", 39.98, -0.58, 0.0, 0.78, 0.69)],
+)
+def test_energy_of_crush_does_not_fall_in_long_steps(
+    vehicle: str, speed: float, offset: float, roll: float, tolerance: float, restitution: float
+) -> None:
+    """Steps of the loosest tolerances passed over the ends of unloading; 0.6 % of the energy came back."""
+    simulation = Simulation(
+        Vehicle.preset(vehicle, mesh_density=0.2),
+        Barrier.rigid_wall(friction=0.0),
+        speed,
+        90.0,
+        offset,
+        impact_roll=roll,
+        duration=0.2,
+        settings=Settings(tolerance=tolerance, restitution=restitution, braking=0.0),
+    )
+    simulation.run()
+    balances = simulation._core.balances
+    assert balances.falls["crushed"].size < 1.5e-3 * balances.at_disposal

@@ -183,13 +183,18 @@ void resolve_corner(const ContactPass& pass, std::size_t i, ContactBlock& block)
     Corner corner;
     corner.node_index = i;
     const CornerFace own = own_face(block, i);
-    const bool stays = own.indented || stood_on(pass, block, own.reachable_index, own.normal, node);
+    // An indentation that releases the node is no face of its corner: its gap is that of a node far away. Other faces may
+    // still hold the node.
+    const bool leaves = own.indented && block.released[i] > 0.0;
+    const bool stays =
+        !leaves && (own.indented || stood_on(pass, block, own.reachable_index, own.normal, node));
     if (stays || own.gap <= tolerance::touching_gap) corner.add(own);
     if (nodes.force[i] > 0.0) {
-        add_faces_since_start(pass, block, node, own, stays, corner);
+        add_faces_since_start(pass, block, node, own, stays || leaves, corner);
         corner.distribute((anchor - node).normalized());
         corner.release();
     }
+    if (corner.count == 0 && leaves) return;
     if (corner.count == 0) corner.add(own);
     add_driving(pass, block, node, corner);
     const bool alone = corner.count == 1 && corner.face[0].reachable_index == own.reachable_index &&
@@ -248,9 +253,8 @@ void resolve_corner_contacts(const ContactPass& pass, ContactBlock& block) {
             note_inside(block.faces, found.gap, cornered);
         }
     }
-    // A node that its indentation releases is on no face: the gap that is asked of it is that of a node far away.
     for (std::size_t i = 0; i < block_size; ++i)
-        if (cornered[i] > 0.0 && !(block.released[i] > 0.0)) resolve_corner(pass, i, block);
+        if (cornered[i] > 0.0) resolve_corner(pass, i, block);
 }
 
 void resolve_known_corner(const ContactPass& pass, Corner corner, ContactBlock& block) {

@@ -126,6 +126,12 @@ double error_of_reversals(const Scene& scene, const Trial& tried, double separat
     return fraction * change * tried.dt * tried.dt / 16.0 * greatest_stiffness(tried.state);
 }
 
+// Part of the energy at disposal by which the energy of crush falls within a step. It can only grow: a long step over
+// kinks of the laws returns more than the trusses have.
+double fall_of_crush(const State& from, const Trial& tried) {
+    return (from.energies.crushed - tried.state.energies.crushed) / from.balances.at_disposal;
+}
+
 // Time at which the parabola through the last three normal forces falls to zero (s); infinite where it does not.
 double time_to_release(const LoadHistory& history) {
     const double force = history.now.normal_force, rate = history.rate.normal_force,
@@ -239,6 +245,8 @@ double shorter_step(const Scene& scene, const State& from, const Trial& tried, S
     if (search.error > allowed && dt > tolerance::jump_resolution)
         wanted = std::min(wanted, std::max(dt * std::max(0.2, 0.9 * std::sqrt(allowed / search.error)),
                                            tolerance::jump_resolution));
+    if (fall_of_crush(from, tried) > tolerance::greatest_fall && dt > tolerance::jump_resolution)
+        wanted = std::min(wanted, std::max(0.5 * dt, tolerance::jump_resolution));
     double shorter = std::min(wanted < dt ? quantize_step(wanted) : infinity,
                               located_reversal(scene, tried, approach, separation));
     const double resolution = release_resolution(scene);

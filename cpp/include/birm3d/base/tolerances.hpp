@@ -43,6 +43,10 @@ inline constexpr double longest_resting_step = 5e-3;
 inline constexpr double ample_room = 16.0;
 inline constexpr double fastest_growth = 10.0;
 
+// Part of the energy at disposal by which the energy of crush may fall within a step. A run of a dozen such steps stays
+// below the fall of which it warns.
+inline constexpr double greatest_fall = 3e-4;
+
 // The instant at which a load jumps is located to within this (s). Half of the jump is missed over that time.
 inline constexpr double jump_resolution = 1e-8;
 
