@@ -90,7 +90,7 @@ void register_vehicle(py::module_& m) {
                 std::vector<Wheel> own = discs(wheels);
                 require_row_for_each(own, breakaway, 2, "breakaway");
                 require_row_for_each(own, suspension, 4, "suspension");
-                require_row_for_each(own, tires, 2, "tires");
+                require_row_for_each(own, tires, 3, "tires");
                 for (py::ssize_t i = 0; i < breakaway.shape(0); ++i) {
                     Wheel& wheel = own[static_cast<std::size_t>(i)];
                     wheel.breakaway = breakaway.at(i, 0);
@@ -99,6 +99,7 @@ void register_vehicle(py::module_& m) {
                                         suspension.at(i, 3)};
                     wheel.steering_time = tires.at(i, 0);
                     wheel.tread_radius = tires.at(i, 1);
+                    wheel.camber_ratio = tires.at(i, 2);
                 }
                 return Unit(body, trusses.moved(vector(origin, "origin")), std::move(own), mass_center_height,
                             vector(offset, "offset"), std::move(boxes));
@@ -111,9 +112,9 @@ void register_vehicle(py::module_& m) {
             "up, m.\n"
             "suspension: shape (w, 4), stiffness, N/m (0: fixed to the body), damping, N s/m, compression at "
             "rest, m, travel from there to the bump stop, m.\n"
-            "tires: shape (w, 2), time in which a wheel with free steering follows its direction of travel, "
+            "tires: shape (w, 3), time in which a wheel with free steering follows its direction of travel, "
             "s "
-            "(inf: it does not steer), radius of the tread's cross-section, m.\n"
+            "(inf: it does not steer), radius of the tread's cross-section, m, slip angle per tilt.\n"
             "origin: shape (3,), m, of the body axes in those of the trusses; copies share what does not "
             "move.\n"
             "mass_center_height: m above the ground. offset: shape (3,), m, of the mass centre from the "

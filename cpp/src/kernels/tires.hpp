@@ -7,7 +7,8 @@
 //                   with C the cornering stiffness per normal load (Fiala 1954; Pacejka, Tire and Vehicle
 //                   Dynamics, ch. 3). A rolling wheel resists nothing along its plane. Of the friction mu N a share b
 //                   may brake, against the velocity of the point of contact; sqrt(1 - b^2) of it steers (friction
-//                   circle), and at b = 1 the locked wheel slides.
+//                   circle), and at b = 1 the locked wheel slides. A tilted wheel rolls as if it were turned to the
+//                   side that it leans to, by `camber_ratio` of its tilt: camber thrust that never adds energy.
 //   skid            the paper's: nothing while the mass centre moves exactly along r, else mu N against its
 //                   velocity.
 // Both are reduced in proportion to the speed where they would otherwise reverse the sliding.

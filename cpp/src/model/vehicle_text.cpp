@@ -144,13 +144,14 @@ std::vector<Wheel> wheels_of(Reader& in, std::string_view name) {
         const double radius = in.number();
         const double breakaway = in.number(), travel = in.number();
         const double stiffness = in.number(), damping = in.number(), at_rest = in.number();
-        const double bump = in.number(), steering_time = in.number();
+        const double bump = in.number(), steering_time = in.number(), tread_radius = in.number();
         wheels.push_back({center,
                           radius,
                           breakaway,
                           travel,
                           {stiffness, damping, at_rest, bump},
                           steering_time,
+                          tread_radius,
                           in.number()});
     }
     return wheels;
@@ -227,8 +228,8 @@ Joint joint_of(Reader& in) {
 Vehicle vehicle_of_text(std::string_view text) {
     Reader in(text);
     in.expect("birm3d-vehicle");
-    if (const int version = in.whole(); version != 5)
-        in.wrong("version 5", "version " + std::to_string(version));
+    if (const int version = in.whole(); version != 6)
+        in.wrong("version 6", "version " + std::to_string(version));
     std::vector<Unit> units;
     for (std::size_t left = in.count("units"); left > 0; --left)
         units.push_back(unit_of(in));

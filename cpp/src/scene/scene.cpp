@@ -19,6 +19,7 @@ void add_to(Hash& hash, const Wheel& wheel) {
     if (std::isfinite(wheel.breakaway)) hash.add(wheel.breakaway), hash.add(wheel.travel);
     if (wheel.steers()) hash.add(wheel.steering_time);
     if (wheel.tread_radius > 0.0) hash.add(-wheel.tread_radius);  // no other number of a wheel is negative
+    if (wheel.camber_ratio > 0.0) hash.add(-1e3 - wheel.camber_ratio);  // nor is any wheel that large
     const Suspension& held = wheel.suspension;
     if (!held.springs()) return;
     for (const double number : {held.stiffness, held.damping, held.at_rest, held.bump})

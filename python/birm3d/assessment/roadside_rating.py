@@ -42,9 +42,9 @@ _TIPS = (
     "which is not computed. Containment, widths and occupant risk hold for segments that stay upright."
 )
 _ROLLS_LITTLE = (
-    "Springs are estimates, and only the 10000S truck's wheels steer: other computed vehicles may roll too "
-    "little. The 10000S overturns at a New Jersey barrier of 0.81 m, as published, and stays upright at "
-    "0.91 m, as commonly reported. A heavy vehicle that is computed upright may roll over in a test."
+    "Springs and camber thrust are estimates: computed vehicles may roll too little. The 10000S overturns at "
+    "a New Jersey barrier of 0.81 m, as published, and stays upright at 0.91 m at the nominal angle, as "
+    "commonly reported; at 16 deg it tips late there. A heavy vehicle that is computed upright may roll over in a test."
 )
 _WIDTHS = (0.6, 0.8, 1.0, 1.3, 1.7, 2.1, 2.5, 3.5)
 """Greatest working width, and vehicle intrusion, of the classes 1 to 8 of EN 1317-2 [m]."""

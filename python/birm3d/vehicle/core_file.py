@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["export_core"]
 
-VERSION = 5
+VERSION = 6
 
 
 def export_core(vehicle: VehicleVariants, path: str | Path) -> None:
@@ -56,7 +56,7 @@ def _of_unit(unit: dict[str, Any]) -> Iterator[str]:
     yield from _rows("boxes", unit["core"])
     yield f"mesh_origin {_numbers(unit['origin'])}"
     mesh = unit["trusses"]
-    fixed = np.tile([np.inf, *np.zeros(5), np.inf, 0.0], (len(mesh["wheels"]), 1))
+    fixed = np.tile([np.inf, *np.zeros(5), np.inf, 0.0, 0.0], (len(mesh["wheels"]), 1))
     yield from _rows("mesh_wheels", np.hstack([mesh["wheels"], fixed]).tolist())
     yield f"rate_sensitivity {_numbers([mesh['rate_sensitivity']])}"
     yield f"indentation_length {_numbers([mesh['indentation_length']])}"

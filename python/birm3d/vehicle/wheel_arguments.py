@@ -57,15 +57,16 @@ def suspension(vehicle: VehicleFields, joint: tuple[Floats, float] | None = None
 
 
 def tires(vehicle: VehicleFields) -> Floats:
-    """Return steering time [s] and radius of the tread's cross-section [m] of each wheel (w, 2), by its zone.
+    """Return what the road does to each wheel (w, 3), by its zone.
 
-    Wheels ahead of the mass centre steer, where their zone has a time; the others have inf.
+    Steering time [s], radius of the tread's cross-section [m] and camber ratio. Wheels ahead of the mass
+    centre steer, where their zone has a time; the others have inf.
     """
-    rows = np.tile([np.inf, 0.0], (len(vehicle.wheels), 1))
+    rows = np.tile([np.inf, 0.0, 0.0], (len(vehicle.wheels), 1))
     for wheel, zone in _zones_of_wheels(vehicle):
         if zone.steering_time is not None and vehicle.wheels[wheel, 0] > 0.0:
             rows[wheel, 0] = zone.steering_time
-        rows[wheel, 1] = zone.tread_radius or 0.0
+        rows[wheel, 1:] = zone.tread_radius or 0.0, zone.camber_ratio or 0.0
     return rows
 
 

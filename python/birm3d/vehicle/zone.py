@@ -65,6 +65,7 @@ LAW_NUMBERS: Mapping[str, LawNumber] = {
     "cornering_stiffness": LawNumber("number", "> 0", "cornering stiffness", of_wheel=True),
     "steering_time": LawNumber("time", "> 0", "free steering follows in", of_wheel=True),
     "tread_radius": LawNumber("length", "> 0", "tread rounded by", of_wheel=True),
+    "camber_ratio": LawNumber("number", "> 0", "camber ratio", of_wheel=True),
 }
 """Numbers of a zone's law, in the order of files. Files, names of parameters and reports come from here."""
 
@@ -124,6 +125,9 @@ class Zone(Mapping[str, Any]):
     tread_radius
         Of a zone of tyres: radius of the tread's cross-section [m], about half the width that stands on the
         road. So a tilted wheel stands towards its edge. ``None``: a wheel is a disc without width.
+    camber_ratio
+        Of a zone of tyres: slip angle that has the same side force as a tilt, over that tilt [-]. ``None``: a
+        tilted wheel has no camber thrust.
     """
 
     k_initial: float | None = None
@@ -144,6 +148,7 @@ class Zone(Mapping[str, Any]):
     cornering_stiffness: float | None = None
     steering_time: float | None = None
     tread_radius: float | None = None
+    camber_ratio: float | None = None
 
     def __post_init__(self) -> None:
         if self.envelope is None:
@@ -173,7 +178,7 @@ class Zone(Mapping[str, Any]):
             for name in names:
                 if given and name not in given:
                     raise ValueError(f"{name} must be given beside {given[0]}, got None")
-        for name in ("cornering_stiffness", "steering_time", "tread_radius"):
+        for name in ("cornering_stiffness", "steering_time", "tread_radius", "camber_ratio"):
             if getattr(self, name) is not None:
                 positive(name, getattr(self, name))
         if self.damping_ratio is not None and not 0.0 <= self.damping_ratio <= 1.0:

@@ -76,6 +76,35 @@ TEST("a tilted wheel with a round tread stands beside its plane, on the lowest p
     }
 }
 
+TEST(
+    "a tilted wheel pushes to the side it leans to, as with a share of its tilt in slip, and takes no "
+    "energy") {
+    Unit cambered = unit;
+    for (Wheel& wheel : cambered.wheels)
+        wheel.camber_ratio = 0.125;
+    const Settings settings;
+    const std::vector<double> normal(4, 1000.0);
+    const auto at = [&](const Unit& vehicle, double tilt, const Vec3& velocity) {
+        BodyState state;
+        state.orientation = from_roll_pitch_yaw({tilt, 0.0, 0.0});
+        const Twist motion{velocity, Vec3::Zero()};
+        return tire_friction(vehicle, settings, state, 0.0, {motion, motion}, normal).force;
+    };
+    const Vec3 ahead(20.0, 0.0, 0.0);
+    CHECK(at(unit, 0.2, ahead).norm() < 1e-9);
+    for (const double tilt : {-0.4, -0.1, 0.1, 0.4}) {  // positive: to the right
+        const double slip = 0.125 * tilt;
+        const Vec3 slips = at(unit, tilt, 20.0 * Vec3(std::cos(slip), std::sin(slip), 0.0));
+        const Vec3 leans = at(cambered, tilt, ahead);
+        CHECK_CLOSE((leans - from_roll_pitch_yaw({0.0, 0.0, -slip}) * slips).norm(), 0.0, 1e-9, "rounding");
+        CHECK(leans.y() * tilt < 0.0);
+        for (const double across : {-2.0, 0.0, 0.3, 2.0}) {
+            const Vec3 velocity(20.0, across, 0.0);
+            CHECK(at(cambered, tilt, velocity).dot(velocity) <= 1e-9);
+        }
+    }
+}
+
 TEST("a wheel gives way beyond its load, and is pushed up by its travel") {
     Unit weak = unit;
     weak.wheels[1].breakaway = 5000.0;

@@ -31,6 +31,8 @@ struct Wheel {
     // After which a free wheel has turned 63 % of the way to its direction of travel (s). Infinite: it does not steer.
     double steering_time = std::numeric_limits<double>::infinity();
     double tread_radius = 0.0;  // of the tread's cross-section, at most `radius` (m)
+    // Slip angle that has the same side force, per tilt: a tilted wheel rolls on a curve towards the side it leans to.
+    double camber_ratio = 0.0;
 
     bool steers() const { return steering_time < std::numeric_limits<double>::infinity(); }
 };
