@@ -171,8 +171,9 @@ def test_a_lower_barrier_and_a_steeper_impact_roll_a_vehicle_further() -> None:
 def test_camber_thrust_sets_a_truck_down_that_would_tip_late() -> None:
     """At 16 degrees the 10-t truck tips over after it has left a barrier of 1.07 m."""
     barrier = Barrier.jersey(height=1.07)
-    upright = Simulation(tired(Vehicle.preset(TRUCK), camber_ratio=0.1), barrier, units.km_h(90.0), 16.0).run()
-    bare = Simulation(Vehicle.preset(TRUCK), barrier, units.km_h(90.0), 16.0).run()
+    truck = Vehicle.preset(TRUCK)
+    upright = Simulation(tired(truck, camber_ratio=0.1), barrier, units.km_h(90.0), 16.0).run()
+    bare = Simulation(truck, barrier, units.km_h(90.0), 16.0).run()
     assert upright.outcome == "redirected"
     assert upright.metrics["max_roll"] < 0.75 * bare.metrics["max_roll"]
 

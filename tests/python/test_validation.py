@@ -20,7 +20,7 @@ from finite_element import runs  # noqa: E402
 from fit_finite_element import predicted  # noqa: E402
 
 # Least numbers of rows within their marks, of three a run: crush, force and yaw.
-WITHIN = {("N", "fitted"): 18, ("N", "left out"): 14, ("S", "fitted"): 18, ("S", "left out"): 11}
+WITHIN = {("N", "fitted"): 19, ("N", "left out"): 13, ("S", "fitted"): 18, ("S", "left out"): 11}
 
 
 def table(key: str) -> dict[tuple[str, str], dict[str, str]]:

@@ -43,8 +43,8 @@ _TIPS = (
 )
 _ROLLS_LITTLE = (
     "Springs and camber thrust are estimates: computed vehicles may roll too little. The 10000S overturns at "
-    "a New Jersey barrier of 0.81 m, as published, and stays upright at 0.91 m at the nominal angle, as "
-    "commonly reported; at 16 deg it tips late there. A heavy vehicle that is computed upright may roll over in a test."
+    "a New Jersey barrier of 0.81 m, as published. It stays upright at 0.91 m and 15 deg, as commonly "
+    "reported; at 16 deg it tips late. A heavy vehicle that is computed upright may roll over in a test."
 )
 _WIDTHS = (0.6, 0.8, 1.0, 1.3, 1.7, 2.1, 2.5, 3.5)
 """Greatest working width, and vehicle intrusion, of the classes 1 to 8 of EN 1317-2 [m]."""
