@@ -21,12 +21,12 @@ sin(angle). It is 1 + e, with a restitution e from 0 to 0.3 (the mark). Whether 
 stays upright (1: yes, 0: no) is compared with what is commonly reported of the tests. The wall's own impulse
 is in the table of computed figures: tyres that press a vehicle on the wall add to it.
 
-What the model can not do here: wheels of cars and pickups are held straight. Rear tyres of trucks turn them
-away from the barrier while they stand on two wheels, so that the barrier's own impulse can be less than the
-change of momentum. A near-side tread that climbs a sloped face lifts the body, not its own wheel, and does
-not come off. The load of a trailer does not shift. The 10-t truck has no camber thrust, and leans on the
-barrier for more than a second. The mass centre of the 8-t truck is 1.37 m above the ground: its goods are
-higher than the ballast of NCHRP 350."""
+What the model can not do here: wheels of cars, pickups and the 8-t truck are held straight. Straight wheels
+press the 8-t truck on the barrier, and it slides along for seconds. Rear tyres of other trucks turn them away
+from the barrier while they stand on two wheels. So the barrier's own impulse can be less than the change of
+momentum. A near-side tread that climbs a sloped face lifts the body, not its own wheel, and stays on. The
+load of a trailer does not shift. The 10-t truck has no camber thrust, and leans on the barrier for more than
+a second."""
 
 
 def tasks() -> Sequence[str]:
