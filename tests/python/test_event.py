@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 import pickle
 from functools import cache
@@ -143,10 +142,8 @@ def test_a_run_that_ends_before_is_undecided() -> None:
 
 
 def test_a_truck_that_its_tires_press_on_a_long_barrier_is_redirected() -> None:
-    """Held wheels press it on the barrier as long as it moves. Once that was undecided."""
+    """Its wheels do not steer: they press it on the barrier as long as it moves. Once that was undecided."""
     truck = Vehicle.preset("cargo_truck", mesh_density=0.3)
-    held = dataclasses.replace(truck.zones["tire"], steering_time=None, camber_ratio=None)
-    truck = truck.with_zones({"tire": held})
     result = Simulation(truck, Barrier.jersey(length=200.0), 18.0, 15.0).run()
     assert (result.outcome, result.outcome_detail) == ("redirected", "it slides on along the barrier")
     assert "time_of_separation" not in result.metrics

@@ -194,8 +194,10 @@ void resolve_corner(const ContactPass& pass, std::size_t i, ContactBlock& block)
         corner.distribute((anchor - node).normalized());
         corner.release();
     }
-    if (corner.count == 0 && leaves) return;
-    if (corner.count == 0) corner.add(own);
+    if (corner.count == 0) {
+        if (leaves) return;
+        corner.add(own);
+    }
     add_driving(pass, block, node, corner);
     const bool alone = corner.count == 1 && corner.face[0].reachable_index == own.reachable_index &&
                        corner.face[0].gap == own.gap;

@@ -242,11 +242,11 @@ double shorter_step(const Scene& scene, const State& from, const Trial& tried, S
     search.error = std::max(tried.error, error_of_reversals(scene, tried, separation));
     double wanted = dt;
     if (dt > tolerance::stable_fraction * tried.critical_step) wanted = longest_stable(tried);
-    if (search.error > allowed && dt > tolerance::jump_resolution)
-        wanted = std::min(wanted, std::max(dt * std::max(0.2, 0.9 * std::sqrt(allowed / search.error)),
-                                           tolerance::jump_resolution));
-    if (fall_of_crush(from, tried) > tolerance::greatest_fall && dt > tolerance::jump_resolution)
-        wanted = std::min(wanted, std::max(0.5 * dt, tolerance::jump_resolution));
+    double share = 1.0;
+    if (search.error > allowed) share = std::max(0.2, 0.9 * std::sqrt(allowed / search.error));
+    if (fall_of_crush(from, tried) > tolerance::greatest_fall) share = std::min(share, 0.5);
+    if (share < 1.0 && dt > tolerance::jump_resolution)
+        wanted = std::min(wanted, std::max(share * dt, tolerance::jump_resolution));
     double shorter = std::min(wanted < dt ? quantize_step(wanted) : infinity,
                               located_reversal(scene, tried, approach, separation));
     const double resolution = release_resolution(scene);

@@ -126,7 +126,6 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
     if (horizontal < 1e-9) return sum;
     const Vec3 left = across_raw / horizontal;
     const Vec3 turned_left = turned_by(steering_angle, left);
-    const double leans_right = std::atan2(R(2, 1), horizontal);
     const double brakes = settings.braking, steers = std::sqrt(1.0 - brakes * brakes);
     for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
         if (normal_impulses[i] == 0.0) continue;
@@ -134,7 +133,10 @@ Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState
         const Vec3 velocity = velocity_at(arm);
         const Wheel& wheel = unit.wheels[i];
         Vec3 across = wheel.steers() ? turned_left : left;
-        if (wheel.camber_ratio > 0.0) across = turned_by(-wheel.camber_ratio * leans_right, across);
+        if (wheel.camber_ratio > 0.0) {
+            const double leans_right = std::atan2(R(2, 1), horizontal);
+            across = turned_by(-wheel.camber_ratio * leans_right, across);
+        }
         const Vec3 along(across.y(), -across.x(), 0.0);
         const double tan_slip = velocity.dot(across) / std::max(std::abs(velocity.dot(along)), slowest);
         const double fraction = brush(settings.cornering_stiffness * tan_slip / (3.0 * mu));

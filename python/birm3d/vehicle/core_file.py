@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..io.atomic_write import whole_file
+from .wheel_arguments import PLAIN
 
 if TYPE_CHECKING:
     from .variants import VehicleVariants
@@ -56,8 +57,7 @@ def _of_unit(unit: dict[str, Any]) -> Iterator[str]:
     yield from _rows("boxes", unit["core"])
     yield f"mesh_origin {_numbers(unit['origin'])}"
     mesh = unit["trusses"]
-    fixed = np.tile([np.inf, *np.zeros(5), np.inf, 0.0, 0.0], (len(mesh["wheels"]), 1))
-    yield from _rows("mesh_wheels", np.hstack([mesh["wheels"], fixed]).tolist())
+    yield from _rows("mesh_wheels", [[*wheel, *PLAIN] for wheel in np.asarray(mesh["wheels"]).tolist()])
     yield f"rate_sensitivity {_numbers([mesh['rate_sensitivity']])}"
     yield f"indentation_length {_numbers([mesh['indentation_length']])}"
     yield f"curves {len(mesh['curves'])}"

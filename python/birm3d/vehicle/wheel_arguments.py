@@ -19,9 +19,15 @@ if TYPE_CHECKING:
     from .vehicle_fields import VehicleFields
     from .zone import Zone
 
-__all__ = ["breakaway", "load_on_joint", "suspension", "tires", "wheel_loads"]
+__all__ = ["PLAIN", "breakaway", "load_on_joint", "suspension", "tires", "wheel_loads"]
 
 Floats = npt.NDArray[np.float64]
+
+_HOLDS = (np.inf, 0.0)
+_FIXED = (0.0, 0.0, 0.0, 0.0)
+_PLAIN_TIRE = (np.inf, 0.0, 0.0)
+PLAIN = (*_HOLDS, *_FIXED, *_PLAIN_TIRE)
+"""Numbers of a wheel of which a file says nothing, in the order breakaway(), suspension(), tires()."""
 
 _ON_ONE_AXLE = 1e-12
 """Sum of squared distances from the middle below which wheels stand on one line [m^2]."""
@@ -29,7 +35,7 @@ _ON_ONE_AXLE = 1e-12
 
 def breakaway(vehicle: VehicleFields) -> Floats:
     """Return load [N] and travel [m] of each wheel that gives way (w, 2), by its zone."""
-    rows = np.tile([np.inf, 0.0], (len(vehicle.wheels), 1))
+    rows = _row_for_each_wheel(vehicle, _HOLDS)
     for wheel, zone in _zones_of_wheels(vehicle):
         rows[wheel] = zone.breakaway or np.inf, zone.breakaway_travel or 0.0
     return rows
@@ -41,7 +47,7 @@ def suspension(vehicle: VehicleFields, joint: tuple[Floats, float] | None = None
     Stiffness [N/m], 0 of a wheel that is fixed to the body; damping [N s/m]; compression at rest, and travel
     from there to the bump stop [m]. joint: as in :func:`wheel_loads`.
     """
-    rows = np.zeros((len(vehicle.wheels), 4))
+    rows = _row_for_each_wheel(vehicle, _FIXED)
     loads: Floats | None = None
     for wheel, zone in _zones_of_wheels(vehicle):
         deflection = zone.static_deflection
@@ -57,12 +63,12 @@ def suspension(vehicle: VehicleFields, joint: tuple[Floats, float] | None = None
 
 
 def tires(vehicle: VehicleFields) -> Floats:
-    """Return what the road does to each wheel (w, 3), by its zone.
+    """Return how the tyre of each wheel steers, stands and leans (w, 3), by its zone.
 
     Steering time [s], radius of the tread's cross-section [m] and camber ratio. Wheels ahead of the mass
     centre steer, where their zone has a time; the others have inf.
     """
-    rows = np.tile([np.inf, 0.0, 0.0], (len(vehicle.wheels), 1))
+    rows = _row_for_each_wheel(vehicle, _PLAIN_TIRE)
     for wheel, zone in _zones_of_wheels(vehicle):
         if zone.steering_time is not None and vehicle.wheels[wheel, 0] > 0.0:
             rows[wheel, 0] = zone.steering_time
@@ -119,6 +125,10 @@ def load_on_joint(trailing: VehicleFields, place: Floats) -> float:
         return 0.0
     axle = trailing.wheels[:, 0].mean()
     return float(units.g(trailing.mass) * axle / (axle - place[0]))
+
+
+def _row_for_each_wheel(vehicle: VehicleFields, row: tuple[float, ...]) -> Floats:
+    return np.tile(row, (len(vehicle.wheels), 1))
 
 
 def _zones_of_wheels(vehicle: VehicleFields) -> Iterator[tuple[int, Zone]]:
