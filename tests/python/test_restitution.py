@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from birm3d import Barrier, CoreContactWarning, Simulation, Vehicle
 from birm3d.reference import nhtsa_tests
@@ -9,18 +10,20 @@ from birm3d.vehicle.vehicle_file import read_vehicle_file, unit_paths
 
 CARS = ("passenger_car", "minivan", "pickup")
 PRESETS = (*CARS, "cargo_truck", "semi_truck")
-SPEEDS = (3.0, 4.0, 5.0, 6.5, 8.0, 10.0, 12.5, 15.9, 18.0, 20.0, 22.5, 25.0)  # m/s
+SPEEDS = (3.0, *np.arange(4.0, 15.5), 15.9, *np.arange(17.0, 25.5))  # m/s
+RISE = 0.005  # where an engine or a pitching load comes in; tests tell restitution to 0.01
 
 
 def restitution(vehicle: Vehicle, speed: float) -> float:
     return Simulation(vehicle, Barrier.rigid_wall(), speed).run().metrics["restitution"]
 
 
-@pytest.mark.parametrize("name", PRESETS)
+# The paper's pickup keeps Fig. 3's single slope of unloading, with which restitution is nearly constant.
+@pytest.mark.parametrize("name", [name for name in Vehicle.presets() if name != "paper_pickup"])
 def test_restitution_falls_with_speed(name: str) -> None:
     vehicle = Vehicle.preset(name)
-    found = [restitution(vehicle, speed) for speed in SPEEDS]
-    assert found == sorted(found, reverse=True)
+    found = np.array([restitution(vehicle, speed) for speed in SPEEDS])
+    assert (found - np.minimum.accumulate(found) <= RISE).all()
     for speed in (2.0, 2.5, 3.0):  # car-to-car tests: 0.38 at a closing speed of 2.2 m/s
         assert 0.35 <= restitution(vehicle, speed) <= 0.50
     assert 0.10 <= found[SPEEDS.index(15.9)] <= 0.22  # NHTSA test 10146: 0.17 and 0.20
@@ -36,7 +39,7 @@ def test_every_zone_has_a_recovery_and_those_of_front_side_and_rear_a_tail(name:
         assert (zone.law.tail_depth is not None) == (bool(upright) and name != "paper_pickup")
 
 
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("name", [*PRESETS, "van_3500"])
 def test_the_core_is_not_met_head_on(name: str) -> None:
     """At 25 m/s, which is two and a half times the energy of the fastest test that was fitted."""
     assert {test.speed < 16.0 for test in nhtsa_tests().values()} == {True}
