@@ -97,7 +97,8 @@ void register_extremes(py::module_& m) {
                       "m/s^2, overturning moment over mass and half the base, 50-ms means");
     py::class_<Extremes::JointLoads>(m, "ExtremeJointLoads", "Of the first joint.")
         .def_readonly("angle", &Extremes::JointLoads::angle, "rad, greatest magnitude of the articulation")
-        .def_readonly("force", &Extremes::JointLoads::force, "N");
+        .def_readonly("force", &Extremes::JointLoads::force, "N")
+        .def_readonly("force_50ms", &Extremes::JointLoads::force_50ms, "N, of means over 50 ms");
     py::class_<Extremes> extremes(
         m, "Extremes", "Of a history, over its output instants; a group that was not wanted raises.");
     extremes.def_readonly("rows", &Extremes::rows, "output instants")

@@ -332,6 +332,11 @@ class ExtremeJointLoads:
         """
         N
         """
+    @property
+    def force_50ms(self) -> float:
+        """
+        N, of means over 50 ms
+        """
 class ExtremeMotion:
     """
     Of unit 0.

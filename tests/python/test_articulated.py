@@ -335,14 +335,14 @@ def test_a_sweep_has_the_scalars_of_the_joint() -> None:
     simulation = Simulation(semi(), Barrier.rigid_wall(), 8.0, 60.0, duration=0.05)
     study = birm3d.sweep(simulation, impact_speed=[4.0, 8.0])
     result = simulation.run()
-    for name in ("max_articulation_angle", "peak_joint_force"):
+    for name in ("max_articulation_angle", "peak_joint_force", "peak_joint_force_50ms"):
         assert study.metrics[name][1] == result.metrics[name]
 
 
 def test_the_report_and_the_table_tell_of_the_joint() -> None:
     pytest.importorskip("pandas")
     result = crash(40.0)
-    assert "fifth_wheel: peak force" in result.report()
+    assert "fifth_wheel: peak 50-ms mean of the force" in result.report()
     assert "contact of the two units with each other" in result.report()
     table = result.to_dataframe()
     assert {"joint_force_x [N]", "articulation_angle [deg]", "energy_joints [J]"} <= set(table.columns)

@@ -69,7 +69,7 @@ Extremes extremes_of(const History& history, const Vehicle& vehicle, const Barri
     if (wanted.attitude) found.attitude = greatest_attitude(history, event);
     if (wanted.wheel_climb) found.wheel_climb = greatest_wheel_climb(history, vehicle);
     if (wanted.momentum) found.momentum_residual = history.momentum_residual;
-    if (wanted.joint && !history.joints.empty()) found.joint = greatest_joint_loads(history.joints.front());
+    if (wanted.joint && !history.joints.empty()) found.joint = greatest_joint_loads(history);
     if (!barrier) return found;
     if (wanted.penetration) found.penetration = greatest_penetration(history, vehicle, *barrier);
     if (wanted.segments && !history.segments.empty()) found.segments = greatest_movement(history, *barrier);

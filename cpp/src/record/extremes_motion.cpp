@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "base/channel_filter.hpp"
 #include "base/wide_loops.hpp"
 #include "birm3d/base/rotation.hpp"
 #include "birm3d/record/extremes.hpp"
@@ -137,14 +138,22 @@ Extremes::Attitude greatest_attitude(const History& history, const Event& event)
     return small ? *small : attitude_at_large(history, end);
 }
 
-Extremes::JointLoads greatest_joint_loads(const JointHistory& joint) {
+Extremes::JointLoads greatest_joint_loads(const History& history) {
+    const JointHistory& joint = history.joints.front();
     Turning angle(joint.angles.front().yaw, 0.0);
-    double force = 0.0;
     for (const JointAngles& angles : joint.angles)
         angle.add(angles.yaw);
-    for (const Vec3& row : joint.force)
-        force = std::max(force, row.norm());
-    return {angle.greatest(), force};
+    Extremes::JointLoads found{angle.greatest(), 0.0, 0.0};
+    if (joint.force.size() < 2) return found;
+    const std::size_t window = rows_in(window_50ms, history.time[1] - history.time[0]);
+    Vec3 sum = Vec3::Zero(), before = sum;  // of the rows up to now, and of those that have left the window
+    for (std::size_t k = 0; k < joint.force.size(); ++k) {
+        sum += joint.force[k];
+        if (k >= window) before += joint.force[k - window];
+        found.force = std::max(found.force, joint.force[k].norm());
+        found.force_50ms = std::max(found.force_50ms, (sum - before).norm() / static_cast<double>(window));
+    }
+    return found;
 }
 
 }  // namespace birm3d

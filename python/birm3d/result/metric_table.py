@@ -304,6 +304,11 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
             *(lambda run: run.extremes.joint.force, "joint"),
             shown=_asked("peak force of the joint, unfiltered", "kN", 1e3),
         ),
+        "peak_joint_force_50ms": Metric(
+            *("N", "joint", "of the magnitude of that force's mean over 50 ms", "joint"),
+            *(lambda run: run.extremes.joint.force_50ms, "joint"),
+            shown=_asked("peak 50-ms force of the joint", "kN", 1e3),
+        ),
         "energy_residual": Metric(
             "",
             "check",

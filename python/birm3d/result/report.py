@@ -62,8 +62,9 @@ def report(result: RunAnalysis) -> str:
     lines += core_lines(result)
     if vehicle.joint is not None:
         lines.append(
-            f"  {vehicle.joint.kind}: peak force {metrics['peak_joint_force']:.3g} N, greatest articulation "
-            f"angle {metrics['max_articulation_angle']:.1f} deg"
+            f"  {vehicle.joint.kind}: peak 50-ms mean of the force "
+            f"{metrics['peak_joint_force_50ms'] / 1e3:.3g} kN, greatest articulation angle "
+            f"{metrics['max_articulation_angle']:.1f} deg"
         )
     if "barrier_deflection" in metrics:
         lines.append(

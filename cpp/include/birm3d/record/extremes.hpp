@@ -78,8 +78,8 @@ struct Extremes {
         double overturning = 0.0;
     };
     struct JointLoads {
-        double angle;  // greatest magnitude of the articulation (rad)
-        double force;  // N
+        double angle;              // greatest magnitude of the articulation (rad)
+        double force, force_50ms;  // on the leading unit; of its mean over 50 ms (N)
     };
     std::optional<NormalForce> normal_force;
     std::optional<Motion> motion;
@@ -104,7 +104,7 @@ Extremes extremes_of(const History& history, const Vehicle& vehicle, const Barri
 // Parts of the above.
 Extremes::Motion greatest_motion(const History& history, const Event& event);
 Extremes::Attitude greatest_attitude(const History& history, const Event& event);
-Extremes::JointLoads greatest_joint_loads(const JointHistory& joint);
+Extremes::JointLoads greatest_joint_loads(const History& history);
 double greatest_penetration(const History& history, const Vehicle& vehicle, const Barrier& barrier);
 double greatest_wheel_climb(const History& history, const Vehicle& vehicle);
 Extremes::ElementLoads greatest_element_loads(const History& history, const Barrier& barrier);
