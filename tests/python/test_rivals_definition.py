@@ -151,3 +151,19 @@ def test_scaling_tells_cost_and_error() -> None:
     errors = [float(line.split()[5]) for line in done.stdout.splitlines() if line.endswith("exit_speed")]
     assert len(errors) == 6
     assert max(errors) < 1e-3
+
+
+def test_what_laws_beyond_the_papers_cost() -> None:
+    done = subprocess.run(
+        [sys.executable, "-W", "error", BENCH / "bench_skin_laws.py", "--quick"],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    rows = [line.split() for line in done.stdout.splitlines() if line.startswith("passenger_car")]
+    assert len(rows) == 8
+    for row in rows:  # ..., paper, ms, ours, ms, ratio
+        assert float(row[-5]) > 0.0
+        assert float(row[-1]) == pytest.approx(float(row[-3]) / float(row[-5]), abs=0.02)
+    assert "mark 1.5" in done.stdout
