@@ -1,6 +1,7 @@
 """Formatting, linting, types, layering, and the generated stub: rules that a machine can hold."""
 
 import ast
+import graphlib
 import os
 import re
 import shutil
@@ -236,6 +237,45 @@ def test_layering_check_itself(tmp_path: Path, file: str, line: str, finding: st
     else:
         assert len(errors) == 1
         assert finding in errors[0]
+
+
+def include_circle(root: Path) -> list[str]:
+    """Files below cpp/ that include each other, in the order of their includes; none without a circle."""
+    src, installed = root / "cpp/src", root / "cpp/include"
+    graph: dict[str, set[str]] = {}
+    for path in (p for p in (root / "cpp").rglob("*") if p.suffix in {".hpp", ".cpp"}):
+        edges = graph.setdefault(path.relative_to(root).as_posix(), set())
+        for _, included in INCLUDE.findall(path.read_text(encoding="utf-8")):
+            for candidate in (installed / included, path.parent / included, src / included):
+                file = Path(os.path.normpath(candidate))
+                if file.is_file():
+                    edges.add(file.relative_to(root).as_posix())
+                    break
+    try:
+        graphlib.TopologicalSorter(graph).prepare()
+    except graphlib.CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def test_no_cpp_files_include_each_other() -> None:
+    assert include_circle(ROOT) == []
+
+
+def test_a_circle_of_includes_is_found(tmp_path: Path) -> None:
+    texts = {
+        "include/birm3d/state/a.hpp": '#pragma once\n#include "birm3d/state/b.hpp"\n',
+        "include/birm3d/state/b.hpp": '#pragma once\n#include "birm3d/state/a.hpp"\n',
+        "src/state/c.cpp": "#include <vector>\n#include <birm3d/state/a.hpp>\n",
+    }
+    for name, text in texts.items():
+        path = tmp_path / "cpp" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    assert layering_errors(tmp_path) == []  # no include points up
+    assert {Path(name).name for name in include_circle(tmp_path)} == {"a.hpp", "b.hpp"}
+    (tmp_path / "cpp/include/birm3d/state/b.hpp").write_text("#pragma once\n", encoding="utf-8")
+    assert include_circle(tmp_path) == []
 
 
 def length_errors(root: Path) -> list[str]:
