@@ -119,6 +119,7 @@ def _print_outcome(result: Result) -> None:
     from rich.markup import escape
     from rich.table import Table
 
+    from ..result.report import END_REASONS
     from ..scene.text import overlap_text
     from ..vehicle.title import vehicle_text
 
@@ -129,8 +130,8 @@ def _print_outcome(result: Result) -> None:
         "unit",
         title=f"{vehicle_text(scene.vehicle)}, {scene.impact_speed:.2f} m/s "
         f"({scene.impact_speed / units.mph:.1f} mph) at {scene.impact_angle:g}°{overlap_text(scene)}",
-        caption=f"{result.end_reason} after {result.time[-1] * 1e3:.0f} ms; {result.statistics.steps} steps "
-        f"in {result.run_time * 1e3:.1f} ms of computing",
+        caption=f"ended at {result.time[-1] * 1e3:.0f} ms: {END_REASONS[result.end_reason]}; "
+        f"{result.statistics.steps} steps in {result.run_time * 1e3:.1f} ms of computing",
     )
     for row in outcome_rows(result):
         table.add_row(*row)
