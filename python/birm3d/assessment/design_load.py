@@ -260,7 +260,8 @@ def _look(result: Result, normal: Floats, system: System) -> _Found:
 
 
 def _rows_of(result: Result, normal: Floats, system: System) -> list[ElementDesign]:
-    return [element_design(load, normal, system) for load in result.element_loads]
+    separation = result.metrics.get("time_of_separation", math.inf)
+    return [element_design(load, normal, system, separation) for load in result.element_loads]
 
 
 def _rows_and_blow(result: Result, normal: Floats, system: System) -> Seen:

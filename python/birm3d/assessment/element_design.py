@@ -68,7 +68,8 @@ class ElementDesign:
         Place among ``barrier.element_names``.
     name : str
     impulse : float
-        Along the barrier's normal, positive into the barrier [N s].
+        Along the barrier's normal, positive into the barrier [N s]; until the vehicle separated from the
+        barrier, if it did. All other values count later contacts, too.
     impulse_vector : ndarray, shape (3,)
         In world axes, of the same scene [N s].
     peak_force : float
@@ -185,8 +186,13 @@ def design_direction(load: ElementLoad, normal: Floats) -> Floats:
     return np.array([x / size, y / size, 0.0]) if size > 0.0 else normal
 
 
-def element_design(load: ElementLoad, normal: Floats, system: System) -> ElementDesign:
-    """Return what an element has to carry in one scene; ``normal`` is that into the barrier, system in SI."""
+def element_design(
+    load: ElementLoad, normal: Floats, system: System, separation: float = math.inf
+) -> ElementDesign:
+    """Return what an element has to carry in one scene; ``normal`` is that into the barrier, system in SI.
+
+    The impulse is that up to the time of ``separation`` [s].
+    """
     if not load.touched:
         return ElementDesign(load.index, load.name)
     direction = design_direction(load, normal)
@@ -198,7 +204,8 @@ def element_design(load: ElementLoad, normal: Floats, system: System) -> Element
         load.force if peak_filter(load.interval) == "unfiltered" else cfc(load.force, 60, load.interval)
     )
     # The first row is the mean over the second one's interval.
-    impulse = load.interval * load.force[1:].sum(axis=0)
+    rows = math.ceil(min(separation / load.interval, len(load.force)))
+    impulse = load.interval * load.force[1 : rows + 1].sum(axis=0)
     return ElementDesign(
         load.index,
         load.name,
