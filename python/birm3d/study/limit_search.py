@@ -75,9 +75,9 @@ class Question(NamedTuple):
     @property
     def criterion(self) -> str:
         """When a value holds, in words."""
-        text = "the vehicle does not get past the barrier"
+        text = "the vehicle is stopped or turned away"
         if "passed" in self.outcomes:
-            text += " but at its end"
+            text += ", or passes its end"
         return text if self.most is None else f"{text}, {self.measure.replace('_', ' ')} <= {self.most:g} m"
 
     def holds(self, outcome: str, measure: float) -> bool:
@@ -256,7 +256,7 @@ class Limit:
         if self.measure == "vehicle_penetration" and past:
             lines.append(
                 f"At {self._rounded(self.value)} {self.unit} the rigid body gets up to {max(past):.2f} m "
-                "past the barrier's line."
+                "past the barrier's line. `penetration` limits that."
             )
         ends = sum(run.holds and run.outcome == "passed" for run in self.runs)
         if ends:
