@@ -10,7 +10,7 @@ interpolated between tolerances of 1 to 1e-5, on logarithmic scales. The error i
 below, against the scene's own answer at 1e-7. The mark is a ratio of 1.5.
 
 Times are those of stepping, medians, one pinned core; the two vehicles take turns. --save writes
-results/skin_laws.csv.
+results/skin_laws/skin_laws.csv.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from bench_birm3d import print_machine, use_one_core
 from birm3d import Barrier, Simulation, Vehicle, units
 from birm3d.vehicle.vehicle_file import unit_paths
 
-RESULTS = Path(__file__).parent / "results/skin_laws.csv"
+RESULTS = Path(__file__).parent / "results/skin_laws/skin_laws.csv"
 MARK = 1.5
 REFERENCE = 1e-7
 TOLERANCES = tuple(10.0 ** (-0.5 * i) for i in range(11))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from birm3d import Barrier, Result, Simulation, Vehicle
+from birm3d import Barrier, Result, Simulation, Vehicle, units
 
 
 def at_post(name: str, offset: float, diameter: float, speed: float, density: float = 0.5) -> Result:
@@ -61,3 +61,17 @@ def test_a_run_does_not_end_while_the_vehicle_tilts_further(name: str, speed: fl
     longer = Simulation(scene.scene.vehicle, Barrier.rigid_wall(), speed, duration=1.0)
     by_itself, with_time = (one.run().metrics["max_pitch"] for one in (scene, longer))
     assert by_itself == pytest.approx(with_time, abs=0.1)
+
+
+@pytest.mark.parametrize(("name", "gap"), [("small_car", 1.418), ("small_car", 1.40), ("cargo_truck", 2.03)])
+def test_posts_that_the_vehicle_has_passed_hold_it_no_more(name: str, gap: float) -> None:
+    """Scraping through between two posts: its panels follow no post that is behind all of their depth."""
+    vehicle = Vehicle.preset(name)
+    barrier = Barrier.bollards(count=2, spacing=gap + 0.32, diameter=0.32)
+    result = Simulation(vehicle, barrier, units.mph(30)).run()
+    force = np.linalg.norm(result.barrier_force, axis=1)
+    behind = result.position[:, 0] > 0.6 * vehicle.length  # the mass centre: the rear is past the posts, too
+    assert force.max() > 5e3
+    assert behind.any()
+    assert force[behind].max() == 0.0
+    assert result.outcome == "passed"

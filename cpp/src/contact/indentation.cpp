@@ -51,7 +51,7 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
         if (!panel.any || !can_indent(obstacle, near.now, panel, indents)) continue;
         const Indentation indentation = indentation_by(obstacle, near.now, panel, mesh, pass.scene.settings);
         if (!indents && !(indentation.beside() < 0.0)) continue;
-        if (!indents && indentation.is_beyond(panel)) {
+        if (indentation.is_beyond(panel)) {
             now.passed |= bit;
             continue;
         }

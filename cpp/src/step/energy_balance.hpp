@@ -8,10 +8,10 @@ namespace birm3d {
 // Energies of the trusses of all units: what they store, and what crush has dissipated.
 void sum_truss_energies(State& now);
 
-// Kinetic energy of all units and free-standing segments.
-// Of wheels with springs; zero for others.
+// Energy that the springs of wheels store; zero where wheels have none.
 void sum_spring_energies(const Scene& scene, State& now);
 
+// Kinetic energy of all units and free-standing segments.
 void sum_kinetic_energy(const Scene& scene, State& now);
 
 // Enters the greatest departures from both balances into `balances`. `state`: before the trial is accepted.

@@ -59,7 +59,7 @@ void move_unit(const Scene& scene, std::size_t u, const State& from, Trial& tria
     trial.critical_step = std::min(trial.critical_step, critical_step(scene, unit.body, moved));
 }
 
-// What the springs of these wheels have is lost.
+// Wheels whose springs give way carry nothing any more. What their springs had stored is lost.
 void give_way(const Unit& model, WheelSet gone, UnitMotion& unit, Energies& energies) {
     if ((gone & ~unit.given_way) == 0) return;
     const double before = spring_energy(model, unit.body, unit.given_way);

@@ -61,6 +61,8 @@ def _size_options() -> Iterator[Callable[[Command], Command]]:
             yield click.option(option, type=_TYPES[size.quantity], help=text)
 
 
+_BY_DEFAULT = (click.core.ParameterSource.DEFAULT, click.core.ParameterSource.DEFAULT_MAP)
+
 _OPTIONS = (
     click.argument("scene", required=False, type=click.Path(exists=True, dir_okay=False, path_type=Path)),
     click.option("--vehicle", help="Preset (see `birm3d vehicles`) or vehicle file (.toml)."),
@@ -143,7 +145,7 @@ def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
     given = [
         f"--{name.replace('_', '-')}"
         for name in options
-        if context.get_parameter_source(name) is not click.core.ParameterSource.DEFAULT
+        if context.get_parameter_source(name) not in _BY_DEFAULT
     ]
     if scene is not None:
         if given:

@@ -45,7 +45,8 @@ def search() -> None:
     """Search for the greatest gap, the least height or segment mass, or the worst offset."""
 
 
-@search.command()
+# A gap is one between bollards, so that these are what is searched where nothing else is said.
+@search.command(context_settings={"default_map": {"barrier": "bollards"}})
 @scene_options
 @_range("0.5:3.0", "m")
 @click.option("--penetration", type=QuantityOption("length"), help="Greatest that is allowed as well.")
