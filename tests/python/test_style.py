@@ -278,27 +278,45 @@ def test_a_circle_of_includes_is_found(tmp_path: Path) -> None:
     assert include_circle(tmp_path) == []
 
 
+def without_texts(text: str) -> str:
+    """Return C++ code without comments and literals; its lines stay where they are."""
+    text = re.sub(r'"(?:[^"\\\n]|\\.)*"', '""', text)
+    text = re.sub(r"'(?:[^'\\\n]|\\.)'", "' '", text)
+    return re.sub(r"//[^\n]*", "", text)
+
+
+def functions_of(text: str) -> list[tuple[int, int]]:
+    """First line and last line of each outermost block of braces that is no namespace and no type."""
+    found, blocks, line, head = [], [], 1, ""
+    for sign in without_texts(text):
+        line += sign == "\n"
+        if sign == "{":
+            is_scope = re.search(r"\b(?:namespace|struct|class|enum|union)\b[^()]*$", head) is not None
+            blocks.append((line, is_scope or bool(re.search(r"[=\w]\s*$", head) and "(" not in head)))
+        elif sign == "}":
+            first, is_scope = blocks.pop()
+            if not is_scope and all(scope for _, scope in blocks):
+                found.append((first, line))
+        head = "" if sign in "{};" else head + sign
+    return found
+
+
 def length_errors(root: Path) -> list[str]:
     """C++ files above 300 and functions above 60 lines without a comment "Over ... lines: " that says why."""
     errors = []
     for path in sorted(p for p in (root / "cpp").rglob("*") if p.suffix in {".cpp", ".hpp"}):
-        lines = path.read_text(encoding="utf-8").splitlines()
+        text = path.read_text(encoding="utf-8")
+        lines = text.splitlines()
         where = path.relative_to(root).as_posix()
         if len(lines) > 300 and not any(line.startswith("// Over 300 lines: ") for line in lines[:5]):
             errors.append(f"{where}: {len(lines)} lines")
-        start, last = 0, -1
-        for number, line in enumerate(lines):
-            if line == "}" and last >= 0:
-                excused = any(
-                    text.startswith("// Over 60 lines: ") for text in lines[max(0, start - 3) : last]
-                )
-                if number - last - 1 > 60 and not excused:
-                    errors.append(f"{where}:{start + 1}: a function of {number - last - 1} lines")
-                last = -1
-            elif re.match(r"[A-Za-z].*[(<]", line) and not line.startswith(("namespace", "using")):
-                start = number
-            if line.endswith("{") and not line.startswith((" ", "namespace", "struct", "class", "enum")):
-                last = number
+        for first, last in functions_of(text):
+            # The comment may stand above the function, whose declaration may be of several lines.
+            excused = any(
+                line.lstrip().startswith("// Over 60 lines: ") for line in lines[max(0, first - 7) : last]
+            )
+            if last - first - 1 > 60 and not excused:
+                errors.append(f"{where}:{first}: a function of {last - first - 1} lines")
     return errors
 
 
@@ -319,9 +337,17 @@ def test_length_check_itself(tmp_path: Path) -> None:
     folder.mkdir(parents=True)
     body = "    step();\n"
     (folder / "long_function.cpp").write_text("void a() {\n" + 61 * body + "}\n")
+    (folder / "long_list_of_arguments.cpp").write_text("void a(int x,\n       int y) {\n" + 61 * body + "}\n")
+    (folder / "long_member.cpp").write_text("struct A {\n    void a() {\n" + 61 * body + "    }\n};\n")
+    (folder / "long_after_test.cpp").write_text("int a() try {\n" + 61 * "    if (b) { c(); }\n" + "}\n")
     (folder / "excused.cpp").write_text("// Over 60 lines: a table.\nvoid a() {\n" + 61 * body + "}\n")
+    (folder / "short.cpp").write_text("namespace a {\n" + 20 * "void b() {\n    c('{', \"{\");\n}\n" + "}\n")
+    (folder / "table.cpp").write_text("constexpr int a[] = {\n" + 61 * "    1,\n" + "};\n")
     (folder / "long_file.cpp").write_text(101 * "void a() {\n    step();\n}\n")
     assert length_errors(tmp_path) == [
+        "cpp/src/long_after_test.cpp:1: a function of 61 lines",
         "cpp/src/long_file.cpp: 303 lines",
         "cpp/src/long_function.cpp:1: a function of 61 lines",
+        "cpp/src/long_list_of_arguments.cpp:2: a function of 61 lines",
+        "cpp/src/long_member.cpp:2: a function of 61 lines",
     ]

@@ -277,6 +277,7 @@ BIRM3D_INLINE void hold(const PressColumns& truss, const Surface& surface,
 }
 
 // Two passes over the packets, so that square roots and divisions of several packets overlap.
+// Over 60 lines: one loop over the packets, whose sums stay in registers.
 template <bool flat, class Unloading, class Surface>
 BIRM3D_INLINE PressedNodes press(const PressColumns& truss, const Surface& surface,
                                  const PressState<const double>& before, const PressState<double>& now,

@@ -82,6 +82,7 @@ WheelSet overloaded(const Unit& unit, double dt, std::span<const double> normal_
     return found;
 }
 
+// Over 60 lines: both tyre models, which share the velocities at the wheels and the limits of slow motion.
 Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState& state,
                      double steering_angle, const TireMotion& motion,
                      std::span<const double> normal_impulses) {
