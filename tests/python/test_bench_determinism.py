@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import importlib
 import json
 import subprocess
@@ -10,6 +11,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+from test_state_hashes import HASHES
 
 PROGRAM = Path(__file__).resolve().parents[1] / "bench/bench_determinism.py"
 
@@ -55,3 +57,12 @@ def test_one_other_bit_is_found(
 def test_a_build_that_fails_ends_the_program_with_its_words(program: ModuleType) -> None:
     with pytest.raises(SystemExit, match="no such file"):
         program.run([sys.executable, "-c", "raise SystemExit('no such file')"])
+
+
+def test_the_table_of_all_builds_has_the_hashes_that_the_test_holds() -> None:
+    """A change of physics or of a preset replaces both: the table and the constants."""
+    with (PROGRAM.parent / "results/determinism/hashes.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len({row["build"] for row in rows}) >= 5
+    wrong = {row["scene"]: row["hash"] for row in rows if HASHES[row["scene"]] != row["hash"]}
+    assert not wrong, "run bench_determinism.py --save, or replace the constants"
