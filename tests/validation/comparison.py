@@ -93,7 +93,7 @@ def read(name: str) -> list[Row]:
 def _text(value: object) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return f"{value:.5g}" if isinstance(value, float) else str(value)
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _row(cells: Mapping[str, str]) -> Row:

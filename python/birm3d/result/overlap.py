@@ -25,7 +25,7 @@ class OverlapWarning(UserWarning):
     a post can enter the body. With the usual meshes it enters by a few centimetres; with very coarse ones it
     passes through. The overlap is the distance by which body and barrier would have to be moved apart. It is
     measured on the core boxes of the vehicle's file, whatever the mesh. Vehicles from arrays have no boxes,
-    and are measured at their anchors alone.
+    and are not warned of; the metric ``contact_overlap`` has the depth of their anchors.
     """
 
 
