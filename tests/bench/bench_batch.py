@@ -132,7 +132,7 @@ def check_bits(count: int) -> int:
                     raise AssertionError(f"{name} differs")
         backwards = birm3d.sweep(base, impact_speed=speeds(count)[::-1], metrics=ALL)
         if backwards.state_hash[::-1] != one.state_hash:
-            raise AssertionError("the last states hang on the order")
+            raise AssertionError("the last states depend on the order")
         for i, speed in enumerate(speeds(count)):
             alone = Simulation(base.scene.vehicle, base.scene.barrier, speed, settings=base.scene.settings)
             metrics = alone.run().metrics

@@ -172,8 +172,9 @@ def test_barrier_force_stands_on_its_normal(scene_result: Result) -> None:
     assert r.barrier_normal_force.min() >= -1e-9 * largest
     across = np.linalg.norm(r.barrier_force - along[:, None] * np.array(r.scene.barrier.core.normal), axis=1)
     # Friction is at most mu times the normal force. It is so at the ends of a step; between them both follow
-    # parabolas of their own, which part where the last nodes let go. Measured: 6e-9. A tread of few nodes
-    # that is the last parts them by 3e-5: with tyres the law is tested at the ends of steps, below.
+    # parabolas of their own, which differ where the last nodes are released. Measured: 6e-9. A tire of few
+    # nodes that is released last makes them differ by 3e-5. With tyres the law is tested below, at the ends
+    # of steps.
     if not meets_with_tires(r) or greatest_friction(r) == 0.0:
         assert (across <= greatest_friction(r) * r.barrier_normal_force + 1e-8 * largest).all()
 

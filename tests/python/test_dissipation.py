@@ -87,8 +87,8 @@ def test_a_slow_slide_on_locked_wheels_keeps_its_energy(name: str, speed: float,
     assert max(greatest_fall(run).values()) < 1e-5
 
 
-# Beside thin posts: a post comes to lie across a panel that it indents, or past its edge, or lets a node of
-# it go towards the next post. What the trusses lose then has no other taker. Posts enter the body between its
+# Beside thin posts: a post comes to lie across a panel that it indents, or past its edge. Or it releases a
+# node towards the next post. What the trusses lose then has no other taker. Posts enter the body between its
 # anchors: that is warned of, and not what is asked here.
 @pytest.mark.filterwarnings("ignore::birm3d.OverlapWarning")
 @pytest.mark.parametrize(

@@ -313,8 +313,8 @@ def test_w3_oblique_with_friction(angle: float, friction: float, duration: float
     velocity = end[7:10]
     spin = np.degrees(oracle.inverse_inertia @ oracle.rotation(end[3:7]).T @ end[10:13])
 
-    # Measured: 4e-7 of the impact speed, 7e-6 of the spin, 1e-7 of the crush, of which the oracle's steps
-    # (its memory is kept per step) make the larger part.
+    # Measured: 4e-7 of the impact speed, 7e-6 of the spin, 1e-7 of the crush. The oracle's steps make
+    # the larger part: its memory is kept per step.
     assert np.abs(fine.velocity[-1] - velocity).max() < 2e-6 * SPEED
     assert np.abs(fine.angular_velocity[-1] - spin).max() < 2e-5 * np.abs(spin).max()
     assert fine.peak_deflection.max() == pytest.approx(oracle.peak.max(), rel=2e-6)

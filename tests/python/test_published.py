@@ -70,7 +70,7 @@ class TestNhtsa10146:
 
 # What a metric may differ from its own answer at fine steps beside 1 %: scalars that are nil but for rounding
 # or for the bounce of the tyres. Angles: the head-on crash turns the car by less than a tenth of a degree
-# about r and t, and load cells and cameras of crash tests read tenths.
+# about r and t. Load cells and cameras of crash tests read tenths.
 FLOOR = {
     "max_roll": 0.1,
     "max_yaw": 0.1,

@@ -1,4 +1,4 @@
-"""Closed trusses: the rigid body itself is held at the wall, at any speed."""
+"""Bottomed-out trusses: the rigid body itself is held at the wall, at any speed."""
 
 from __future__ import annotations
 

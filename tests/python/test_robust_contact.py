@@ -25,8 +25,8 @@ def car(name: str = "passenger_car") -> Vehicle:
     return Vehicle.preset(name, mesh_density=0.3)
 
 
-# Each once left nodes 5 to 215 mm inside: let go where they were pushed back to, changed over from one face
-# to another beside an edge, or drawn out so far that the barrier was thought out of reach.
+# Each once left nodes 5 to 215 mm inside. They were released where they had been pushed back to, or changed
+# from one face to another beside an edge. Some were drawn out so far that the barrier seemed out of reach.
 @pytest.mark.parametrize(
     ("name", "barrier", "speed", "angle", "limit"),
     [
@@ -51,8 +51,8 @@ def test_no_node_ends_a_step_inside(
 
 # At 23 to 25 m/s the slope above the toe once let a tread go into the toe.
 @pytest.mark.parametrize("speed", [15.0, 20.0, 23.0, 24.0, 25.0, 40.0])
-def test_what_one_slope_lets_go_does_not_spring_into_another(speed: float) -> None:
-    """Treads ride up the toe of a Jersey barrier head-on and are let go by the slope above it."""
+def test_nodes_that_one_slope_releases_do_not_spring_into_another(speed: float) -> None:
+    """Tire nodes ride up the toe of a Jersey barrier head-on, and the slope above it releases them."""
     car = Vehicle.preset("passenger_car", mesh_density=0.3)
     simulation = Simulation(car, Barrier.jersey(), speed, 90.0)
     node = 0.0
@@ -209,7 +209,7 @@ def test_nodes_whose_post_has_moved_on_are_released() -> None:
 @pytest.mark.parametrize("edge_radius", [0.05, 0.15])
 @pytest.mark.parametrize("speed", [7.5, 10.0, 17.5, 20.0])
 def test_skin_that_an_edge_releases_returns_along_its_trusses(speed: float, edge_radius: float) -> None:
-    """As a car rebounds, edges let go of skin that is still at the face; some was flung into the ground.
+    """As a car rebounds, edges release skin that is still at the face; some was flung into the ground.
 
     The crush of those nodes then came from nowhere, up to three times the energy of the impact.
     """

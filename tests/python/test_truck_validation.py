@@ -46,8 +46,8 @@ def test_impulses_of_the_runs_are_their_change_of_momentum(truck: ModuleType) ->
     assert truck.runs()["bollards2_50_offset"].posts == (-0.8, 0.4)
 
 
-# What one rigid body can not meet is said in truck.md: travel at the wall at 50 mph, which the
-# bed goes on for, the last jam of the row of three, and the frame that bends between two posts.
+# What one rigid body can not meet is said in truck.md. It is the travel at the wall at 50 mph, because the
+# bed goes on; the last jam of the row of three; and the frame that bends between two posts.
 @pytest.mark.parametrize(
     ("name", "marks"),
     [

@@ -17,7 +17,13 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs/pages"
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.rglob("*.md"))]
-BOUNDED = [*PAGES, ROOT / "tests/README.md", ROOT / "tests/bench/README.md"]
+BOUNDED = [
+    *PAGES,
+    ROOT / "CHANGELOG.md",
+    ROOT / "tests/README.md",
+    ROOT / "tests/bench/README.md",
+    *sorted((ROOT / "tests/validation").glob("*.md")),
+]
 MOST_WORDS = 35
 MOST_WORDS_OF_A_DOCSTRING = 30
 MOST_WORDS_OF_A_COMMENT = 25
@@ -352,11 +358,11 @@ def test_glossary_has_the_names_of_the_code() -> None:
     assert [name for name in sorted(names) if not set(IDENTIFIER.findall(name)) <= known] == []
 
 
-def sentences_of_comments(source: str) -> list[str]:
-    """Sentences of the comments of a C++ file; an indented line is a formula or a table, and ends one."""
+def sentences_of_comments(source: str, sign: str = "//") -> list[str]:
+    """Sentences of the comments of a file; an indented line is a formula or a table, and ends one."""
     text = ""
     for line in source.splitlines():
-        code, _, comment = line.partition("//")
+        code, _, comment = line.partition(sign)
         plain = not comment.startswith("  ") and not code.strip()
         text += f"{comment}\n" if plain else "\n\n"
     parts = [part for paragraph in re.split(r"\n\s*\n", text) for part in re.split(r"[.:;!?]\s", paragraph)]
@@ -364,10 +370,12 @@ def sentences_of_comments(source: str) -> list[str]:
 
 
 def test_no_sentence_of_a_comment_is_too_long() -> None:
+    folders = ("python/birm3d", "examples", "docs/build", "tests")
+    python = sorted(path for folder in folders for path in (ROOT / folder).rglob("*.py"))
     long = [
         f"{path.relative_to(ROOT)}: {words(sentence)} words: {sentence}"
-        for path in CPP_FILES
-        for sentence in sentences_of_comments(path.read_text(encoding="utf-8"))
+        for path, sign in (*((p, "//") for p in CPP_FILES), *((p, "#") for p in python))
+        for sentence in sentences_of_comments(path.read_text(encoding="utf-8"), sign)
         if words(sentence) > MOST_WORDS_OF_A_COMMENT
     ]
     assert not long, "\n".join(long)
@@ -376,6 +384,7 @@ def test_no_sentence_of_a_comment_is_too_long() -> None:
 def test_sentences_of_comments_are_found() -> None:
     source = "// One two\n// three. Four:\n//   x = y\n// five\nint x;  // six\n"
     assert sentences_of_comments(source) == ["One two three", "Four:", "five"]
+    assert sentences_of_comments(source.replace("//", "#"), "#") == ["One two three", "Four:", "five"]
 
 
 @pytest.mark.slow

@@ -16,8 +16,8 @@ TEXT = """Vehicles: `tests/data/finite_element/fitted_n.toml` and `fitted_s.toml
 together; rows "left out" are fits without the run of the row, as [their page](finite_element.md) has them.
 Marks: crush 10 % (N) or 5 % (S), force 15 % or 10 %, yaw 5 degrees, what repeats of a run differ by.
 
-What the model can not do here: trusses know nothing of their neighbours, so the far half of a bumper
-answers a wall at 25 degrees with the peak of one that is met flush, and N turns too far. Buckling that
+What the model can not do here: a truss has no force from its neighbours. So the far half of a bumper answers
+a wall at 25 degrees with the peak of one that is met flush, and N turns too far. Buckling that
 chooses a side (wall at 40 mph) has no counterpart."""
 
 

@@ -19,9 +19,9 @@ each run out in turn, too).
 Marks: travel 12 %, force over 50 ms 15 %, impulse sideways on each post 20 kN s, pitch 5
 degrees.
 
-What the model can not do here: the engine stops in a post while the frame goes on, the bed slides by up to
-1.5 m and brings a third of the momentum later, a bumper's end is bent away by a post that overlaps it by
-85 mm, and a frame that bends jams between two posts. The model's rigid body has none of these; [its
+What the model can not do here: the engine stops in a post while the frame goes on. The bed slides by up to
+1.5 m and brings a third of the momentum later. A bumper's end is bent away by a post that overlaps it by
+85 mm. A frame that bends jams between two posts. The model's rigid body has none of these; [its
 page](truck.md) has the sizes. Its pitch comes from front wheels that give way and from less friction on the
 front."""
 

@@ -18,8 +18,8 @@ deviation of the 20 cars of the class: a preset knows the class, not the car. Te
 channels scatter by. Restitution at low speed: 0.1, the fit's own scatter is not recorded.
 
 What the model can not do here: the compartment and the mass centre are one. In a test the engine stops
-early and the compartment goes on by another 10 % (0.741 and 0.677 m in test 10146), and it is the
-compartment that is measured, so that a preset that is fitted to the compartment has its force too low.
+early and the compartment goes on by another 10 % (0.741 and 0.677 m in test 10146). The compartment is
+what is measured. So a preset that is fitted to the compartment has its force too low.
 Static crush is measured at bumper height after the vehicle has been towed away; bumper covers spring back."""
 
 TRAVEL, CRUSH, LOW_SPEED = 0.12, 0.13, 0.1

@@ -18,9 +18,10 @@ across as a magnitude. Marks: the quartiles of 150 tests. `core contact`: steps 
 the barrier.
 
 The wall's edge draws in the skin beside it, as a post does. Four numbers were chosen by hand with
-regard to these medians, for all three vehicles together: the factor on the flank of the edge (1.25), the
-resistance of the wheel house along the vehicle (75 Pa for each kilogram), the width of the engine's peak
-(0.6 m), and what is left of it above the rails beside the engine (0.2). So the rows count as fitted.
+regard to these medians, for all three vehicles together. They are the factor on the flank of the edge (1.25)
+and the resistance of the wheel house along the vehicle (75 Pa for each kilogram). The others are the width
+of the engine's peak (0.6 m) and what is left of it above the rails beside the engine (0.2). So the rows
+count as fitted.
 
 Crushed fronts and wheel houses pass on 0.15 of the friction on the wall's face, as the finite-element truck's
 front does. With all of it, the vehicle is pushed off across by half of the tests' median at 150 ms.

@@ -235,7 +235,7 @@ def _check_drawing() -> None:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Let VTK look for a display without telling that there is none; its errors are told."""
+    """Let VTK look for a display, without its warning that there is none; errors are still printed."""
     if not sys.platform.startswith("linux") or os.environ.get("DISPLAY"):
         yield
         return

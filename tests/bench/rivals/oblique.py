@@ -1,7 +1,7 @@
 """The answer of W3: BIRM3D at its finest, confirmed by an integrator that shares nothing with it.
 
 DOP853 of scipy to a relative tolerance of 1e-10, restarted at every event of every node: it touches,
-passes the knee, turns from loading to unloading and back, is let go. Places of held nodes are part of the
+passes the knee, turns from loading to unloading and back, is released. Places of held nodes are part of the
 state: a held node moves along the present normal of the wall, in body axes p' = n (x' - n' . p), n' = -w
 x n, where x is the distance of the mass centre past the wall.
 """

@@ -25,7 +25,7 @@ Placement standing(const Vec3& foot, double lean = 0.0, double sway = 0.0) {
 
 constexpr double edge = 1.25;  // edge_flank_factor
 
-// How nodes hang on an indentation.
+// How nodes follow an indentation.
 struct Followed : NodeFaces, BlockContact {
     BlockColumn follows;
 };

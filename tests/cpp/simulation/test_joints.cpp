@@ -273,7 +273,7 @@ TEST("a fifth wheel carries a roll moment only where its plates touch") {
     CHECK_CLOSE(most / limit, 1.0, 1e-3, "gap of 1e-6 rad at which plates touch, and a step's curvature");
     CHECK(simulation.state().energies.impacts > 0.0);
 
-    // Pitch and yaw are let go.
+    // Pitch and yaw are released.
     scene.vehicle = pair(JointKind::fifth_wheel, limit);
     scene.joints = scene.vehicle->joints;
     Simulation free = spinning(scene, {0.0, 0.2, 0.0}, {0.0, -0.3, 0.0});
