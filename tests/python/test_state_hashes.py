@@ -68,7 +68,7 @@ HASHES = {
     "pickup, bollards": "bfc87f4f8988d485",
     "car, Jersey": "b5d065603ab052c6",
     "semi, wall": "557f5b797dd8b117",
-    "truck, pole of triangles": "d5988d7afa6ea2fd",
+    "truck, pole of triangles": "7d4e7705b053977b",
     "free-standing": "8b513e5bd4bc08b5",
     "minivan on its side": "e656e6bc514f2797",
     "car, corner of a planter": "7068ea637b442401",
