@@ -22,14 +22,14 @@ import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import birm3d
 import numpy as np
-from bench_birm3d import COMPARED, LAW, MASS, cpu_model, exact_crush
+from bench_birm3d import COMPARED, LAW, MASS, cpu_model, exact_crush, write_rows
 from birm3d import Settings, Simulation, Study, scenes
 from birm3d.study.runner import checked_metrics
 from birm3d.study.verification.errors import relative_errors
@@ -219,12 +219,10 @@ def main() -> int:
     if options.save:
         RESULTS.mkdir(exist_ok=True)
         with (RESULTS / "batch.csv").open("w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
             file.write(f"# {cpu_model()}; W2, N = {NODES}; {runs} runs a row, median of {repeats}\n")
-            writer.writerow([field.name for field in fields(Row)])
-            for row in rows:
-                writer.writerow([f"{cell:.4g}" if isinstance(cell, float) else cell for cell in astuple(row)])
+            write_rows(file, rows)
             file.write("# peak resident memory [MB] at a twentieth of the runs and at all of them\n")
+            writer = csv.writer(file, lineterminator="\n")
             writer.writerow(["way", "runs", "before", "after"])
             for way, count, before, after in grown:
                 writer.writerow([way, count, f"{before:.1f}", f"{after:.1f}"])

@@ -22,7 +22,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 # Before NumPy is loaded: one core, also for what NumPy would hand to threads of its own.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
@@ -248,6 +248,15 @@ def write_machine(file: TextIO, facts: Mapping[str, str]) -> None:
     """Write the head of a table to a file, as comments."""
     for key, value in facts.items():
         file.write(f"# {key}: {value}\n")
+
+
+def write_rows(file: TextIO, rows: Sequence[Any]) -> None:
+    """Write rows of one dataclass to a file as a table, numbers with four digits."""
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow([field.name for field in dataclasses.fields(rows[0])])
+    for row in rows:
+        cells = dataclasses.astuple(row)
+        writer.writerow([f"{cell:.4g}" if isinstance(cell, float) else cell for cell in cells])
 
 
 def use_one_core() -> str:

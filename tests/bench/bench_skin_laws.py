@@ -16,17 +16,17 @@ results/skin_laws/skin_laws.csv.
 from __future__ import annotations
 
 import argparse
-import csv
 import statistics
 import sys
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import astuple, dataclass, fields, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from bench_birm3d import print_machine, use_one_core
+from bench_birm3d import print_machine, use_one_core, write_rows
 from birm3d import Barrier, Simulation, Vehicle, units
+from birm3d.scene_parameters import varied
 from birm3d.vehicle.vehicle_file import unit_paths
 
 RESULTS = Path(__file__).parent / "results/skin_laws/skin_laws.csv"
@@ -75,17 +75,7 @@ def with_the_papers_law(name: str, density: float) -> Vehicle:
 
 def at(simulation: Simulation, tolerance: float) -> Simulation:
     """Return the scene at another tolerance."""
-    scene = simulation.scene
-    settings = replace(scene.settings, tolerance=tolerance)
-    return Simulation(
-        scene.vehicle,
-        scene.barrier,
-        scene.impact_speed,
-        scene.impact_angle,
-        overlap=scene.overlap,
-        duration=scene.duration,
-        settings=settings,
-    )
+    return varied(simulation, {"settings.tolerance": tolerance})
 
 
 def time_at(error: float, times: Sequence[float], errors: Sequence[float]) -> float:
@@ -142,8 +132,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             new = compared(name, case, 0.2 if asked.quick else 1.0, 1 if asked.quick else asked.repeats)
             for row in new:
                 print(
-                    f"{row.vehicle:16s}{row.case:18s}{row.error:8.1%}{row.paper_ms:9.2f} ms"
-                    f"{row.ours_ms:9.2f} ms{row.ratio:8.2f}"
+                    f"{row.vehicle:16s}{row.case:18s}{row.error:8.1%}{row.paper_ms:9.3f} ms"
+                    f"{row.ours_ms:9.3f} ms{row.ratio:8.2f}"
                 )
             rows += new
     ratios = [row.ratio for row in rows]
@@ -151,10 +141,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if asked.save:
         RESULTS.parent.mkdir(parents=True, exist_ok=True)
         with RESULTS.open("w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([field.name for field in fields(Row)])
-            for row in rows:
-                writer.writerow([f"{x:.4g}" if isinstance(x, float) else x for x in astuple(row)])
+            write_rows(file, rows)
     return 0
 
 

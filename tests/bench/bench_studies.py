@@ -16,7 +16,6 @@ Memory: peak resident memory of a process of its own after a tenth of so many ru
 from __future__ import annotations
 
 import argparse
-import csv
 import os
 import re
 import resource
@@ -27,7 +26,7 @@ import time
 import warnings
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -37,7 +36,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import birm3d
 import numpy as np
-from bench_birm3d import cpu_model
+from bench_birm3d import cpu_model, write_rows
 from birm3d import Barrier, Settings, Simulation, Study, Vehicle, scenes, units
 from scipy import stats
 
@@ -233,13 +232,10 @@ def main() -> int:
     )
     if options.save:
         with RESULTS.open("w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
             file.write(f"# {cpu_model()}, {os.cpu_count()} cores; all metrics\n")
             file.write(f"# memory: {before / 1e6:.1f} MB after {most // 10} runs of the pickup at the wall, ")
             file.write(f"{after / 1e6:.1f} MB after {most}: {each:.0f} bytes a run\n")
-            writer.writerow([field.name for field in fields(Row)])
-            for row in rows:
-                writer.writerow([f"{cell:.4g}" if isinstance(cell, float) else cell for cell in astuple(row)])
+            write_rows(file, rows)
     return 0
 
 

@@ -117,10 +117,15 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^">]+)[">]', re.MULTIL
 FOREIGN = re.compile(r"(iostream|ostream|istream|fstream|cstdio|stdio\.h|print|Python\.h|pybind11/.*)")
 
 
+def layer_folders(root: Path) -> dict[str, Path]:
+    """The two folders of the C++ layers: of installed headers, and of all else."""
+    return {"include": root / "cpp/include/birm3d", "src": root / "cpp/src"}
+
+
 def layering_errors(root: Path) -> list[str]:
     """Every include below cpp/ that points upwards, sideways between kernels, or out of the core."""
     errors = []
-    folders = {"include": root / "cpp/include/birm3d", "src": root / "cpp/src"}
+    folders = layer_folders(root)
     for folder in folders.values():
         for path in sorted(p for p in folder.rglob("*") if p.suffix in {".hpp", ".cpp"}):
             name = path.relative_to(folder)
@@ -133,9 +138,10 @@ def layering_errors(root: Path) -> list[str]:
                 if FOREIGN.fullmatch(included):
                     errors.append(f"{where}: the core may not include {included}")
                     continue
-                target = included_file(path, bracket, included, folders)
-                if target is None:
+                file = included_file(path, bracket, included, folders)
+                if file is None:
                     continue
+                target = next(file.relative_to(f) for f in folders.values() if file.is_relative_to(f))
                 if target.parts[0] not in LAYERS or LAYERS.index(target.parts[0]) > LAYERS.index(layer):
                     errors.append(f"{where}: layer {layer} may not include {included}")
                 elif layer == target.parts[0] == "kernels" and not parts_of_one(name.stem, target.stem):
@@ -144,15 +150,14 @@ def layering_errors(root: Path) -> list[str]:
 
 
 def included_file(path: Path, bracket: str, included: str, folders: dict[str, Path]) -> Path | None:
-    """The included file relative to its folder of layers; None for the standard library and Eigen."""
+    """The included file; None for the standard library and Eigen."""
     if included.startswith("birm3d/"):
-        return Path(included.removeprefix("birm3d/"))
+        return folders["include"] / included.removeprefix("birm3d/")
     if bracket == '"':
         for candidate in (path.parent / included, folders["src"] / included):
-            for folder in folders.values():
-                file = Path(os.path.normpath(candidate))
-                if file.is_file() and file.is_relative_to(folder):
-                    return file.relative_to(folder)
+            file = Path(os.path.normpath(candidate))
+            if file.is_file() and any(file.is_relative_to(folder) for folder in folders.values()):
+                return file
     return None
 
 
@@ -241,20 +246,17 @@ def test_layering_check_itself(tmp_path: Path, file: str, line: str, finding: st
 
 def include_circle(root: Path) -> list[str]:
     """Files below cpp/ that include each other, in the order of their includes; none without a circle."""
-    src, installed = root / "cpp/src", root / "cpp/include"
-    graph: dict[str, set[str]] = {}
+    graph = {}
     for path in (p for p in (root / "cpp").rglob("*") if p.suffix in {".hpp", ".cpp"}):
-        edges = graph.setdefault(path.relative_to(root).as_posix(), set())
-        for _, included in INCLUDE.findall(path.read_text(encoding="utf-8")):
-            for candidate in (installed / included, path.parent / included, src / included):
-                file = Path(os.path.normpath(candidate))
-                if file.is_file():
-                    edges.add(file.relative_to(root).as_posix())
-                    break
+        includes = INCLUDE.findall(path.read_text(encoding="utf-8"))
+        files = (
+            included_file(path, bracket, included, layer_folders(root)) for bracket, included in includes
+        )
+        graph[path] = {file for file in files if file is not None}
     try:
         graphlib.TopologicalSorter(graph).prepare()
     except graphlib.CycleError as error:
-        return list(error.args[1])
+        return [file.relative_to(root).as_posix() for file in error.args[1]]
     return []
 
 

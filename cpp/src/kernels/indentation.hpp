@@ -25,9 +25,10 @@
 //
 // A node follows the indentation while its truss pushes, also behind a post that has moved on along the panel. Beyond the
 // indentation's extent it is released, and what its truss stores is lost. So are all nodes of a panel once the whole post is
-// behind it, deeper than its anchors: a vehicle that scrapes past a post leaves it. Of several indentations the deepest one holds a
-// node. An indentation does not release a node that stands on the flank of another post. Skin slides on a post only along
-// the panel: friction acts across e.
+// deeper than its anchors: a vehicle that scrapes past a post leaves it.
+//
+// Of several indentations the deepest one holds a node. An indentation does not release a node that stands on the flank of
+// another post. Skin slides on a post only along the panel: friction acts across e.
 //
 // A panel's width and lower edge are those of its foremost nodes: up to one radius of the post deep, at least 0.1 m
 // (outline_step). A post that misses the bumper does not indent it by meeting the wider body behind: it meets the nodes there

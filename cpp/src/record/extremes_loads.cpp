@@ -6,6 +6,7 @@
 #include "base/channel_filter.hpp"
 #include "birm3d/record/extremes.hpp"
 #include "record/greatest.hpp"
+#include "record/window_sum.hpp"
 
 namespace birm3d {
 
@@ -48,17 +49,13 @@ Extremes::ElementLoads greatest_element_loads(const History& history, const Barr
     const std::size_t window = rows_in(window_50ms, history.time[1] - history.time[0]);
     const double rows = static_cast<double>(window);
     for (const ObstacleHistory& loads : history.obstacles) {
-        Vec3 force = Vec3::Zero(), moment = Vec3::Zero();   // sums of the rows up to now
-        Vec3 force_before = force, moment_before = moment;  // and of those that have left the window
+        WindowSum force(loads.force, window), moment(loads.moment, window);
         double force_squared = 0.0, sum_squared = 0.0;
         Overturning at_once(barrier, barrier.elements[loads.obstacle].shape), sums = at_once;
         for (std::size_t k = 0; k < count; ++k) {
-            force += loads.force[k], moment += loads.moment[k];
-            if (k >= window)
-                force_before += loads.force[k - window], moment_before += loads.moment[k - window];
             force_squared = std::max(force_squared, loads.force[k].squaredNorm());
-            sum_squared = std::max(sum_squared, (force - force_before).squaredNorm());
-            at_once.add(loads.moment[k]), sums.add(moment - moment_before);
+            sum_squared = std::max(sum_squared, force.up_to(k).squaredNorm());
+            at_once.add(loads.moment[k]), sums.add(moment.up_to(k));
         }
         found.moment = std::max(found.moment, at_once.greatest());
         found.moment_50ms = std::max(found.moment_50ms, sums.greatest() / rows);

@@ -11,6 +11,7 @@
 #include "birm3d/record/extremes.hpp"
 #include "record/greatest.hpp"
 #include "record/resample_rows.hpp"
+#include "record/window_sum.hpp"
 
 namespace birm3d {
 
@@ -146,12 +147,10 @@ Extremes::JointLoads greatest_joint_loads(const History& history) {
     Extremes::JointLoads found{angle.greatest(), 0.0, 0.0};
     if (joint.force.size() < 2) return found;
     const std::size_t window = rows_in(window_50ms, history.time[1] - history.time[0]);
-    Vec3 sum = Vec3::Zero(), before = sum;  // of the rows up to now, and of those that have left the window
+    WindowSum sum(joint.force, window);
     for (std::size_t k = 0; k < joint.force.size(); ++k) {
-        sum += joint.force[k];
-        if (k >= window) before += joint.force[k - window];
         found.force = std::max(found.force, joint.force[k].norm());
-        found.force_50ms = std::max(found.force_50ms, (sum - before).norm() / static_cast<double>(window));
+        found.force_50ms = std::max(found.force_50ms, sum.up_to(k).norm() / static_cast<double>(window));
     }
     return found;
 }
