@@ -56,7 +56,7 @@ void register_event(py::module_& m) {
             [](const Event& event) {
                 return event.separated ? std::optional(event.deflection) : std::nullopt;
             },
-            "m, greatest of all trusses when it had left")
+            "m, greatest of all trusses when it had left, less their springback")
         .def_readonly("later_contacts", &Event::later_contacts,
                       "contacts with the barrier that began after it had left");
 }

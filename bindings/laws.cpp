@@ -15,10 +15,11 @@ namespace {
 
 // What a zone's law may have beside its envelope.
 TrussCurve completed(TrussCurve curve, double elastic_recovery, double tail_depth, double tail_slope,
-                     double friction_share) {
+                     double friction_share, double springback) {
     if (tail_slope != 0.0) curve = with_tail(curve, tail_depth, tail_slope);
     curve.recovery = elastic_recovery;
     curve.friction_share = friction_share;
+    curve.springback = springback;
     require_valid(curve, "");
     return curve;
 }
@@ -35,6 +36,7 @@ void register_laws(py::module_& m) {
         .def_readonly("k_unloading", &TrussCurve::k_unloading, "slope of unloading, or the least one")
         .def_readonly("elastic_recovery", &TrussCurve::recovery, "m, infinite where the slope is constant")
         .def_readonly("friction_share", &TrussCurve::friction_share, "of the barrier's friction")
+        .def_readonly("springback", &TrussCurve::springback, "m, without force")
         .def(
             "envelope", [](const TrussCurve& curve, double d) { return envelope_force(curve, d); },
             py::arg("deflection"))
@@ -51,24 +53,27 @@ void register_laws(py::module_& m) {
     m.def(
         "knee_curve",
         [](double k_initial, double knee, double k_hardening, double f_max, double k_unloading,
-           double elastic_recovery, double tail_depth, double tail_slope, double friction_share) {
+           double elastic_recovery, double tail_depth, double tail_slope, double friction_share,
+           double springback) {
             return completed(knee_curve(k_initial, knee, k_hardening, f_max, k_unloading), elastic_recovery,
-                             tail_depth, tail_slope, friction_share);
+                             tail_depth, tail_slope, friction_share, springback);
         },
         py::arg("k_initial"), py::arg("knee"), py::arg("k_hardening"), py::arg("f_max"),
         py::arg("k_unloading"), py::arg("elastic_recovery") = none, py::arg("tail_depth") = none,
-        py::arg("tail_slope") = 0.0, py::arg("friction_share") = 1.0,
+        py::arg("tail_slope") = 0.0, py::arg("friction_share") = 1.0, py::arg("springback") = 0.0,
         "The paper's curve: k_initial to the knee, k_hardening to f_max, then the plateau; beyond tail_depth "
         "steeper by tail_slope.");
     m.def(
         "point_curve",
         [](const std::vector<double>& deflection, const std::vector<double>& force, double k_unloading,
-           double elastic_recovery, double tail_depth, double tail_slope, double friction_share) {
+           double elastic_recovery, double tail_depth, double tail_slope, double friction_share,
+           double springback) {
             return completed(point_curve(deflection, force, k_unloading), elastic_recovery, tail_depth,
-                             tail_slope, friction_share);
+                             tail_slope, friction_share, springback);
         },
         py::arg("deflection"), py::arg("force"), py::arg("k_unloading"), py::arg("elastic_recovery") = none,
         py::arg("tail_depth") = none, py::arg("tail_slope") = 0.0, py::arg("friction_share") = 1.0,
+        py::arg("springback") = 0.0,
         "A curve through points, flat after the last; beyond tail_depth steeper by tail_slope.");
 
     m.def(

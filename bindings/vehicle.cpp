@@ -163,7 +163,19 @@ void register_vehicle(py::module_& m) {
             },
             "Of each unit: has it wheels, with all of its skin above the ground at rest? Else its skin does "
             "not "
-            "meet the ground.");
+            "meet the ground.")
+        .def(
+            "springback",
+            [](const Vehicle& vehicle, std::size_t unit) {
+                const TrussMesh& mesh = vehicle.units.at(unit).trusses;
+                Column found(mesh.count, 0.0);
+                for (std::size_t truss = 0; truss < mesh.count && !mesh.springback.empty(); ++truss) {
+                    const std::size_t i = mesh.slot(truss);
+                    found[mesh.input_index[truss]] = mesh.springback[i / block_size][i % block_size];
+                }
+                return py::array_t<double>(static_cast<py::ssize_t>(found.size()), found.data());
+            },
+            py::arg("unit"), "(n,) m: what each node of a unit comes back by without force");
 }
 
 }  // namespace birm3d::bindings

@@ -213,7 +213,7 @@ class Event:
     @property
     def exit_deflection(self) -> float | None:
         """
-        m, greatest of all trusses when it had left
+        m, greatest of all trusses when it had left, less their springback
         """
     @property
     def exit_velocity(self) -> tuple[float, float, float] | None:
@@ -1111,6 +1111,11 @@ class TrussCurve:
         """
         slope from there on
         """
+    @property
+    def springback(self) -> float:
+        """
+        m, without force
+        """
 class TrussMesh:
     """
     The crushable skin of one rigid body. Immutable.
@@ -1217,6 +1222,10 @@ class Vehicle:
     """
     def __init__(self, units: collections.abc.Sequence[Unit], joints: collections.abc.Sequence[Joint]) -> None:
         ...
+    def springback(self, unit: typing.SupportsInt | typing.SupportsIndex) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) m: what each node of a unit comes back by without force
+        """
     @property
     def stands_on_wheels(self) -> list[bool]:
         """
@@ -1230,7 +1239,7 @@ def from_roll_pitch_yaw(roll: typing.SupportsFloat | typing.SupportsIndex, pitch
     """
     Quaternion (w, x, y, z) of ISO 8855 angles in rad.
     """
-def knee_curve(k_initial: typing.SupportsFloat | typing.SupportsIndex, knee: typing.SupportsFloat | typing.SupportsIndex, k_hardening: typing.SupportsFloat | typing.SupportsIndex, f_max: typing.SupportsFloat | typing.SupportsIndex, k_unloading: typing.SupportsFloat | typing.SupportsIndex, elastic_recovery: typing.SupportsFloat | typing.SupportsIndex = ..., tail_depth: typing.SupportsFloat | typing.SupportsIndex = ..., tail_slope: typing.SupportsFloat | typing.SupportsIndex = 0.0, friction_share: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> TrussCurve:
+def knee_curve(k_initial: typing.SupportsFloat | typing.SupportsIndex, knee: typing.SupportsFloat | typing.SupportsIndex, k_hardening: typing.SupportsFloat | typing.SupportsIndex, f_max: typing.SupportsFloat | typing.SupportsIndex, k_unloading: typing.SupportsFloat | typing.SupportsIndex, elastic_recovery: typing.SupportsFloat | typing.SupportsIndex = ..., tail_depth: typing.SupportsFloat | typing.SupportsIndex = ..., tail_slope: typing.SupportsFloat | typing.SupportsIndex = 0.0, friction_share: typing.SupportsFloat | typing.SupportsIndex = 1.0, springback: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> TrussCurve:
     """
     The paper's curve: k_initial to the knee, k_hardening to f_max, then the plateau; beyond tail_depth steeper by tail_slope.
     """
@@ -1238,7 +1247,7 @@ def mass_properties(solids: typing.Annotated[numpy.typing.ArrayLike, numpy.float
     """
     Mass properties of 8-node solids (n, 8, 3) in m with densities (n,) in kg/m^3.
     """
-def point_curve(deflection: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], force: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], k_unloading: typing.SupportsFloat | typing.SupportsIndex, elastic_recovery: typing.SupportsFloat | typing.SupportsIndex = ..., tail_depth: typing.SupportsFloat | typing.SupportsIndex = ..., tail_slope: typing.SupportsFloat | typing.SupportsIndex = 0.0, friction_share: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> TrussCurve:
+def point_curve(deflection: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], force: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], k_unloading: typing.SupportsFloat | typing.SupportsIndex, elastic_recovery: typing.SupportsFloat | typing.SupportsIndex = ..., tail_depth: typing.SupportsFloat | typing.SupportsIndex = ..., tail_slope: typing.SupportsFloat | typing.SupportsIndex = 0.0, friction_share: typing.SupportsFloat | typing.SupportsIndex = 1.0, springback: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> TrussCurve:
     """
     A curve through points, flat after the last; beyond tail_depth steeper by tail_slope.
     """

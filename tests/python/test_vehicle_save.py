@@ -181,7 +181,7 @@ def test_export_for_the_core_holds_the_meshed_vehicle_exactly(tmp_path: Path) ->
     vehicle = several(Vehicle.preset("passenger_car", mesh_density=0.02))
     vehicle.export_core(tmp_path / "car.txt")
     words = (tmp_path / "car.txt").read_text(encoding="ascii").split()
-    assert words[:5] == ["birm3d-vehicle", "6", "units", "1", "mass"]
+    assert words[:5] == ["birm3d-vehicle", "7", "units", "1", "mass"]
     assert float.fromhex(words[5]) == vehicle.mass
     assert words[words.index("trusses") + 1] == str(vehicle.n_nodes)
     height = words[words.index("mass_center_height") + 1]

@@ -20,9 +20,11 @@ channels scatter by. Restitution at low speed: 0.1, the fit's own scatter is not
 What the model can not do here: the compartment and the mass centre are one. In a test the engine stops
 early and the compartment goes on by another 10 % (0.741 and 0.677 m in test 10146). The compartment is
 what is measured. So a preset that is fitted to the compartment has its force too low.
-Static crush is measured at bumper height after the vehicle has been towed away; bumper covers spring back."""
+Static crush is measured at bumper height after the vehicle has been towed away. Bumper covers have sprung
+back then: by 8 cm without force in the model, whatever the speed."""
 
 TRAVEL, CRUSH, LOW_SPEED = 0.12, 0.13, 0.1
+SPRINGBACK = ("10146", "7460")  # the springback of all fronts comes from these two
 
 
 def tasks() -> Sequence[str]:
@@ -63,7 +65,8 @@ def rows(task: str) -> list[Row]:
         )
     if crush is not None:
         predicted = _of(result, "residual_crush")
-        found.append(Row(told, who, "static crush", "m", crush, *about(crush, CRUSH), predicted))
+        role = "fitted" if task in SPRINGBACK else "predicted"
+        found.append(Row(told, who, "static crush", "m", crush, *about(crush, CRUSH), predicted, role))
     return found
 
 

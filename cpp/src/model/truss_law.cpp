@@ -86,6 +86,8 @@ void require_valid(const TrussCurve& curve, const std::string& name) {
     if (!(curve.recovery > 0.0)) refuse(name + "elastic_recovery", "> 0", curve.recovery);
     if (!(curve.friction_share >= 0.0 && curve.friction_share <= 1.0))
         refuse(name + "friction_share", "in [0, 1]", curve.friction_share);
+    if (!(std::isfinite(curve.springback) && curve.springback >= 0.0))
+        refuse(name + "springback", "finite and >= 0", curve.springback);
     if (curve.deflection.empty() || curve.deflection.size() != curve.slope.size() ||
         curve.deflection[0] != 0.0)
         refuse(name + "envelope", "one slope for each deflection, the first at 0",

@@ -174,6 +174,7 @@ TrussMesh::TrussMesh(const TrussInput& input, const std::vector<Wheel>& wheels) 
         friction_share.fill().resize(blocks);
     for (std::size_t b = 0; b < blocks; ++b)
         fill_block(input, b);
+    find_springback(input);
     find_panels(input);
     find_tread(input, wheels);
 }

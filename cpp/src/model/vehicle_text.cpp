@@ -163,6 +163,7 @@ TrussCurve curve_of(Reader& in) {
     curve.k_unloading = in.number();
     curve.recovery = in.number();
     curve.friction_share = in.number();
+    curve.springback = in.number();
     for (; points > 0; --points) {
         curve.deflection.push_back(in.number());
         curve.slope.push_back(in.number());
@@ -228,8 +229,8 @@ Joint joint_of(Reader& in) {
 Vehicle vehicle_of_text(std::string_view text) {
     Reader in(text);
     in.expect("birm3d-vehicle");
-    if (const int version = in.whole(); version != 6)
-        in.wrong("version 6", "version " + std::to_string(version));
+    if (const int version = in.whole(); version != 7)
+        in.wrong("version 7", "version " + std::to_string(version));
     std::vector<Unit> units;
     for (std::size_t left = in.count("units"); left > 0; --left)
         units.push_back(unit_of(in));

@@ -267,7 +267,7 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
     if (!has_left(scene, state)) return;
     event.left = true;
     event.separated = state.touched;
-    event.deflection = greatest_deflections(*scene.vehicle, state).now;
+    event.deflection = greatest_deflections(*scene.vehicle, state).left;
     if (!event.decided()) judge_departure(scene, state, event);
 }
 
@@ -281,7 +281,7 @@ bool is_decided(const Scene& scene, const State& state, Event& event) {
     event.verdict = Verdict::redirected, event.manner = Manner::slides_on;
     if (!event.touching) {
         event.left = event.separated = true;
-        event.deflection = greatest_deflections(*scene.vehicle, state).now;
+        event.deflection = greatest_deflections(*scene.vehicle, state).left;
     }
     return true;
 }

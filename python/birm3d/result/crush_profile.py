@@ -49,7 +49,7 @@ class CrushMap:
     height : ndarray, shape (n,)
         Of all nodes above the ground at rest, uncrushed [m].
     crush : ndarray, shape (n,)
-        Of all nodes: how far they have moved inwards, square to the side [m].
+        Of all nodes: how far they have moved inwards, square to the side, once covers have sprung back [m].
     triangles : ndarray, shape (m, 3)
         Of the side, indices of nodes, those that no other part of the same side hides from outside.
     """
@@ -120,9 +120,16 @@ def crush_map(result: RunRecord, side: Side | None = None, *, unit: int = 0) -> 
         side=side,
         lateral=shape.nodes[:, lateral],
         height=shape.nodes[:, 2] + shape.height,
-        crush=sign * (shape.nodes - result.final_nodes(unit))[:, axis],
+        crush=_sprung_back(result, unit, sign * (shape.nodes - result.final_nodes(unit))[:, axis]),
         triangles=triangles,
     )
+
+
+def _sprung_back(result: RunRecord, unit: int, crush: Floats) -> Floats:
+    """Return the crush less what covers come back by, as in ``residual_crush``, once the vehicle has left."""
+    if not result.has_left:
+        return crush
+    return np.where(crush > 0.0, np.maximum(crush - result.scene.vehicle.core.springback(unit), 0.0), crush)
 
 
 def crush_profile(

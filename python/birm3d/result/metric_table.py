@@ -138,7 +138,12 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
             shown=_metres("dynamic crush (greatest truss shortening)", headline=True),
         ),
         "residual_crush": Metric(
-            *("m", "crush", "the same when the vehicle had left, or else at the end", "end"),
+            *(
+                "m",
+                "crush",
+                "the same when the vehicle had left and its covers had sprung back, or else at the end",
+                "end",
+            ),
             lambda run: run.residual_crush,
             shown=_metres("residual crush"),
         ),

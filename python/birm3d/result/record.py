@@ -76,6 +76,11 @@ class RunRecord:
         self._event = event  # None of a file of version 0.1.0
 
     @property
+    def has_left(self) -> bool:
+        """Whether the vehicle had separated from the barrier."""
+        return self._event is not None and self._event.exit_deflection is not None
+
+    @property
     def outcome(self) -> str:
         """What became of the vehicle: one of :data:`birm3d.result.event.OUTCOMES`."""
         outcome: str = "undecided" if self._event is None else self._event.outcome

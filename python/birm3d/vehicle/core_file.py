@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["export_core"]
 
-VERSION = 6
+VERSION = 7
 
 
 def export_core(vehicle: VehicleVariants, path: str | Path) -> None:
@@ -62,7 +62,7 @@ def _of_unit(unit: dict[str, Any]) -> Iterator[str]:
     yield f"indentation_length {_numbers([mesh['indentation_length']])}"
     yield f"curves {len(mesh['curves'])}"
     for curve in mesh["curves"]:
-        numbers = (curve.k_unloading, curve.elastic_recovery, curve.friction_share)
+        numbers = (curve.k_unloading, curve.elastic_recovery, curve.friction_share, curve.springback)
         yield f"{len(curve.deflection)} {_numbers(numbers)}"
         for point in zip(curve.deflection, curve.slope, strict=True):
             yield _numbers(point)

@@ -563,8 +563,9 @@ class Zone(Block, ZoneLaw):
             value = getattr(self, key)
             if not tires and value is not None:
                 reject(key, f"must be in a zone of the panel 'tire', got {value:g}")
-        if tires and self.friction_share is not None:
-            reject("friction_share", f"must not go with the panel 'tire', got {self.friction_share:g}")
+        for key, number in (("friction_share", self.friction_share), ("springback_m", self.springback_m)):
+            if tires and number is not None:
+                reject(key, f"must not go with the panel 'tire', got {number:g}")
 
     def _check_law(self) -> None:
         segments = {

@@ -57,6 +57,7 @@ LAW_NUMBERS: Mapping[str, LawNumber] = {
     "tail_depth": LawNumber("length", "> 0", "tail from"),
     "tail_slope": LawNumber("pressure per length", ">= 0", "tail"),
     "friction_share": LawNumber("number", "in [0, 1]", "share of friction"),
+    "springback": LawNumber("length", ">= 0", "cover springs back by"),
     "breakaway": LawNumber("force", "> 0", "wheels give way at", of_wheel=True),
     "breakaway_travel": LawNumber("length", "> 0", "by", of_wheel=True),
     "static_deflection": LawNumber("length", "> 0", "springs under the weight", of_wheel=True),
@@ -109,6 +110,9 @@ class Zone(Mapping[str, Any]):
     friction_share
         Share in [0, 1] of the barrier's friction that reaches the vehicle. Folded parts stick to the barrier
         while the vehicle moves on. ``None``: all of it.
+    springback
+        Length by which covers spring back without force once the structure has given back what it can [m].
+        Only ``residual_crush`` knows it, of a vehicle that has left the barrier. ``None``: 0.
     breakaway, breakaway_travel
         Of a zone of tyres: load on the ground [N] at which springs and hangers of a wheel give way. The body
         then comes down by the travel [m] before the wheel carries it again. ``None``: they never give way.
@@ -140,6 +144,7 @@ class Zone(Mapping[str, Any]):
     tail_depth: float | None = None
     tail_slope: float | None = None
     friction_share: float | None = None
+    springback: float | None = None
     breakaway: float | None = None
     breakaway_travel: float | None = None
     static_deflection: float | None = None

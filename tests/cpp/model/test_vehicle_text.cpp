@@ -12,7 +12,7 @@ using namespace birm3d;
 namespace {
 
 const std::string block =
-    "birm3d-vehicle 6\n"
+    "birm3d-vehicle 7\n"
     "units 1\n"
     "mass 0x1.f4p+9\n"
     "inertia 0x1p+9 0x0p+0 0x0p+0 0x0p+0 0x1p+9 0x0p+0 0x0p+0 0x0p+0 0x1p+9\n"
@@ -27,7 +27,7 @@ const std::string block =
     "rate_sensitivity 0x0p+0\n"
     "indentation_length 0x0p+0\n"
     "curves 1\n"
-    "2 0x1p+22 inf 0x1p-2\n"
+    "2 0x1p+22 inf 0x1p-2 0x0p+0\n"
     "0x0p+0 0x1p+20\n"
     "0x1p-3 0x1p+21\n"
     "trusses 2\n"
@@ -90,7 +90,7 @@ TEST("what is wrong is named by its line") {
     CHECK(names(refusal(with("0x1.f4p+9", "0x1.8q+9")), "line 3"));
     CHECK(names(refusal(with("0x1.f4p+9", "0x1.123456789abcdefp+9")), "line 3"));
     CHECK(names(refusal(with("0x1.f4p+9", "nan")), "line 3"));
-    CHECK(names(refusal(with("birm3d-vehicle 6", "birm3d-vehicle 1")), "version 6"));
+    CHECK(names(refusal(with("birm3d-vehicle 7", "birm3d-vehicle 1")), "version 7"));
     CHECK(names(refusal(with("birm3d-vehicle", "vehicle")), "line 1"));
     CHECK(names(refusal(with("trusses 2", "trusses 3")), "line 21"));
     CHECK(names(refusal(with("trusses 2", "trusses -1")), ">= 0"));

@@ -49,6 +49,8 @@ struct TrussCurve {
     // Of the barrier's friction, in [0, 1]: folded parts stick to the barrier while the vehicle moves on, and only this
     // share reaches the rigid body.
     double friction_share = 1.0;
+    // A cover springs back by this more without force, and what is measured afterwards is less deep (m).
+    double springback = 0.0;
 };
 
 // The paper's curve: k_initial to the knee, k_hardening to f_max, then the plateau. knee and f_max may be

@@ -152,6 +152,7 @@ struct TrussMesh {
     SharedColumn<Box> anchor_box;              // (blocks)
     SharedColumn<TireNode> tire_nodes;         // (count - shell)
     SharedColumn<BlockColumn> friction_share;  // (blocks), see TrussCurve; empty where all have the whole
+    SharedColumn<BlockColumn> springback;      // (blocks), of each node, see TrussCurve; empty where none has any (m)
     Box anchors;                               // around those of the skin
     std::array<Panel, panels> panel;
     // (blocks) bit by bit: which panels have nodes there? The bit after them: treads.
@@ -183,6 +184,7 @@ struct TrussMesh {
 
   private:
     void fill_block(const TrussInput& input, std::size_t b);
+    void find_springback(const TrussInput& input);
     void find_panels(const TrussInput& input);
     void find_tread(const TrussInput& input, const std::vector<Wheel>& wheels);
     void pad(const TrussInput& input, std::size_t b);

@@ -5,7 +5,7 @@
 // writes it (0x1.8p+3), inf, or a whole number: no rounding and no locale come between. Lengths are in m; n rows
 // follow each count.
 //
-//   birm3d-vehicle 5
+//   birm3d-vehicle 7
 //   units u
 //     mass m                      kg
 //     inertia                     nine numbers, about the mass centre, body axes (kg m^2)
@@ -19,7 +19,8 @@
 //     mesh_wheels n               rows as above, in the axes of the mesh
 //     rate_sensitivity c          s/m
 //     indentation_length l
-//     curves n                    each: points k_unloading recovery friction_share, then rows: deflection, slope from there on
+//     curves n                    each: points k_unloading recovery friction_share springback, then rows:
+//                                 deflection, slope from there on
 //     trusses n                   rows: node (3), anchor (3), curve, scale, wheel or -1, skin node or -1 (see TrussInput)
 //   joints j
 //     rows: fifth_wheel or welded, leading unit, trailing unit, place on each (3 + 3), roll limit (rad)

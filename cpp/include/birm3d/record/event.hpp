@@ -50,7 +50,7 @@ struct Event {
 
     bool left = false;                 // for good?
     bool separated = false;            // and had touched: `released_at` and `released_velocity` are final
-    double deflection = 0.0;           // greatest of all trusses when it had left (m)
+    double deflection = 0.0;           // greatest of all trusses when it had left, less their springback (m)
     std::uint64_t later_contacts = 0;  // contacts that began after it had left
 
     Verdict verdict = Verdict::undecided;  // before rolling over is looked at
@@ -79,9 +79,10 @@ bool is_decided(const Scene& scene, const State& state, Event& event);
 // Of a run that ends undecided at the longest event: a vehicle that still slides along the barrier is redirected.
 void judge_at_longest(const Scene& scene, const State& state, Event& event);
 
-// Greatest deflection of all trusses of all units, now and during the run (m).
+// Greatest deflection of all trusses of all units (m): now, less what covers spring back by without force, and
+// during the run.
 struct Deflections {
-    double now, peak;
+    double now, left, peak;
 };
 Deflections greatest_deflections(const Vehicle& vehicle, const State& state);
 
