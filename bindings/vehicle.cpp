@@ -87,12 +87,12 @@ void register_vehicle(py::module_& m) {
                     boxes.push_back({{core.at(i, 0), core.at(i, 1), core.at(i, 2)},
                                      {core.at(i, 3), core.at(i, 4), core.at(i, 5)}});
                 const RigidBody body(mass, matrix(inertia, "inertia"));
-                std::vector<Wheel> own = discs(wheels);
-                require_row_for_each(own, breakaway, 2, "breakaway");
-                require_row_for_each(own, suspension, 4, "suspension");
-                require_row_for_each(own, tires, 3, "tires");
+                std::vector<Wheel> discs_of_wheels = discs(wheels);
+                require_row_for_each(discs_of_wheels, breakaway, 2, "breakaway");
+                require_row_for_each(discs_of_wheels, suspension, 4, "suspension");
+                require_row_for_each(discs_of_wheels, tires, 3, "tires");
                 for (py::ssize_t i = 0; i < breakaway.shape(0); ++i) {
-                    Wheel& wheel = own[static_cast<std::size_t>(i)];
+                    Wheel& wheel = discs_of_wheels[static_cast<std::size_t>(i)];
                     wheel.breakaway = breakaway.at(i, 0);
                     wheel.travel = breakaway.at(i, 1);
                     wheel.suspension = {suspension.at(i, 0), suspension.at(i, 1), suspension.at(i, 2),
@@ -101,8 +101,8 @@ void register_vehicle(py::module_& m) {
                     wheel.tread_radius = tires.at(i, 1);
                     wheel.camber_ratio = tires.at(i, 2);
                 }
-                return Unit(body, trusses.moved(vector(origin, "origin")), std::move(own), mass_center_height,
-                            vector(offset, "offset"), std::move(boxes));
+                return Unit(body, trusses.moved(vector(origin, "origin")), std::move(discs_of_wheels),
+                            mass_center_height, vector(offset, "offset"), std::move(boxes));
             }),
             py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("trusses"), py::arg("origin"),
             py::arg("wheels"), py::arg("breakaway"), py::arg("suspension"), py::arg("tires"),

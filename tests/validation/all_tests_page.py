@@ -9,16 +9,26 @@ from types import ModuleType
 
 from comparison import RESULTS, TOLD, Row
 
+# Magnitude below which a number is rounding alone, in the unit of the page.
+_ROUNDING = 1e-9
+
 INTRODUCTION = """# Predicted beside given tests
 
 Written by `python tests/validation/all_tests.py` from data; nothing on this page is typed in.
 
 One table for each kind of test: measured, predicted, error. Which preset stands for a vehicle follows from
 one rule (`stand_in.py`: the preset of the class that is nearest in mass, with the mass of the test); no row
-has a number of its own. An error beyond the test's own scatter is bold.
+has a number of its own. The mark of a quantity is the error that is accepted. It is chosen by how much the
+test itself scatters, and each kind says its marks. An error beyond its mark is bold.
+
+Travel is the greatest displacement of the mass centre towards the barrier. Static crush is what is left of
+the crush after the test. Other words are in the [glossary](../../docs/pages/glossary.md).
+
+The first table counts the rows of each quantity within their marks. Its median error is that of magnitudes. A
+dash in place of a unit stands for ratios, counts, and yes (1) or no (0).
 
 - fitted: the row was used in a fit of this vehicle.
-- left out: a fit to all rows of its vehicle but this one.
+- left out: predicted by a fit to all rows of its vehicle but this one.
 - predicted: no fit has seen the row.
 
 Figures whose source is not at hand are printed apart, at the end of a kind, and are in no count.
@@ -50,6 +60,8 @@ def _rule(count: int) -> str:
 
 def _number(value: float, unit: str) -> str:
     factor, _ = TOLD.get(unit, (1.0, unit))
+    if abs(factor * value) < _ROUNDING:
+        return "0"
     return f"{factor * value:.3g}" if abs(factor * value) < 1000.0 else f"{factor * value:,.0f}"
 
 
@@ -62,19 +74,17 @@ def quantities(rows: Sequence[Row]) -> list[str]:
     return list(dict.fromkeys(row.quantity for row in rows if row.judged))
 
 
-def median_error(rows: Sequence[Row]) -> str:
-    """Median magnitude of the errors, as a share or in the quantity's unit."""
-    if not rows:
-        return ""
+def median_error(rows: Sequence[Row]) -> tuple[str, str]:
+    """Median magnitude of the errors and its unit: per cent of what was measured, or the quantity's unit."""
+    middle = median(abs(row.error) for row in rows)
     if rows[0].relative:
-        return f"{100.0 * median(abs(row.error) for row in rows):.0f} %"
+        return f"{100.0 * middle:.0f}", "% of measured"
     factor, unit = TOLD.get(rows[0].unit, (1.0, rows[0].unit))
-    told = "" if unit == "-" else f" {unit}"
-    return f"{factor * median(abs(row.error) for row in rows):.2g}{told}"
+    return f"{factor * middle:.2g}", "–" if unit == "-" else unit
 
 
 def _summary(modules: Mapping[str, ModuleType], tables: Mapping[str, Sequence[Row]]) -> Iterator[str]:
-    head = ("kind", "quantity", "role", "rows", "within the marks", "median error")
+    head = ("kind", "quantity", "role", "rows", "within the marks", "median error", "unit of the error")
     yield _line(head)
     yield _rule(len(head))
     for name, module in modules.items():
@@ -89,7 +99,7 @@ def _summary(modules: Mapping[str, ModuleType], tables: Mapping[str, Sequence[Ro
                 if not chosen:
                     continue
                 met = sum(row.met for row in chosen)
-                yield _line((title, quantity, role, str(len(chosen)), str(met), median_error(chosen)))
+                yield _line((title, quantity, role, str(len(chosen)), str(met), *median_error(chosen)))
                 title = ""
 
 

@@ -14,6 +14,8 @@ NAME = "finite_element"
 TITLE = "Finite-element cars N and S: walls, oblique walls, poles"
 TEXT = """Vehicles: `tests/data/finite_element/fitted_n.toml` and `fitted_s.toml`, fitted to all runs
 together; rows "left out" are fits without the run of the row, as [their page](finite_element.md) has them.
+A run's name says the vehicle (n or s), the barrier, its angle and the speed in mph: `n_wall25_30` is a wall
+at 25 degrees from head-on, `n_pole350_30` a pole 0.35 m right of the middle.
 Marks: crush 10 % (N) or 5 % (S), force 15 % or 10 %, yaw 5 degrees, what repeats of a run differ by.
 
 What the model can not do here: a truss has no force from its neighbours. So the far half of a bumper answers

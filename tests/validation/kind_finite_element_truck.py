@@ -15,7 +15,8 @@ TITLE = "Finite-element truck: walls and bollards"
 TEXT = """Vehicles: `tests/data/finite_element/fitted_truck.toml`, eleven numbers of which are fitted to all
 five runs; and the preset `cargo_truck`, another truck (its mass, height and length are its own). Three
 stresses of its front are fitted to travel and force of the runs (`fit_truck_preset.py`, which leaves
-each run out in turn, too).
+each run out in turn, too). A run's name says the barrier and the speed in mph: `wall25_50` is a wall at 25
+degrees from head-on, `bollards3_50` a row of three bollards.
 Marks: travel 12 %, force over 50 ms 15 %, impulse sideways on each post 20 kN s, pitch 5
 degrees.
 

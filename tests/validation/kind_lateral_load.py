@@ -11,7 +11,8 @@ from stand_in import name_of, stand_in
 
 NAME = "lateral_load"
 TITLE = "Lateral design loads of rails"
-TEXT = """Vehicles: the stand-in of the class with the mass of the level's design vehicle, at a rigid
+TEXT = """AASHTO's bridge specifications give each test level (TL-1 and up) a sideways design force for rails.
+Vehicles: the stand-in of the class with the mass of the level's design vehicle, at a rigid
 vertical wall of the least height of the table. Compared: greatest mean force over 50 ms, and the height of
 its resultant, with the design force and its effective height. Marks: 25 % in force (a later proposal for
 the same vehicle is 1.3 times AASHTO's), 0.15 m in height. A design value is no measurement: it bounds

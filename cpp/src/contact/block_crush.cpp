@@ -31,11 +31,11 @@ void find_rate_factor(const ContactPass& pass, const ContactBlock& block, std::s
     };
     if (at != several_obstacles) return set(pass.relative_motion[at], factor);
     if (pass.now.segments.empty()) return set(pass.motion, factor);
-    alignas(64) BlockColumn own;
+    alignas(64) BlockColumn factor_of_obstacle;
     for (std::size_t k = 0; k < block.reachable.size(); ++k) {
-        set(pass.relative_motion[block.reachable[k]], own);
+        set(pass.relative_motion[block.reachable[k]], factor_of_obstacle);
         for (std::size_t i = 0; i < block_size; ++i)
-            if (block.nearest[i] == k) factor[i] = own[i];
+            if (block.nearest[i] == k) factor[i] = factor_of_obstacle[i];
     }
 }
 

@@ -34,14 +34,14 @@ BIRM3D_BLOCK_LOOP NodeLoads select_loads(const std::array<std::size_t, block_siz
     alignas(64) BlockColumn force, x, y, z, tx, ty, tz;
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < block_size; ++i) {
-        const double own = nearest[i] == k ? contact.normal_force[i] : 0.0;
-        normal_force[i] = force[i] = own;
-        x[i] = own * contact.nx[i];
-        y[i] = own * contact.ny[i];
-        z[i] = own * contact.nz[i];
-        tx[i] = own * contact.tx[i];
-        ty[i] = own * contact.ty[i];
-        tz[i] = own * contact.tz[i];
+        const double magnitude = nearest[i] == k ? contact.normal_force[i] : 0.0;
+        normal_force[i] = force[i] = magnitude;
+        x[i] = magnitude * contact.nx[i];
+        y[i] = magnitude * contact.ny[i];
+        z[i] = magnitude * contact.nz[i];
+        tx[i] = magnitude * contact.tx[i];
+        ty[i] = magnitude * contact.ty[i];
+        tz[i] = magnitude * contact.tz[i];
     }
     return {block_sum(force), block_sum(x),  block_sum(y), block_sum(z),
             block_sum(tx),    block_sum(ty), block_sum(tz)};
@@ -66,9 +66,9 @@ void add(const CrushSums& sums, SkinForces& skin) {
 }
 
 // Reduces normal forces to the part that causes friction on the rigid body (TrussCurve::friction_share).
-void take_share(const BlockColumn& share, BlockColumn& normal_force) {
+void take_share(const BlockColumn& friction_share, BlockColumn& normal_force) {
     for (std::size_t i = 0; i < block_size; ++i)
-        normal_force[i] *= share[i];
+        normal_force[i] *= friction_share[i];
 }
 
 // The load on the k-th near obstacle, world axes. Adds its stored energy and its resistance to `skin`. `R`: body to

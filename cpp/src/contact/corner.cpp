@@ -8,7 +8,7 @@ namespace birm3d {
 
 namespace {
 
-// Square of the sine below which two faces make no corner.
+// Square of the sine of the angle between two faces below which they make no corner.
 constexpr double parallel = 0.01;
 
 // Bit sets of faces in the order in which they are tried: those with the most faces first.
@@ -24,7 +24,8 @@ struct Faces {
     std::size_t count = 0;
 };
 
-// Rows and columns beyond the subset are those of the identity.
+// The matrix of q_k . h_j: how the gap of face k changes for each metre that face j displaces the node. Rows and columns
+// beyond the subset are those of the identity.
 Mat3 products(const Corner& corner, const Faces& faces) {
     Mat3 products = Mat3::Identity();
     for (std::size_t k = 0; k < faces.count; ++k)
@@ -34,7 +35,7 @@ Mat3 products(const Corner& corner, const Faces& faces) {
     return products;
 }
 
-// Of M x = y, the rows of M being given.
+// The solution x of M x = y. `a`, `b` and `c` are the rows of M.
 Vec3 solve(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& y) {
     const Vec3 across = b.cross(c);
     return (y.x() * across + y.y() * c.cross(a) + y.z() * a.cross(b)) / a.dot(across);

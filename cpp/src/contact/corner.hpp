@@ -23,41 +23,47 @@ namespace birm3d {
 
 struct CornerFace {
     std::size_t reachable_index = 0;  // index of the obstacle in ContactBlock::reachable
-    double gap = 0.0;                 // of the node before it is moved (m)
-    Vec3 normal = Vec3::UnitX();      // of the surface there
-    Vec3 gradient = Vec3::UnitX();    // q: of the gap, by the node's place
-    double per_force = 1.0;           // p: size of the gap's gradient by the obstacle's place
-    Vec3 direction = Vec3::UnitX();   // h
-    Vec3 place = Vec3::Zero();  // where the force acts (m), and the torque of a unit of normal force (m)
+    double gap = 0.0;                 // signed distance of the node to the face before the node is moved (m)
+    Vec3 normal = Vec3::UnitX();      // n: unit normal of the surface at the node, outward
+    Vec3 gradient = Vec3::UnitX();    // q: change of the gap for each metre that the node moves
+    // p: change of the gap for each metre that the obstacle moves along n; 1 at a face. The normal force on the obstacle
+    // is p times `weight` times the force of the truss.
+    double per_force = 1.0;
+    Vec3 direction = Vec3::UnitX();  // h: unit direction in which the face displaces the node
+    // Of an indentation only, as its force acts on the post and not at the node, body axes: where it acts (m), and the
+    // torque of a normal force of 1 N about the mass centre (N m).
+    Vec3 place = Vec3::Zero();
     Vec3 torque = Vec3::Zero();
-    bool indented = false;  // is it an indentation? Then `place` and `torque` are given
-    double weight = 0.0;    // lambda
+    bool indented = false;  // is it an indentation?
+    double weight = 0.0;    // lambda: fraction of the truss's force that the face carries, see above
 };
 
 struct Corner {
     static constexpr std::size_t most = 3;
 
-    std::size_t node_index = 0;
-    std::size_t count = 0;
-    std::array<CornerFace, most> face;
+    std::size_t node_index = 0;         // in its block
+    std::size_t count = 0;              // of the faces
+    std::array<CornerFace, most> face;  // the first `count` are in use
     // Work that is lost as a face drives the node: half the drop of the truss's force times the step's compression (J).
     double lost_work = 0.0;
 
     // False where the face is nearly parallel to the known ones: such faces make no corner.
     bool add(const CornerFace& further);
 
-    // Displacement onto all faces; and onto those with a weight above zero only.
+    // Displacement of the node onto all faces; and onto those with a weight above zero only (m).
     Vec3 displacement() const { return displacement_onto((1U << count) - 1U); }
     Vec3 pushed_displacement() const { return displacement_onto(pushing()); }
 
-    // Sets the weights for a truss with the direction b. Returns on how many faces it pushes.
+    // Sets the weights for a truss with the direction b, from the node to its anchor. Returns on how many faces the truss
+    // pushes; 0 if no weights are found.
     std::size_t distribute(const Vec3& b);
 
     // Removes faces on which the truss does not push, unless the node is inside them once it is moved onto the others.
     void release();
 
   private:
-    unsigned pushing() const;
+    // A subset of the faces is a number whose bit k is set for face k.
+    unsigned pushing() const;  // subset of those with a weight above zero
     Vec3 displacement_onto(unsigned subset) const;
     bool try_weights(unsigned subset, const Vec3& b);
 };

@@ -24,6 +24,7 @@ constexpr double same_face = 0.9;
 // face drives it (negative).
 constexpr double negligible_gap = 1e-30;
 
+// Moves the places of nodes that are inside their nearest face onto it, along its normal.
 BIRM3D_BLOCK_LOOP void move_out(const NodeFaces& faces, const BlockContact& contact, BlockColumn& x,
                                 BlockColumn& y, BlockColumn& z) {
     BIRM3D_INDEPENDENT
@@ -35,7 +36,8 @@ BIRM3D_BLOCK_LOOP void move_out(const NodeFaces& faces, const BlockContact& cont
     }
 }
 
-// Flags nodes that lie inside another surface once they have been moved out of theirs; returns the number of all flags.
+// Sets `cornered` to 1 for nodes that lie inside another surface once they have been moved out of theirs. `gap`: of the moved
+// nodes to that surface (m). Returns the number of all nodes with a 1.
 BIRM3D_BLOCK_LOOP double note_inside(const NodeFaces& faces, const BlockColumn& gap, BlockColumn& cornered) {
     BIRM3D_INDEPENDENT
     for (std::size_t i = 0; i < block_size; ++i)
@@ -45,7 +47,8 @@ BIRM3D_BLOCK_LOOP double note_inside(const NodeFaces& faces, const BlockColumn& 
     return block_sum(sum);
 }
 
-// Nodes that push and are near to a second surface.
+// Sets `cornered` to 1 for nodes whose truss pushes and that are within `margin` of a second surface (m). `second`: gap to the
+// second nearest one (m).
 BIRM3D_BLOCK_LOOP void note_pushing(const BlockColumn& force, const BlockColumn& second, double margin,
                                     BlockColumn& cornered) {
     BIRM3D_INDEPENDENT
@@ -54,7 +57,7 @@ BIRM3D_BLOCK_LOOP void note_pushing(const BlockColumn& force, const BlockColumn&
 }
 
 // The face of the node's nearest obstacle.
-CornerFace own_face(const ContactBlock& block, std::size_t i) {
+CornerFace nearest_face_of(const ContactBlock& block, std::size_t i) {
     const NodeFaces& faces = block.faces;
     CornerFace face;
     face.reachable_index = block.nearest[i];
@@ -107,13 +110,13 @@ bool stood_on(const ContactPass& pass, const ContactBlock& block, std::size_t k,
 // Adds the faces that a pushing node has been on since the start of the step. Where two segments of a wall meet, the
 // nearest face replaces that of the other segment. `stays`: was the node on its nearest face before?
 void add_faces_since_start(const ContactPass& pass, const ContactBlock& block, const Vec3& node,
-                           const CornerFace& own, bool stays, Corner& corner) {
+                           const CornerFace& nearest_face, bool stays, Corner& corner) {
     for (std::size_t k = 0; k < block.reachable.size(); ++k) {
-        if (k == own.reachable_index ||
+        if (k == nearest_face.reachable_index ||
             !is_solid_to(pass, block.index, corner.node_index, block.reachable[k]))
             continue;
-        if (!stays && stood_on(pass, block, k, own.normal, node)) {
-            if (corner.count == 0) corner.add(own);
+        if (!stays && stood_on(pass, block, k, nearest_face.normal, node)) {
+            if (corner.count == 0) corner.add(nearest_face);
             continue;
         }
         if (is_past_covered_end(pass, block, k, node)) continue;
@@ -146,6 +149,7 @@ void place_in_corner(const ContactPass& pass, const Corner& corner, const Vec3& 
     TrussBlockState& nodes = block.alter();
     const std::size_t i = corner.node_index;
     const Vec3 anchor = anchor_of(truss, i);
+    // Deflections of the truss (m): with the node on all faces, and on those only that the truss pushes on.
     const double deflection = truss.length[i] - (anchor - to).norm();
     const double free = truss.length[i] - (anchor - (to - corner.pushed_displacement())).norm();
     double lost_work = 0.0;
@@ -182,25 +186,26 @@ void resolve_corner(const ContactPass& pass, std::size_t i, ContactBlock& block)
     if ((anchor - node).norm() <= tolerance::truss_length) return;
     Corner corner;
     corner.node_index = i;
-    const CornerFace own = own_face(block, i);
+    const CornerFace nearest_face = nearest_face_of(block, i);
     // An indentation that releases the node is no face of its corner: its gap is that of a node far away. Other faces may
     // still hold the node.
-    const bool leaves = own.indented && block.released[i] > 0.0;
+    const bool leaves = nearest_face.indented && block.released[i] > 0.0;
     const bool stays =
-        !leaves && (own.indented || stood_on(pass, block, own.reachable_index, own.normal, node));
-    if (stays || own.gap <= tolerance::touching_gap) corner.add(own);
+        !leaves && (nearest_face.indented ||
+                    stood_on(pass, block, nearest_face.reachable_index, nearest_face.normal, node));
+    if (stays || nearest_face.gap <= tolerance::touching_gap) corner.add(nearest_face);
     if (nodes.force[i] > 0.0) {
-        add_faces_since_start(pass, block, node, own, stays || leaves, corner);
+        add_faces_since_start(pass, block, node, nearest_face, stays || leaves, corner);
         corner.distribute((anchor - node).normalized());
         corner.release();
     }
     if (corner.count == 0) {
         if (leaves) return;
-        corner.add(own);
+        corner.add(nearest_face);
     }
     add_driving(pass, block, node, corner);
-    const bool alone = corner.count == 1 && corner.face[0].reachable_index == own.reachable_index &&
-                       corner.face[0].gap == own.gap;
+    const bool alone = corner.count == 1 && corner.face[0].reachable_index == nearest_face.reachable_index &&
+                       corner.face[0].gap == nearest_face.gap;
     if (alone) return;
     const Vec3 to = node + corner.displacement();
     const Vec3 arm = anchor - to;
@@ -208,7 +213,8 @@ void resolve_corner(const ContactPass& pass, std::size_t i, ContactBlock& block)
     place_in_corner(pass, corner, to, block);
 }
 
-// Adds the forces of the faces number `face_index` of all corners on the k-th reachable obstacle. `part`: working memory.
+// Adds the forces that the k-th reachable obstacle gets at the faces number `face_index` of all corners. `force`: of the truss
+// of each corner (N). `part`: working memory.
 void add_corner_forces(const ContactPass& pass, const std::vector<double>& force, std::size_t face_index,
                        std::size_t k, const ContactBlock& block, BlockContact& part, ContactSums& sums) {
     ObstacleSums& to = sums.obstacles[block.reachable[k]];
@@ -241,7 +247,7 @@ void resolve_corner_contacts(const ContactPass& pass, ContactBlock& block) {
     const auto is_post = [&](std::size_t k) { return std::holds_alternative<Post>(pass.shape(k)); };
     // Posts are too far apart for a node to touch two.
     if (std::all_of(block.reachable.begin(), block.reachable.end(), is_post)) return;
-    alignas(64) BlockColumn cornered;
+    alignas(64) BlockColumn cornered;  // 1 for nodes that may be in a corner, else 0
     cornered.fill(0.0);
     const TrussBlockState& nodes = *block.start;
     if (nodes.touching) note_pushing(nodes.force, block.second_gap, pass.margin, cornered);

@@ -12,7 +12,7 @@ void resolve_corner_contacts(const ContactPass& pass, ContactBlock& block);
 // Moves the corner's node from the start of the step onto all of its faces.
 void resolve_known_corner(const ContactPass& pass, Corner corner, ContactBlock& block);
 
-// Moves the forces of these nodes from `contact` to the obstacles, to each its fraction.
+// Takes the truss forces of these nodes out of `contact`, and adds them to the obstacles by the weights of the faces.
 void distribute_corner_forces(const ContactPass& pass, ContactBlock& block, ContactSums& sums);
 
 }  // namespace birm3d

@@ -197,17 +197,17 @@ constexpr double holding_cosine_post = -1.0, holding_cosine_other = 0.5;
 
 // The gap alone does not tell whether a node is in contact: a surface recedes from a node that pushes on it, by more in a longer
 // step.
-void find_holding_surfaces(const ContactPass& pass, const ContactBlock& block, HoldingSurfaces& held) {
+void find_holding_surfaces(const ContactPass& pass, const ContactBlock& block, HoldingSurfaces& holding) {
     const bool may_lag = any_edge(pass, block);
     for (std::size_t i = 0; i < block_size; ++i) {
         const double gap = block.faces.gap[i];
         const bool lags = may_lag && lags_behind_surface(pass, block, i);
         const bool touches =
             gap <= tolerance::touching_gap || (gap <= pass.margin && pushed_on_surface(pass, block, i));
-        held.lags[i] = lags ? 1.0 : 0.0;
-        held.contact_gap[i] = touches && !lags ? gap : infinity;
+        holding.lags[i] = lags ? 1.0 : 0.0;
+        holding.contact_gap[i] = touches && !lags ? gap : infinity;
         const bool on_post = std::holds_alternative<Post>(pass.shape(block.reachable[block.nearest[i]]));
-        held.least_facing[i] = on_post ? holding_cosine_post : holding_cosine_other;
+        holding.least_facing[i] = on_post ? holding_cosine_post : holding_cosine_other;
     }
 }
 
@@ -224,8 +224,8 @@ void follow_indentations(const ContactPass& pass, ContactBlock& block) {
     block.released.fill(0.0);
     if (block.indentations.empty()) return;
     alignas(64) BlockColumn follows, rank;
-    HoldingSurfaces held;
-    find_holding_surfaces(pass, block, held);
+    HoldingSurfaces holding;
+    find_holding_surfaces(pass, block, holding);
     rank.fill(infinity);
     const BlockColumn& panel_of = pass.mesh.block[block.index].panel;
     for (const BlockIndentation& reached : block.indentations) {
@@ -235,8 +235,8 @@ void follow_indentations(const ContactPass& pass, ContactBlock& block) {
             continue;
         alignas(64) const BlockColumn gap = block.faces.gap;
         follow_indentation(indented.indentation, indented.before, *block.start, panel_of, indented.panel,
-                           held.contact_gap, held.least_facing, held.lags, block.faces, block.contact, rank,
-                           follows);
+                           holding.contact_gap, holding.least_facing, holding.lags, block.faces,
+                           block.contact, rank, follows);
         note_second(follows, gap, block.second_gap);
         note_released(follows, block.released);
         block.hangs = block.hangs || (indented.indentation.is_face && block_max(follows) > 0.0);

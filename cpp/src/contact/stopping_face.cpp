@@ -99,8 +99,9 @@ void stand_on_stopping_faces(const ContactPass& pass, ContactBlock& block) {
             continue;
         }
         const Vec3 arm = anchor_of(pass.mesh.block[block.index], i) - node.place;
-        const bool held = block.faces.per_force[i] > 0.0 || arm.dot(block.contact.normal(i)) > 0.0;
-        if (held || !(arm.dot(node.stopped_by.normal) > 0.0)) continue;
+        const bool presses_on_nearest =
+            block.faces.per_force[i] > 0.0 || arm.dot(block.contact.normal(i)) > 0.0;
+        if (presses_on_nearest || !(arm.dot(node.stopped_by.normal) > 0.0)) continue;
         const CornerFace face = corner_face(node.stopped_by, block);
         if (face.reachable_index == block.reachable.size()) continue;
         block.nearest[i] = face.reachable_index;

@@ -73,10 +73,10 @@ void Trial::begin(const State& from, double step) {
 }
 
 void Trial::exchange_trusses(std::size_t u, TrussState& with) {
-    TrussState& own = state.units[u].trusses;
+    TrussState& trial = state.units[u].trusses;
     for (const std::size_t block : stale[u].blocks())
-        if (!active[u].contains(block)) own.block[block] = with.block[block];
-    std::swap(with.block, own.block);
+        if (!active[u].contains(block)) trial.block[block] = with.block[block];
+    std::swap(with.block, trial.block);
     stale[u] = active[u];
 }
 

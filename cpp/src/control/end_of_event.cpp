@@ -26,10 +26,12 @@ Box box_of_structure(const Scene& scene, std::size_t i) {
     Box box = bounds(first.shape);
     for (std::size_t j = i + 1; j < scene.obstacles.size() && scene.obstacles[j].structure == i; ++j) {
         // Segments follow each other along y.
-        const Box own = bounds(scene.obstacles[j].shape);
+        const Box further = bounds(scene.obstacles[j].shape);
         const double shift = first.rotation.col(1).dot(scene.obstacles[j].position - first.position);
-        const double low = std::min(box.center.y() - box.half.y(), shift + own.center.y() - own.half.y());
-        const double high = std::max(box.center.y() + box.half.y(), shift + own.center.y() + own.half.y());
+        const double low =
+            std::min(box.center.y() - box.half.y(), shift + further.center.y() - further.half.y());
+        const double high =
+            std::max(box.center.y() + box.half.y(), shift + further.center.y() + further.half.y());
         box.center.y() = 0.5 * (low + high), box.half.y() = 0.5 * (high - low);
     }
     return box;

@@ -240,14 +240,14 @@ double shorter_step(const Scene& scene, const State& from, const Trial& tried, S
         tried.at_start.happened ? separation_speed(scene, from, tried.at_start) : search.approach;
     const double separation = separation_speed(scene, tried.state, tried.at_end);
     search.error = std::max(tried.error, error_of_reversals(scene, tried, separation));
-    double wanted = dt;
-    if (dt > tolerance::stable_fraction * tried.critical_step) wanted = longest_stable(tried);
-    double share = 1.0;
-    if (search.error > allowed) share = std::max(0.2, 0.9 * std::sqrt(allowed / search.error));
-    if (fall_of_crush(from, tried) > tolerance::greatest_fall) share = std::min(share, 0.5);
-    if (share < 1.0 && dt > tolerance::jump_resolution)
-        wanted = std::min(wanted, std::max(share * dt, tolerance::jump_resolution));
-    double shorter = std::min(wanted < dt ? quantize_step(wanted) : infinity,
+    double target = dt;
+    if (dt > tolerance::stable_fraction * tried.critical_step) target = longest_stable(tried);
+    double fraction = 1.0;
+    if (search.error > allowed) fraction = std::max(0.2, 0.9 * std::sqrt(allowed / search.error));
+    if (fall_of_crush(from, tried) > tolerance::greatest_fall) fraction = std::min(fraction, 0.5);
+    if (fraction < 1.0 && dt > tolerance::jump_resolution)
+        target = std::min(target, std::max(fraction * dt, tolerance::jump_resolution));
+    double shorter = std::min(target < dt ? quantize_step(target) : infinity,
                               located_reversal(scene, tried, approach, separation));
     const double resolution = release_resolution(scene);
     if (dt > resolution && touches(from) && !touches(tried.state))

@@ -109,10 +109,10 @@ double passing_time(const Shape& shape, const Pose& pose, const Vec3& velocity, 
     const double width = thickness(shape);
     const auto* prism = std::get_if<Prism>(&shape);
     if (prism == nullptr) return passing_fraction * width / (velocity.norm() + rotation_speed);
-    const Vec3 own = pose.rotation.transpose() * velocity;
+    const Vec3 local = pose.rotation.transpose() * velocity;
     const double along =
-        passing_fraction * (prism->y_high() - prism->y_low()) / (std::abs(own.y()) + rotation_speed);
-    return std::min(passing_fraction * width / (std::hypot(own.x(), own.z()) + rotation_speed), along);
+        passing_fraction * (prism->y_high() - prism->y_low()) / (std::abs(local.y()) + rotation_speed);
+    return std::min(passing_fraction * width / (std::hypot(local.x(), local.z()) + rotation_speed), along);
 }
 
 }  // namespace

@@ -39,9 +39,9 @@ double free_rolling_speed(double full_speed, std::span<const TireNodeContact> wh
     for (const TireNodeContact& node : wheel) {
         const double square = node.rolling.squaredNorm();
         if (!(square > no_rolling) || !(node.normal_force > 0.0)) continue;
-        const double own = -node.sliding.dot(node.rolling) / square;
-        low = std::min(low, own);
-        high = std::max(high, own);
+        const double along_spoke = -node.sliding.dot(node.rolling) / square;
+        low = std::min(low, along_spoke);
+        high = std::max(high, along_spoke);
     }
     if (!(low <= high)) return 0.0;
     const auto torque = [&](double q) {

@@ -102,12 +102,12 @@ Wrench slide_friction(const RigidBody& body, const std::array<Vec3, 4>& arm, dou
     for (std::size_t i = 0; i < arm.size(); ++i)
         slide.corner[i] << 1.0, 0.0, -arm[i].y() / gyration, 0.0, 1.0, arm[i].x() / gyration;
     // If corners nearly stop, the regularisation is reduced step by step.
-    constexpr double softest = 0.1, hardest = 1e-6, far = 10.0, held = 1e-4;
+    constexpr double softest = 0.1, hardest = 1e-6, far = 10.0, at_rest = 1e-4;
     Vec3 q = slide.start;
     const bool far_from_rest = slide.slowest(q) > far * reach;
     for (double soft = far_from_rest ? hardest : softest; soft > 0.5 * hardest; soft *= 0.1)
         q = minimum(slide, soft * reach, q);
-    if (slide.fastest(q) <= held * reach) q.setZero();
+    if (slide.fastest(q) <= at_rest * reach) q.setZero();
     return {body.mass * Vec3(q.x() - v.x(), q.y() - v.y(), 0.0),
             Vec3(0.0, 0.0, inertia * (q.z() / gyration - spin))};
 }

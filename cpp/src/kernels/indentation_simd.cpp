@@ -152,8 +152,8 @@ BIRM3D_INLINE Packet gap_of_holding_surface(const IndentationNumbers& d, const K
     const Packet zero = 0.0, far = infinitely_far, faces = Packet::load(known.least_facing + i);
     const Packet along = d.ex * Packet::load(known.nx + i) + d.ey * Packet::load(known.ny + i) +
                          d.ez * Packet::load(known.nz + i);
-    const Packet held = where_above(along, faces, Packet::load(known.contact_gap + i), far);
-    return where_above(Packet::load(known.per_force + i), zero, far, held);
+    const Packet gap = where_above(along, faces, Packet::load(known.contact_gap + i), far);
+    return where_above(Packet::load(known.per_force + i), zero, far, gap);
 }
 
 // Required gap of each node. A loaded node follows the indentation while that extends over it, and is released afterwards.
@@ -164,13 +164,13 @@ struct Asked {
 BIRM3D_INLINE Asked ask(const IndentationNumbers& d, const PanelNodes& nodes, const KnownFaces& known,
                         const Standing& s, const FollowedPlace& h, const Packet& outward, std::size_t i) {
     const Packet zero = 0.0, one = 1.0, far = infinitely_far, surface = d.surface;
-    const Packet pushes = Packet::load(nodes.force + i), held = d.grip > 0.0 ? one : zero;
+    const Packet pushes = Packet::load(nodes.force + i), holds = d.grip > 0.0 ? one : zero;
     const Packet comes = where_above(h.gap, zero, h.gap, greater(h.gap, outward));
     // A node on another surface follows the indentation only once that has reached it.
     const Packet other = where_above(far, gap_of_holding_surface(d, known, i), far, outward);
     const Packet goes = where_above(zero, h.gap, outward, other);
     const Packet reaches =
-        where_above(s.e - h.gap, surface, where_beside_face(d, known, s, zero, held, i), zero);
+        where_above(s.e - h.gap, surface, where_beside_face(d, known, s, zero, holds, i), zero);
     const Packet off = where_above(pushes, zero, where_above(reaches, zero, zero, one), zero);
     const Packet gap = where_above(pushes, zero, where_above(reaches, zero, goes, away),
                                    where_beside_face(d, known, s, far, comes, i));

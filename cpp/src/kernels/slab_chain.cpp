@@ -98,9 +98,9 @@ bool SlabChain::is_held(std::size_t slab) const {
 // Adds a quarter of the run, and one more slab, from slab `end` on. So all tries together cost a few times the last
 // one.
 void SlabChain::wake(const Run& run, std::size_t end, int direction) {
-    const std::size_t wanted = 1 + (run.end - run.begin) / 4;
+    const std::size_t number = 1 + (run.end - run.begin) / 4;
     auto i = static_cast<std::ptrdiff_t>(end);
-    for (std::size_t count = 0; count < wanted; ++count, i += direction) {
+    for (std::size_t count = 0; count < number; ++count, i += direction) {
         if (i < 0 || i >= static_cast<std::ptrdiff_t>(status_.size())) break;
         SlabStatus& woken = status_[static_cast<std::size_t>(i)];
         if (woken.awake) break;

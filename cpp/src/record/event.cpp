@@ -49,12 +49,12 @@ struct Range {
 Range range_along(const Scene& scene, std::size_t i, const State& state, const Vec3& direction) {
     const Pose pose = pose_of(scene, i, state);
     const Box box = bounds(scene.obstacles[i].shape);
-    const Vec3 own = pose.rotation.transpose() * direction;
+    const Vec3 local = pose.rotation.transpose() * direction;
     double middle = pose.position.dot(direction), half = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
-        if (std::abs(own[axis]) < tolerance::along_line) continue;  // so that 0 times infinity does not count
-        middle += own[axis] * box.center[axis];
-        half += std::abs(own[axis]) * box.half[axis];
+        if (std::abs(local[axis]) < tolerance::along_line) continue;  // 0 times infinity would be NaN
+        middle += local[axis] * box.center[axis];
+        half += std::abs(local[axis]) * box.half[axis];
     }
     return {middle - half, middle + half};
 }
@@ -74,11 +74,11 @@ double line_of(const Scene& scene, const State& state, const Vec3& towards) {
     double first = infinity, last = -infinity;
     bool mesh = false;
     for (std::size_t i = 0; i < element_count(scene); ++i) {
-        const bool own = std::holds_alternative<TriangleMesh>(scene.obstacles[i].shape);
-        if (!along && !own) continue;
+        const bool is_mesh = std::holds_alternative<TriangleMesh>(scene.obstacles[i].shape);
+        if (!along && !is_mesh) continue;
         const Range range = range_along(scene, i, state, towards);
         first = std::min(first, range.low), last = std::max(last, range.high);
-        mesh |= own;
+        mesh |= is_mesh;
     }
     if (along) return first;
     return mesh ? last : 0.0;
@@ -91,10 +91,10 @@ double distance_past(const Scene& scene, const State& state, const Event& event)
     double nearest = infinity, past = 0.0;
     for (std::size_t i = 0; i < state.segments.size(); ++i) {
         const Pose pose = pose_of(scene, i, state);
-        const Vec3 own = pose.rotation.transpose() * (center - pose.position);
-        const double beyond = std::max(0.0, std::abs(own.y()) - scene.barrier->segments[i].half_length);
-        const double distance = std::hypot(own.x(), beyond);
-        if (distance < nearest) nearest = distance, past = own.x();
+        const Vec3 local = pose.rotation.transpose() * (center - pose.position);
+        const double beyond = std::max(0.0, std::abs(local.y()) - scene.barrier->segments[i].half_length);
+        const double distance = std::hypot(local.x(), beyond);
+        if (distance < nearest) nearest = distance, past = local.x();
     }
     return past;
 }
@@ -129,8 +129,8 @@ bool stands_over(const Scene& scene, const State& state) {
             if (std::hypot(from.x(), from.y()) < mesh.anchors.half.minCoeff()) return true;
             continue;
         }
-        const Vec3 own = body.orientation.conjugate() * from - mesh.anchors.center;
-        if (std::abs(own.x()) < mesh.anchors.half.x() && std::abs(own.y()) < mesh.anchors.half.y())
+        const Vec3 local = body.orientation.conjugate() * from - mesh.anchors.center;
+        if (std::abs(local.x()) < mesh.anchors.half.x() && std::abs(local.y()) < mesh.anchors.half.y())
             return true;
     }
     return false;
@@ -230,8 +230,8 @@ bool slides_on(const Scene& scene, const State& state, const Event& event) {
 }  // namespace
 
 Verdict Event::outcome() const {
-    const bool held = verdict != Verdict::passed && verdict != Verdict::overridden;
-    return held && rolled_over() ? Verdict::rolled_over : verdict;
+    const bool not_past = verdict != Verdict::passed && verdict != Verdict::overridden;
+    return not_past && rolled_over() ? Verdict::rolled_over : verdict;
 }
 
 Event begin_event(const Scene& scene, const State& start) {

@@ -158,9 +158,9 @@ void Recorder::resample_segments(const Scene& scene, const OutputInstants& outpu
             };
             const Vec3 v0 = vec(a + at_segment_velocity), v1 = vec(b + at_segment_velocity);
             const Vec3 p0 = vec(a + at_segment_position), p1 = vec(b + at_segment_position);
-            const bool held = v0.isZero(0.0) && v1.isZero(0.0);  // throughout the step
-            segment.velocity.push_back(held || s == 1.0 ? v1
-                                                        : Vec3(v0 + pushed(t) + s * (v1 - v0 - pushed(dt))));
+            const bool at_rest = v0.isZero(0.0) && v1.isZero(0.0);  // throughout the step
+            segment.velocity.push_back(
+                at_rest || s == 1.0 ? v1 : Vec3(v0 + pushed(t) + s * (v1 - v0 - pushed(dt))));
             segment.position.push_back(p0 + (p1 - p0) * (s * s * (3.0 - 2.0 * s)) +
                                        dt * s * (1.0 - s) * ((1.0 - s) * v0 - s * v1) + scene.base -
                                        height * Vec3::UnitZ());

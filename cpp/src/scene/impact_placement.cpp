@@ -25,16 +25,17 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 double extent(const std::vector<Obstacle>& elements, const Vec3& direction) {
     double most = -infinity;
     for (const Obstacle& element : elements) {
-        const Vec3 own = element.rotation.transpose() * direction;
+        const Vec3 local = element.rotation.transpose() * direction;
         if (const auto* plane = std::get_if<HalfSpace>(&element.shape)) {
-            const bool ends = (own - plane->normal).norm() < 1e-12;
+            const bool ends = (local - plane->normal).norm() < 1e-12;
             most = std::max(most, ends ? element.position.dot(direction) + plane->offset : infinity);
             continue;
         }
         const Box box = bounds(element.shape);
         double reach = element.position.dot(direction);
         for (int i = 0; i < 3; ++i)
-            if (std::abs(own[i]) > 1e-12) reach += own[i] * box.center[i] + std::abs(own[i]) * box.half[i];
+            if (std::abs(local[i]) > 1e-12)
+                reach += local[i] * box.center[i] + std::abs(local[i]) * box.half[i];
         most = std::max(most, reach);
     }
     return most;
@@ -87,13 +88,13 @@ Ends ends_along(const Scene& scene, const State& state, const Vec3& direction) {
         const BodyState& body = state.units[u].body;
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         const Mat3 R = body.orientation.toRotationMatrix();
-        const Vec3 own = R.transpose() * direction;
+        const Vec3 local = R.transpose() * direction;
         const double middle = direction.dot(body.position);
         const auto compare = [&](std::size_t b, const Box& box, const BlockColumn& x, const BlockColumn& y,
                                  const BlockColumn& z) {
             // A block that can not reach further is left out.
-            const double center = middle + own.dot(box.center);
-            const double reach = own.cwiseAbs().dot(box.half) + 1e-9 * (1.0 + std::abs(center));
+            const double center = middle + local.dot(box.center);
+            const double reach = local.cwiseAbs().dot(box.half) + 1e-9 * (1.0 + std::abs(center));
             if (center + reach < ends.front && center - reach > ends.rear) return;
             for (std::size_t i = 0; i < mesh.nodes_in(b); ++i) {
                 const double at = direction.dot(body.position + R * Vec3(x[i], y[i], z[i]));

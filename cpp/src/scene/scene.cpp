@@ -20,9 +20,10 @@ void add_to(Hash& hash, const Wheel& wheel) {
     if (wheel.steers()) hash.add(wheel.steering_time);
     if (wheel.tread_radius > 0.0) hash.add(-wheel.tread_radius);  // no other number of a wheel is negative
     if (wheel.camber_ratio > 0.0) hash.add(-1e3 - wheel.camber_ratio);  // nor is any wheel that large
-    const Suspension& held = wheel.suspension;
-    if (!held.springs()) return;
-    for (const double number : {held.stiffness, held.damping, held.at_rest, held.bump})
+    const Suspension& suspension = wheel.suspension;
+    if (!suspension.springs()) return;
+    for (const double number :
+         {suspension.stiffness, suspension.damping, suspension.at_rest, suspension.bump})
         hash.add(number);
 }
 

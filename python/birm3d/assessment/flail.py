@@ -114,14 +114,14 @@ def occupant_load(pulse: Pulse) -> float:
     pulse.require_axes("OLC", "x")
     time, velocity = pulse.since_zero()
     lost, ahead = -velocity[:, 0], -pulse.displacement[:, 0]
-    held = crossing(time, ahead, lost, _SLACK)
-    if held is None:
+    restrained_at = crossing(time, ahead, lost, _SLACK)
+    if restrained_at is None:
         pulse.require(np.inf, "the occupant load criterion")
         return 0.0
-    later = time > held
+    later = time > restrained_at
     instants, lost, ahead = time[later], lost[later], ahead[later]
     # Held at the deceleration lost / (t - held), the occupant moves by half of what it would without.
-    moved = ahead - 0.5 * lost * (instants - held)
+    moved = ahead - 0.5 * lost * (instants - restrained_at)
     full = np.flatnonzero(moved >= _SLACK + _RESTRAINT)
     if len(full) == 0:
         pulse.require(np.inf, "the occupant load criterion")
@@ -130,11 +130,11 @@ def occupant_load(pulse: Pulse) -> float:
     if k == 0:
         end, speed = float(instants[0]), float(lost[0])
     else:
-        share = (_SLACK + _RESTRAINT - moved[k - 1]) / (moved[k] - moved[k - 1])
-        end = float(instants[k - 1] + share * (instants[k] - instants[k - 1]))
-        speed = float(lost[k - 1] + share * (lost[k] - lost[k - 1]))
+        fraction = (_SLACK + _RESTRAINT - moved[k - 1]) / (moved[k] - moved[k - 1])
+        end = float(instants[k - 1] + fraction * (instants[k] - instants[k - 1]))
+        speed = float(lost[k - 1] + fraction * (lost[k] - lost[k - 1]))
     pulse.require(end, "the occupant load criterion")
-    return speed / (end - held) / units.g
+    return speed / (end - restrained_at) / units.g
 
 
 def _greatest_mean_magnitude(time: Floats, steps: Floats, start: float) -> float:

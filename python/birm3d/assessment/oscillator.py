@@ -2,11 +2,11 @@
 
 The system has the natural period T, the circular frequency w = 2 pi / T and the damping ratio z:
 
-    u'' + 2 z w u' + r(u) / m = p(t) / m,    r(u) = m w^2 u, elastic, or bounded by +-R, elastic-plastic
+    u'' + 2 z w u' + f(u) / m = p(t) / m,    f(u) = m w^2 u, elastic, or bounded by +-R, elastic-plastic
 
 (Biggs, Introduction to Structural Dynamics, 1964, chapter 2; Chopra, Dynamics of Structures, chapters 4
 and 7). The elastic force is m w^2 max|u|: the greatest load times its dynamic load factor. The
-elastic-plastic one is the resistance R at which max|u| is the ductility times R / (m w^2), the yield
+elastic-plastic one is the yield resistance R at which max|u| is the ductility times R / (m w^2), the yield
 displacement.
 
 Loads are means over their intervals, so each interval is solved exactly for a constant load. After the last

@@ -171,8 +171,8 @@ def _facts(unit: Vehicle) -> Iterator[tuple[str, str, str]]:
         length = getattr(unit, name)
         if length is not None:
             yield name, f"{length:.3f} m", wheels if name == "track" else size
-    own = solids if unit._height is None else "set by the user"
-    yield "mass centre above the ground", f"{unit.mass_center_height:.3f} m", own
+    source = solids if unit._height is None else "set by the user"
+    yield "mass centre above the ground", f"{unit.mass_center_height:.3f} m", source
     inertia = ", ".join(f"{value:,.0f}" for value in unit.inertia.diagonal())
     yield "roll, pitch, yaw inertia", f"{inertia} kg m²", solids
     parts = f"{unit.n_nodes:,} nodes, {unit.n_trusses:,} trusses, {len(unit.wheels)} wheels"

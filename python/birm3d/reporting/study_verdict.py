@@ -42,20 +42,21 @@ def study_table(case: Case) -> Table | None:
     study, rated = case.study, case.rating_study
     if study is None or rated is None:
         return None
-    own = next(one for one in case.ratings if one.standard == rated.ratings[0].standard)
+    standard = rated.ratings[0].standard
+    rating_of_run = next(one for one in case.ratings if one.standard == standard)
     bands = {name: (median, band) for name, median, band, _, _ in rated.rows}
     rows = []
-    for one in own.criteria:
+    for one in rating_of_run.criteria:
         same = [c for rating in rated.ratings for c in rating.criteria if c.name == one.name]
         judged = [c.passed for c in same if c.passed is not None]
         met = cells_of_share(study, sum(judged), len(judged)) if judged else ("reported", "–")
         rows.append((one.name, one.verdict, *bands.get(one.name, ("–", "–")), *met))
-    word = "pass" if own.passed else "FAIL"
+    word = "pass" if rating_of_run.passed else "FAIL"
     n = len(rated.ratings)
     met = cells_of_share(study, sum(rating.passed for rating in rated.ratings), n)
     rows.append(("all of these, and contained", word, "–", "–", *met))
     return Table(
-        f"The study beside the verdict by {own.standard}, indicative: {n:,} of {len(study):,} runs are rated",
+        f"The study beside the verdict by {standard}, indicative: {n:,} of {len(study):,} runs are rated",
         (
             "criterion",
             "this run",

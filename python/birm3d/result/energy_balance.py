@@ -26,7 +26,13 @@ MOMENTUM_LIMIT = 1e-6
 
 
 class BalanceWarning(UserWarning):
-    """A balance of a run does not close: of energy or momentum, or a dissipated energy decreases."""
+    """A balance of a run does not close: of energy or momentum, or a dissipated energy decreases.
+
+    Its number is not the metric of the same name. The warning looks at every step, and its energy is relative
+    to the energy at disposal (see :func:`warn_if_open`). The metrics ``energy_residual`` and
+    ``momentum_residual`` look at the output instants. They are relative to the initial kinetic energy and to
+    the greatest force.
+    """
 
 
 def warn_if_open(scene: Scene, balances: _core.Balances) -> None:

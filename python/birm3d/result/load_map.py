@@ -251,8 +251,8 @@ def _completed(
     cells *= np.divide(force, nodes, out=np.ones_like(force), where=scaled)[:, None]
     alone = np.flatnonzero((by_others | ~known) & (force != 0.0))
     if len(alone):
-        own = _moments_of(result.time, steps)
-        turned = (moments[alone] - own[alone]) / np.where(rest[alone] == 0.0, 1.0, rest[alone])[:, None]
+        of_nodes = _moments_of(result.time, steps)
+        turned = (moments[alone] - of_nodes[alone]) / np.where(rest[alone] == 0.0, 1.0, rest[alone])[:, None]
         all_y, all_z = (
             np.concatenate([getattr(step, name) for step in steps]) for name in ("along", "height")
         )

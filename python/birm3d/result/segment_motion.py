@@ -22,11 +22,11 @@ def base_corners(result: RunRecord) -> Floats:
     """Return the four corners of each segment's base over time, around it, world, shape (n, k, 4, 2) [m]."""
     barrier = result.scene.barrier
     segments = [] if barrier is None else barrier.core.segments
-    own = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    corner_signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     half = np.array([[segment.half_base, segment.half_length] for segment in segments]).reshape(-1, 1, 2)
     heading = 0.0 if barrier is None else barrier.heading
     angle = np.radians(heading + result.segment_yaw)[..., None]
-    x, y = np.moveaxis(own * half, -1, 0)
+    x, y = np.moveaxis(corner_signs * half, -1, 0)
     turned = np.stack([np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y], axis=-1)
     return np.asarray(result.segment_position[:, :, None] + turned)
 

@@ -56,11 +56,11 @@ def offset_of_overlap(
     places = np.concatenate([points for points, _ in barrier_surfaces(barrier, [barrier.origin])])
     across = (places - np.asarray(barrier.origin)) @ to_left
     low, high = vehicle.units[0].skin_bounds
-    share = overlap * float(high[1] - low[1])
+    overlap_width = overlap * float(high[1] - low[1])
     path = (
-        float(across.min()) + share - float(high[1])
+        float(across.min()) + overlap_width - float(high[1])
         if side == "left"
-        else float(across.max()) - share - float(low[1])
+        else float(across.max()) - overlap_width - float(low[1])
     )
     # The path meets the line where it is this far along it from the barrier's origin.
     along = barrier_axes(barrier)[0]

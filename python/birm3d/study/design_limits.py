@@ -302,8 +302,8 @@ def _usual_offsets(
         return lambda _: listed
     if isinstance(barrier, Bollards) and barrier.count > 1:
         return _along_row(barrier, OFFSET_SHARES, lambda _: barrier.spacing)
-    own = simulation.scene.impact_offset
-    return lambda _: [own]
+    offset = simulation.scene.impact_offset
+    return lambda _: [offset]
 
 
 def _along_row(

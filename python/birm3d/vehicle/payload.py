@@ -117,17 +117,17 @@ def check_load(file: VehicleFile, mass: float, density: float | None, height: fl
     spaces = [solid for solid in file.solids if solid.fills_to_m is not None]
     if not spaces:
         raise ValueError(f"{key} of a payload needs a vehicle with a load space, got {file.name!r}")
-    share = mass / sum(solid.mass for solid in file.solids if solid.payload)
+    payload_ratio = mass / sum(solid.mass for solid in file.solids if solid.payload)
     highest = min(_space(solid) for solid in spaces)
     if height is not None:
         if not 0.0 < height <= highest:
             raise ValueError(f"height must be > 0 and at most that of the space, {highest:g} m; got {height}")
-        return share * sum(s.mass for s in spaces) / (sum(_floor_area(s) for s in spaces) * height)
+        return payload_ratio * sum(s.mass for s in spaces) / (sum(_floor_area(s) for s in spaces) * height)
     assert density is not None  # one of the two is given, see above
     if not 0.0 < density < float("inf"):
         raise ValueError(f"density must be finite and > 0, got {density}")
     for solid in spaces:
-        least = share * solid.mass / (_floor_area(solid) * _space(solid))
+        least = payload_ratio * solid.mass / (_floor_area(solid) * _space(solid))
         if density < least:
             raise ValueError(
                 f"density must be at least {least:g} kg/m^3 for {mass:g} kg to fit, got {density}"

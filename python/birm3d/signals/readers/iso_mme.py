@@ -127,10 +127,12 @@ class IsoMmeTest:
     def _channel(self, code: str) -> Channel:
         file = self.codes[code]
         keys, values = _channel_file(file)
-        own = keys.text("Channel code")
-        if own != code:
+        code_in_file = keys.text("Channel code")
+        if code_in_file != code:
             raise FileFormatError.at(
-                file, keys.line("Channel code"), f"code must be {code!r} as indexed, got {received(own)}"
+                file,
+                keys.line("Channel code"),
+                f"code must be {code!r} as indexed, got {received(code_in_file)}",
             )
         parts = ChannelCode.parse(code)
         unit = _UNITS.get(keys.text("Unit"), keys.text("Unit"))

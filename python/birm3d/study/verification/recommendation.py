@@ -70,9 +70,9 @@ def recommend(study: PrecisionTable, error: float, metrics: Collection[str] | No
     least = float("inf")
     for kind in ("tolerance", "time_step"):
         rows = study.of(AS_GIVEN, kind)
-        held = _held(study, rows, asked)
-        found += [row for row, bound in zip(rows, held, strict=True) if bound <= error]
-        least = min([least, *held])
+        bounds = _held(study, rows, asked)
+        found += [row for row, bound in zip(rows, bounds, strict=True) if bound <= error]
+        least = min([least, *bounds])
     if not found:
         raise ValueError(
             f"error must be at least {least:.2g}, the best that was run (the converged value "
@@ -115,12 +115,12 @@ def report(study: PrecisionTable, error: float) -> str:
             continue
         departures = study.departures(variant)
         most = max(departures, key=lambda name: abs(departures[name]))
-        own = max(study.of(variant, "tolerance"), key=lambda row: -abs(row.value - study.default.value))
+        default = max(study.of(variant, "tolerance"), key=lambda row: -abs(row.value - study.default.value))
         lines += [
             "",
             f"{variant}: another model of the same crash; its own converged values depart by up to "
             f"{_percent(departures[most], sign=True)} ({most}), which no step changes",
-            f"  {own.setting}: {_outcome(own)}",
+            f"  {default.setting}: {_outcome(default)}",
         ]
     meshes = [row for row in study.rows if row.variant == "mesh"]
     if meshes:

@@ -84,9 +84,9 @@ class DeckMass:
         # A part with a mass of its own has that in place of its elements'.
         for number, given in cards.part_mass.items():
             of_part = part == number
-            own = float(mass[of_part].sum())
-            if own > 0.0:
-                mass[of_part] *= (given[0] or own + given[1]) / own
+            of_elements = float(mass[of_part].sum())
+            if of_elements > 0.0:
+                mass[of_part] *= (given[0] or of_elements + given[1]) / of_elements
         parts = np.unique(part)
         silent = [int(n) for n in parts if n and not mass[part == n].sum() > 0.0]
         keep = mass > 0.0
@@ -100,9 +100,9 @@ class DeckMass:
         for (part, quads), lines in zip(self.shells, self.thickness, strict=True):
             sheet = cards.of_parts(part, shells=True)
             if lines is not None:
-                own = np.mean([real(one) for one in columns(lines, (16,) * 4, False)], axis=0)
+                thickness = np.mean([real(one) for one in columns(lines, (16,) * 4, False)], axis=0)
                 density = cards.of_parts(part, shells=False)
-                sheet = np.where(own > 0.0, density * own, sheet)
+                sheet = np.where(thickness > 0.0, density * thickness, sheet)
             corners = self._at(quads)
             for i, j, k in ((0, 1, 2), (0, 2, 3)):
                 a, b, c = corners[:, i], corners[:, j], corners[:, k]
