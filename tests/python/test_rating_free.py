@@ -96,3 +96,30 @@ def test_ratings_of_security_barriers_say_what_became_of_the_vehicle() -> None:
     row = birm3d.rate(passed, "ASTM F2656").criteria[-1]
     assert (row.name, row.value, row.passed) == ("outcome", "passed", None)
     assert "between two elements" in row.grade
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+def test_a_vehicle_that_passed_and_rolled_over_is_not_called_upright() -> None:
+    """The outcome has one word only, "passed"; the roll of 180 degrees and more is in the history."""
+    block = Barrier.jersey(height=0.81, length=3.0, free_standing=True)
+    result = Simulation(Vehicle.preset("sedan_1500"), block, units.km_h(110.0), 20.0).run()
+    assert result.outcome == "passed"
+    assert np.abs(result.roll).max() > 180.0
+    row = {one.name: one for one in birm3d.rate(result, "EN 1317 TB32").criteria}
+    assert (row["upright"].value, row["upright"].passed) == ("rolled over", False)
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+def test_a_truck_that_lies_on_the_barrier_is_not_contained_yet() -> None:
+    """Rolled over and on its way across when the run ends; the whole run says that it goes over the top."""
+    truck, wall = Vehicle.preset("heavy_truck_29500", mesh_density=0.1), Barrier.jersey(length=150.0)
+
+    def run(duration: float | None) -> Result:
+        return Simulation(truck, wall, units.km_h(90.0), 25.0, -30.0, duration=duration).run()
+
+    assert birm3d.rate(run(None), "EN 1317 TB71", vehicle_class="30-t rigid HGV").contained is False
+    cut = run(0.66)
+    assert cut.outcome == "rolled_over"
+    for standard, code in (("MASH 4-12", "10000S"), ("EN 1317 TB71", "30-t rigid HGV")):
+        with pytest.raises(ValueError, match="until the outcome is decided"):
+            birm3d.rate(cut, standard, vehicle_class=code)

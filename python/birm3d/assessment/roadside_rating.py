@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import units
-from ..result.event import outcome_words
+from ..result.event import has_rolled_over, is_open, outcome_words
 from ..result.segment_motion import base_corners
 from .criteria import Criterion
 from .limits import FLAIL_LIMITS, THIV_LIMIT_KM_H, graded, severity_class
@@ -193,7 +193,7 @@ def _containment(result: Result, name: str) -> Criterion:
         If the outcome of the run is not decided and some unit moves into the barrier, or is behind it.
     """
     limit = "contained or redirected"
-    if result.outcome != "undecided":
+    if not is_open(result):
         return Criterion(
             name, outcome_words(result.outcome), "", limit, result.outcome not in ("passed", "overridden")
         )
@@ -208,6 +208,12 @@ def _containment(result: Result, name: str) -> Criterion:
             f"{result.time[-1]:g} s with {inward:.2f} m/s into the barrier: {result.outcome_detail}"
         )
     return Criterion(name, "still beside the barrier", "", limit, True)
+
+
+def _upright(result: Result) -> tuple[str, bool]:
+    """Return what became of the vehicle in words, and whether it stayed upright, wherever it went."""
+    rolled = has_rolled_over(result)
+    return "rolled over" if rolled else outcome_words(result.outcome), not rolled
 
 
 def _attitude(result: Result) -> tuple[float, float]:
@@ -256,14 +262,14 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
     risk = occupant_risk(result)
     limits = FLAIL_LIMITS["MASH"]
     roll, pitch = _attitude(result)
-    upright = result.outcome != "rolled_over"
+    became, upright = _upright(result)
     rows: list[Criterion] = [
         _containment(result, "A: contained, redirected or stopped"),
         Criterion("D: compartment", "not computed", "", "", None),
     ]
     if light:
         rows += [
-            Criterion("F: upright", outcome_words(result.outcome), "", "not rolled over", upright),
+            Criterion("F: upright", became, "", "not rolled over", upright),
             Criterion("F: greatest roll", roll, "deg", f"{_MOST_ROLL:g} deg", roll <= _MOST_ROLL),
             Criterion("F: greatest pitch", pitch, "deg", f"{_MOST_ROLL:g} deg", pitch <= _MOST_ROLL),
             graded("H: OIV, longitudinal", risk.oiv_x, "m/s", limits.velocity),
@@ -275,7 +281,7 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
         rows += [
             Criterion(
                 "G: upright",
-                outcome_words(result.outcome),
+                became,
                 "",
                 "preferable",
                 None,
@@ -296,11 +302,11 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
 
 def _european(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> _Judged:
     roll, _ = _attitude(result)
-    upright = result.outcome != "rolled_over"
+    became, upright = _upright(result)
     width = _working_width(result)
     rows: list[Criterion] = [
         _containment(result, "containment"),
-        Criterion("upright", outcome_words(result.outcome), "", "not rolled over", upright),
+        Criterion("upright", became, "", "not rolled over", upright),
         Criterion("greatest roll", roll, "deg", "", None),
         _box_row(exit_box(result, not light), judged=True),
     ]
