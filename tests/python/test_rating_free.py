@@ -107,6 +107,8 @@ def test_a_vehicle_that_passed_and_rolled_over_is_not_called_upright() -> None:
     assert np.abs(result.roll).max() > 180.0
     row = {one.name: one for one in birm3d.rate(result, "EN 1317 TB32").criteria}
     assert (row["upright"].value, row["upright"].passed) == ("rolled over", False)
+    box = row["exit box, wheels from the face"]  # of what leaves on the traffic side
+    assert (box.passed, box.grade) == (None, "not contained")
 
 
 @pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")

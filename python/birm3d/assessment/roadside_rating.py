@@ -247,12 +247,12 @@ def _deflection(result: Result) -> float:
     return float(result.metrics.get("barrier_deflection", 0.0))
 
 
-def _box_row(box: ExitBox, judged: bool) -> Criterion:
+def _box_row(box: ExitBox, judged: bool, contained: bool) -> Criterion:
+    """Return how far wheels get within the exit box; it says nothing of a vehicle that is not contained."""
     limit = f"within {box.width:.2f} m over {box.length:g} m"
-    grade = "" if judged else "inside" if box.inside else "outside"
-    return Criterion(
-        "exit box, wheels from the face", box.reached, "m", limit, box.inside if judged else None, grade
-    )
+    grade = "not contained" if not contained else "" if judged else "inside" if box.inside else "outside"
+    met = box.inside if judged and contained else None
+    return Criterion("exit box, wheels from the face", box.reached, "m", limit, met, grade)
 
 
 _Judged = tuple[tuple[Criterion, ...], str]
@@ -290,7 +290,7 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
             Criterion("greatest roll", roll, "deg", "", None),
         ]
     rows += [
-        _box_row(exit_box(result, not light), judged=False),
+        _box_row(exit_box(result, not light), judged=False, contained=rows[0].passed is True),
         Criterion("dynamic deflection", _deflection(result), "m", "", None),
         Criterion("working width", _working_width(result), "m", "", None),
         Criterion("vehicle intrusion", intrusion, "m", "", None),
@@ -304,11 +304,12 @@ def _european(result: Result, test: RoadsideTest, light: bool, intrusion: float)
     roll, _ = _attitude(result)
     became, upright = _upright(result)
     width = _working_width(result)
+    contained = _containment(result, "containment")
     rows: list[Criterion] = [
-        _containment(result, "containment"),
+        contained,
         Criterion("upright", became, "", "not rolled over", upright),
         Criterion("greatest roll", roll, "deg", "", None),
-        _box_row(exit_box(result, not light), judged=True),
+        _box_row(exit_box(result, not light), judged=True, contained=contained.passed is True),
     ]
     classes = []
     if light:
