@@ -25,6 +25,7 @@ from birm3d.reporting.numbers import percent
 from birm3d.reporting.page import _mark
 from birm3d.reporting.shares import share_of_runs
 from birm3d.reporting.uncertainty import _bands, _input_words
+from birm3d.reporting.verdict import _judges
 from birm3d.result.skin import skins_at
 from birm3d.result.summary import element_rows, headline_rows
 from scipy import stats
@@ -673,3 +674,21 @@ def test_command_line(
     assert "Plaza" in page.texts["dd"]
     assert page.table("Outcomes of the study")[0] == ["stopped", "3 of 3, 100 %", "–"]
     assert command("rerun", str(out / "run.birm3d")) == 0
+
+
+def test_a_free_standing_barrier_is_not_called_rigid(tmp_path: Path) -> None:
+    page = Page(birm3d.dossier(free_standing().run(), tmp_path / "report", draws=0))
+    assert not any("The barrier is rigid" in text for text in page.texts["p"])
+    assert any("The segments stand free" in text for text in page.texts["p"])
+
+
+def test_impulse_of_the_design_loads_ends_with_the_separation(page: Page) -> None:
+    (note,) = [text for text in page.texts["p"] if "Impulse:" in text]
+    assert "until the vehicle leaves the barrier; later contacts are not in it" in note
+
+
+def test_a_limit_of_the_old_edition_is_not_exceeded_by_the_new_one() -> None:
+    """PHD had a limit in 1998; the rating reports it, and so does the first page."""
+    old = Criterion("PHD (EN 1317-2:1998)", 21.0, "g", "20 g", False)
+    new = Criterion("THIV (EN 1317-2)", 40.0, "km/h", "33 km/h", False)
+    assert [_judges("EN 1317", one) for one in (old, new)] == [False, True]

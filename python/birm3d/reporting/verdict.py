@@ -218,7 +218,7 @@ def _risk_line(case: Case) -> str:
     asked = [one.standard for one in case.ratings if one.standard in ("MASH", "EN 1317")]
     known = "EN 1317" if is_oblique(case.result) and not case.risk.missing else "MASH"
     standard = asked[0] if asked else known
-    failed = [one.name for one in case.risk.criteria if one.passed is False and f"({standard}" in one.name]
+    failed = [one.name for one in case.risk.criteria if one.passed is False and _judges(standard, one)]
     others = ""
     if not isinstance(case.bands, str) and case.bands.risk is not None:
         found = case.bands.risk
@@ -233,6 +233,11 @@ def _risk_line(case: Case) -> str:
         met = f"the limits of {standard} are met; severity and every value are in the section on occupants"
         return f"{met}{others}"
     return f"limits of {standard} are exceeded: {', '.join(failed)}{others}"
+
+
+def _judges(standard: str, criterion: Criterion) -> bool:
+    """Whether a standard has this criterion; limits of superseded editions are no part of the verdict."""
+    return f"({standard}" in criterion.name and ":1998" not in criterion.name
 
 
 def _computed_line(case: Case) -> str:
