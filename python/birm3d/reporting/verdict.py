@@ -82,7 +82,10 @@ def _with_bands(table: Table, bands: Sequence[tuple[str, str, str, str, str]]) -
 
 def _glance(case: Case) -> Iterator[tuple[str, str]]:
     result = case.result
-    yield "What happens to the vehicle?", f"{outcome_words(result.outcome)}: {result.outcome_detail}"
+    yield (
+        "What happens to the vehicle?",
+        f"{outcome_words(result.outcome)}: {result.outcome_detail}{_other_fates(case)}",
+    )
     for rating in case.ratings:
         contained = "contained" if rating.contained else "NOT contained"
         yield (
@@ -105,9 +108,10 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
     if isinstance(case.design_loads, DesignLoad) and loads:
         row, period = case.design_loads.governing, case.design_loads.natural_period
         assumed = _assumed(case.design_loads)
+        alone = "this run alone, " if case.study is not None and len(case.design_loads.scenes) == 1 else ""
         yield (
             "What does its foundation have to carry?",
-            f"{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
+            f"{alone}{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
             f"{row.height:.2f} m, natural period {period:g} s{assumed}, ductility "
             f"{case.design_loads.ductility:g}"
             f"{_design_band(row)}",
@@ -129,6 +133,17 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         told.append("none of these tests has both this kind of vehicle and this kind of barrier")
     if told:
         yield "How well does the model do in given tests nearby?", "; ".join(told)
+
+
+def _other_fates(case: Case) -> str:
+    """Return what becomes of the vehicles of the class, as the end of a line, where some fare otherwise."""
+    if isinstance(case.bands, str):
+        return ""
+    outcomes = case.bands.prediction.outcomes
+    if not any(word != case.result.outcome for word in outcomes):
+        return ""
+    shares = ", ".join(f"{outcome_words(word)} {share:.0%}" for word, share in outcomes.items())
+    return f". Of {len(case.bands.prediction.study)} vehicles of the class: {shares}"
 
 
 def _kind(case: Case) -> str:
