@@ -491,3 +491,12 @@ def test_blows_of_tractor_and_trailer_are_told_at_other_periods_too() -> None:
     assert loads.governing.dynamic_load_factor < 2.0
     assert loads.spectrum(np.geomspace(0.03, 0.3, 31)).max() > 2.0 * loads.governing.peak_force
     assert "blows at distant places add up: give it segments" in loads.caution
+
+
+def test_loads_of_a_vehicle_that_gets_past_are_told() -> None:
+    car = Vehicle.preset("sedan_1500", mesh_density=0.2)
+    past = birm3d.design_load(Simulation(car, Barrier.bollards(count=4, spacing=2.0), "30 mph"), draws=0)
+    held = birm3d.design_load(Simulation(car, Barrier.bollards(count=4, spacing=1.5), "30 mph"), draws=0)
+    assert past.governing.peak_force > 0.0
+    assert "gets past the barrier: stopping it asks for more" in past.caution
+    assert "gets past" not in held.caution

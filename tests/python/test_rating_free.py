@@ -139,3 +139,35 @@ def test_intrusion_does_not_count_what_is_beyond_the_end() -> None:
     assert ((result.position[:, :2] - barrier.origin[:2]) @ into).max() > 1.0  # the mass centre, behind
     assert intrusions[0] == pytest.approx(intrusions[1], abs=0.02)
     assert intrusions[0] < 2.4
+
+
+def test_a_level_says_which_truck_rolled_over() -> None:
+    """MASH prefers a truck that stays upright, and passes one that does not: the level must not hide it."""
+    wall = Barrier.jersey(height=0.81, length=40.0)
+    level = birm3d.test_matrix("MASH TL-4", barrier=wall, mesh_density=0.2)
+    runs = [test.run() for test in level]
+    assert runs[2].outcome == "rolled_over"
+    row = {one.name: one.value for one in birm3d.rate(runs, "MASH TL-4").criteria}
+    assert row["test 4-12"] == "pass, rolled over"
+    assert "rolled over" not in str(row["test 4-11"])
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+def test_a_level_is_that_of_one_barrier() -> None:
+    car, pickup = Vehicle.preset("mash_1100c", mesh_density=0.1), PICKUP
+    walls = [Barrier.jersey(length=40.0), Barrier.rigid_wall()]
+    tests = [
+        Simulation(vehicle, wall, units.km_h(100.0), 25.0)
+        for vehicle, wall in zip((car, pickup), walls, strict=True)
+    ]
+    with pytest.raises(ValueError, match="results must be of one barrier for a level"):
+        birm3d.rate([test.run() for test in tests], "MASH TL-3")
+    with pytest.raises(ValueError, match="results must be of one barrier for a level"):
+        birm3d.rate([birm3d.predict(test, 8, progress=False) for test in tests], "MASH TL-3")
+
+
+def test_notes_that_differ_by_a_speed_are_one_in_a_band() -> None:
+    car, row = Vehicle.preset("sedan_1500", mesh_density=0.2), Barrier.bollards(count=4, spacing=1.95)
+    predicted = birm3d.predict(Simulation(car, row, units.km_h(48.0)), 8, progress=False)
+    (penetration,) = [one for one in birm3d.rate(predicted, "IWA 14-1").rows if "penetration past" in one[0]]
+    assert len(penetration[-1]) < 60

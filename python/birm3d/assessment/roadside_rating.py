@@ -385,7 +385,9 @@ def _outcome_of(part: Rating) -> str:
     """Return what became of a test, and which criteria it failed."""
     failed = [f"{row.name} ({row.shown})" for row in part.criteria if row.passed is False]
     verdict = part.designation.partition(": ")[2]
-    return f"{verdict} by {', '.join(failed)}" if failed and verdict == "fail" else verdict
+    if any(row.name == "G: upright" and row.grade == "no" for row in part.criteria):
+        verdict += ", rolled over"
+    return f"{verdict} by {', '.join(failed)}" if failed and verdict.startswith("fail") else verdict
 
 
 def _worst_classes(parts: Sequence[Rating]) -> str:
