@@ -171,3 +171,11 @@ def test_notes_that_differ_by_a_speed_are_one_in_a_band() -> None:
     predicted = birm3d.predict(Simulation(car, row, units.km_h(48.0)), 8, progress=False)
     (penetration,) = [one for one in birm3d.rate(predicted, "IWA 14-1").rows if "penetration past" in one[0]]
     assert len(penetration[-1]) < 60
+
+
+def test_a_van_trailer_in_place_of_a_tank_is_told() -> None:
+    wall = Barrier.jersey(height=1.07)
+    (test,) = birm3d.test_matrix("MASH 6-12", barrier=wall, mesh_density=0.05)
+    result = test.run()
+    assert "tank trailer" in birm3d.rate(result, "MASH 6-12").caution
+    assert "tank trailer" not in birm3d.rate(result, "MASH 5-12").caution

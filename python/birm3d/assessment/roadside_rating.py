@@ -46,6 +46,10 @@ _ROLLS_LITTLE = (
     "a New Jersey barrier of 0.81 m, as published. It stays upright at 0.91 m and 15 deg, as commonly "
     "reported; at 16 deg it tips late. A heavy vehicle that is computed upright may roll over in a test."
 )
+_TANK = (
+    "Test 6-12 asks for a tractor with a tank trailer. A van trailer in its place, as the package has it, "
+    "rolls otherwise, and meets tall barriers with its box."
+)
 _WIDTHS = (0.6, 0.8, 1.0, 1.3, 1.7, 2.1, 2.5, 3.5)
 """Greatest working width, and vehicle intrusion, of the classes 1 to 8 of EN 1317-2 [m]."""
 
@@ -82,9 +86,16 @@ def rate_roadside(
         intrusion,
         judged[0].passed is True,
         (*rows, reported),
-        " ".join([standard.caution, *([] if light else [_ROLLS_LITTLE]), MODEL_CAUTION, *_tipping(result)]),
+        " ".join([standard.caution, *_of_heavy(test), MODEL_CAUTION, *_tipping(result)]),
         test.vehicle.code,
     )
+
+
+def _of_heavy(test: RoadsideTest) -> list[str]:
+    """Return what bears on tests with trucks and buses."""
+    if test.vehicle.mass < _LIGHT_KG:
+        return []
+    return [_ROLLS_LITTLE, _TANK] if test.vehicle.code == "36000T" else [_ROLLS_LITTLE]
 
 
 def _test_of(
