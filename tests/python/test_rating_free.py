@@ -179,3 +179,13 @@ def test_a_van_trailer_in_place_of_a_tank_is_told() -> None:
     result = test.run()
     assert "tank trailer" in birm3d.rate(result, "MASH 6-12").caution
     assert "tank trailer" not in birm3d.rate(result, "MASH 5-12").caution
+
+
+def test_one_barrier_may_stand_elsewhere_for_each_test() -> None:
+    car, pickup = Vehicle.preset("mash_1100c", mesh_density=0.1), PICKUP
+    walls = [Barrier.jersey(length=40.0, origin=(0.0, y, 0.0), friction=0.1) for y in (0.0, 3.0)]
+    runs = [
+        Simulation(vehicle, wall, units.km_h(100.0), 25.0).run()
+        for vehicle, wall in zip((car, pickup), walls, strict=True)
+    ]
+    assert birm3d.rate(runs, "MASH TL-3").designation.startswith("MASH TL-3: ")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import overload
 
 from ..base.arguments import checked
@@ -114,11 +115,15 @@ def rate(
 
 
 def _check_one_barrier(results: Sequence[Result] | Sequence[Study | Prediction]) -> None:
-    """Refuse tests of a level at different barriers; of studies from files the scene is not known."""
+    """Refuse tests of a level at different barriers, wherever these stand and however rough they are.
+
+    Of studies from files the scene is not known.
+    """
     scenes = [one.scene if isinstance(one, Result) else _scene_of(one) for one in results]
-    barriers = [scene.barrier for scene in scenes if scene is not None]
-    for barrier in barriers[1:]:
-        if barrier != barriers[0]:
+    barriers = [scene.barrier for scene in scenes if scene is not None and scene.barrier is not None]
+    alike = [replace(barrier, friction=0.0, origin=(0.0, 0.0, 0.0), heading=0.0) for barrier in barriers]
+    for one, barrier in zip(alike, barriers, strict=True):
+        if one != alike[0]:
             raise ValueError(f"results must be of one barrier for a level, got {barriers[0]} and {barrier}")
 
 
