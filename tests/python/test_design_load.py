@@ -482,3 +482,21 @@ def test_runs_that_miss_the_barrier_are_told() -> None:
     assert over.governing.peak_force > 0.0
     assert "wheels meet nothing ahead of them, so loads are missing" in over.caution
     assert "does not touch" not in over.caution
+
+
+def test_blows_of_tractor_and_trailer_are_told_at_other_periods_too() -> None:
+    """At the assumed 0.1 s the factor is below 2; near 0.14 s the trailer strikes in time with the swing."""
+    semi, wall = Vehicle.preset("mash_36000v"), Barrier.jersey(height=1.07, length=60.0)
+    loads = birm3d.design_load(Simulation(semi, wall, 80.0 / 3.6, 15.0), draws=0, progress=False)
+    assert loads.governing.dynamic_load_factor < 2.0
+    assert loads.spectrum(np.geomspace(0.03, 0.3, 31)).max() > 2.0 * loads.governing.peak_force
+    assert "blows at distant places add up: give it segments" in loads.caution
+
+
+def test_loads_of_a_vehicle_that_gets_past_are_told() -> None:
+    car = Vehicle.preset("sedan_1500", mesh_density=0.2)
+    past = birm3d.design_load(Simulation(car, Barrier.bollards(count=4, spacing=2.0), "30 mph"), draws=0)
+    held = birm3d.design_load(Simulation(car, Barrier.bollards(count=4, spacing=1.5), "30 mph"), draws=0)
+    assert past.governing.peak_force > 0.0
+    assert "gets past the barrier: stopping it asks for more" in past.caution
+    assert "gets past" not in held.caution

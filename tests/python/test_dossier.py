@@ -25,6 +25,7 @@ from birm3d.reporting.numbers import percent
 from birm3d.reporting.page import _mark
 from birm3d.reporting.shares import share_of_runs
 from birm3d.reporting.uncertainty import _bands, _input_words
+from birm3d.reporting.verdict import _judges
 from birm3d.result.skin import skins_at
 from birm3d.result.summary import element_rows, headline_rows
 from scipy import stats
@@ -499,6 +500,7 @@ def test_study(study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     }
     answers = dict(page.table("At a glance"))
     assert answers["What happens in the 3 runs of the study?"] == "stopped in 3 of 3, 100 %"
+    assert answers["What does its foundation have to carry?"].startswith("this run alone, bollard 3: ")
     assert "95 % interval (" not in page.source
     assert "A share of them is no probability" in page.source
     with pytest.raises(ValueError, match="got both"):
@@ -673,3 +675,34 @@ def test_command_line(
     assert "Plaza" in page.texts["dd"]
     assert page.table("Outcomes of the study")[0] == ["stopped", "3 of 3, 100 %", "–"]
     assert command("rerun", str(out / "run.birm3d")) == 0
+
+
+def test_a_free_standing_barrier_is_not_called_rigid(tmp_path: Path) -> None:
+    page = Page(birm3d.dossier(free_standing().run(), tmp_path / "report", draws=0))
+    assert not any("The barrier is rigid" in text for text in page.texts["p"])
+    assert any("The segments stand free" in text for text in page.texts["p"])
+
+
+def test_impulse_of_the_design_loads_ends_with_the_separation(page: Page) -> None:
+    (note,) = [text for text in page.texts["p"] if "Impulse:" in text]
+    assert "until the vehicle leaves the barrier; later contacts are not in it" in note
+
+
+def test_a_limit_of_the_old_edition_is_not_exceeded_by_the_new_one() -> None:
+    """PHD had a limit in 1998; the rating reports it, and so does the first page."""
+    old = Criterion("PHD (EN 1317-2:1998)", 21.0, "g", "20 g", False)
+    new = Criterion("THIV (EN 1317-2)", 40.0, "km/h", "33 km/h", False)
+    assert [_judges("EN 1317", one) for one in (old, new)] == [False, True]
+
+
+def test_other_outcomes_of_the_class_stand_in_the_first_answer(tmp_path: Path) -> None:
+    """No standard knows this car; a gap that stops it lets a quarter of its class through."""
+    car, row = Vehicle.preset("passenger_car", mesh_density=0.2), Barrier.bollards(count=4, spacing=1.85)
+    crash = Simulation(car, row, "30 mph")
+    outcomes = birm3d.predict(crash, 16, progress=False).outcomes
+    assert set(outcomes) == {"stopped", "passed"}
+    page = Page(birm3d.dossier(crash.run(), tmp_path / "report"))
+    answer = dict(page.table("At a glance"))["What happens to the vehicle?"]
+    shares = ", ".join(f"{word} {share:.0%}" for word, share in outcomes.items())
+    assert answer.startswith("stopped: ")
+    assert answer.endswith(f". Of 16 vehicles of the class: {tidy(shares)}")

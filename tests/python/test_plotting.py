@@ -7,10 +7,11 @@ from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 
+import birm3d
 import numpy as np
 import pytest
 import shapely
-from birm3d import Barrier, Channel, Result, Settings, Simulation, Vehicle, compare_curves, scenes
+from birm3d import Barrier, Channel, Result, Settings, Simulation, Vehicle, compare_curves, scenes, units
 from birm3d.barrier.surfaces import barrier_surfaces
 from birm3d.barrier.text import barrier_text
 from birm3d.filters import cfc
@@ -175,6 +176,19 @@ def test_exit_box_is_left_out_head_on(head_on: Result) -> None:
     assert not any("exit box" in str(line.get_label()) for line in axes.get_lines())
     with pytest.raises(ValueError, match="frames must be"):
         head_on.plot_plan([9.0])
+
+
+def test_exit_box_of_a_semitrailer_is_that_of_its_rating() -> None:
+    """Its length is that of the combination; the trailer's own was taken once."""
+    truck = Vehicle.preset("mash_36000v", mesh_density=0.1)
+    result = Simulation(truck, Barrier.jersey(height=1.07, length=60.0), units.km_h(80.0), 15.0).run()
+    (row,) = [one for one in birm3d.rate(result, "MASH 5-12").criteria if "exit box" in one.name]
+    (label,) = [
+        one
+        for one in map(str, (line.get_label() for line in result.plot_plan().gca().get_lines()))
+        if "exit box" in one
+    ]
+    assert float(label.split()[-5]) == pytest.approx(float(row.limit.split()[1]), abs=0.06)
 
 
 def box_shape(length: float, width: float) -> UnitShape:

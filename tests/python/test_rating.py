@@ -335,7 +335,7 @@ def test_roll_fails_a_test() -> None:
 
 def test_a_level_needs_all_its_tests(pickup_on_jersey: Result) -> None:
     car = Vehicle.preset("passenger_car", mesh_density=0.3).scaled_to(1100.0)
-    small = Simulation(car, Barrier.jersey(), units.km_h(100.0), 25.0).run()
+    small = Simulation(car, Barrier.jersey(height=0.81), units.km_h(100.0), 25.0).run()
     level = rate([small, pickup_on_jersey], "MASH TL-3")
     parts = [rate(small, "MASH TL-3"), rate(pickup_on_jersey, "MASH TL-3")]
     assert level.designation == f"MASH TL-3: {'pass' if all(p.passed for p in parts) else 'fail'}"
@@ -442,7 +442,7 @@ def test_level_says_by_which_value_a_test_failed() -> None:
     failed = [one for one in test.criteria if one.passed is False]
     assert failed
     bus = Vehicle.preset("bus_13t", mesh_density=0.1)
-    other = Simulation(bus, Barrier.rigid_wall(height=2.0), units.km_h(70.0), 20.0).run()
+    other = Simulation(bus, Barrier.rigid_wall(height=1.0), units.km_h(70.0), 20.0).run()
     level = rate([crash, other], "EN 1317 H2")
     row = level.criteria[0]
     assert row.name == "test TB11"

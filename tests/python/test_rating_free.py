@@ -96,3 +96,96 @@ def test_ratings_of_security_barriers_say_what_became_of_the_vehicle() -> None:
     row = birm3d.rate(passed, "ASTM F2656").criteria[-1]
     assert (row.name, row.value, row.passed) == ("outcome", "passed", None)
     assert "between two elements" in row.grade
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+def test_a_vehicle_that_passed_and_rolled_over_is_not_called_upright() -> None:
+    """The outcome has one word only, "passed"; the roll of 180 degrees and more is in the history."""
+    block = Barrier.jersey(height=0.81, length=3.0, free_standing=True)
+    result = Simulation(Vehicle.preset("sedan_1500"), block, units.km_h(110.0), 20.0).run()
+    assert result.outcome == "passed"
+    assert np.abs(result.roll).max() > 180.0
+    row = {one.name: one for one in birm3d.rate(result, "EN 1317 TB32").criteria}
+    assert (row["upright"].value, row["upright"].passed) == ("rolled over", False)
+    box = row["exit box, wheels from the face"]  # of what leaves on the traffic side
+    assert (box.passed, box.grade) == (None, "not contained")
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+def test_a_truck_that_lies_on_the_barrier_is_not_contained_yet() -> None:
+    """Rolled over and on its way across when the run ends; the whole run says that it goes over the top."""
+    truck, wall = Vehicle.preset("heavy_truck_29500", mesh_density=0.1), Barrier.jersey(length=150.0)
+
+    def run(duration: float | None) -> Result:
+        return Simulation(truck, wall, units.km_h(90.0), 25.0, -30.0, duration=duration).run()
+
+    assert birm3d.rate(run(None), "EN 1317 TB71", vehicle_class="30-t rigid HGV").contained is False
+    cut = run(0.66)
+    assert cut.outcome == "rolled_over"
+    for standard, code in (("MASH 4-12", "10000S"), ("EN 1317 TB71", "30-t rigid HGV")):
+        with pytest.raises(ValueError, match="until the outcome is decided"):
+            birm3d.rate(cut, standard, vehicle_class=code)
+
+
+def test_intrusion_does_not_count_what_is_beyond_the_end() -> None:
+    """The truck leaves both barriers at their end, and rolls on behind one of them."""
+    truck, intrusions = Vehicle.preset("mash_10000s", mesh_density=0.2), []
+    for length in (30.0, 40.0):
+        barrier = Barrier.jersey(height=0.81, length=length, heading=20.0, origin=(1.0, 2.0, 0.0))
+        result = Simulation(truck, barrier, units.km_h(90.0), 15.0, barrier.station()).run()
+        assert result.outcome == "rolled_over"
+        intrusions.append(birm3d.rate(result, "MASH 4-12").penetration)
+    into = np.array([np.cos(np.radians(20.0)), np.sin(np.radians(20.0))])
+    assert ((result.position[:, :2] - barrier.origin[:2]) @ into).max() > 1.0  # the mass centre, behind
+    assert intrusions[0] == pytest.approx(intrusions[1], abs=0.02)
+    assert intrusions[0] < 2.4
+
+
+def test_a_level_says_which_truck_rolled_over() -> None:
+    """MASH prefers a truck that stays upright, and passes one that does not: the level must not hide it."""
+    wall = Barrier.jersey(height=0.81, length=40.0)
+    level = birm3d.test_matrix("MASH TL-4", barrier=wall, mesh_density=0.2)
+    runs = [test.run() for test in level]
+    assert runs[2].outcome == "rolled_over"
+    row = {one.name: one.value for one in birm3d.rate(runs, "MASH TL-4").criteria}
+    assert row["test 4-12"] == "pass, rolled over"
+    assert "rolled over" not in str(row["test 4-11"])
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")
+def test_a_level_is_that_of_one_barrier() -> None:
+    car, pickup = Vehicle.preset("mash_1100c", mesh_density=0.1), PICKUP
+    walls = [Barrier.jersey(length=40.0), Barrier.rigid_wall()]
+    tests = [
+        Simulation(vehicle, wall, units.km_h(100.0), 25.0)
+        for vehicle, wall in zip((car, pickup), walls, strict=True)
+    ]
+    with pytest.raises(ValueError, match="results must be of one barrier for a level"):
+        birm3d.rate([test.run() for test in tests], "MASH TL-3")
+    with pytest.raises(ValueError, match="results must be of one barrier for a level"):
+        birm3d.rate([birm3d.predict(test, 8, progress=False) for test in tests], "MASH TL-3")
+
+
+def test_notes_that_differ_by_a_speed_are_one_in_a_band() -> None:
+    car, row = Vehicle.preset("sedan_1500", mesh_density=0.2), Barrier.bollards(count=4, spacing=1.95)
+    predicted = birm3d.predict(Simulation(car, row, units.km_h(48.0)), 8, progress=False)
+    (penetration,) = [one for one in birm3d.rate(predicted, "IWA 14-1").rows if "penetration past" in one[0]]
+    assert len(penetration[-1]) < 60
+
+
+def test_a_van_trailer_in_place_of_a_tank_is_told() -> None:
+    wall = Barrier.jersey(height=1.07)
+    (test,) = birm3d.test_matrix("MASH 6-12", barrier=wall, mesh_density=0.05)
+    result = test.run()
+    assert "tank trailer" in birm3d.rate(result, "MASH 6-12").caution
+    assert "tank trailer" not in birm3d.rate(result, "MASH 5-12").caution
+
+
+def test_one_barrier_may_stand_elsewhere_for_each_test() -> None:
+    car, pickup = Vehicle.preset("mash_1100c", mesh_density=0.1), PICKUP
+    walls = [Barrier.jersey(length=40.0, origin=(0.0, y, 0.0), friction=0.1) for y in (0.0, 3.0)]
+    runs = [
+        Simulation(vehicle, wall, units.km_h(100.0), 25.0).run()
+        for vehicle, wall in zip((car, pickup), walls, strict=True)
+    ]
+    assert birm3d.rate(runs, "MASH TL-3").designation.startswith("MASH TL-3: ")

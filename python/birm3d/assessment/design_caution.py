@@ -38,6 +38,7 @@ _TIPS = (
 )
 _UNTOUCHED = "In a run the vehicle does not touch the barrier: that run adds no load."
 _OVER = "In a run the vehicle goes over {elements}: wheels meet nothing ahead of them, so loads are missing."
+_PAST = "In a run the vehicle gets past {elements}: stopping it asks for more."
 _LATER = "In a run the vehicle touches {elements} again after it has left: the impulse does not count that."
 _UNDECIDED = "The outcome was not decided when a run ended: later loads on {elements} are missing."
 
@@ -74,6 +75,8 @@ def run_cautions(result: Result) -> dict[str, tuple[str, ...]]:
         found[_UNTOUCHED] = ("the barrier",)
     if result.metrics.get("later_contacts", 0.0) > 0.0:
         found[_LATER] = ("the barrier",)
+    if result.outcome == "passed" and loads:
+        found[_PAST] = ("the barrier",)
     if result.outcome == "overridden":
         found[_OVER] = ("the barrier",)
     return {text: names for text, names in found.items() if names}

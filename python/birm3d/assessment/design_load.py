@@ -57,7 +57,8 @@ _MOST_OF_ONE_PULSE = 2.0  # no single pulse has a greater dynamic load factor
 
 _ADDED = (
     "A dynamic load factor above 2 comes from blows that follow each other while the element swings, or from "
-    "peaks that the filter of the peak force takes: damping lessens the first."
+    "peaks that the filter of the peak force takes: damping lessens the first. On a wall that is one element "
+    "blows at distant places add up: give it segments."
 )
 
 
@@ -338,6 +339,8 @@ def _of_other_periods(load: DesignLoad) -> Iterator[str]:
             f"With natural periods from {_PERIODS[0]:g} to {_PERIODS[1]:g} s, {load.governing.name} carries "
             f"up to {force / 1e3:,.0f} kN (at {period:.2g} s)."
         )
+        if force > _MOST_OF_ONE_PULSE * load.governing.peak_force:
+            yield _ADDED
 
 
 def greatest_of_periods(load: DesignLoad) -> tuple[float, float] | None:

@@ -95,7 +95,8 @@ def test_matrix(
         What the standard calls a vehicle, as ``"2270P"`` -> vehicle to take for it. Others are presets,
         brought to the nominal mass: cars, vans and pickups as similar vehicles
         (:meth:`birm3d.Vehicle.scaled_to`), trucks and buses by their load (:meth:`birm3d.Vehicle.with_gvw`).
-        The middle of the load of MASH's trucks is as high as MASH asks for.
+        The middle of the load of MASH's trucks is as high as MASH asks for. The package has no tank trailer:
+        the 36000T of test 6-12 is the van trailer of the 36000V.
     impact_offset, duration, settings
         See :class:`birm3d.Simulation`.
     mesh_density

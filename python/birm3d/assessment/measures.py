@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..barrier.kinds import RigidWall
-from ..barrier.surfaces import barrier_surfaces
+from ..barrier.surfaces import barrier_axes, barrier_surfaces
 from ..result.capture import capture
 from ..result.metrics import ALONG_LINE
 from ..vehicle.unit_shapes import unit_shapes
@@ -116,7 +116,7 @@ def vehicle_intrusion(result: Result) -> float:
     """Return how far any part of the vehicle got past the undeformed traffic face [m]; 0 if none did.
 
     Crushed nodes of the skin at some 120 instants, for which the scene is run once more where the result has
-    no frames.
+    no frames. Of a vehicle that is contained, parts beyond the barrier's ends do not count.
     """
     extent = barrier_extent(_barrier_of(result))
     frames = result.frames
@@ -124,14 +124,32 @@ def vehicle_intrusion(result: Result) -> float:
         frames = capture(result, min(_FRAMES, len(result.time)))
     rows = np.minimum(np.searchsorted(result.time, frames.time), len(result.time) - 1)
     across = np.asarray(_barrier_of(result)._past)
+    line, (low, high) = barrier_axes(_barrier_of(result))[0], _ends(result)
     furthest = 0.0
     for unit, shape in enumerate(unit_shapes(result.scene.vehicle)):
         centers, rotations = _poses(result, unit, rows)
         start = across_barrier(result, centers) - extent.front
         for k in range(len(frames)):
             nodes = shape.nodes + frames.displacement[unit][k]
-            furthest = max(furthest, float(start[k] + (nodes @ (rotations[k].T @ across)).max()))
+            along = centers[k] @ line + nodes @ (rotations[k].T @ line)
+            beside = nodes[(along >= low) & (along <= high)]
+            reach = (beside @ (rotations[k].T @ across)).max(initial=-math.inf)
+            furthest = max(furthest, float(start[k] + reach))
     return furthest
+
+
+def _ends(result: Result) -> tuple[float, float]:
+    """Return between which places along the line intrusion counts [m]."""
+    if result.outcome in ("passed", "overridden"):
+        return -math.inf, math.inf
+    barrier = _barrier_of(result)
+    line = barrier_axes(barrier)[0]
+    path = np.vstack([result.unit(i).position for i in range(len(result.scene.vehicle.units))])
+    # Barriers without end are drawn past these points.
+    reach = result.scene.vehicle.length * line
+    surfaces = barrier_surfaces(barrier, np.concatenate([path - reach, path + reach]))
+    along = np.concatenate([vertices @ line for vertices, _ in surfaces])
+    return float(along.min()), float(along.max())
 
 
 class ExitBox(NamedTuple):

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import overload
 
 from ..base.arguments import checked
 from ..result import Result
+from ..scene.scene import Scene
 from ..study import Study
 from ..study.predict import Prediction
 from ..units import Quantity
@@ -88,7 +90,7 @@ def rate(
     ------
     ValueError
         If the standard or the vehicle is not known, or the vehicle has no such point. If the run has no
-        barrier, has a path along it, or is not over.
+        barrier, has a path along it, or is not over. If the tests of a level are at different barriers.
     """
     name, rest = split_standard(standard)
     if isinstance(result, Prediction):
@@ -101,6 +103,7 @@ def rate(
         raise ValueError(
             f"standard must name a level, as 'MASH TL-3', where several runs are given; got {standard!r}"
         )
+    _check_one_barrier(result)
     studies = [one for one in result if isinstance(one, (Study, Prediction))]
     if studies:
         return level_study(
@@ -109,6 +112,23 @@ def rate(
     runs = [one for one in result if isinstance(one, Result)]
     ratings = [_of_run(run, name, rest, vehicle_class, reference_point, part) for run in runs]
     return level_rating(_ROADSIDE[name], rest, ratings)
+
+
+def _check_one_barrier(results: Sequence[Result] | Sequence[Study | Prediction]) -> None:
+    """Refuse tests of a level at different barriers, wherever these stand and however rough they are.
+
+    Of studies from files the scene is not known.
+    """
+    scenes = [one.scene if isinstance(one, Result) else _scene_of(one) for one in results]
+    barriers = [scene.barrier for scene in scenes if scene is not None and scene.barrier is not None]
+    alike = [replace(barrier, friction=0.0, origin=(0.0, 0.0, 0.0), heading=0.0) for barrier in barriers]
+    for one, barrier in zip(alike, barriers, strict=True):
+        if one != alike[0]:
+            raise ValueError(f"results must be of one barrier for a level, got {barriers[0]} and {barrier}")
+
+
+def _scene_of(study: Study | Prediction) -> Scene | None:
+    return (study.study if isinstance(study, Prediction) else study)._scene
 
 
 def split_standard(standard: str) -> tuple[str, str | None]:

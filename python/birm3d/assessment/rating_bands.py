@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 
@@ -14,6 +15,7 @@ from .rating import Rating
 __all__ = ["BAND_HEAD", "band_rows"]
 
 BAND_HEAD = ("criterion", "median", "80 % band", "limit", "runs within the limit")
+_SPEED = re.compile(r" at [\d.]+ m/s")  # in a grade, which differs from run to run
 _ROUNDING = 1e-9  # relative; values that differ by less are the same
 
 BandRow = tuple[str, str, str, str, str]
@@ -54,7 +56,7 @@ def _values(column: Sequence[Criterion]) -> tuple[str, str]:
 
 def _share(column: Sequence[Criterion]) -> str:
     judged = [one.passed for one in column if one.passed is not None]
-    grades = Counter(one.grade for one in column if one.grade)
+    grades = Counter(_SPEED.sub("", one.grade) for one in column if one.grade)
     if judged:
         return f"{sum(judged) / len(column):.0%}"
     if len(grades) > 1:

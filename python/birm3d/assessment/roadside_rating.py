@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import units
-from ..result.event import outcome_words
+from ..result.event import has_rolled_over, is_open, outcome_words
 from ..result.segment_motion import base_corners
 from .criteria import Criterion
 from .limits import FLAIL_LIMITS, THIV_LIMIT_KM_H, graded, severity_class
@@ -45,6 +45,10 @@ _ROLLS_LITTLE = (
     "Springs and camber thrust are estimates: computed vehicles may roll too little. The 10000S overturns at "
     "a New Jersey barrier of 0.81 m, as published. It stays upright at 0.91 m and 15 deg, as commonly "
     "reported; at 16 deg it tips late. A heavy vehicle that is computed upright may roll over in a test."
+)
+_TANK = (
+    "Test 6-12 asks for a tractor with a tank trailer. A van trailer in its place, as the package has it, "
+    "rolls otherwise, and meets tall barriers with its box."
 )
 _WIDTHS = (0.6, 0.8, 1.0, 1.3, 1.7, 2.1, 2.5, 3.5)
 """Greatest working width, and vehicle intrusion, of the classes 1 to 8 of EN 1317-2 [m]."""
@@ -82,9 +86,16 @@ def rate_roadside(
         intrusion,
         judged[0].passed is True,
         (*rows, reported),
-        " ".join([standard.caution, *([] if light else [_ROLLS_LITTLE]), MODEL_CAUTION, *_tipping(result)]),
+        " ".join([standard.caution, *_of_heavy(test), MODEL_CAUTION, *_tipping(result)]),
         test.vehicle.code,
     )
+
+
+def _of_heavy(test: RoadsideTest) -> list[str]:
+    """Return what bears on tests with trucks and buses."""
+    if test.vehicle.mass < _LIGHT_KG:
+        return []
+    return [_ROLLS_LITTLE, _TANK] if test.vehicle.code == "36000T" else [_ROLLS_LITTLE]
 
 
 def _test_of(
@@ -193,7 +204,7 @@ def _containment(result: Result, name: str) -> Criterion:
         If the outcome of the run is not decided and some unit moves into the barrier, or is behind it.
     """
     limit = "contained or redirected"
-    if result.outcome != "undecided":
+    if not is_open(result):
         return Criterion(
             name, outcome_words(result.outcome), "", limit, result.outcome not in ("passed", "overridden")
         )
@@ -208,6 +219,12 @@ def _containment(result: Result, name: str) -> Criterion:
             f"{result.time[-1]:g} s with {inward:.2f} m/s into the barrier: {result.outcome_detail}"
         )
     return Criterion(name, "still beside the barrier", "", limit, True)
+
+
+def _upright(result: Result) -> tuple[str, bool]:
+    """Return what became of the vehicle in words, and whether it stayed upright, wherever it went."""
+    rolled = has_rolled_over(result)
+    return "rolled over" if rolled else outcome_words(result.outcome), not rolled
 
 
 def _attitude(result: Result) -> tuple[float, float]:
@@ -241,12 +258,12 @@ def _deflection(result: Result) -> float:
     return float(result.metrics.get("barrier_deflection", 0.0))
 
 
-def _box_row(box: ExitBox, judged: bool) -> Criterion:
+def _box_row(box: ExitBox, judged: bool, contained: bool) -> Criterion:
+    """Return how far wheels get within the exit box; it says nothing of a vehicle that is not contained."""
     limit = f"within {box.width:.2f} m over {box.length:g} m"
-    grade = "" if judged else "inside" if box.inside else "outside"
-    return Criterion(
-        "exit box, wheels from the face", box.reached, "m", limit, box.inside if judged else None, grade
-    )
+    grade = "not contained" if not contained else "" if judged else "inside" if box.inside else "outside"
+    met = box.inside if judged and contained else None
+    return Criterion("exit box, wheels from the face", box.reached, "m", limit, met, grade)
 
 
 _Judged = tuple[tuple[Criterion, ...], str]
@@ -256,14 +273,14 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
     risk = occupant_risk(result)
     limits = FLAIL_LIMITS["MASH"]
     roll, pitch = _attitude(result)
-    upright = result.outcome != "rolled_over"
+    became, upright = _upright(result)
     rows: list[Criterion] = [
         _containment(result, "A: contained, redirected or stopped"),
         Criterion("D: compartment", "not computed", "", "", None),
     ]
     if light:
         rows += [
-            Criterion("F: upright", outcome_words(result.outcome), "", "not rolled over", upright),
+            Criterion("F: upright", became, "", "not rolled over", upright),
             Criterion("F: greatest roll", roll, "deg", f"{_MOST_ROLL:g} deg", roll <= _MOST_ROLL),
             Criterion("F: greatest pitch", pitch, "deg", f"{_MOST_ROLL:g} deg", pitch <= _MOST_ROLL),
             graded("H: OIV, longitudinal", risk.oiv_x, "m/s", limits.velocity),
@@ -275,7 +292,7 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
         rows += [
             Criterion(
                 "G: upright",
-                outcome_words(result.outcome),
+                became,
                 "",
                 "preferable",
                 None,
@@ -284,7 +301,7 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
             Criterion("greatest roll", roll, "deg", "", None),
         ]
     rows += [
-        _box_row(exit_box(result, not light), judged=False),
+        _box_row(exit_box(result, not light), judged=False, contained=rows[0].passed is True),
         Criterion("dynamic deflection", _deflection(result), "m", "", None),
         Criterion("working width", _working_width(result), "m", "", None),
         Criterion("vehicle intrusion", intrusion, "m", "", None),
@@ -296,13 +313,14 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
 
 def _european(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> _Judged:
     roll, _ = _attitude(result)
-    upright = result.outcome != "rolled_over"
+    became, upright = _upright(result)
     width = _working_width(result)
+    contained = _containment(result, "containment")
     rows: list[Criterion] = [
-        _containment(result, "containment"),
-        Criterion("upright", outcome_words(result.outcome), "", "not rolled over", upright),
+        contained,
+        Criterion("upright", became, "", "not rolled over", upright),
         Criterion("greatest roll", roll, "deg", "", None),
-        _box_row(exit_box(result, not light), judged=True),
+        _box_row(exit_box(result, not light), judged=True, contained=contained.passed is True),
     ]
     classes = []
     if light:
@@ -378,7 +396,9 @@ def _outcome_of(part: Rating) -> str:
     """Return what became of a test, and which criteria it failed."""
     failed = [f"{row.name} ({row.shown})" for row in part.criteria if row.passed is False]
     verdict = part.designation.partition(": ")[2]
-    return f"{verdict} by {', '.join(failed)}" if failed and verdict == "fail" else verdict
+    if any(row.name == "G: upright" and row.grade == "no" for row in part.criteria):
+        verdict += ", rolled over"
+    return f"{verdict} by {', '.join(failed)}" if failed and verdict.startswith("fail") else verdict
 
 
 def _worst_classes(parts: Sequence[Rating]) -> str:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .. import units
-from ..result.event import outcome_words
+from ..result.event import is_open, outcome_words
 from .criteria import Criterion
 from .measures import barrier_extent, check_side_on, heading_rows, penetration_history
 from .rating import MODEL_CAUTION, Rating, first_reached
@@ -167,7 +167,7 @@ def _penetration(
     past = penetration_history(result, point, part, datum)
     greatest = float(past.max())
     moving_in = float(result.final_velocity @ np.asarray(result.scene.barrier._past))  # type: ignore[union-attr]
-    if result.outcome == "undecided" and moving_in > 0.0:
+    if is_open(result) and moving_in > 0.0:
         raise ValueError(
             "result must have run until the vehicle is stopped or has left (duration=None), got one that "
             f"ends at {result.time[-1]:g} s with {moving_in:.2f} m/s into the barrier"

@@ -194,10 +194,9 @@ def _redirected(result: Result) -> bool:
 
 def _exit_box(axes: Axes, result: Result, plan: Callable[[Floats], Floats]) -> Floats:
     """Draw the exit box and the way straight on; returns their points in the plan."""
-    rest = np.vstack([shape.nodes for shape in unit_shapes(result.scene.vehicle)])
-    length, width = (float(np.ptp(rest[:, i])) for i in (0, 1))
-    a, b = (2.2, 10.0) if result.scene.vehicle.mass <= _CAR else (4.4, 20.0)
-    depth = a + width + 0.16 * length
+    vehicle = result.scene.vehicle
+    a, b = (2.2, 10.0) if vehicle.mass <= _CAR else (4.4, 20.0)
+    depth = a + vehicle.width + 0.16 * vehicle.length
     last = int(np.flatnonzero(result.sum_of_contact_forces > 0.0)[-1])
     leaving = result.position[last]
     direction = result.final_velocity / np.linalg.norm(result.final_velocity[:2])

@@ -16,7 +16,7 @@ from .study_case import Case
 
 __all__ = ["load_section", "loads_csv", "metrics_csv"]
 
-_IMPULSE = "Impulse: over the whole run, later contacts included."
+_IMPULSE = "Impulse: until the vehicle leaves the barrier; later contacts are not in it."
 _RIGID = (
     "The barrier is rigid: it takes the greatest force that the vehicle can press it with. A barrier that "
     "gives way takes less force over a longer time. A peak after CFC 60 may last some milliseconds: design "
@@ -41,7 +41,7 @@ def load_section(case: Case) -> Section:
         figure(case.result.plot_elements(), "Loads on the elements over time"),
         *_map_blocks(case.result),
         *_design_blocks(case),
-        Caution(_RIGID),
+        *([Caution(_RIGID)] if case.result.scene.barrier.stands_free() is None else []),
         Items(links=(("The same table with all digits, SI", "loads.csv"),)),
     ]
     return Section("Loads on the barrier", "loads", blocks)

@@ -82,7 +82,10 @@ def _with_bands(table: Table, bands: Sequence[tuple[str, str, str, str, str]]) -
 
 def _glance(case: Case) -> Iterator[tuple[str, str]]:
     result = case.result
-    yield "What happens to the vehicle?", f"{outcome_words(result.outcome)}: {result.outcome_detail}"
+    yield (
+        "What happens to the vehicle?",
+        f"{outcome_words(result.outcome)}: {result.outcome_detail}{_other_fates(case)}",
+    )
     for rating in case.ratings:
         contained = "contained" if rating.contained else "NOT contained"
         yield (
@@ -105,9 +108,10 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
     if isinstance(case.design_loads, DesignLoad) and loads:
         row, period = case.design_loads.governing, case.design_loads.natural_period
         assumed = _assumed(case.design_loads)
+        alone = "this run alone, " if case.study is not None and len(case.design_loads.scenes) == 1 else ""
         yield (
             "What does its foundation have to carry?",
-            f"{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
+            f"{alone}{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
             f"{row.height:.2f} m, natural period {period:g} s{assumed}, ductility "
             f"{case.design_loads.ductility:g}"
             f"{_design_band(row)}",
@@ -129,6 +133,17 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         told.append("none of these tests has both this kind of vehicle and this kind of barrier")
     if told:
         yield "How well does the model do in given tests nearby?", "; ".join(told)
+
+
+def _other_fates(case: Case) -> str:
+    """Return what becomes of the vehicles of the class, as the end of a line, where some fare otherwise."""
+    if isinstance(case.bands, str):
+        return ""
+    outcomes = case.bands.prediction.outcomes
+    if not any(word != case.result.outcome for word in outcomes):
+        return ""
+    shares = ", ".join(f"{outcome_words(word)} {share:.0%}" for word, share in outcomes.items())
+    return f". Of {len(case.bands.prediction.study)} vehicles of the class: {shares}"
 
 
 def _kind(case: Case) -> str:
@@ -218,7 +233,7 @@ def _risk_line(case: Case) -> str:
     asked = [one.standard for one in case.ratings if one.standard in ("MASH", "EN 1317")]
     known = "EN 1317" if is_oblique(case.result) and not case.risk.missing else "MASH"
     standard = asked[0] if asked else known
-    failed = [one.name for one in case.risk.criteria if one.passed is False and f"({standard}" in one.name]
+    failed = [one.name for one in case.risk.criteria if one.passed is False and _judges(standard, one)]
     others = ""
     if not isinstance(case.bands, str) and case.bands.risk is not None:
         found = case.bands.risk
@@ -233,6 +248,11 @@ def _risk_line(case: Case) -> str:
         met = f"the limits of {standard} are met; severity and every value are in the section on occupants"
         return f"{met}{others}"
     return f"limits of {standard} are exceeded: {', '.join(failed)}{others}"
+
+
+def _judges(standard: str, criterion: Criterion) -> bool:
+    """Whether a standard has this criterion; limits of superseded editions are no part of the verdict."""
+    return f"({standard}" in criterion.name and ":1998" not in criterion.name
 
 
 def _computed_line(case: Case) -> str:

@@ -36,7 +36,16 @@ from typing import Any
 from .metrics import METRIC_UNITS, compute_metrics
 from .record import RunRecord
 
-__all__ = ["DECIDED", "OUTCOMES", "Metrics", "metrics_of", "outcome_detail", "outcome_words"]
+__all__ = [
+    "DECIDED",
+    "OUTCOMES",
+    "Metrics",
+    "has_rolled_over",
+    "is_open",
+    "metrics_of",
+    "outcome_detail",
+    "outcome_words",
+]
 
 OUTCOMES = ("stopped", "redirected", "passed", "overridden", "rolled_over", "undecided")
 """All words that :attr:`birm3d.Result.outcome` may be."""
@@ -45,6 +54,16 @@ OUTCOMES = ("stopped", "redirected", "passed", "overridden", "rolled_over", "und
 def outcome_words(outcome: str) -> str:
     """Return an outcome as texts have it: ``"rolled over"``."""
     return outcome.replace("_", " ")
+
+
+def has_rolled_over(result: RunRecord) -> bool:
+    """Return whether the vehicle rolled over, also one that passed the barrier or went over it."""
+    return result._event is not None and result._event.rolled_over
+
+
+def is_open(result: RunRecord) -> bool:
+    """Return whether the run ended before the barrier had kept the vehicle or not, rolled over or upright."""
+    return result._event is None or result._event.manner in ("moving", "no_barrier")
 
 
 DECIDED = ("separated", "stopped", "sliding")

@@ -256,7 +256,7 @@ class Limit:
         if self.measure == "vehicle_penetration" and past:
             lines.append(
                 f"At {self._rounded(self.value)} {self.unit} the rigid body gets up to {max(past):.2f} m "
-                "past the barrier's line. `penetration` limits that."
+                "past the barrier's line, or behind its end. `penetration` limits that."
             )
         ends = sum(run.holds and run.outcome == "passed" for run in self.runs)
         if ends:
