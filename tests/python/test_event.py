@@ -41,6 +41,7 @@ def scene(name: str, duration: float | None = None) -> Simulation:
         "gap": (Barrier.bollards(count=2, spacing=3.0), 15.0, 90.0, 0.0),
         "end": (Barrier.rigid_wall(width=4.0, height=1.2, thickness=0.4), 15.0, 30.0, 4.5),
         "curb": (Barrier.rigid_wall(width=8.0, height=0.12, thickness=0.2), 20.0, 90.0, 0.0),
+        "pole_beside": (Barrier.pole(diameter=0.3), 13.4, 90.0, 0.6),
         "low_posts": (Barrier.bollards(height=0.15), 15.0, 90.0, 0.0),
     }[name]
     return Simulation(car(), barrier, speed, angle, offset, duration=duration)
@@ -87,6 +88,7 @@ def test_the_instant_is_the_last_loss_of_contact(name: str) -> None:
         ("wall", "redirected", "along the barrier"),
         ("jersey", "redirected", "along the barrier"),
         ("head_on", "stopped", "rebounded"),
+        ("pole_beside", "stopped", "rebounded"),  # it turns about the pole on its way back
         ("gap", "passed", "between two elements of the barrier, untouched"),
         ("end", "passed", "the barrier's end"),
         ("curb", "overridden", "over the top"),

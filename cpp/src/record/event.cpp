@@ -180,9 +180,9 @@ void judge_departure(const Scene& scene, const State& state, Event& event) {
         return;
     }
     const double along = body.velocity.dot(line_direction(event));
-    // Component of the approach in that direction. It is zero for a path square to the line.
+    // Component of the approach in that direction. A path square to the line has none: what moves back was stopped.
     const double came = scene.heading().dot(line_direction(event));
-    const bool goes_on = std::abs(came) < parallel || along * came > 0.0;
+    const bool goes_on = std::abs(came) < parallel ? into > -parallel * speed : along * came > 0.0;
     if (goes_on && std::abs(along) > -into && speed > slow * scene.approach.speed) {
         event.verdict = Verdict::redirected;
         event.manner = is_beyond_end(scene, state, event) ? Manner::slides_to_end : Manner::leaves;

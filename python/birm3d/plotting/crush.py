@@ -113,7 +113,7 @@ def _draw_profile(below: Axes, profile: CrushProfile) -> None:
     below.fill_between(profile.lateral, profile.crush, color="0.35", alpha=0.15, lw=0.0)
     below.plot(profile.stations, profile.points, "o", color=BLUE, mec="w", ms=7.0, zorder=3.0)
     for i, (place, crush) in enumerate(zip(profile.stations, profile.points, strict=True)):
-        text = f"C{i + 1}\n{crush * 1e3:.0f} mm"
+        text = f"C{i + 1}\n{round(crush * 1e3)} mm"
         below.annotate(
             text,
             (place, crush),
