@@ -15,7 +15,7 @@ def _car(springback: float | None) -> Vehicle:
     return car
 
 
-def test_only_residual_crush_knows_it() -> None:
+def test_only_residual_crush_depends_on_it() -> None:
     hard, soft = (Simulation(_car(s), Barrier.rigid_wall(), 15.0) for s in (0.0, 0.05))
     before, after = hard.run().metrics, soft.run().metrics
     assert hard.state_hash() == soft.state_hash()

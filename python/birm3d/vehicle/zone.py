@@ -112,7 +112,8 @@ class Zone(Mapping[str, Any]):
         while the vehicle moves on. ``None``: all of it.
     springback
         Length by which covers spring back without force once the structure has given back what it can [m].
-        Only ``residual_crush`` knows it, of a vehicle that has left the barrier. ``None``: 0.
+        It lessens ``residual_crush`` and the crush profile once the vehicle has left the barrier, and nothing
+        else. ``None``: 0.
     breakaway, breakaway_travel
         Of a zone of tyres: load on the ground [N] at which springs and hangers of a wheel give way. The body
         then comes down by the travel [m] before the wheel carries it again. ``None``: they never give way.

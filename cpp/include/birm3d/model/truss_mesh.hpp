@@ -152,8 +152,9 @@ struct TrussMesh {
     SharedColumn<Box> anchor_box;              // (blocks)
     SharedColumn<TireNode> tire_nodes;         // (count - shell)
     SharedColumn<BlockColumn> friction_share;  // (blocks), see TrussCurve; empty where all have the whole
-    SharedColumn<BlockColumn> springback;      // (blocks), of each node, see TrussCurve; empty where none has any (m)
-    Box anchors;                               // around those of the skin
+    SharedColumn<BlockColumn>
+        springback;  // (blocks), of each node, see TrussCurve; empty where none has any (m)
+    Box anchors;     // around those of the skin
     std::array<Panel, panels> panel;
     // (blocks) bit by bit: which panels have nodes there? The bit after them: treads.
     SharedColumn<std::uint8_t> panels_of;
