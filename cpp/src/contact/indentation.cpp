@@ -167,11 +167,12 @@ bool pushed_on_surface(const ContactPass& pass, const ContactBlock& block, std::
     return std::abs(nearest(pass.shape(k), pass.near[k].before.to_own(node)).gap) <= tolerance::touching_gap;
 }
 
-// Was the pushing node inside the plane of its nearest surface as the step began? Then it did not follow that surface so far.
+// Was the node inside the plane of its nearest surface as the step began? Then it did not follow that surface so far, and
+// does not when it ceases to push: the surface would carry it out at once, without work of the body.
 bool lags_behind_surface(const ContactPass& pass, const ContactBlock& block, std::size_t i) {
     constexpr double least = 1e-4;  // m
     const TrussBlockState& nodes = *block.start;
-    if (!(nodes.force[i] > 0.0 && block.faces.gap[i] <= 0.0)) return false;
+    if (!(block.faces.gap[i] <= 0.0)) return false;
     const NearObstacle& near = pass.near[block.reachable[block.nearest[i]]];
     const Vec3 node(nodes.x[i], nodes.y[i], nodes.z[i]);
     const Vec3 motion = near.before.to_own(node) - near.now.to_own(node);

@@ -122,8 +122,8 @@ BIRM3D_INLINE bool any_matters(const PanelNodes& nodes, const KnownFaces& known,
                                std::size_t i) {
     const Packet zero = 0.0;
     const Packet so_far = Packet::load(known.gap + i);
-    const Packet below =
-        where_above(Packet::load(nodes.force + i), zero, infinitely_far, lesser(so_far, zero));
+    const Packet holds = greater(Packet::load(nodes.force + i), Packet::load(known.lags + i));
+    const Packet below = where_above(holds, zero, infinitely_far, lesser(so_far, zero));
     return any_above(where_on(nodes, below, -infinitely_far, i), least);
 }
 
@@ -193,10 +193,11 @@ BIRM3D_INLINE Packet find_state(const IndentationNumbers& d, const PanelNodes& n
     const Packet by_indentation =
         where_above(Packet::load(known.per_force + i), zero, Packet::load(known.rank + i), by_surface);
     const Packet near = in_reach, far = infinitely_far, by_face = where_above(so_far, near, far, so_far);
+    const Packet free_last = where_above(lags, zero, by_indentation, so_far);
     const Packet last =
-        where_above(pushes, zero, where_beside_face(d, known, s, by_face, by_indentation, i), so_far);
+        where_above(pushes, zero, where_beside_face(d, known, s, by_face, by_indentation, i), free_last);
     const Packet now = where_above(pushes, zero, asked.rank, gap);
-    const Packet lag = where_above(pushes, zero, was.deepest - was.e, zero);
+    const Packet lag = where_above(greater(pushes, lags), zero, was.deepest - was.e, zero);
     const Packet found = where_drawn(d, s, lag, where_above(last, now, nearer, zero), zero);
     return where_on(nodes, found, zero, i);
 }
