@@ -190,6 +190,7 @@ bool any_edge(const ContactPass& pass, const ContactBlock& block) {
 // For each node of a block: what follow_indentation() asks about the surface that the node touches.
 struct HoldingSurfaces {
     alignas(64) BlockColumn contact_gap, least_facing, lags;
+    alignas(64) BlockColumn lags_pushing;  // the same, of pushing nodes alone
 };
 
 // Cosine of a surface's normal and a panel's direction above which the surface holds a node of the panel. The flank of another
@@ -206,6 +207,7 @@ void find_holding_surfaces(const ContactPass& pass, const ContactBlock& block, H
         const bool touches =
             gap <= tolerance::touching_gap || (gap <= pass.margin && pushed_on_surface(pass, block, i));
         holding.lags[i] = lags ? 1.0 : 0.0;
+        holding.lags_pushing[i] = lags && block.start->force[i] > 0.0 ? 1.0 : 0.0;
         holding.contact_gap[i] = touches && !lags ? gap : infinity;
         const bool on_post = std::holds_alternative<Post>(pass.shape(block.reachable[block.nearest[i]]));
         holding.least_facing[i] = on_post ? holding_cosine_post : holding_cosine_other;
@@ -236,7 +238,8 @@ void follow_indentations(const ContactPass& pass, ContactBlock& block) {
             continue;
         alignas(64) const BlockColumn gap = block.faces.gap;
         follow_indentation(indented.indentation, indented.before, *block.start, panel_of, indented.panel,
-                           holding.contact_gap, holding.least_facing, holding.lags, block.faces,
+                           holding.contact_gap, holding.least_facing,
+                           indented.indentation.is_face ? holding.lags : holding.lags_pushing, block.faces,
                            block.contact, rank, follows);
         note_second(follows, gap, block.second_gap);
         note_released(follows, block.released);

@@ -114,7 +114,8 @@ double gap_of(const Indentation& indentation, const TrussBlockState& nodes, cons
 // `then`: the indentation at the start of the step. `follows`: 1 for nodes that follow, 2 for released ones, else 0.
 // `contact_gap`: to the surface in `faces`, of nodes that are in contact with it as the kernel is called; else infinite (m).
 // `least_facing`: cosine of that surface's normal and the panel's direction above which it holds the node.
-// `lags`: 1 for nodes that were inside that surface as the step began, if a wall's edge indents the block; else 0.
+// `lags`: 1 for nodes that were inside that surface as the step began, if a wall's edge indents the block; else 0. Below a
+// top edge also for nodes that do not push; beside an upright edge these are free.
 // `rank`: of the indentation that each node follows so far, at first infinite. Free nodes outside may be left
 // unchanged.
 void follow_indentation(const Indentation& indentation, const Indentation& then, const TrussBlockState& nodes,
