@@ -9,6 +9,7 @@
 
 #include "arrays.hpp"
 #include "bound_simulation.hpp"
+#include "input_order.hpp"
 #include "register.hpp"
 
 namespace birm3d::bindings {
@@ -22,18 +23,11 @@ std::shared_ptr<const Barrier> only(const std::vector<std::shared_ptr<Barrier>>&
 }
 
 // A column of one unit's trusses in the caller's order.
-OutputArray in_input_order(const Simulation& simulation, std::size_t unit,
-                           BlockColumn TrussBlockState::* column) {
+OutputArray state_column(const Simulation& simulation, std::size_t unit,
+                         BlockColumn TrussBlockState::* column) {
     const TrussMesh& mesh = simulation.scene().vehicle->units.at(unit).trusses;
     const TrussState& trusses = simulation.state().units.at(unit).trusses;
-    OutputArray result(static_cast<py::ssize_t>(mesh.count));
-    auto at = result.mutable_unchecked<1>();
-    for (std::size_t truss = 0; truss < mesh.count; ++truss) {
-        const std::size_t i = mesh.slot(truss);
-        at(static_cast<py::ssize_t>(mesh.input_index[truss])) =
-            (trusses.block[i / block_size].*column)[i % block_size];
-    }
-    return read_only(std::move(result));
+    return in_input_order(mesh, [&](std::size_t b, std::size_t i) { return (trusses.block[b].*column)[i]; });
 }
 
 // The same for the three coordinates of the nodes.
@@ -234,15 +228,15 @@ void register_simulation(py::module_& m) {
         .def("nodes", alone(&nodes_in_input_order), py::arg("unit") = 0,
              "(n, 3) m: shell nodes now, body axes")
         .def("deflection", alone(+[](Simulation& s, std::size_t unit) {
-                 return in_input_order(s, unit, &TrussBlockState::deflection);
+                 return state_column(s, unit, &TrussBlockState::deflection);
              }),
              py::arg("unit") = 0, "(n,) m: truss deflections now")
         .def("peak_deflection", alone(+[](Simulation& s, std::size_t unit) {
-                 return in_input_order(s, unit, &TrussBlockState::peak_deflection);
+                 return state_column(s, unit, &TrussBlockState::peak_deflection);
              }),
              py::arg("unit") = 0, "(n,) m: greatest truss deflections so far")
         .def("truss_force", alone(+[](Simulation& s, std::size_t unit) {
-                 return in_input_order(s, unit, &TrussBlockState::force);
+                 return state_column(s, unit, &TrussBlockState::force);
              }),
              py::arg("unit") = 0, "(n,) N: truss forces now");
 }

@@ -8,6 +8,7 @@
 
 #include "arrays.hpp"
 #include "birm3d/model/vehicle.hpp"
+#include "input_order.hpp"
 #include "register.hpp"
 
 namespace birm3d::bindings {
@@ -168,12 +169,9 @@ void register_vehicle(py::module_& m) {
             "springback",
             [](const Vehicle& vehicle, std::size_t unit) {
                 const TrussMesh& mesh = vehicle.units.at(unit).trusses;
-                Column found(mesh.count, 0.0);
-                for (std::size_t truss = 0; truss < mesh.count && !mesh.springback.empty(); ++truss) {
-                    const std::size_t i = mesh.slot(truss);
-                    found[mesh.input_index[truss]] = mesh.springback[i / block_size][i % block_size];
-                }
-                return py::array_t<double>(static_cast<py::ssize_t>(found.size()), found.data());
+                return in_input_order(mesh, [&](std::size_t b, std::size_t i) {
+                    return mesh.springback.empty() ? 0.0 : mesh.springback[b][i];
+                });
             },
             py::arg("unit"), "(n,) m: what each node of a unit comes back by without force");
 }

@@ -13,8 +13,8 @@ void TrussMesh::find_springback(const TrussInput& input) {
         return std::array{input.node[source].x(), input.node[source].y(), input.node[source].z()};
     };
     for (std::size_t source = 0; source < count; ++source) {
-        const double own = input.curve[input.curve_of[source]].springback;
-        if (own > 0.0) most[place(source)] = std::max(most[place(source)], own);
+        const double of_truss = input.curve[input.curve_of[source]].springback;
+        if (of_truss > 0.0) most[place(source)] = std::max(most[place(source)], of_truss);
     }
     if (most.empty()) return;
     springback.fill().resize(blocks);

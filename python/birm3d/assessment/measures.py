@@ -12,6 +12,7 @@ import numpy.typing as npt
 from ..barrier.kinds import RigidWall
 from ..barrier.surfaces import barrier_axes, barrier_surfaces
 from ..result.capture import capture
+from ..result.event import gets_past
 from ..result.metrics import ALONG_LINE
 from ..vehicle.unit_shapes import unit_shapes
 from .criteria import Criterion
@@ -140,7 +141,7 @@ def vehicle_intrusion(result: Result) -> float:
 
 def _ends(result: Result) -> tuple[float, float]:
     """Return between which places along the line intrusion counts [m]."""
-    if result.outcome in ("passed", "overridden"):
+    if gets_past(result):
         return -math.inf, math.inf
     barrier = _barrier_of(result)
     line = barrier_axes(barrier)[0]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import units
-from ..result.event import has_rolled_over, is_open, outcome_words
+from ..result.event import gets_past, has_rolled_over, is_open, outcome_words
 from ..result.segment_motion import base_corners
 from .criteria import Criterion
 from .limits import FLAIL_LIMITS, THIV_LIMIT_KM_H, graded, severity_class
@@ -205,9 +205,7 @@ def _containment(result: Result, name: str) -> Criterion:
     """
     limit = "contained or redirected"
     if not is_open(result):
-        return Criterion(
-            name, outcome_words(result.outcome), "", limit, result.outcome not in ("passed", "overridden")
-        )
+        return Criterion(name, outcome_words(result.outcome), "", limit, not gets_past(result))
     barrier = result.scene.barrier
     assert barrier is not None  # check_side_on has refused None
     parts = [result.unit(i) for i in range(len(result.scene.vehicle.units))]

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .. import units
-from ..result.event import is_open, outcome_words
+from ..result.event import gets_past, is_open, outcome_words
 from .criteria import Criterion
 from .measures import barrier_extent, check_side_on, heading_rows, penetration_history
 from .rating import MODEL_CAUTION, Rating, first_reached
@@ -172,7 +172,7 @@ def _penetration(
             "result must have run until the vehicle is stopped or has left (duration=None), got one that "
             f"ends at {result.time[-1]:g} s with {moving_in:.2f} m/s into the barrier"
         )
-    if result.outcome in ("passed", "overridden") and moving_in > 0.0:
+    if gets_past(result) and moving_in > 0.0:
         return _Penetration(
             greatest, False, f"{result.outcome}, goes on at {moving_in:.1f} m/s: at least this"
         )

@@ -40,6 +40,7 @@ __all__ = [
     "DECIDED",
     "OUTCOMES",
     "Metrics",
+    "gets_past",
     "has_rolled_over",
     "is_open",
     "metrics_of",
@@ -54,6 +55,11 @@ OUTCOMES = ("stopped", "redirected", "passed", "overridden", "rolled_over", "und
 def outcome_words(outcome: str) -> str:
     """Return an outcome as texts have it: ``"rolled over"``."""
     return outcome.replace("_", " ")
+
+
+def gets_past(result: RunRecord) -> bool:
+    """Whether the vehicle passed the barrier, or went over it."""
+    return result.outcome in ("passed", "overridden")
 
 
 def has_rolled_over(result: RunRecord) -> bool:
