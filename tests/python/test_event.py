@@ -63,6 +63,18 @@ def test_values_at_separation_do_not_depend_on_the_duration(name: str) -> None:
         assert (other.outcome, other.outcome_detail) == (ended.outcome, ended.outcome_detail)
 
 
+def test_a_run_ends_at_rest_though_wedged_skin_stores_energy() -> None:
+    """Skin on both sides of a post can press on it for ever; the truck stands still."""
+    result = Simulation(Vehicle.preset("cargo_truck"), Barrier.bollards(count=5), "50 mph").run()
+    at_rest = 1e-6 * result.energy["kinetic"][0]
+    assert result.end_reason == "stopped"
+    assert result.outcome == "stopped"
+    assert result.energy["stored"][-1] > 10.0 * at_rest
+    end = result.metrics["end_time"]
+    assert np.all(result.energy["kinetic"][result.time > end - 0.25] <= at_rest)
+    assert end < 4.0
+
+
 @pytest.mark.parametrize("name", ["wall", "bollards", "jersey", "head_on"])
 def test_the_instant_is_the_last_loss_of_contact(name: str) -> None:
     result = run(name)

@@ -70,7 +70,7 @@ HASHES = {
     "semi, wall": "557f5b797dd8b117",
     "truck, pole of triangles": "7d4e7705b053977b",
     "free-standing": "8b513e5bd4bc08b5",
-    "minivan on its side": "e656e6bc514f2797",
+    "minivan on its side": "50fa25478b464c0d",
     "car, corner of a planter": "7068ea637b442401",
     "pickup, end of a wall": "7ef8a94f8eb45ca9",
     "finite-element car, wall": "9be0600936bc9b61",

@@ -248,6 +248,10 @@ Event begin_event(const Scene& scene, const State& start) {
 void follow_event(const Scene& scene, const State& state, const StepContact& contact, Event& event) {
     event.least_upright = std::min(event.least_upright, least_up(state));
     if (!scene.barrier) return;
+    if (!(state.energies.kinetic < rest_energy(scene)))
+        event.slow_since = infinity;
+    else
+        event.slow_since = std::min(event.slow_since, state.time);
     const BodyState& body = state.units.front().body;
     if (!event.over_top && body.position.dot(event.towards) > event.line) {
         if (!event.crossed) event.crossed = true, event.crossing = body.position;
@@ -271,9 +275,13 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
     if (!event.decided()) judge_departure(scene, state, event);
 }
 
+bool rests(const Scene& scene, const State& state, const Event& event) {
+    return at_rest(scene, state) || state.time - event.slow_since >= tolerance::rest_duration;
+}
+
 bool is_decided(const Scene& scene, const State& state, Event& event) {
     if (event.left && !event.touching && is_over(scene, state)) return true;
-    if (at_rest(scene, state)) {
+    if (rests(scene, state, event)) {
         if (!event.decided()) judge_rest(scene, state, event);
         return true;
     }

@@ -107,7 +107,8 @@ EndReason Simulation::end_reason() const {
     if (!state_.decided) return EndReason::longest;
     if (event_.manner == Manner::slides_on) return EndReason::sliding;
     // A vehicle that left may turn so fast in the tail that `has_left` no longer holds: it is not at rest.
-    return has_left(scene_, state_) || !at_rest(scene_, state_) ? EndReason::separated : EndReason::stopped;
+    const bool stopped = !has_left(scene_, state_) && rests(scene_, state_, event_);
+    return stopped ? EndReason::stopped : EndReason::separated;
 }
 
 double Simulation::deepest_node() const {

@@ -127,6 +127,10 @@ inline constexpr double tilting_rate = 0.2;
 // Below this sine of its angle a path runs along the barrier's line.
 inline constexpr double along_line = 1e-9;
 
+// A vehicle that has been slow for so long rests (s), though skin that is wedged at the barrier stores energy. Small: a vehicle
+// that turns back is slow for an instant only.
+inline constexpr double rest_duration = 0.25;
+
 // The instant at which the outcome of a run is decided is found to within this (s).
 inline constexpr double decision_resolution = 1e-6;
 

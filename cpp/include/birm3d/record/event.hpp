@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "birm3d/scene/scene.hpp"
 
@@ -48,6 +49,9 @@ struct Event {
     double released_at = 0.0;
     Vec3 released_velocity = Vec3::Zero();
 
+    // Since when all that moves has had no more kinetic energy than that of a vehicle at rest (s).
+    double slow_since = std::numeric_limits<double>::infinity();
+
     bool left = false;                 // for good?
     bool separated = false;            // and had touched: `released_at` and `released_velocity` are final
     double deflection = 0.0;           // greatest of all trusses when it had left, less their springback (m)
@@ -75,6 +79,9 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
 
 // Is the outcome known, with nothing still to be seen of roll, pitch and what slides? Then the event has its verdict.
 bool is_decided(const Scene& scene, const State& state, Event& event);
+
+// Has all come to rest: with neither kinetic nor stored energy, or slow for tolerance::rest_duration?
+bool rests(const Scene& scene, const State& state, const Event& event);
 
 // Of a run that ends undecided at the longest event: a vehicle that still slides along the barrier is redirected.
 void judge_at_longest(const Scene& scene, const State& state, Event& event);
