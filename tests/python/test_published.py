@@ -195,6 +195,6 @@ class TestTruckAtBollards:
         assert result.metrics["max_pitch"] == pytest.approx(23.0, abs=4.0)
 
     def test_lower_bollards_pitch_more(self, result: Result) -> None:
-        """Couple about the mass centre, 1.29 m high: the lower the force, the more it turns."""
+        """Couple about the mass centre, 1.21 m high: the lower the force, the more it turns."""
         low, high = (scenes.truck_at_bollards(height=height).run() for height in (0.9, 1.2))
         assert low.metrics["max_pitch"] > result.metrics["max_pitch"] > high.metrics["max_pitch"]

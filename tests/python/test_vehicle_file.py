@@ -553,9 +553,10 @@ def test_lines_after_all_kinds_of_values(text):
     assert ("b",) not in lines
 
 
-def test_no_file_of_the_package_quotes_from_memory() -> None:
+def test_no_file_of_the_package_and_no_page_quotes_from_memory() -> None:
     """A client reads the sources: a value without one at hand says so."""
     root = Path(birm3d.__file__).parent
-    pages = (path for kind in ("toml", "csv", "py", "html") for path in root.rglob(f"*.{kind}"))
+    pages = [path for kind in ("toml", "csv", "py", "html") for path in root.rglob(f"*.{kind}")]
+    pages += Path(__file__).parents[2].glob("docs/**/*.md")
     found = [str(path) for path in pages if "from memory" in " ".join(path.read_text("utf-8").split())]
     assert not found
