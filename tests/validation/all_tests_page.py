@@ -18,8 +18,8 @@ Written by `python tests/validation/all_tests.py` from data; nothing on this pag
 
 One table for each kind of test: measured, predicted, error. Which preset stands for a vehicle follows from
 one rule (`stand_in.py`: the preset of the class that is nearest in mass, with the mass of the test); no row
-has a number of its own. The mark of a quantity is the error that is accepted. It is chosen by how much the
-test itself scatters, and each kind says its marks. An error beyond its mark is bold.
+has a number of its own. The mark of a quantity is the error that is accepted. Each kind says its marks, and
+whether they are the scatter of tests, a bound or a target. An error beyond its mark is bold.
 
 Travel is the greatest displacement of the mass centre towards the barrier. Static crush is what is left of
 the crush after the test. Other words are in the [glossary](../../docs/pages/glossary.md).
@@ -32,7 +32,7 @@ dash in place of a unit stands for ratios, counts, and yes (1) or no (0).
 - predicted: no fit has seen the row.
 
 Figures whose source is not at hand are printed apart, at the end of a kind, and are in no count.
-Details of the fits: [finite-element cars](finite_element.md), [finite-element truck](truck.md).
+Details of the fits: [vehicles N and S](finite_element.md), [finite-element truck](truck.md).
 """
 
 

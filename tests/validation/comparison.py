@@ -21,9 +21,10 @@ TOLD = {"N": (1e-3, "kN"), "N s": (1e-3, "kN s")}
 class Row:
     """One figure.
 
-    measured is in the row's unit; predicted is met where it lies from ``low`` to ``high``, which is the
-    test's own scatter or a bound that its source gives. role: "fitted", "left out" or "predicted". judged:
-    false for a figure that nobody read in a source ("source not at hand"); such rows are printed apart.
+    measured is in the row's unit; predicted is met where it lies from ``low`` to ``high``, the mark: the
+    scatter of tests, a bound or a target, as the text of the kind says. role: "fitted", "left out" or
+    "predicted". judged: false for a figure that nobody read in a source ("source not at hand"); such rows
+    are printed apart.
     """
 
     test: str
@@ -39,7 +40,7 @@ class Row:
 
     @property
     def met(self) -> bool:
-        """Whether the prediction is within the test's own scatter."""
+        """Whether the prediction is within the mark."""
         return self.low <= self.predicted <= self.high
 
     @property

@@ -1,4 +1,4 @@
-"""Finite-element runs of two cars, N and S: walls head-on and at 25 degrees, poles."""
+"""Finite-element runs of two vehicles, N and S: walls head-on and at 25 degrees, poles."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from fit_finite_element import predicted
 from page import YAW_MARK, rows_of
 
 NAME = "finite_element"
-TITLE = "Finite-element cars N and S: walls, oblique walls, poles"
+TITLE = "Finite-element vehicles N and S: walls, oblique walls, poles"
 TEXT = """Vehicles: `tests/data/finite_element/fitted_n.toml` and `fitted_s.toml`, fitted to all runs
 together; rows "left out" are fits without the run of the row, as [their page](finite_element.md) has them.
 A run's name says the vehicle (n or s), the barrier, its angle and the speed in mph: `n_wall25_30` is a wall

@@ -27,7 +27,7 @@ Crushed fronts and wheel houses pass on 0.15 of the friction on the wall's face,
 front does. With all of it, the vehicle is pushed off across by half of the tests' median at 150 ms.
 
 What the model can not do here: the front wheel is not torn off. What is left before the wall's face from
-110 ms on pushes straight back. So the change of velocity across ends up to a sixth too small."""
+110 ms on pushes straight back. So the change of velocity across ends up to a seventh too small."""
 
 SPEED = units.km_h(64.4)
 VEHICLES = ("passenger_car", "minivan", "pickup")

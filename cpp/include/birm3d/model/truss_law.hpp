@@ -29,7 +29,7 @@
 //
 // The degree n comes from the rebound of NHTSA test 10146. The wall's force does work of 17.6 mm times its
 // greatest value, and is nearly gone (1 %) after 103 mm. If that is R, n is 103 / 17.6 - 1 = 4.9. The same ratio of
-// finite-element cars at walls is 4 to 10. A straight line would have n = 1. Without a recovery Fig. 3 holds.
+// finite-element vehicles at walls is 4 to 10. A straight line would have n = 1. Without a recovery Fig. 3 holds.
 #pragma once
 
 #include <limits>
