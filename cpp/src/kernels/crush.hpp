@@ -1,7 +1,7 @@
 // Crushing and separation of one block of shell nodes (paper 5.3.1, 5.3.2) and the forces of their trusses.
 //
-// A node at a surface is held on it. It is pushed back along the normal when the surface has moved in:
-// U1 = U + n * penetration. It follows a surface that moves out while its truss still pushes. The displacement is along
+// A node at a surface is held on it. It is pushed back along the normal by its contact depth when the surface has moved in:
+// U1 = U + n d_c. It follows a surface that moves out while its truss still pushes. The displacement is along
 // the mean of the normals at the start and at the end of the step, in body axes. So paths are followed to second order
 // while the body rotates. From B = node - anchor:
 //   deflection d = B_0 - |B|,  truss force F(d) by the law of Fig. 3,  b = B/|B|

@@ -1,4 +1,4 @@
-// Every tolerance of the core: unit, value, and what breaks when it is changed.
+// Tolerances of the core: unit, value, and what breaks when it is changed. Those that mean nothing beyond one file stand there.
 #pragma once
 
 namespace birm3d::tolerance {
@@ -38,8 +38,8 @@ inline constexpr double shortest_step = 1e-9;
 // free-standing segments (s). Large: a slow landing is spread over a long time.
 inline constexpr double longest_resting_step = 5e-3;
 
-// A step grows only if the allowed error is more than this many times its estimated error. It grows by the third root
-// of that ratio, but at most by the second number. Small: the step length oscillates.
+// A step grows by the sixth root of allowed over estimated error. Far below the allowed error it grows by the third root
+// of that ratio over the first number, and at most by the second one. Small: the step length oscillates.
 inline constexpr double ample_room = 16.0;
 inline constexpr double fastest_growth = 10.0;
 

@@ -15,20 +15,20 @@
 // so that one loop without branches serves every curve; the paper's knee is its two-slope case.
 // Below the peak deflection d_p (force F_p) the truss moves on  F = max(0, F_p - k (d_p - d)).
 //
-// Fig. 3 has one slope k = k_unloading. Metal structures spring back by a nearly constant length r instead,
+// Fig. 3 has one slope k = k_unloading. Metal structures spring back by a nearly constant length r_e instead,
 // `recovery`, so that restitution falls with speed. The force then falls along a curve of degree n = 5.
 //
-//   F = F_p ((d - d_r) / R)^n
+//   F = F_p ((d - d_r) / r)^n
 //
-// It is zero below the residual deflection d_r = d_p - R. The structure springs back by the length R.
+// It is zero below the residual deflection d_r = d_p - r. The truss springs back by the length r.
 //
-//   R = min(r (1 - d_p / L), d_p, n F_p / k_unloading)
+//   r = min(r_e (1 - d_p / L), d_p, n F_p / k_unloading)
 //
 // L is the length of the truss, infinite for a curve by itself. What has been crushed does not spring back.
-// The slope is steepest where the load turned, n F_p / R. The energy given back is F_p R / (n + 1).
+// The slope is steepest where the load turned, n F_p / r. The energy given back is F_p r / (n + 1).
 //
 // The degree n comes from the rebound of NHTSA test 10146. The wall's force does work of 17.6 mm times its
-// greatest value, and is nearly gone (1 %) after 103 mm. If that is R, n is 103 / 17.6 - 1 = 4.9. The same ratio of
+// greatest value, and is nearly gone (1 %) after 103 mm. If that is r, n is 103 / 17.6 - 1 = 4.9. The same ratio of
 // finite-element vehicles at walls is 4 to 10. A straight line would have n = 1. Without a recovery Fig. 3 holds.
 #pragma once
 
