@@ -1,4 +1,4 @@
-"""Every run checks its own accounts, and says what does not close, how much, when and where."""
+"""Every run checks its balances, and says what does not close, how much, when and where."""
 
 from __future__ import annotations
 
@@ -165,7 +165,7 @@ BARRIERS = [
     power=st.floats(-5.0, -2.0),
     restitution=st.floats(0.0, 1.0),
 )
-def test_accounts_close_in_any_pose_at_any_barrier(
+def test_balances_close_in_any_pose_at_any_barrier(
     car: Vehicle,
     barrier: Barrier,
     speed: float,

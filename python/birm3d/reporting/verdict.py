@@ -84,7 +84,7 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
     result = case.result
     yield (
         "What happens to the vehicle?",
-        f"{outcome_words(result.outcome)}: {result.outcome_detail}{_other_fates(case)}",
+        f"{outcome_words(result.outcome)}: {result.outcome_detail}{_other_outcomes(case)}",
     )
     for rating in case.ratings:
         contained = "contained" if rating.contained else "NOT contained"
@@ -135,8 +135,8 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
         yield "How well does the model do in given tests nearby?", "; ".join(told)
 
 
-def _other_fates(case: Case) -> str:
-    """Return what becomes of the vehicles of the class, as the end of a line, where some fare otherwise."""
+def _other_outcomes(case: Case) -> str:
+    """Return the outcomes of the vehicles of the class, as the end of a line, where some differ."""
     if isinstance(case.bands, str):
         return ""
     outcomes = case.bands.prediction.outcomes

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
 
-__all__ = ["ENERGY_LIMIT", "FALL_LIMIT", "MOMENTUM_LIMIT", "BalanceWarning", "open_accounts", "warn_if_open"]
+__all__ = ["ENERGY_LIMIT", "FALL_LIMIT", "MOMENTUM_LIMIT", "BalanceWarning", "open_balances", "warn_if_open"]
 
 ENERGY_LIMIT = 5e-3
 """Energy residual, relative to the energy at the run's disposal, beyond which a run is wrong."""
@@ -45,11 +45,11 @@ def warn_if_open(scene: Scene, balances: _core.Balances) -> None:
     - crush, friction or impacts fall from their highest value by more than :data:`FALL_LIMIT` of the energy
       at disposal.
     """
-    for complaint in open_accounts(scene, balances):
+    for complaint in open_balances(scene, balances):
         complaint.warn()
 
 
-def open_accounts(scene: Scene, balances: _core.Balances) -> Iterator[Complaint]:
+def open_balances(scene: Scene, balances: _core.Balances) -> Iterator[Complaint]:
     """Yield what :func:`warn_if_open` warns of."""
 
     def complaint(quantity: str, limit: float, value: float, worst: _core.Departure) -> Complaint:

@@ -234,7 +234,13 @@ def load(path: str | Path) -> Result:
 
 @checked
 def write_capsule(result: Result, path: str | Path) -> None:
-    """Write the capsule of a result; see :meth:`Result.capsule`."""
+    """Write the capsule of a result; see :meth:`Result.capsule`.
+
+    Raises
+    ------
+    ValueError
+        As :meth:`Result.capsule` does.
+    """
     result.capsule(path)
 
 

@@ -6,7 +6,7 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from .core_contact import core_complaints
-from .energy_balance import open_accounts
+from .energy_balance import open_balances
 from .overlap import overlaps
 
 if TYPE_CHECKING:
@@ -22,14 +22,14 @@ __all__ = ["complaints_of_run", "warn_of_run"]
 def complaints_of_run(
     scene: Scene, statistics: _core.StepStatistics, balances: _core.Balances
 ) -> Iterator[Complaint]:
-    """Return complaints of overlap of body and barrier, of blows on the core, and of open accounts."""
+    """Return complaints of overlap of body and barrier, of blows on the core, and of open balances."""
     return chain(
-        overlaps(scene, statistics), core_complaints(scene, statistics), open_accounts(scene, balances)
+        overlaps(scene, statistics), core_complaints(scene, statistics), open_balances(scene, balances)
     )
 
 
 def warn_of_run(scene: Scene, statistics: _core.StepStatistics, balances: _core.Balances) -> None:
-    """Warn of an overlap of body and barrier, of a blow on the core, and of accounts that do not close.
+    """Warn of an overlap of body and barrier, of a blow on the core, and of balances that do not close.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A computed curve against a measured one: brought to one footing, measured up, judged."""
+"""A computed curve against a measured one: made comparable, then judged by its errors."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Criterion:
 @checked
 @dataclass(frozen=True, eq=False)
 class CurveComparison:
-    """The two curves on one footing, and how far they are apart.
+    """The two curves, made comparable, and how far they are apart.
 
     Attributes
     ----------

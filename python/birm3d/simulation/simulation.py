@@ -271,7 +271,7 @@ class Simulation:
 
 
 def run_scene(scene: Scene) -> Result:
-    """Return the result of a scene without a word of warning: whoever ran it before was told."""
+    """Return the result of a scene, without the warnings that its first run gave."""
     core = scene.start()
     with core:
         core.run()
