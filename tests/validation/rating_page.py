@@ -117,6 +117,8 @@ def page() -> str:
     """Return the page."""
     rows = [_row(case) for case in CASES]
     right = sum(row[5] == "right" for row in rows)
+    computed = sum(row[2] == "contained" for row in rows)
+    published = sum(bool(case.measured) for case in CASES)
     ratings = _table(
         ["test", "computed rating", "computed", "penetration [m]", "published", "containment", "note"], rows
     )
@@ -125,8 +127,9 @@ def page() -> str:
     return f"""{_HEAD}
 ## Ratings
 
-Containment is as published in {right} of {len(rows)} tests. Penetration is that of the standard's point past
-its datum; of roadside tests that of any part of the vehicle past the traffic face.
+Containment is as published in {right} of {len(rows)} tests. {computed} are computed as contained,
+and {published} were. Penetration is that of the standard's point past its datum; of
+roadside tests that of any part of the vehicle past the traffic face.
 
 {ratings}
 ## Occupant risk
