@@ -174,9 +174,9 @@ def scene(
 
 def figures(result: birm3d.Result) -> Figures:
     """Figures of a computed crash."""
-    told = result.scene
-    interval = told.settings.output_interval
-    angle = np.radians(told.impact_angle)
+    crash = result.scene
+    interval = crash.settings.output_interval
+    angle = np.radians(crash.impact_angle)
     along = np.array([np.sin(angle), np.cos(angle), 0.0])  # of the path; the barrier's line is y
     left = np.array([-along[1], along[0], 0.0])
     impulse = [
@@ -184,7 +184,7 @@ def figures(result: birm3d.Result) -> Figures:
         for load in result.element_loads
     ]
     force = result.barrier_normal_force
-    travel = result.position[:, 0] - result.position[0, 0] - told.standoff
+    travel = result.position[:, 0] - result.position[0, 0] - crash.standoff
     return Figures(
         travel=float(travel.max()),
         force_50ms=float(moving_average(force[:, None], 0.05, interval).max()),
