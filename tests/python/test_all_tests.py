@@ -50,7 +50,7 @@ def test_every_kind_has_rows_of_all_its_tasks() -> None:
         rows = read(name)
         assert len(rows) >= len(all_tests.kind(name).tasks())
         for row in rows:
-            assert row.role in ("fitted", "left out", "predicted")
+            assert row.role in ("fitted", "left out", "predicted", "check")
             assert row.low <= row.high
 
 

@@ -9,6 +9,7 @@ from types import ModuleType
 
 from comparison import RESULTS, TOLD, Row
 
+UNSEEN = ("left out", "predicted")
 # Magnitude below which a number is rounding alone, in the unit of the page.
 _ROUNDING = 1e-9
 
@@ -30,6 +31,7 @@ dash in place of a unit stands for ratios, counts, and yes (1) or no (0).
 - fitted: the row was used in a fit of this vehicle.
 - left out: predicted by a fit to all rows of its vehicle but this one.
 - predicted: no fit has seen the row.
+- check: nothing was measured, or the mark is wide on one side by its nature. The row is in no count.
 
 Figures whose source is not at hand are printed apart, at the end of a kind, and are in no count.
 Details of the fits: [vehicles N and S](finite_element.md), [finite-element truck](truck.md).
@@ -90,7 +92,7 @@ def _summary(modules: Mapping[str, ModuleType], tables: Mapping[str, Sequence[Ro
     for name, module in modules.items():
         title = module.TITLE
         for quantity in quantities(tables[name]):
-            for role in ("fitted", "left out", "predicted"):
+            for role in ("fitted", *UNSEEN):
                 chosen = [
                     row
                     for row in tables[name]
@@ -111,7 +113,7 @@ def _worst(tables: Mapping[str, Sequence[Row]], count: int = 20) -> Iterator[str
         outside = max(row.low - row.predicted, row.predicted - row.high)
         return outside / half if half > 0.0 else 0.0
 
-    rows = [row for table in tables.values() for row in table if row.judged and row.role != "fitted"]
+    rows = [row for table in tables.values() for row in table if row.judged and row.role in UNSEEN]
     worst = sorted((row for row in rows if not row.met), key=beyond, reverse=True)[:count]
     yield "Ordered by how far they are outside their marks, in half widths of the mark.\n"
     head = ("test", "vehicle", "quantity", "measured", "predicted", "error", "outside by")

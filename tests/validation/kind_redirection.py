@@ -15,9 +15,10 @@ NAME = "redirection"
 TITLE = "Oblique impact on walls and concrete barriers"
 TEXT = """Vehicles: the stand-in of the class with the test's mass. Barriers: rigid, fixed, friction 0.2. No
 measured force, exit angle or roll of these tests could be read in a source; forces as commonly
-reported, whose sources are not at hand, are printed apart. What can be judged: the change of momentum across
+reported, whose sources are not at hand, are printed apart. What can be checked: the change of momentum across
 the barrier when the vehicle has left it, or at the end of the run, over the momentum towards it, m v
-sin(angle). It is 1 + e, with a restitution e from 0 to 0.3 (the mark). Whether the vehicle is contained and
+sin(angle). It is 1 + e. A restitution e from 0 to 0.3 is taken to be right, and the column "measured" has
+its middle: no test of the table gives it. Whether the vehicle is contained and
 stays upright (1: yes, 0: no) is compared with what is commonly reported of the tests. The wall's own impulse
 is in the table of computed figures: tyres that press a vehicle on the wall add to it.
 
@@ -65,7 +66,9 @@ def rows(task: str) -> list[Row]:
     contained = float(result.outcome in ("redirected", "stopped", "undecided"))
     middle = 0.5 * sum(NORMAL_IMPULSE)
     found = [
-        Row(task, who, "change of momentum across / m v sin a", "-", middle, *NORMAL_IMPULSE, change),
+        Row(
+            task, who, "change of momentum across / m v sin a", "-", middle, *NORMAL_IMPULSE, change, "check"
+        ),
         Row(task, who, "contained and upright", "-", 1.0, 1.0, 1.0, contained, judged=False),
     ]
     if fact["force_50ms_kN"]:

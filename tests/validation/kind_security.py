@@ -21,7 +21,7 @@ TT203, TT210, DSC7000 and RSA-SM (no size of what was hit was found).
 
 What the model can not do here: the bed slides forward over the frame and crushes the cab. With a rigid bed
 the reading is metres short of every published test, so that all limits are met for the wrong reason. Posts
-do not yield."""
+do not yield, and a rigid one contains. So these rows are checks."""
 
 BED = "load_bed_leading_edge"
 PENETRATION_BELOW = -20.0  # m: what is short of the barrier meets an upper limit
@@ -42,8 +42,8 @@ def rows(task: str) -> list[Row]:
     rating = birm3d.rate(result, "ASTM F2656")
     at_rest = float(result.sensor(BED).position[-1, 0]) - 0.5 * float(fact["diameter_m"])
     return [
-        Row(task, who, "penetration at rest, limit", "m", most, PENETRATION_BELOW, most, at_rest),
-        Row(task, who, "contained", "-", 1.0, 1.0, 1.0, float(rating.contained)),
+        Row(task, who, "penetration at rest, limit", "m", most, PENETRATION_BELOW, most, at_rest, "check"),
+        Row(task, who, "contained", "-", 1.0, 1.0, 1.0, float(rating.contained), "check"),
     ]
 
 
