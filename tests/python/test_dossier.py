@@ -608,6 +608,7 @@ def test_other_kinds_of_runs(make: Any, tmp_path: Path, monkeypatch: pytest.Monk
     data = json.loads(page.texts["script"][0])
     assert len(data["units"]) == len(result.scene.vehicle.units)
     text = " ".join(page.texts["p"])
+    assert ("those of the leading unit" in text) is (len(data["units"]) > 1)
     if make is block:
         assert "given as arrays" in text
     elif make is alone:

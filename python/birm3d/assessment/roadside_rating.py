@@ -232,6 +232,11 @@ def _attitude(result: Result) -> tuple[float, float]:
     return roll, max(float(np.abs(part.pitch).max()) for part in parts)
 
 
+def _roll_name(result: Result) -> str:
+    """Return what the roll is called: the metric `max_roll` is that of the first unit alone."""
+    return "greatest roll" + (" of any unit" if len(result.scene.vehicle.units) > 1 else "")
+
+
 def _working_width(result: Result) -> float:
     """Return how far the barrier reaches at most behind its undeformed traffic face [m]."""
     barrier = result.scene.barrier
@@ -296,12 +301,14 @@ def _mash(result: Result, test: RoadsideTest, light: bool, intrusion: float) -> 
                 None,
                 "yes" if upright else "no",
             ),
-            Criterion("greatest roll", roll, "deg", "", None),
+            Criterion(_roll_name(result), roll, "deg", "", None),
         ]
+    # MASH measures to the furthest part of the barrier or of the vehicle, EN 1317 to that of the barrier.
+    width = max(_working_width(result), intrusion)
     rows += [
         _box_row(exit_box(result, not light), judged=False, contained=rows[0].passed is True),
         Criterion("dynamic deflection", _deflection(result), "m", "", None),
-        Criterion("working width", _working_width(result), "m", "", None),
+        Criterion("working width", width, "m", "none; of barrier and vehicle", None),
         Criterion("vehicle intrusion", intrusion, "m", "", None),
         Criterion("ASI", risk.asi, "", "", None),
         Criterion("THIV", risk.thiv / units.km_h, "km/h", "", None),
@@ -317,7 +324,7 @@ def _european(result: Result, test: RoadsideTest, light: bool, intrusion: float)
     rows: list[Criterion] = [
         contained,
         Criterion("upright", became, "", "not rolled over", upright),
-        Criterion("greatest roll", roll, "deg", "", None),
+        Criterion(_roll_name(result), roll, "deg", "", None),
         _box_row(exit_box(result, not light), judged=True, contained=contained.passed is True),
     ]
     classes = []
