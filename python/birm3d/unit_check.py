@@ -60,6 +60,7 @@ USUAL: Mapping[str, Usual] = MappingProxyType(
         "heading": _TURN,
         "standoff": Usual(0.0, 200.0, "m", "mm"),
         "duration": Usual(0.0, 100.0, "s", "ms"),
+        "natural_period": Usual(0.0, 4.0, "s", "ms"),
         "diameter": Usual(0.01, 5.0, "m", "mm"),
         "height": _SIZE,
         "thickness": _SIZE,

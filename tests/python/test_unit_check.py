@@ -19,6 +19,7 @@ from birm3d import (
     UnitWarning,
     Vehicle,
     critical_impact_point,
+    design_load,
     fragility,
     monte_carlo,
     predict,
@@ -164,6 +165,10 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "heading in rad": (lambda: Barrier.pole(heading=0.7854), r"heading .* in radians \(45 deg\)"),
     "duration in ms": (lambda: at(duration=150), r"duration = 150 s .* 0 to 100 s"),
     "standoff in mm": (lambda: at(standoff=500), r"standoff = 500 m .* 0 to 200 m"),
+    "natural period in ms": (
+        lambda: design_load(at(), natural_period=50, draws=0),
+        r"natural_period = 50 s .* 0 to 4 s, or text with its unit, as '50 ms'",
+    ),
     "diameter in mm": (lambda: Barrier.pole(diameter=320), r"diameter = 320 m .* 0.01 to 5 m"),
     "spacing in mm": (lambda: Barrier.bollards(spacing=1200), r"spacing = 1200 m .* 0.01 to 100 m"),
     "height in mm": (lambda: Barrier.bollards(height=900), r"height = 900 m .* 0.001 to 20 m"),

@@ -21,8 +21,8 @@ from ..simulation.parameters import in_si, varied_scene
 from ..simulation.simulation import Simulation
 from ..study.predict import Prediction
 from ..study.table import Study
-from ..unit_check import warn_if_any_unusual
-from ..units import Quantity, si
+from ..unit_check import given, warn_if_any_unusual
+from ..units import Quantity
 from .class_bands import Bands, Seen, bands_of, class_draws, governing_scenes, with_bands
 from .design_caution import barrier_caution, has_blow, merged, run_cautions
 from .design_table import DesignLoad, LoadScene
@@ -296,9 +296,9 @@ def _with(load: DesignLoad, bands: Bands, vehicles: int) -> DesignLoad:
 
 
 def _values(name: str, values: Iterable[Quantity]) -> list[float]:
-    given = list(values)
-    warn_if_any_unusual(name, given)
-    found = [number(name, in_si(name, value)) for value in given]
+    stated = list(values)
+    warn_if_any_unusual(name, stated)
+    found = [number(name, in_si(name, value)) for value in stated]
     if not found:
         raise ValueError(f"{name} must have at least one value, got an empty list")
     for value in found:
@@ -324,7 +324,7 @@ def _common_barrier(cases: Sequence[Simulation | Result], varied: Iterable[str])
 def _system(
     cases: Sequence[Simulation | Result], natural_period: Quantity | None, ductility: float, damping: float
 ) -> System:
-    period = _ASSUMED_PERIOD if natural_period is None else si("natural_period", natural_period, "time")
+    period = _ASSUMED_PERIOD if natural_period is None else given("natural_period", natural_period)
     system = System(float(period), float(ductility), float(damping))
     check_system(system, max(case.scene.settings.output_interval for case in cases))
     return system
