@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import overload
 
 from ..base.arguments import checked
+from ..base.near_names import did_you_mean
 from ..result import Result
 from ..scene.scene import Scene
 from ..study import Study
@@ -139,8 +140,9 @@ def split_standard(standard: str) -> tuple[str, str | None]:
         if standard.startswith(f"{name} "):
             return name, standard.removeprefix(f"{name} ").strip()
     raise ValueError(
-        f"standard must be one of {', '.join(STANDARDS)}; got {standard!r}. Levels of security barriers "
-        "(M30, K12) follow from the run"
+        f"standard must be one of {', '.join(STANDARDS)}; got {standard!r}"
+        f"{did_you_mean(standard, STANDARDS) or '.'} Levels of security barriers (M30, K12) follow from "
+        "the run"
     )
 
 

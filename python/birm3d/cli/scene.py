@@ -10,6 +10,7 @@ import click
 
 from .. import units
 from ..barrier.kinds import KINDS
+from ..base.near_names import did_you_mean
 
 if TYPE_CHECKING:
     from ..barrier.base import Barrier
@@ -34,6 +35,18 @@ class QuantityOption(click.ParamType):  # type: ignore[type-arg,unused-ignore]
             return units.parse(value, self.name, plain=self.name != "speed")
         except ValueError as error:
             self.fail(str(error), param, ctx)
+
+
+class KindChoice(click.Choice):  # type: ignore[type-arg,unused-ignore]
+    """A choice that says which name was most likely meant."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the choice."""
+        try:
+            return super().convert(value, param, ctx)
+        except click.BadParameter as error:
+            meant = did_you_mean(str(value), map(str, self.choices)).removeprefix(", d")
+            self.fail(error.message + (f" D{meant}" if meant else ""), param, ctx)
 
 
 _TYPES: dict[str, Any] = {
@@ -74,7 +87,7 @@ _OPTIONS = (
     ),
     click.option(
         "--barrier",
-        type=click.Choice([*KINDS, "none"]),
+        type=KindChoice([*KINDS, "none"]),
         default="rigid_wall",
         show_default=True,
     ),

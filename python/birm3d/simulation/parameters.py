@@ -31,7 +31,6 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Mapping
-from difflib import get_close_matches
 from functools import lru_cache
 from typing import Any
 
@@ -39,6 +38,7 @@ from ..barrier.kinds import KINDS
 from ..base import checks
 from ..base.arguments import checked
 from ..base.deprecated import warn_renamed
+from ..base.near_names import near_names
 from ..scene.scene import APPROACH, Scene
 from ..scene.settings import Settings
 from ..units import quantity_in, si
@@ -319,9 +319,7 @@ def _unknown(scene: Scene, name: str) -> ValueError:
             f"parameter must be of a zone that trusses belong to ({', '.join(scene.vehicle.zones_met)}), "
             f"or it has no effect; got {name!r}"
         )
-    near = get_close_matches(name, known, n=5) or [
-        known_ for known_ in known if not known_.startswith("zone.")
-    ]
+    near = near_names(name, known) or [known_ for known_ in known if not known_.startswith("zone.")]
     return ValueError(
         f"parameter must be one of the {len(known)} that birm3d.scene_parameters.parameter_names() lists "
         f"(near: {', '.join(near)}); got {name!r}"

@@ -18,6 +18,7 @@ from .._version import __version__
 from ..barrier.text import varied_barrier_text
 from ..base.arguments import checked
 from ..base.frozen_mapping import FrozenMapping
+from ..base.near_names import did_you_mean
 from ..result.event import OUTCOMES
 from ..scene.text import impact_text
 from ..simulation.parameters import unit_of
@@ -350,7 +351,9 @@ class Study:
         known = (*self.parameters, *self.metrics, "outcome")
         for axis, name in (("x", x), ("y", y), ("by", by)):
             if name is not None and name not in known:
-                raise ValueError(f"{axis} must be one of {', '.join(known)}; got {name!r}")
+                raise ValueError(
+                    f"{axis} must be one of {', '.join(known)}; got {name!r}{did_you_mean(name, known)}"
+                )
         return pictures.plot_study(self, x, y, by)
 
     def _repr_html_(self) -> str:

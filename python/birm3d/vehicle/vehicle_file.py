@@ -22,6 +22,7 @@ import numpy as np
 from pydantic import Field, field_validator, model_validator
 
 from ..base.deprecated import warn_deprecated
+from ..base.near_names import did_you_mean
 from ..io.file_format import reading
 from ..io.toml import Document, DocumentError, KeyPath, Strict, frozen, plain, received, reject
 from .file_schema import (
@@ -458,7 +459,8 @@ def preset_names() -> tuple[str, ...]:
 def preset_path(name: str) -> Path:
     """Path of the vehicle file of a preset."""
     if name not in preset_names():
-        raise ValueError(f"preset must be one of {', '.join(preset_names())}; got {name!r}")
+        known = preset_names()
+        raise ValueError(f"preset must be one of {', '.join(known)}; got {name!r}{did_you_mean(name, known)}")
     return Path(str(resources.files("birm3d") / "data" / f"{name}.toml"))
 
 
