@@ -28,10 +28,7 @@ __all__ = ["criteria_table", "risk_section", "verdict_section"]
 _ALL_ALIKE = 4  # vehicle, barrier, speed, angle
 _HEAVY = 3500.0  # kg; from here on MASH and EN 1317 do not judge what occupants undergo
 _KNOWS = " knows: "  # in the error of a standard that does not know the vehicle
-_FIRST_UNIT = (
-    "Motion, deceleration and angles are those of the leading unit. The roll of a rating is the greatest of "
-    "any unit."
-)
+_FIRST_UNIT = "Motion and angles are those of the leading unit; a rating has the greatest roll of any."
 _NO_BARRIER = "There is no barrier in this scene: nothing is rated."
 
 
@@ -41,9 +38,8 @@ def verdict_section(case: Case) -> Section:
     blocks: list[Block] = [
         Table("At a glance", ("question", "answer"), list(_glance(case))),
         headline_table(result, case.bands),
+        *([Text(_FIRST_UNIT)] if len(result.scene.vehicle.units) > 1 else []),
     ]
-    if len(result.scene.vehicle.units) > 1:
-        blocks.append(Text(_FIRST_UNIT))
     blocks += [Caution(f"The run gave a warning: {text}") for text in case.warnings]
     if not isinstance(case.bands, str):
         blocks.append(Caution(case.bands.prediction.caution))
