@@ -63,6 +63,16 @@ def test_values_at_separation_do_not_depend_on_the_duration(name: str) -> None:
         assert (other.outcome, other.outcome_detail) == (ended.outcome, ended.outcome_detail)
 
 
+def test_a_truck_beyond_a_post_is_not_stopped() -> None:
+    """It meets the post with a front corner, turns about it, and rolls on slowly behind the line."""
+    truck = Vehicle.preset("mash_10000s")
+    post = Barrier.bollards(count=1, diameter=0.3, height=1.0, origin=(0.0, 0.5 * truck.width / 2.0, 0.0))
+    result = Simulation(truck, post, "40 mph").run()
+    assert result.position[-1, 0] > 1.0
+    assert not result.barrier_force[-100:].any()
+    assert result.outcome == "passed"
+
+
 def test_a_run_ends_at_rest_though_wedged_skin_stores_energy() -> None:
     """Skin on both sides of a post can press on it for ever; the truck stands still."""
     result = Simulation(Vehicle.preset("cargo_truck"), Barrier.bollards(count=5), "50 mph").run()

@@ -23,8 +23,8 @@ class Row:
 
     measured is in the row's unit; predicted is met where it lies from ``low`` to ``high``, the mark: the
     scatter of tests, a bound or a target, as the text of the kind says. role: "fitted", "left out",
-    "predicted", or "check" of what no test has measured. judged: false for a figure that nobody read in a source ("source not at hand"); such rows
-    are printed apart.
+    "predicted", or "check" of what no test has measured. judged: false for a figure that nobody read in a
+    source ("source not at hand"); such rows are printed apart.
     """
 
     test: str

@@ -88,18 +88,14 @@ bool touches(const State& state) {
                        [](const UnitState& unit) { return unit.skin.normal_force > 0.0; });
 }
 
-namespace {
-
-// Does the vehicle move away from every element? With Clear::always it must also be out of reach. With
-// Clear::forward_only that holds for forward motion; otherwise it suffices to move away faster than any rotation can
-// bring a point back.
-enum class Clear { forward_only, always };
-bool moves_away(const Scene& scene, const State& state, Clear must_clear) {
+// Away from every element. Where it moves forward it must also be out of reach; else it suffices to move away faster than any
+// rotation can bring a point back.
+bool has_left(const Scene& scene, const State& state) {
     const Vec3 towards = scene.towards();
     for (std::size_t u = 0; u < state.units.size(); ++u) {
         const Unit& unit = scene.vehicle->units[u];
         const BodyState& body = state.units[u].body;
-        const bool clear = must_clear == Clear::always || body.velocity.dot(towards) > 0.0;
+        const bool forward = body.velocity.dot(towards) > 0.0;
         const double rotation_speed = angular_velocity(unit.body, body).norm() * unit.trusses.reach;
         for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
             const Obstacle& element = scene.obstacles[i];
@@ -116,21 +112,11 @@ bool moves_away(const Scene& scene, const State& state, Clear must_clear) {
                 away -= std::max(0.0, segment.dot(direction)) +
                         fastest_point(scene.barrier->segments[i], state.segments[i]) - segment.norm();
             }
-            const bool outruns = !clear && away >= rotation_speed;
+            const bool outruns = !forward && away >= rotation_speed;
             if (!(away > 0.0 && (outruns || distance > unit.trusses.reach))) return false;
         }
     }
     return true;
-}
-
-}  // namespace
-
-bool has_left(const Scene& scene, const State& state) {
-    return moves_away(scene, state, Clear::forward_only);
-}
-
-bool is_out_of_reach(const Scene& scene, const State& state) {
-    return moves_away(scene, state, Clear::always);
 }
 
 double rest_energy(const Scene& scene) {

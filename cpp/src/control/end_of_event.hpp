@@ -16,9 +16,6 @@ bool touches(const State& state);
 // still has to pass the element.
 bool has_left(const Scene& scene, const State& state);
 
-// Is the vehicle moving away from every element and out of its reach, in any direction?
-bool is_out_of_reach(const Scene& scene, const State& state);
-
 // Has the vehicle left the barrier for good, with no wheel rising and all segments at rest?
 bool is_over(const Scene& scene, const State& state);
 

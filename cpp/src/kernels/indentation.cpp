@@ -32,6 +32,10 @@ constexpr double least_facing = 0.7, turned_away = 0.3;
 // of a bumper throw it aside.
 constexpr double post_flank = 0.35;
 
+// Depth behind a panel's foremost node to which its width and lower edge are counted for a thin post (m). Small: a thin post
+// passes the rounded corner of a front without load. Large: a post beside a bumper draws it in before anything is met.
+constexpr double least_outline_depth = 0.2;
+
 // `side`: 1 on the open side of an edge, -1 before its wall, 0 on the flank of a post. Before the wall the factor is zero: the
 // wall's face holds the skin there.
 double flank_factor(double side, double open_flank) {
@@ -124,7 +128,7 @@ Indentation::Indentation(const Post& post, const Placement& stands, const Panel&
     const double rim = std::sqrt(leaning * leaning + rounded * rounded);
     top = post.height * upright + radius * rim;
     top_rate = radius * leaning / rim - post.height * tilt;
-    set_outline(post.opens ? panel.box : outline_at(panel, radius));
+    set_outline(post.opens ? panel.box : outline_at(panel, std::max(radius, least_outline_depth)));
     const double off = std::min(1.0, std::max({low, -high, 0.0}) / post.radius);
     grip = 1.0 - off * off;
     // A panel that ends before the edge's axis meets only its rounding. Then the edge counts as a post.

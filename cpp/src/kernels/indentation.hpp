@@ -29,8 +29,8 @@
 // Of several indentations the deepest one holds a node. An indentation does not release a node that stands on the flank of
 // another post. Skin slides on a post only along the panel: friction acts across e.
 //
-// A panel's width and lower edge are those of its foremost nodes: up to one radius of the post deep, at least 0.1 m
-// (outline_step). A post that misses the bumper does not indent it by meeting the wider body behind: it meets the nodes there
+// A panel's width and lower edge are those of its foremost nodes: up to one radius of the post deep, at least 0.2 m
+// (least_outline_depth), which the rounded corner of a front has. A post that misses the bumper does not indent it by meeting the wider body behind: it meets the nodes there
 // as any surface does. For the edge of a wall all nodes count, as the wall's face crushes what is deeper beside it.
 //
 // A vertical face with a top edge (top_edge.hpp) holds the skin before it, and draws in the skin above its top:

@@ -7,6 +7,7 @@
 #include "birm3d/base/tolerances.hpp"
 #include "control/end_of_event.hpp"
 #include "kernels/integrate.hpp"
+#include "record/rest.hpp"
 #include "scene/obstacles.hpp"
 
 namespace birm3d {
@@ -14,7 +15,6 @@ namespace birm3d {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // A vehicle that moves at a smaller angle to the line neither leaves nor passes it: sine of one degree.
 constexpr double parallel = 0.017452406;
 constexpr double still_along = 0.1;  // the same in contact when the longest run ends: tangent of 6 degrees
@@ -148,8 +148,7 @@ bool passes_between(const Scene& scene, const State& state, const Event& event) 
     bool low = false, high = false;
     for (std::size_t i = 0; i < element_count(scene); ++i) {
         const Range range = range_along(scene, i, state, line);
-        const double middle = 0.5 * (range.low + range.high);
-        (middle < at ? low : high) = true;
+        (0.5 * (range.low + range.high) < at ? low : high) = true;
     }
     return low && high;
 }
@@ -197,10 +196,10 @@ void judge_rest(const Scene& scene, const State& state, Event& event) {
     const double past = distance_past(scene, state, event);
     if (past > 0.0 && event.over_top) {
         event.verdict = Verdict::overridden, event.manner = Manner::over;
-    } else if (past > 0.0 && is_out_of_reach(scene, state)) {
+    } else if (past > 0.0 && !event.touching) {
         event.verdict = Verdict::passed, event.manner = Manner::rests_beyond;
     } else {
-        event.verdict = Verdict::stopped;
+        event.verdict = Verdict::stopped,
         event.manner = state.touched ? Manner::rests : Manner::rests_untouched;
     }
 }
@@ -248,10 +247,7 @@ Event begin_event(const Scene& scene, const State& start) {
 void follow_event(const Scene& scene, const State& state, const StepContact& contact, Event& event) {
     event.least_upright = std::min(event.least_upright, least_up(state));
     if (!scene.barrier) return;
-    if (!(state.energies.kinetic < rest_energy(scene)))
-        event.slow_since = infinity;
-    else
-        event.slow_since = std::min(event.slow_since, state.time);
+    note_slowness(scene, state, event);
     const BodyState& body = state.units.front().body;
     if (!event.over_top && body.position.dot(event.towards) > event.line) {
         if (!event.crossed) event.crossed = true, event.crossing = body.position;
@@ -273,10 +269,6 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
     event.separated = state.touched;
     event.deflection = greatest_deflections(*scene.vehicle, state).left;
     if (!event.decided()) judge_departure(scene, state, event);
-}
-
-bool rests(const Scene& scene, const State& state, const Event& event) {
-    return at_rest(scene, state) || state.time - event.slow_since >= tolerance::rest_duration;
 }
 
 bool is_decided(const Scene& scene, const State& state, Event& event) {

@@ -12,6 +12,7 @@
 #include "control/step_control.hpp"
 #include "control/step_limits.hpp"
 #include "kernels/integrate.hpp"
+#include "record/rest.hpp"
 #include "scene/barrier_overlap.hpp"
 #include "scene/bodies.hpp"
 #include "scene/obstacles.hpp"

@@ -233,7 +233,7 @@ def _attitude(result: Result) -> tuple[float, float]:
 
 
 def _roll_name(result: Result) -> str:
-    """Return what the roll is called: the metric `max_roll` is that of the first unit alone."""
+    """Return what the roll is called; the metric of that name is of the first unit alone."""
     return "greatest roll" + (" of any unit" if len(result.scene.vehicle.units) > 1 else "")
 
 

@@ -80,9 +80,6 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
 // Is the outcome known, with nothing still to be seen of roll, pitch and what slides? Then the event has its verdict.
 bool is_decided(const Scene& scene, const State& state, Event& event);
 
-// Has all come to rest: with neither kinetic nor stored energy, or slow for tolerance::rest_duration?
-bool rests(const Scene& scene, const State& state, const Event& event);
-
 // Of a run that ends undecided at the longest event: a vehicle that still slides along the barrier is redirected.
 void judge_at_longest(const Scene& scene, const State& state, Event& event);
 

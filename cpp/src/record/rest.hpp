@@ -1,0 +1,14 @@
+// When a vehicle counts as one that has come to rest.
+#pragma once
+
+#include "birm3d/record/event.hpp"
+
+namespace birm3d {
+
+// After each accepted step: since when is all slow?
+void note_slowness(const Scene& scene, const State& state, Event& event);
+
+// Has all come to rest: with neither kinetic nor stored energy, or slow for tolerance::rest_duration?
+bool rests(const Scene& scene, const State& state, const Event& event);
+
+}  // namespace birm3d
