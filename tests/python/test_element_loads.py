@@ -148,7 +148,9 @@ def test_metrics_are_the_greatest_of_all(row: Result) -> None:
         ("peak_overturning_moment_50ms", "peak_overturning_moment_50ms"),
     ):
         values = [getattr(load, name) for load in row.element_loads]
-        assert row.metrics[metric] == max(values) > 0.0
+        # The core and NumPy round the length of a vector differently, in its last digit.
+        assert row.metrics[metric] == pytest.approx(max(values), rel=1e-14)
+        assert max(values) > 0.0
 
 
 def test_tables_name_the_elements_that_were_touched(row: Result) -> None:
