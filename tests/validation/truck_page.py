@@ -252,10 +252,11 @@ its front are fitted to travel, force, and the pitch on film (`tests/validation/
 stresses from a rule of thumb it met one travel of five and no force, which was up to 65 % too large.
 
 The marks are targets. Repeats of a run differ by 5 % in travel and in force over 50 ms. Pitch is the
-greatest until a run ends, 0.12 to 0.25 s after the touch; the computed trucks still pitch then, but for the
-preset at the wall at 25 deg. The preset's front wheels hold, so that it pitches later than the runs. When it
-runs on, it comes to 28 and 29 deg at the bollards after 0.74 s. With front wheels that give way, as those of
-the other truck do, it has 8 and 18 deg there when the runs end, and 22 at the wall at 50 mph."""
+greatest until a run ends, 0.12 to 0.25 s after the touch. Then the pitch of the computed trucks still
+grows, except for the preset at the wall at 25 deg. The preset's front wheels hold, so that it pitches later
+than the runs. When it runs on, it comes to 28 and 29 deg at the bollards after 0.74 s. Front wheels that give
+way, as those of the other truck do, bring the preset's pitch at the bollards to 8 and 18 deg when the runs
+end. At the wall at 50 mph it is then 22 deg."""
 
 LEFT_OUT = """Fitted to the four others, from the same start. Only the wall at 25 deg tells of the tyres,
 and only posts of the indentation length. The fits were made before front wheels gave way and the front

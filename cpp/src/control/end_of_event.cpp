@@ -119,17 +119,6 @@ bool has_left(const Scene& scene, const State& state) {
     return true;
 }
 
-double rest_energy(const Scene& scene) {
-    double start = 0.0;
-    for (const Unit& unit : scene.vehicle->units)
-        start += 0.5 * unit.body.mass * scene.approach.speed * scene.approach.speed;
-    return 1e-6 * start;
-}
-
-bool at_rest(const Scene& scene, const State& state) {
-    return state.energies.kinetic + state.energies.stored < rest_energy(scene);
-}
-
 bool is_over(const Scene& scene, const State& state) {
     return has_left(scene, state) && !tips(scene, state) && segments_rest(scene, state);
 }

@@ -19,12 +19,6 @@ bool has_left(const Scene& scene, const State& state);
 // Has the vehicle left the barrier for good, with no wheel rising and all segments at rest?
 bool is_over(const Scene& scene, const State& state);
 
-// Kinetic and stored energy below which all is at rest: a millionth of the kinetic energy of the approach (J).
-double rest_energy(const Scene& scene);
-
-// Has all come to rest?
-bool at_rest(const Scene& scene, const State& state);
-
 // The instant within a step of dt from which the outcome is decided (s). It does not depend on the length of the
 // step. The outcome is decided at the end of the step. `before`: the bodies at the start. No node pushes from
 // `released` on (s after the start). `now`: the state at the end; its bodies are moved in the search and restored.

@@ -30,8 +30,8 @@
 // another post. Skin slides on a post only along the panel: friction acts across e.
 //
 // A panel's width and lower edge are those of its foremost nodes: up to one radius of the post deep, at least 0.2 m
-// (least_outline_depth), which the rounded corner of a front has. A post that misses the bumper does not indent it by meeting the wider body behind: it meets the nodes there
-// as any surface does. For the edge of a wall all nodes count, as the wall's face crushes what is deeper beside it.
+// (least_outline_depth), which the rounded corner of a front has. A post that misses the bumper does not indent it by meeting
+// the wider body behind: it meets the nodes there as any surface does. For the edge of a wall all nodes count, as the wall's face crushes what is deeper beside it.
 //
 // A vertical face with a top edge (top_edge.hpp) holds the skin before it, and draws in the skin above its top:
 //   D(w, l) = E(w) - s (l - top)+

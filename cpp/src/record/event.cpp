@@ -199,7 +199,7 @@ void judge_rest(const Scene& scene, const State& state, Event& event) {
     } else if (past > 0.0 && !event.touching) {
         event.verdict = Verdict::passed, event.manner = Manner::rests_beyond;
     } else {
-        event.verdict = Verdict::stopped,
+        event.verdict = Verdict::stopped;
         event.manner = state.touched ? Manner::rests : Manner::rests_untouched;
     }
 }

@@ -4,9 +4,15 @@
 #include <limits>
 
 #include "birm3d/base/tolerances.hpp"
-#include "control/end_of_event.hpp"
 
 namespace birm3d {
+
+double rest_energy(const Scene& scene) {
+    double start = 0.0;
+    for (const Unit& unit : scene.vehicle->units)
+        start += 0.5 * unit.body.mass * scene.approach.speed * scene.approach.speed;
+    return 1e-6 * start;
+}
 
 void note_slowness(const Scene& scene, const State& state, Event& event) {
     if (state.energies.kinetic < rest_energy(scene))
@@ -16,7 +22,8 @@ void note_slowness(const Scene& scene, const State& state, Event& event) {
 }
 
 bool rests(const Scene& scene, const State& state, const Event& event) {
-    return at_rest(scene, state) || state.time - event.slow_since >= tolerance::rest_duration;
+    return state.energies.kinetic + state.energies.stored < rest_energy(scene) ||
+           state.time - event.slow_since >= tolerance::rest_duration;
 }
 
 }  // namespace birm3d

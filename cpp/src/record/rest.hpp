@@ -5,6 +5,9 @@
 
 namespace birm3d {
 
+// Energy below which all is at rest: a millionth of the kinetic energy of the approach (J).
+double rest_energy(const Scene& scene);
+
 // After each accepted step: since when is all slow?
 void note_slowness(const Scene& scene, const State& state, Event& event);
 

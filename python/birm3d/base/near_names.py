@@ -16,7 +16,7 @@ def near_names(name: str, known: Iterable[str], most: int = 5) -> list[str]:
     return holding[:most] or get_close_matches(name, listed, n=most)
 
 
-def did_you_mean(name: str, known: Iterable[str]) -> str:
+def did_you_mean(name: str, known: Iterable[str], start: str = ", did") -> str:
     """Return ", did you mean ...?" for the end of a message, or nothing where no known name is near."""
     near = near_names(name, known, most=3)
-    return f", did you mean {' or '.join(map(repr, near))}?" if near else ""
+    return f"{start} you mean {' or '.join(map(repr, near))}?" if near else ""

@@ -45,8 +45,7 @@ class KindChoice(click.Choice):  # type: ignore[type-arg,unused-ignore]
         try:
             return super().convert(value, param, ctx)
         except click.BadParameter as error:
-            meant = did_you_mean(str(value), map(str, self.choices)).removeprefix(", d")
-            self.fail(error.message + (f" D{meant}" if meant else ""), param, ctx)
+            self.fail(error.message + did_you_mean(str(value), map(str, self.choices), " Did"), param, ctx)
 
 
 _TYPES: dict[str, Any] = {

@@ -458,8 +458,8 @@ def preset_names() -> tuple[str, ...]:
 
 def preset_path(name: str) -> Path:
     """Path of the vehicle file of a preset."""
-    if name not in preset_names():
-        known = preset_names()
+    known = preset_names()
+    if name not in known:
         raise ValueError(f"preset must be one of {', '.join(known)}; got {name!r}{did_you_mean(name, known)}")
     return Path(str(resources.files("birm3d") / "data" / f"{name}.toml"))
 
