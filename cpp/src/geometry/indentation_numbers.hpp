@@ -3,6 +3,18 @@
 
 namespace birm3d {
 
+// One of the two faces of an edge, seen from a panel: its unit direction from the edge, by e and w. By `slope` it falls off from
+// the panel, for each unit of w.
+struct EdgeFace {
+    double e, w, slope;
+};
+
+// Beside an edge: the slope of the face there, or more than the skin ever has. By rotations about l and w the slope
+// becomes less by `turn_l` and `turn_w` (1/rad).
+struct EdgeSide {
+    double slope, turn_l, turn_w;
+};
+
 // A post, or a face with a top edge, seen from a panel of the skin. Places from the foot of the post's axis or of the face:
 // across it (w), along it (l) and into the panel (e); body axes, m.
 struct IndentationNumbers {
@@ -22,7 +34,8 @@ struct IndentationNumbers {
     double
         grip;  // fraction of the post's displacement that the skin follows, at the deepest point of the post in the panel
     double flank_low, flank_high;  // factors of the flanks on either side, by w
-    double wall_e, wall_w;         // of an edge: unit direction along its wall, by e and w; of a post zero
+    EdgeFace face[2];              // of an edge; of a post zero
+    EdgeSide side_low, side_high;  // by w
     double steep_arc, rise_there;  // across and deep, of the place from where the flank is steepest
 };
 

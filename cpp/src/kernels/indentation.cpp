@@ -20,13 +20,6 @@ struct Range {
 // Below this sine of the tilt, the highest point of the rim is rounded off. Otherwise the torque would jump there.
 constexpr double rounded = 0.05;
 
-// Sine of the angle between a post's axis and a panel beyond which it does not begin to indent it, or ceases to.
-constexpr double most_tilted = 0.5, overturned = 0.95;
-
-// An edge begins to indent a panel if the cosine of its angle to the wall's face exceeds the first, and stops below the second.
-// A panel that slides along the end of the wall meets the edge as it meets any surface.
-constexpr double least_facing = 0.7, turned_away = 0.3;
-
 // Sideways force of the skin on a post's flank, relative to that on a frictionless wedge. It is chosen by hand; 0.1 to 0.4
 // would do. With less, a pole 0.35 m off the middle gives less sideways than finite elements show. With more, posts at the end
 // of a bumper throw it aside.
@@ -48,15 +41,8 @@ double open_side(const Vec3& w, const Placement& stands, double opens) {
     return std::clamp(std::sqrt(2.0) * w.dot(open), -1.0, 1.0);
 }
 
-// Cosine of the angle between a panel and the face of the wall whose edge stands there: 1 head-on.
-double facing(const Vec3& inward, const Placement& stands) {
-    return -inward.dot(stands.direction_from_own(Vec3::UnitX()));
-}
-
-// From the axis of an edge towards the other end of its wall.
-Vec3 direction_along_wall(const Placement& stands, double opens) {
-    return stands.direction_from_own(Vec3(0.0, -std::copysign(1.0, std::sin(opens)), 0.0));
-}
+// Beside a post, and where a face holds the skin itself.
+constexpr EdgeSide no_face = {2.0 * steepest, 0.0, 0.0};
 
 BIRM3D_BLOCK_LOOP double furthest(const BlockColumn& panel_of, double panel, const BlockColumn& force,
                                   const BlockColumn& gap) {
@@ -112,7 +98,9 @@ Indentation::Indentation(const TopEdge& edge, const Placement& stands, const Pan
     face_slope = edge_slope - tilt * top_slope;
     is_face = true;
     grip = 1.0;
-    radius = top_rate = flank_low = flank_high = wall_e = wall_w = steep_arc = rise_there = 0.0;
+    radius = top_rate = flank_low = flank_high = steep_arc = rise_there = 0.0;
+    face[0] = face[1] = {};
+    side_low = side_high = no_face;
 }
 
 Indentation::Indentation(const Post& post, const Placement& stands, const Panel& panel, double length_,
@@ -136,12 +124,25 @@ Indentation::Indentation(const Post& post, const Placement& stands, const Panel&
         post.opens ? std::max(0.0, 1.0 - 2.0 * off) * open_side(w, stands, *post.opens) : 0.0;
     flank_low = flank_factor(-opens, edge_flank_factor);
     flank_high = flank_factor(opens, edge_flank_factor);
-    const Vec3 along_wall = post.opens ? direction_along_wall(stands, *post.opens) : Vec3(Vec3::Zero());
-    wall_e = e.dot(along_wall);
-    wall_w = w.dot(along_wall);
+    face[0] = face[1] = {};
+    side_low = side_high = no_face;
+    if (post.opens) set_faces(post, stands);
     const double slope_there = steepest * upright, cosine = 1.0 / std::sqrt(1.0 + slope_there * slope_there);
     steep_arc = slope_there * cosine * radius;
     rise_there = stretch * radius * cosine;
+}
+
+void Indentation::set_faces(const Post& post, const Placement& stands) {
+    for (int k = 0; k < 2; ++k) {
+        const Vec3 direction = stands.direction_from_own(post.along_face(k));
+        const double e = direction.dot(into()), w = direction.dot(across());
+        const double in_section = e - tilt * direction.dot(along());  // of the face with a plane of e and w
+        face[k] = {e, w, w != 0.0 ? -in_section / std::abs(w) : infinity};
+        const double slope = face[k].slope;
+        if (is_nearly_parallel(face[k]) || slope > steepest) continue;
+        const double turn = 1.0 + tilt * tilt + slope * slope;
+        (w > 0.0 ? side_high : side_low) = {slope, w > 0.0 ? -turn : turn, -slope * tilt};
+    }
 }
 
 namespace {
@@ -194,31 +195,11 @@ double Indentation::fastest_growth(const Panel& panel) const {
 
 namespace {
 
-bool is_upright(const Placement& stands, const Panel& panel, bool indents) {
-    const double sine = std::abs(stands.direction_from_own(Vec3::UnitZ()).dot(panel.inward));
-    return sine < (indents ? overturned : most_tilted);
-}
-
-bool faces(const Placement& stands, const Panel& panel, bool indents) {
-    return facing(panel.inward, stands) > (indents ? turned_away : least_facing);
-}
-
-}  // namespace
-
-bool can_indent(const Post& post, const Placement& stands, const Panel& panel, bool indents) {
-    return is_upright(stands, panel, indents) && (!post.opens || faces(stands, panel, indents));
-}
-
-bool can_indent(const TopEdge&, const Placement& stands, const Panel& panel, bool indents) {
-    return is_upright(stands, panel, indents) && faces(stands, panel, indents);
-}
-
-namespace {
-
 // Greatest indentation at the distance `beside` from a post of at most this depth: the maximum of p - slope(p) beside
-// over depths p.
-double most_drawn_in(double deepest, double beside, double reach) {
-    const double by_deepest = deepest - slope_at<double>(deepest, 1.0 / reach).slope * beside;
+// over depths p. Beside an edge the slope is at most that of its flattest face.
+double most_drawn_in(double deepest, double beside, double reach, double flattest_face) {
+    const double slope = std::min(slope_at<double>(deepest, 1.0 / reach).slope, flattest_face);
+    const double by_deepest = deepest - slope * beside;
     if (beside <= reach) return by_deepest;
     const double further = std::sqrt(beside * beside - reach * reach);
     return deepest * further < reach * reach * least_slope ? by_deepest
@@ -238,7 +219,9 @@ BoxInIndentation box_in_indentation(const Indentation& d, const Box& box, bool h
     // A face draws in what is or was above its top edge, and nothing beside its ends.
     if (d.is_face && (off > 0.0 || (l.high <= tops.low - at_edge && !hangs)))
         return {outermost, depth, -infinity};
-    return {outermost, depth, most_drawn_in(depth, off + std::max(l.low - tops.high, 0.0), d.length)};
+    const double flattest_face = std::min(d.side_low.slope, d.side_high.slope);
+    return {outermost, depth,
+            most_drawn_in(depth, off + std::max(l.low - tops.high, 0.0), d.length, flattest_face)};
 }
 
 }  // namespace

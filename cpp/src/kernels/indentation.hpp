@@ -10,12 +10,17 @@
 // The sheet beside a post is held by tension and shear. It goes in with the post, straight along e. It is not carried along
 // the panel, so that an indentation stays where it was made. The factor k scales the sideways displacement by the flank. It is
 // 0.35 for a post, chosen by hand: the sheet's tension on one flank balances a part of that on the other. On the open side of
-// a wall's edge it is edge_flank_factor. On the edge's other side the wall's face holds the skin. Once D has reached a node,
-// its depth u follows the velocity v of the post:
+// an edge it is edge_flank_factor. Before a face that is nearly parallel to the panel, that face holds the skin. Once D has
+// reached a node, its depth u follows the velocity v of the post:
 //   du = g (1 - ds/dd |w - w*|) dv_e + g k sin(flank) dv_w
 // v_e is that of the post's deepest place at the node's height; v_w is across the post, away from the node. A post whose
 // axis is `off` beyond the panel's edge touches that edge with its flank. What it pushes there goes in by the square of the
 // flank's cosine, g = 1 - (off / radius)^2. So a load ends where the whole post is beside the panel.
+//
+// An edge that stands obliquely before a panel has a face on either side, which falls off from the panel with the slope q. Where
+// s exceeds q the skin lies on that face: q takes the place of s, and u follows the turning of the face, by |w - w*| dq less.
+// Skin on a face goes straight in, along e, as far as the panel reaches on the other side of the edge: tension holds it. Skin
+// beyond that has no counterpart. It slides along the face, as along any surface.
 //
 // The force on the vehicle follows by virtual work. A truss force F with direction b, from the node to its anchor, gives
 // F (b . e) times the derivative of u by the post's place, and the torque by its rotation. Both ends of a step share the
@@ -31,7 +36,8 @@
 //
 // A panel's width and lower edge are those of its foremost nodes: up to one radius of the post deep, at least 0.2 m
 // (least_outline_depth), which the rounded corner of a front has. A post that misses the bumper does not indent it by meeting
-// the wider body behind: it meets the nodes there as any surface does. For the edge of a wall all nodes count, as the wall's face crushes what is deeper beside it.
+// the wider body behind: it meets the nodes there as any surface does. For the edge of a wall all nodes count, as the wall's
+// face crushes what is deeper beside it.
 //
 // A vertical face with a top edge (top_edge.hpp) holds the skin before it, and draws in the skin above its top:
 //   D(w, l) = E(w) - s (l - top)+
@@ -89,11 +95,12 @@ struct Indentation : IndentationNumbers {
   private:
     void set_axes(const Vec3& foot, const Vec3& axis_up, const Panel& panel);
     void set_outline(const Box& outline);
+    void set_faces(const Post& post, const Placement& stands);
 };
 
-// Is the post upright enough before the panel to indent it? If it is a wall's edge, does the wall's face point at the panel?
-// `indents`: does it do so already?
-bool can_indent(const Post& post, const Placement& stands, const Panel& panel, bool indents);
+// Is the post upright enough before the panel to indent it? If it is an edge, does one of its faces point at the panel?
+// `approach`: cosine of the angle between the panel and its motion towards the post. `indents`: does it do so already?
+bool can_indent(const Post& post, const Placement& stands, const Panel& panel, double approach, bool indents);
 // Is the face upright enough before the panel, and does it point at it?
 bool can_indent(const TopEdge& edge, const Placement& stands, const Panel& panel, bool indents);
 

@@ -2,6 +2,7 @@
 #include "kernels/indentation_simd.hpp"
 
 #include "base/packet.hpp"
+#include "kernels/followed_place.hpp"
 
 namespace birm3d::BIRM3D_INSTRUCTION_SET {
 
@@ -16,87 +17,30 @@ constexpr double least_lag = 1e-8;
 // The face of a wall holds a node that pushes beside its edge if it is no further away: more than a step's motion (m).
 constexpr double in_reach = 0.01;
 
-// Depth of the post's surface beyond its axis at `a` across, and its derivative.
-struct Rise {
-    Packet rise, across;
-};
-BIRM3D_INLINE Rise rise_at(const IndentationNumbers& d, const Packet& a) {
-    const Packet zero = 0.0, steep_arc = d.steep_arc;
-    const Packet far = where_above(zero, a, -1.0 * a, a);
-    const Packet on = lesser(far, steep_arc);
-    const Packet root = square_root(d.radius * d.radius - on * on);
-    return {where_above(far, steep_arc, d.rise_there - steepest * (far - steep_arc), d.stretch * root),
-            where_above(far, steep_arc, where_above(zero, a, steepest, -steepest), -d.stretch * a / root)};
-}
-
-// Positions of a packet of nodes in the post's axes, and the middle of the post at their heights.
-struct Standing {
-    Packet e, w, l, up, deepest;
-};
-BIRM3D_INLINE Standing stand(const IndentationNumbers& d, const PanelNodes& nodes, std::size_t i) {
-    Standing s;
-    const Packet rx = Packet::load(nodes.x + i) - d.ox, ry = Packet::load(nodes.y + i) - d.oy,
-                 rz = Packet::load(nodes.z + i) - d.oz;
-    s.e = d.ex * rx + d.ey * ry + d.ez * rz;
-    s.w = d.wx * rx + d.wy * ry + d.wz * rz;
-    s.l = d.lx * rx + d.ly * ry + d.lz * rz;
-    s.up = lesser(s.l, d.top + d.top_slope * s.w);
-    s.deepest = d.tilt * s.up + (d.stretch * d.radius + d.face_slope * s.w);
-    return s;
-}
-
 // Lower bound of the gaps: the post is taken as deep everywhere as in its middle, with the least slope beside it.
 BIRM3D_INLINE Packet no_less_than(const IndentationNumbers& d, const Standing& s) {
     const Packet zero = 0.0, by_depth = (s.deepest - d.surface) * d.per_reach;
-    const Packet slope = lesser(greater(by_depth, least_slope), steepest);
+    const Packet flattest_face = d.side_low.slope < d.side_high.slope ? d.side_low.slope : d.side_high.slope;
+    const Packet slope = lesser(lesser(greater(by_depth, least_slope), steepest), flattest_face);
     const Packet beside = greater(greater(s.w - d.most_w, d.least_w - s.w), zero);
     return s.e - (s.deepest - slope * (beside + (s.l - s.up)));
 }
 
-// `yes` for nodes that are further along the wall than the axis of its edge, so that the wall's face holds them, else `no`.
+// `yes` for nodes that a face of the edge holds, else `no`: they are further along it than the axis of the edge. A face that falls
+// off from the panel holds those that lie on it alone: without skin on the other side nothing keeps them from sliding along it.
 // A node that lags inside the face stays with the edge. The face would move it in one step, and the energy would jump.
 BIRM3D_INLINE Packet where_beside_face(const IndentationNumbers& d, const KnownFaces& known,
-                                       const Standing& s, const Packet& yes, const Packet& no,
-                                       std::size_t i) {
-    const Packet zero = 0.0, along = d.wall_e * (s.e - d.tilt * s.up) + d.wall_w * s.w;
-    return where_above(Packet::load(known.lags + i), zero, no, where_above(along, zero, yes, no));
-}
-
-// The point of the post that each node of a packet follows.
-struct FollowedPlace {
-    Slope<Packet> slope;  // of the skin beside the post
-    Packet a, at, beyond, gap;
-    Rise rise;
-};
-
-// Of a face: the place of its top edge straight below each node.
-BIRM3D_INLINE FollowedPlace follow_edge(const IndentationNumbers& d, const Standing& s) {
-    FollowedPlace h;
-    h.slope = slope_at<Packet>(s.deepest - d.surface, d.per_reach);
-    h.a = s.w;
-    h.rise = {0.0, 0.0};
-    h.at = s.deepest;
-    h.beyond = s.l - s.up;
-    h.gap = s.e - (h.at - h.slope.slope * h.beyond);
-    return h;
-}
-
-BIRM3D_INLINE FollowedPlace find_followed(const IndentationNumbers& d, const Standing& s) {
-    if (d.is_face) return follow_edge(d, s);
-    FollowedPlace h;
-    h.slope = slope_at<Packet>(s.deepest - d.surface, d.per_reach);
-    const Packet low = d.low, high = d.high;
-    // The nearest point of the post, within the panel, whose slope is not steeper than that of the indentation.
-    const Packet slope_there = h.slope.slope * d.per_stretch;
-    const Packet arc = d.radius * slope_there / square_root(1.0 + slope_there * slope_there);
-    const Packet near = lesser(greater(s.w, -1.0 * arc), arc), highest = greater(s.w, high),
-                 lowest = lesser(s.w, low);
-    h.a = where_above(near, highest, highest, where_above(lowest, near, lowest, near));
-    h.rise = rise_at(d, h.a);
-    h.at = d.tilt * s.up + h.rise.rise;
-    h.beyond = where_above(s.w, h.a, s.w - h.a, h.a - s.w) + (s.l - s.up);
-    h.gap = s.e - (h.at - h.slope.slope * h.beyond);
-    return h;
+                                       const Standing& s, const FollowedPlace& h, const Packet& yes,
+                                       const Packet& no, std::size_t i) {
+    const Packet zero = 0.0;
+    Packet held = no;
+    for (const EdgeFace& face : d.face) {
+        if (face.slope > steepest) continue;
+        const Packet along = face.e * (s.e - d.tilt * s.up) + face.w * s.w;
+        const Packet by_this = is_nearly_parallel(face) ? yes : where_above(h.alone, zero, yes, held);
+        held = where_above(along, zero, by_this, held);
+    }
+    return where_above(Packet::load(known.lags + i), zero, no, held);
 }
 
 // `yes` for nodes that the post or the top edge can draw in, else `no`. Below its top edge a face holds the skin itself, apart
@@ -130,30 +74,39 @@ BIRM3D_INLINE bool any_matters(const PanelNodes& nodes, const KnownFaces& known,
 // Displacement along e of a following node for a unit displacement of the post inwards, and along the panel.
 struct Drawn {
     Packet in, across;
+    Packet by_turn;  // for each unit by which the slope of the face becomes less
 };
 BIRM3D_INLINE Drawn drawn(const IndentationNumbers& d, const FollowedPlace& h) {
     const Packet zero = 0.0, low = d.flank_low * d.grip, high = d.flank_high * d.grip;
     const Packet slope = h.slope.slope, flank = lesser(greater(h.rise.across, -1.0 * slope), slope);
     const Packet factor = where_above(h.a, zero, high, low);
     return {greater(d.grip * (1.0 - h.slope.grows * h.beyond), least_drawn),
-            factor * flank / square_root(1.0 + flank * flank)};
+            factor * flank / square_root(1.0 + flank * flank), d.grip * h.on_face};
 }
 
-// Outward displacement of the nodes within the step.
+// Outward displacement of the nodes within the step. `flatter`: by how much the slope of the edge's face has become less.
 BIRM3D_INLINE Packet outward_displacement(const Standing& now, const Standing& then, const Drawn& at_end,
-                                          const Drawn& at_start) {
-    const Packet in = (now.deepest - now.e) - (then.deepest - then.e), across = now.w - then.w;
-    return -0.5 * ((at_end.in + at_start.in) * in + (at_end.across + at_start.across) * across);
+                                          const Drawn& at_start, const Packet& flatter) {
+    const Packet zero = 0.0, in = (now.deepest - now.e) - (then.deepest - then.e), across = now.w - then.w;
+    const Packet turn = where_above(lesser(at_end.by_turn, at_start.by_turn), zero, flatter, zero);
+    return -0.5 * ((at_end.in + at_start.in) * in + (at_end.across + at_start.across) * across +
+                   (at_end.by_turn + at_start.by_turn) * turn);
 }
+
+// By how much another surface must be nearer than the edge's face to hold skin that lies on it (m): the face itself is no other
+// surface, to rounding and to the chords of its arc.
+constexpr double coincident = 1e-3;
 
 // Gap to another surface that stops the node from following the indentation. It is infinite where no surface does.
 BIRM3D_INLINE Packet gap_of_holding_surface(const IndentationNumbers& d, const KnownFaces& known,
-                                            std::size_t i) {
+                                            const FollowedPlace& h, std::size_t i) {
     const Packet zero = 0.0, far = infinitely_far, faces = Packet::load(known.least_facing + i);
     const Packet along = d.ex * Packet::load(known.nx + i) + d.ey * Packet::load(known.ny + i) +
                          d.ez * Packet::load(known.nz + i);
     const Packet gap = where_above(along, faces, Packet::load(known.contact_gap + i), far);
-    return where_above(Packet::load(known.per_force + i), zero, far, gap);
+    const Packet other =
+        where_above(h.on_face, zero, where_above(h.gap * along - gap, coincident, gap, far), gap);
+    return where_above(Packet::load(known.per_force + i), zero, far, other);
 }
 
 // Required gap of each node. A loaded node follows the indentation while that extends over it, and is released afterwards.
@@ -167,13 +120,13 @@ BIRM3D_INLINE Asked ask(const IndentationNumbers& d, const PanelNodes& nodes, co
     const Packet pushes = Packet::load(nodes.force + i), holds = d.grip > 0.0 ? one : zero;
     const Packet comes = where_above(h.gap, zero, h.gap, greater(h.gap, outward));
     // A node on another surface follows the indentation only once that has reached it.
-    const Packet other = where_above(far, gap_of_holding_surface(d, known, i), far, outward);
+    const Packet other = where_above(far, gap_of_holding_surface(d, known, h, i), far, outward);
     const Packet goes = where_above(zero, h.gap, outward, other);
     const Packet reaches =
-        where_above(s.e - h.gap, surface, where_beside_face(d, known, s, zero, holds, i), zero);
+        where_above(s.e - h.gap, surface, where_beside_face(d, known, s, h, zero, holds, i), zero);
     const Packet off = where_above(pushes, zero, where_above(reaches, zero, zero, one), zero);
     const Packet gap = where_above(pushes, zero, where_above(reaches, zero, goes, away),
-                                   where_beside_face(d, known, s, far, comes, i));
+                                   where_beside_face(d, known, s, h, far, comes, i));
     return {gap, off, where_above(off, zero, away, where_above(far, gap, h.gap, far))};
 }
 
@@ -181,21 +134,23 @@ BIRM3D_INLINE Asked ask(const IndentationNumbers& d, const PanelNodes& nodes, co
 // several indentations the deepest one at the node governs. A choice by displacements would alternate from step to
 // step.
 BIRM3D_INLINE Packet find_state(const IndentationNumbers& d, const PanelNodes& nodes, const KnownFaces& known,
-                                const Standing& s, const Standing& was, const Asked& asked, std::size_t i) {
+                                const Standing& s, const FollowedPlace& h, const Standing& was,
+                                const Asked& asked, std::size_t i) {
     const Packet zero = 0.0, one = 1.0, so_far = Packet::load(known.gap + i), gap = asked.gap;
     const Packet against = d.ex * Packet::load(known.nx + i) + d.ey * Packet::load(known.ny + i) +
                            d.ez * Packet::load(known.nz + i);
     const Packet state = one + asked.releases;
-    const Packet drawn_in = where_above(zero, so_far - against * gap, zero, state);
+    const Packet favour = where_above(h.on_face, zero, coincident, zero);
+    const Packet drawn_in = where_above(zero, so_far + favour - against * gap, zero, state);
     const Packet lags = Packet::load(known.lags + i);
     const Packet nearer = where_above(lags, zero, state, where_above(zero, against, drawn_in, state));
-    const Packet pushes = Packet::load(nodes.force + i), by_surface = gap_of_holding_surface(d, known, i);
+    const Packet pushes = Packet::load(nodes.force + i), by_surface = gap_of_holding_surface(d, known, h, i);
     const Packet by_indentation =
         where_above(Packet::load(known.per_force + i), zero, Packet::load(known.rank + i), by_surface);
     const Packet near = in_reach, far = infinitely_far, by_face = where_above(so_far, near, far, so_far);
     const Packet free_last = where_above(lags, zero, by_indentation, so_far);
     const Packet last =
-        where_above(pushes, zero, where_beside_face(d, known, s, by_face, by_indentation, i), free_last);
+        where_above(pushes, zero, where_beside_face(d, known, s, h, by_face, by_indentation, i), free_last);
     const Packet now = where_above(pushes, zero, asked.rank, gap);
     const Packet lag = where_above(greater(pushes, lags), zero, was.deepest - was.e, zero);
     const Packet found = where_drawn(d, s, lag, where_above(last, now, nearer, zero), zero);
@@ -207,15 +162,18 @@ struct Turn {
     Packet x, y, z;
 };
 
-// By rotation of the post about e, and by tilt of its axis along e.
+// By rotation of the post about e, by tilt of its axis along e, and by rotation of an edge's face.
 BIRM3D_INLINE Turn turn_of_post(const IndentationNumbers& d, const Standing& n, const Packet& fe,
-                                const Packet& fw, const Packet& fl) {
+                                const Packet& fw, const Packet& fl, const Packet& by_turn) {
     const Packet zero = 0.0, top = d.top, top_leans = d.top_rate * d.per_stretch;
     const Packet about = fl * n.w - fw * n.l;
     const Packet leaning = fe * (d.stretch * d.stretch * n.up + d.stretch * d.tilt * d.radius +
                                  where_above(n.l, top, d.tilt * top_leans, zero));
-    return {about * (d.tilt * d.lx - d.ex) + leaning * d.wx, about * (d.tilt * d.ly - d.ey) + leaning * d.wy,
-            about * (d.tilt * d.lz - d.ez) + leaning * d.wz};
+    const Packet by_l = by_turn * where_above(n.w, zero, d.side_high.turn_l, d.side_low.turn_l),
+                 by_w = leaning + by_turn * where_above(n.w, zero, d.side_high.turn_w, d.side_low.turn_w);
+    return {about * (d.tilt * d.lx - d.ex) + by_w * d.wx + by_l * d.lx,
+            about * (d.tilt * d.ly - d.ey) + by_w * d.wy + by_l * d.ly,
+            about * (d.tilt * d.lz - d.ez) + by_w * d.wz + by_l * d.lz};
 }
 
 // The place on the face times the direction of its push. By a rotation about e, or about l of a face that
@@ -243,9 +201,10 @@ void find_indentation(const IndentationNumbers& d, const IndentationNumbers& the
         if (!any_matters(nodes, known, no_less_than(d, n), i)) continue;
         const FollowedPlace h = find_followed(d, n);
         const Drawn by = drawn(d, h);
-        const Packet outward = outward_displacement(n, was, by, drawn(then, find_followed(then, was)));
+        const Packet outward = outward_displacement(n, was, by, drawn(then, find_followed(then, was)),
+                                                    slope_of_face(then, was) - slope_of_face(d, n));
         const Asked asked = ask(d, nodes, known, n, h, outward, i);
-        const Packet state = find_state(d, nodes, known, n, was, asked, i);
+        const Packet state = find_state(d, nodes, known, n, h, was, asked, i);
         if (!any_above(state, zero)) continue;
         state.store(known.follows + i);
         const auto put = [&](double* column, const Packet& found) {
@@ -270,7 +229,8 @@ void find_indentation(const IndentationNumbers& d, const IndentationNumbers& the
         put(known.py, d.oy + (h.at * d.ey + h.a * d.wy + n.up * d.ly));
         put(known.pz, d.oz + (h.at * d.ez + h.a * d.wz + n.up * d.lz));
 
-        const Turn q = d.is_face ? turn_of_face(d, n, h, fe, fw, fl) : turn_of_post(d, n, fe, fw, fl);
+        const Turn q =
+            d.is_face ? turn_of_face(d, n, h, fe, fw, fl) : turn_of_post(d, n, fe, fw, fl, by.by_turn);
         put(known.tx, per * (d.oy * nz - d.oz * ny + q.x));
         put(known.ty, per * (d.oz * nx - d.ox * nz + q.y));
         put(known.tz, per * (d.ox * ny - d.oy * nx + q.z));

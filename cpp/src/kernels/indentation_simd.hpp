@@ -27,6 +27,11 @@ BIRM3D_INLINE Slope<Number> slope_at(const Number& depth, double per_reach) {
             where_above(slope, limit, zero, by_depth * per_reach / slope)};
 }
 
+// Does the face of an edge hold the skin itself, as a wall that is met head-on does? The skin never falls off less steeply.
+inline bool is_nearly_parallel(const EdgeFace& face) {
+    return face.slope <= least_slope;
+}
+
 // Nodes that are less than this below a top edge count as above it: the surface that is nearest to them may be the top (m).
 inline constexpr double at_edge = 1e-6;
 

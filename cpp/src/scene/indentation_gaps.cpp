@@ -39,9 +39,15 @@ bool draws_in_skin(const Obstacle& obstacle) {
     return obstacle.top_edge.has_value() || std::holds_alternative<Post>(obstacle.shape);
 }
 
-bool can_indent(const Obstacle& obstacle, const Placement& stands, const Panel& panel, bool indents) {
+double approach_of(const BodyState& body, const Panel& panel) {
+    const double speed = body.velocity.norm();
+    return speed > 0.0 ? -panel.inward.dot(body.orientation.conjugate() * body.velocity) / speed : 0.0;
+}
+
+bool can_indent(const Obstacle& obstacle, const Placement& stands, const Panel& panel, double approach,
+                bool indents) {
     return obstacle.top_edge ? can_indent(*obstacle.top_edge, stands, panel, indents)
-                             : can_indent(std::get<Post>(obstacle.shape), stands, panel, indents);
+                             : can_indent(std::get<Post>(obstacle.shape), stands, panel, approach, indents);
 }
 
 Indentation indentation_by(const Obstacle& obstacle, const Placement& stands, const Panel& panel,
@@ -89,7 +95,8 @@ void for_each_indentation(const Scene& scene, const UnitState& unit, const Truss
             placement({obstacle.rotation, obstacle.position}, unit.body);  // it is fixed
         for (std::size_t p = 0; p < panels; ++p) {
             const Panel& panel = mesh.panel[p];
-            if (!panel.any || !can_indent(obstacle, in_shape, panel, false)) continue;
+            if (!panel.any || !can_indent(obstacle, in_shape, panel, approach_of(unit.body, panel), false))
+                continue;
             Indentation indentation = indentation_by(obstacle, in_shape, panel, mesh, scene.settings);
             if (!(indentation.beside() < distance) || indentation.is_beyond(panel)) continue;
             if (distance > 0.0) {

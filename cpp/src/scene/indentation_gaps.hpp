@@ -9,8 +9,12 @@ namespace birm3d {
 // Is the obstacle a post, or has it a top edge that draws in skin?
 bool draws_in_skin(const Obstacle& obstacle);
 
+// Cosine of the angle between a panel and the motion of its body towards what stands still before it; 0 at rest.
+double approach_of(const BodyState& body, const Panel& panel);
+
 // Is it so placed that it can indent the panel? See can_indent() in kernels/indentation.hpp.
-bool can_indent(const Obstacle& obstacle, const Placement& stands, const Panel& panel, bool indents);
+bool can_indent(const Obstacle& obstacle, const Placement& stands, const Panel& panel, double approach,
+                bool indents);
 
 // The indentation of a panel by a post or a top edge that stands there, seen from the body.
 Indentation indentation_by(const Obstacle& obstacle, const Placement& stands, const Panel& panel,

@@ -100,7 +100,7 @@ def rounded_block(
 ) -> list[_core.Element]:
     """Return a block along the line with rounded upright edges: its segments, then parts of the outer ones.
 
-    The edges on the traffic's side are posts, which draw in the skin beside them. Between them stands the
+    The edges are posts, which draw in the skin beside them. Between those on the traffic's side stands the
     face, its ends hidden in the posts. Behind them is the block, with chords for the arcs that posts fill.
     """
     half, last = 0.5 * length, segments - 1
@@ -116,15 +116,18 @@ def rounded_block(
             draws_in_above=draws_in_above,
         )
 
+    # Where the ends are round as a whole, an edge on the traffic's side is that behind it, too.
+    rows = [(radius, 0.75)] if depth - 2.0 * radius < 1e-9 else [(radius, 0.75), (depth - radius, 0.25)]
     edges = [
         _core.Element.post(
             radius=radius,
             height=top,
-            position=barrier.from_origin(radius, side * (half - radius)),
+            position=barrier.from_origin(across, side * (half - radius)),
             heading=math.radians(barrier.heading),
             part_of=whole,
-            opens=side * 0.75 * math.pi,
+            opens=side * quarter * math.pi,
         )
+        for across, quarter in rows
         for side, whole in ((-1.0, 0), (1.0, last))
     ]
     plan = _plan_behind(depth, length, radius)
@@ -146,7 +149,8 @@ def _plan_behind(depth: float, length: float, radius: float) -> Floats:
     """Return the plan of a rounded block without what its posts fill, set back behind its face."""
     ring = rounded_outline(depth, length, radius, _SIDES_BEHIND)
     beside = 0.5 * length - radius
-    filled = (ring[:, 0] > 1e-9) & (ring[:, 0] < radius - 1e-9) & (np.abs(ring[:, 1]) > beside + 1e-9)
+    from_side = np.minimum(ring[:, 0], depth - ring[:, 0])
+    filled = (from_side > 1e-9) & (from_side < radius - 1e-9) & (np.abs(ring[:, 1]) > beside + 1e-9)
     plan = ring[~filled]
     plan[:, 0] = np.maximum(plan[:, 0], _BEHIND_FACE * radius)
     return np.asarray(plan)

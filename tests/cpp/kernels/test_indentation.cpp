@@ -1,6 +1,8 @@
 #include "kernels/indentation.hpp"
 
 #include <algorithm>
+#include <numbers>
+#include <optional>
 #include <random>
 
 #include "check.hpp"
@@ -8,6 +10,7 @@
 #include "state/block_contact.hpp"
 
 using namespace birm3d;
+using std::numbers::pi;
 
 namespace {
 
@@ -180,6 +183,69 @@ TEST("force and torque are what the ways of the nodes ask for by virtual work") 
     CHECK(held > 10000);
 }
 
+// The edge of a block whose traffic face is turned by `yaw` from the panel (rad).
+Placement edge_at(const Vec3& foot, double yaw, double lean = 0.0, double sway = 0.0) {
+    const Quat turn = Eigen::AngleAxisd(yaw, Vec3::UnitZ()) * Eigen::AngleAxisd(lean, Vec3::UnitY()) *
+                      Eigen::AngleAxisd(sway, Vec3::UnitX());
+    const Mat3 to_own = turn.toRotationMatrix().transpose();
+    return {to_own, -(to_own * foot)};
+}
+
+TEST("skin that would fall off more steeply than the faces of an edge lies on them") {
+    // The edge points at the panel's middle, both faces at 45 degrees. Its axis is 1 m deep: the slope is 4 without faces.
+    const double radius = 0.05, reach = 0.25, foot = 2.0 + radius;
+    const Post post(radius, std::numeric_limits<double>::infinity(), 0.75 * pi);
+    const Placement stands = edge_at({foot, 0.0, 0.0}, 0.25 * pi),
+                    far = edge_at({foot + 100.0, 0.0, 0.0}, 0.25 * pi);
+    const Followed found = indentation_by(post, stands, far, reach, 0.0);
+    int on_faces = 0;
+    for (std::size_t i = 0; i < block_size; ++i) {
+        const double depth = 3.0 - (foot - std::sqrt(2.0) * radius) - std::abs(node(i).y());
+        if (!(depth > 0.0)) continue;
+        ++on_faces;
+        CHECK(found.follows[i] == 1.0);
+        CHECK_CLOSE(found.gap[i], -depth, 1e-12, "the plane of the face; rounding");
+    }
+    CHECK(on_faces > 32);
+}
+
+TEST("force and torque of an edge are what the ways of the nodes ask for by virtual work") {
+    std::mt19937 random(13);
+    std::uniform_real_distribution<double> share(-1.0, 1.0);
+    const double h = 1e-6;
+    int on_face = 0, held = 0;
+    for (int round = 0; round < 300; ++round) {
+        const Post post(0.1 + 0.05 * share(random), 1.5 + 0.9 * share(random), 0.75 * pi);
+        const Placement stands =
+            edge_at({2.2 + 0.3 * share(random), 0.6 * share(random), -1.0}, pi * (0.25 + 0.2 * share(random)),
+                    0.1 * share(random), 0.1 * share(random));
+        const double reach = 0.3;
+        const Indentation indentation(post, stands, front, reach, edge);
+        const double falls = std::min(indentation.side_low.slope, indentation.side_high.slope);
+        const Followed here = indentation_by(post, stands, stands, reach, 1.0);
+        for (int axis = 0; axis < 3; ++axis) {
+            const Vec3 way = Vec3::Unit(axis);
+            const Placement moved{stands.rotation, stands.position - stands.rotation * (h * way)};
+            const Mat3 turn = Eigen::AngleAxisd(h, way).toRotationMatrix();
+            const Placement turned{stands.rotation * turn.transpose(), stands.position};
+            const Followed forth = indentation_by(post, moved, stands, reach, 1.0);
+            const Followed right = indentation_by(post, turned, stands, reach, 1.0);
+            for (std::size_t i = 0; i < block_size; ++i) {
+                if (here.follows[i] != 1.0 || forth.follows[i] != 1.0 || right.follows[i] != 1.0) continue;
+                ++held;
+                const double w = std::abs((node(i) - indentation.foot()).dot(indentation.across()));
+                on_face += w > 0.2 && slope_by(2.5, reach) > falls ? 1 : 0;
+                const double force = here.per_force[i] * Vec3(here.nx[i], here.ny[i], here.nz[i])[axis];
+                const double torque = here.per_force[i] * Vec3(here.tx[i], here.ty[i], here.tz[i])[axis];
+                CHECK_CLOSE(force, -forth.gap[i] / h, 1e-4, "the difference's error");
+                CHECK_CLOSE(torque, -right.gap[i] / h, 1e-4, "the same");
+            }
+        }
+    }
+    CHECK(on_face > 1000);
+    CHECK(held > 10000);
+}
+
 TEST("force and torque of a top edge are what the ways of the nodes ask for by virtual work") {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> share(-1.0, 1.0);
@@ -240,10 +306,12 @@ TEST("no node is further inside than what the box says, however deep the post") 
     std::uniform_real_distribution<double> share(-1.0, 1.0);
     int reached = 0;
     for (int round = 0; round < 400; ++round) {
-        const Post post(0.2 + 0.1 * share(random), 1.5 + 0.9 * share(random));
+        const std::optional<double> opens = round % 3 == 0 ? std::optional(0.75 * pi) : std::nullopt;
+        const Post post(0.2 + 0.1 * share(random), 1.5 + 0.9 * share(random), opens);
         const double deepest = round % 2 == 0 ? 1.0 : 4.0, reach = 0.6 + 0.3 * share(random);
-        const Placement stands = standing({2.8 + deepest * share(random), 2.0 * share(random), -1.0},
-                                          0.4 * share(random), 0.4 * share(random));
+        const Vec3 foot(2.8 + deepest * share(random), 2.0 * share(random), -1.0);
+        const Placement stands = edge_at(foot, opens ? 0.25 * pi + 0.6 * share(random) : 0.0,
+                                         0.4 * share(random), 0.4 * share(random));
         const Indentation indentation(post, stands, front, reach, edge);
         const Followed found = indentation_by(post, stands, reach);
         const double least = *std::min_element(found.gap.begin(), found.gap.end());

@@ -20,6 +20,10 @@ struct Post {
     // For the rounded upright edge of a wall: angle of the free quadrant's bisector from the own x axis (rad, counter-clockwise
     // seen from above). The wall fills the opposite quadrant.
     std::optional<double> opens;
+
+    // Of such an edge: unit direction along its first or second face (k = 0, 1), own axes. The faces are square to each other, so
+    // that it points into the block behind the other face.
+    Vec3 along_face(int k) const;
 };
 
 Nearest nearest(const Post& post, const Vec3& p);

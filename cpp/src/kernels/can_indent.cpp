@@ -1,0 +1,52 @@
+// Which panels a post, an edge or a face with a top edge can indent.
+#include <cmath>
+
+#include "kernels/indentation.hpp"
+
+namespace birm3d {
+
+namespace {
+
+// Sine of the angle between a post's axis and a panel beyond which it does not begin to indent it, or ceases to.
+constexpr double most_tilted = 0.5, overturned = 0.95;
+
+// An edge begins to indent a panel if the cosine of the angle between the panel and a face exceeds the first, and stops below the
+// second.
+constexpr double least_facing = 0.7, turned_away = 0.3;
+
+// Where that face does not look at the traffic, the panel must come towards the edge: the cosine of the angle between it and the
+// motion exceeds this. A panel that slides along the end of a wall meets the edge as it meets any surface.
+constexpr double least_approach = 0.7;
+
+// Cosine of the angle between a panel and the face of a block; 1 if the face points at it. `behind`: into the block, own axes.
+double facing(const Panel& panel, const Placement& stands, const Vec3& behind) {
+    return -panel.inward.dot(stands.direction_from_own(behind));
+}
+
+bool is_upright(const Placement& stands, const Panel& panel, bool indents) {
+    const double sine = std::abs(stands.direction_from_own(Vec3::UnitZ()).dot(panel.inward));
+    return sine < (indents ? overturned : most_tilted);
+}
+
+}  // namespace
+
+bool can_indent(const Post& post, const Placement& stands, const Panel& panel, double approach,
+                bool indents) {
+    if (!is_upright(stands, panel, indents)) return false;
+    if (!post.opens) return true;
+    for (int k = 0; k < 2; ++k) {
+        const Vec3 behind = post.along_face(k);  // the other face
+        const double cosine = facing(panel, stands, behind);
+        const bool looks_at_traffic = behind.x() > 0.5;
+        if (indents && cosine > turned_away) return true;
+        if (cosine > least_facing && (looks_at_traffic || approach > least_approach)) return true;
+    }
+    return false;
+}
+
+bool can_indent(const TopEdge&, const Placement& stands, const Panel& panel, bool indents) {
+    return is_upright(stands, panel, indents) &&
+           facing(panel, stands, Vec3::UnitX()) > (indents ? turned_away : least_facing);
+}
+
+}  // namespace birm3d

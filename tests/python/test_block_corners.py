@@ -1,0 +1,95 @@
+"""Corners of rigid blocks that are met at an angle: they draw in the skin, whichever of their faces points at the vehicle."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+import pytest
+from birm3d import Barrier, Result, Simulation, Vehicle, units
+
+SPEED = units.mph(40.0)
+
+
+@functools.cache
+def vehicle(name: str) -> Vehicle:
+    return Vehicle.preset(name, mesh_density=0.5)
+
+
+def crash(name: str, barrier: Barrier, angle: float = 90.0, offset: float = 0.0) -> Result:
+    return Simulation(vehicle(name), barrier, SPEED, angle, offset).run()
+
+
+def mean_force(result: Result, depth: float) -> float:
+    """Return the mean forward force until the mass centre has moved so far since the first touch [N]."""
+    along = np.array(result.velocity[0]) / np.linalg.norm(result.velocity[0])
+    way, force = result.position @ along, -(result.barrier_force @ along)
+    since = way - way[np.flatnonzero(force > 0.0)[0]]
+    until = since <= depth
+    assert since.max() > depth
+    return float(np.trapezoid(force[until], way[until]) / depth)
+
+
+@pytest.mark.parametrize("name", ["passenger_car", "cargo_truck"])
+def test_the_end_of_a_block_resists_as_the_front_of_a_block_of_its_width(name: str) -> None:
+    """Only the edges on the traffic's side drew in skin once, and only skin that faced the traffic's side.
+
+    Only the traffic's face draws in the skin above its top: 1 % of the truck's force.
+    """
+    front = crash(name, Barrier.planter(length=1.0, width=2.0), 90.0, 0.3)
+    end = crash(name, Barrier.planter(length=2.0, width=1.0), 0.0, 0.5 - 0.3)
+    for key in ("peak_force_50ms", "dynamic_crush", "max_yaw"):
+        assert end.metrics[key] == pytest.approx(front.metrics[key], rel=0.02)
+
+
+@pytest.mark.parametrize("name", ["passenger_car", "pickup", "cargo_truck"])
+def test_a_corner_resists_at_least_as_a_post_that_would_fit_into_it(name: str) -> None:
+    """A block with a corner of 0.05 m contains that post. Once it had half of the post's force.
+
+    The axis of the corner lies on the path of the mass centre. The share: a thin post is drawn in before the
+    foremost 0.2 m of a bowed front, a block before all of it.
+    """
+    block = crash(name, Barrier.planter(length=2.0, width=2.0), 45.0, -1.0)
+    post = crash(name, Barrier.bollards(count=1, diameter=0.1))
+    for depth in (0.2, 0.4, 0.6, 0.9):
+        assert mean_force(block, depth) > 0.98 * mean_force(post, depth)
+    assert block.metrics["core_contact_force"] == 0.0
+    assert block.metrics["max_yaw"] < 1.0
+
+
+@pytest.mark.parametrize("angle", [25.0, 45.0, 65.0])
+@pytest.mark.parametrize("name", ["passenger_car", "pickup", "cargo_truck"])
+def test_no_corner_of_a_planter_meets_the_core(name: str, angle: float) -> None:
+    """At 40 mph. Once a car had 137 g (CFC60) at 25 degrees: its fire wall met the corner."""
+    result = crash(name, Barrier.planter(height=0.9), angle)
+    assert result.metrics["core_contact_force"] == 0.0
+    assert result.metrics["peak_deceleration_cfc60"] < units.g(45.0)
+    assert result.metrics["energy_residual"] < 3e-3
+
+
+def test_force_changes_steadily_where_a_corner_leaves_the_width() -> None:
+    """A corner at the car's side stands before skin on one side only; that slides along the other face.
+
+    The corner's axis moves from 0.63 to 1.0 m beside the middle of a car whose side is 0.92 m away.
+    """
+    forces = []
+    for offset in np.linspace(-0.1, 0.4, 11):
+        result = crash("passenger_car", Barrier.planter(), 45.0, float(offset))
+        assert result.metrics["core_contact_force"] == 0.0
+        forces.append(mean_force(result, 0.6))
+    steps = np.abs(np.diff(forces))
+    assert steps.max() < 0.15 * max(forces), "measured: 0.10"
+    assert forces[-1] < 0.6 * forces[0]
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_the_end_of_a_wall_at_25_degrees_resists_a_car_across_its_width(side: float) -> None:
+    """The end of a wall of 0.5 m, 1.8 m of a front before it: the force of a post and more, no core."""
+    wall = Barrier.rigid_wall(width=6.0, height=1.0)
+    offset = -2.9 * side
+    result = crash("passenger_car", wall, 90.0 - side * 65.0, offset)
+    assert result.outcome == "stopped"
+    assert result.metrics["core_contact_force"] == 0.0
+    assert mean_force(result, 0.9) > 0.9 * mean_force(
+        crash("passenger_car", Barrier.bollards(count=1, diameter=0.1)), 0.9
+    )
