@@ -168,6 +168,8 @@ class Simulation:
         BalanceWarning
             As a warning, if a balance of the run does not close: energy, momentum, or dissipation that falls;
             see :func:`birm3d.result.energy_balance.warn_if_open`.
+        MissedBarrierWarning
+            As a warning, if the vehicle went past the end of the barrier and never touched it.
         ValueError
             If the frames are more than the result's rows or outside the run, or if the run takes more steps
             than a record holds; :meth:`result` has those that were taken.
@@ -182,8 +184,8 @@ class Simulation:
             finally:
                 self._run_time += time.perf_counter() - start
             result = self._result()
-            balances, statistics = self._core.balances, self._core.statistics
-        warn_of_run(result.scene, statistics, balances)
+            balances, statistics, event = self._core.balances, self._core.statistics, self._core.event
+        warn_of_run(result.scene, statistics, balances, event)
         return result if frames is None else result.with_frames(frames)
 
     def step(self) -> bool:
