@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -120,7 +121,7 @@ def test_study_card(drawn: Study) -> None:
     assert "rigid wall without end; friction varied" in drawn._repr_html_()
 
 
-def test_figures_of_studies_name_the_barrier(tmp_path: Path) -> None:
+def test_figures_of_studies_name_their_scene(tmp_path: Path) -> None:
     heads = []
     unknown = {"vehicle.gvw": stats.norm(7000.0, 10.0)}
     posts = Simulation(scenes.elastic_block(150), Barrier.bollards(count=3, spacing=0.8), 5.0)
@@ -138,12 +139,22 @@ def test_figures_of_studies_name_the_barrier(tmp_path: Path) -> None:
         posts, "dynamic_crush", {"impact_speed": (4.0, 5.0)}, points=3, max_runs=4
     )
     heads.append(point.plot().axes[0].get_title())
-    for head in heads:
-        assert head.startswith("Laboratory block: 3 bollards, Ø 0.32 m, 1 m high, 0.8 m apart"), head
+    bands = birm3d.history_bands(swept, ["travel"], progress=False)
+    heads.append(bands.plot().get_suptitle())
+    mass, row = posts.scene.vehicle.mass, "3 bollards, Ø 0.32 m, 1 m high, 0.8 m apart"
+    for i, head in enumerate(head.replace("\n", " ") for head in heads):
+        if i == 1:  # of a file, which has no scene
+            assert head.startswith(f"Laboratory block: {row}")
+            continue
+        kg = r"[67],\d+ to 7,0\d\d" if i in (3, 4, 5) else f"{mass:,.0f}"
+        speed = r"5.00 m/s \(11.2 mph\)" if i in (4, 5) else r"4.00 to 5.00 m/s \(8.9 to 11.2 mph\)"
+        assert re.match(rf"Laboratory block, {kg} kg, {speed} at 90°: {row}", head), head
     assert (
         birm3d.sweep(posts, {"barrier": [Barrier.pole()]}, **kept).title
         == "Laboratory block: several barriers"
     )
+    vehicles = birm3d.sweep(posts, vehicle=[scenes.elastic_block(150)], impact_angle=[60.0, 90.0], **kept)
+    assert vehicles.scene_title.startswith("several vehicles, 5.00 m/s (11.2 mph) at 60 to 90°: 3 bollards")
     assert birm3d.sweep(posts, {"barrier.count": [3]}, **kept).title.endswith("0.8 m apart; count varied")
 
 

@@ -73,7 +73,8 @@ def study_html(study: Study) -> str:
         rows.append(("more parameters", str(len(study.parameters) - _MOST_PARAMETERS)))
     tables = table_html(("", ""), rows) + _spread_table(study)
     figure = plot_small(study)
-    return _card(study.title, tables, "" if figure is None else figure_html(figure, "scatter of the runs"))
+    picture = "" if figure is None else figure_html(figure, "scatter of the runs")
+    return _card(study.scene_title, tables, picture)
 
 
 def text_html(text: str, figure: Any, name: str) -> str:

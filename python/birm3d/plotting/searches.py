@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections import Counter
 from typing import TYPE_CHECKING
 
@@ -14,15 +13,13 @@ from ..base.shown_numbers import shown_unit, shown_value
 from ..result.metrics import METRIC_UNITS
 from .figure import new_figure
 from .studies import axis_label
-from .style import BLUE, CYCLE, DASHED, GREEN, RED, legend, prepare
+from .style import BLUE, CYCLE, DASHED, GREEN, RED, legend, prepare, wrapped
 
 if TYPE_CHECKING:
     from ..study.limit_search import Limit
     from ..study.worst_offset import WorstOffset
 
 __all__ = ["plot_limit", "plot_worst_offset"]
-
-_LETTERS = 85  # of a title in one line
 
 
 def plot_limit(limit: Limit) -> Figure:
@@ -45,8 +42,8 @@ def plot_limit(limit: Limit) -> Figure:
         panels[1].set_ylabel("impact offset [m]")
     panels[-1].set_xlabel(f"{limit.name} [{limit.unit}]")
     note = "" if limit.monotonic else "; not monotonic"
-    head = textwrap.wrap(limit.study.scene_title, _LETTERS)
-    panels[0].set_title("\n".join([*head, f"{limit.headline}{note}", limit.band]), fontsize="medium")
+    head = wrapped(limit.study.scene_title, figure)
+    panels[0].set_title("\n".join([head, f"{limit.headline}{note}", limit.band]), fontsize="medium")
     legend([panels[0]])
     return figure
 
@@ -100,7 +97,7 @@ def plot_worst_offset(found: WorstOffset) -> Figure:
     worst = found.worst
     place = f"spacing {worst.spacing:g} m, offset {worst.offset:.2f} m"
     value = f"{found.words} {shown_value(worst.value, METRIC_UNITS[found.metric])}"
-    head = f"{worst.search.grid.scene_title}\nworst: {value} at {place}"
+    head = f"{wrapped(worst.search.grid.scene_title, figure)}\nworst: {value} at {place}"
     figure.suptitle(head, fontsize="medium" if several else "small")
     return figure
 

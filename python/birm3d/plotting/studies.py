@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from ..base.shown_numbers import shown_unit
 from .figure import new_figure
-from .style import BLUE, RED, legend, prepare
+from .style import BLUE, RED, legend, prepare, wrapped
 
 if TYPE_CHECKING:
     from ..study.fragility import Fragility
@@ -47,7 +47,7 @@ def plot_study(study: Study, x: str, y: str, by: str | None = None) -> Figure:
         axes.plot(x_values[rows], y_values[rows], label=label, **more)
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
-    axes.set_title(study.title, fontsize="medium")
+    axes.set_title(wrapped(study.scene_title, figure), fontsize="medium")
     legend([axes])
     return figure
 
@@ -111,7 +111,7 @@ def plot_fragility(fragility: Fragility) -> Figure:
     axes.set_ylim(-0.03, 1.03)
     axes.set_xlabel("impact speed [m/s]")
     axes.set_ylabel(f"probability: {fragility.event.replace('_', ' ')}")
-    axes.set_title(fragility.study.title, fontsize="medium")
+    axes.set_title(wrapped(fragility.study.scene_title, figure), fontsize="medium")
     legend([axes])
     return figure
 
@@ -150,7 +150,8 @@ def _plot_scatter(study: Study, x: str, y: str) -> Figure:
     right.set_xlabel("runs")
     omitted = len(study) - len(x_values)
     rest = f", {omitted:,} without a value left out" if omitted else ""
-    figure.suptitle(f"{study.title}\n{len(x_values):,} runs{rest}", fontsize="medium")
+    head = wrapped(study.scene_title, figure)
+    figure.suptitle(f"{head}\n{len(x_values):,} runs{rest}", fontsize="medium")
     return figure
 
 

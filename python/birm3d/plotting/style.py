@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -9,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from cycler import cycler
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from ..scene.text import scene_text
 from ..signals.filters import cfc
@@ -41,6 +43,7 @@ __all__ = [
     "plot_filtered",
     "prepare",
     "title",
+    "wrapped",
 ]
 
 Floats = npt.NDArray[np.float64]
@@ -64,6 +67,7 @@ STYLES = (SOLID, DASHED, DASH_DOT, DOTTED, SOLID, DASHED, SOLID, DASHED)
 WIDTHS = (3.2, 2.0, 1.5, 1.8, 1.2, 1.2, 1.0, 1.0)
 # Of a legend's text: mean width of a letter, of a line sample with its gaps, and height of a row, points.
 _LETTER, _SAMPLE, _ROW = 4.7, 42.0, 13.5
+_LETTERS_PER_INCH = 11.2  # of a title in one line
 
 
 def prepare(*panels: Axes) -> None:
@@ -194,6 +198,11 @@ def legend(axes: Sequence[Axes]) -> None:
     )
     rows = -(-len(labels) // columns)
     axes[0].set_title(axes[0].get_title(), pad=6.0 + _ROW * rows, fontsize=axes[0].title.get_fontsize())
+
+
+def wrapped(text: str, figure: Figure) -> str:
+    """Return a title in as many lines as the width of the figure asks for."""
+    return "\n".join(textwrap.wrap(text, round(_LETTERS_PER_INCH * figure.get_figwidth())))
 
 
 def _columns(axes: Axes, labels: Sequence[str]) -> int:

@@ -15,7 +15,7 @@ from ..result.metrics import METRIC_UNITS
 from ..simulation.parameters import unit_of
 from .figure import new_figure
 from .studies import axis_label
-from .style import BLUE, ORANGE, RED, legend, prepare
+from .style import BLUE, ORANGE, RED, legend, prepare, wrapped
 
 if TYPE_CHECKING:
     from ..study.impact_point import CriticalImpactPoint
@@ -65,9 +65,9 @@ def plot_sobol(indices: SobolIndices, metrics: Sequence[str] | None = None) -> F
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize="small")
     level = f"{100 * indices.design.confidence:g} %"
+    head = wrapped(indices.study.scene_title, figure)
     figure.suptitle(
-        f"{indices.study.title}\nSobol indices of {len(indices.study):,} runs, {level} intervals",
-        fontsize="medium",
+        f"{head}\nSobol indices of {len(indices.study):,} runs, {level} intervals", fontsize="medium"
     )
     return figure
 
@@ -110,7 +110,8 @@ def plot_critical_point(found: CriticalImpactPoint) -> Figure:
     notes = "".join(f"; {name.replace('_', ' ')} at its bound" for name in found.at_bound)
     runs = len(found.grid) + len(found.refinement)
     value = f"{found.metric.replace('_', ' ')} {found.value / size:.4g} {unit}".rstrip()
-    axes.set_title(f"{found.grid.title}\n{value}, {runs} runs{notes}", fontsize="medium")
+    head = wrapped(found.grid.scene_title, figure)
+    axes.set_title(f"{head}\n{value}, {runs} runs{notes}", fontsize="medium")
     legend([axes])
     return figure
 
