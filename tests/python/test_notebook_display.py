@@ -181,7 +181,7 @@ def test_sobol_bars(simulation: Simulation) -> None:
     widths = [bar.get_width() for bar in axes.patches]
     index = found.metrics["dynamic_crush"]
     assert widths == pytest.approx([*index.first, *index.total])
-    assert [text.get_text() for text in axes.get_yticklabels()] == ["impact speed", "barrier.friction"]
+    assert [text.get_text() for text in axes.get_yticklabels()] == ["impact speed", "friction at the barrier"]
     assert isinstance(found, SobolIndices)
     assert "<img" in found._repr_html_()
     with pytest.raises(ValueError, match="metrics must have indices, got 'max_yaw'"):

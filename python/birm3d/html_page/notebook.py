@@ -14,6 +14,7 @@ from ..result.event import outcome_words
 from ..result.summary import HEADLINES, headline_rows, shown_as
 from ..scene.text import scene_text
 from ..study.counted import counted, is_count
+from ..study.shown_columns import shown_column
 
 if TYPE_CHECKING:
     from ..result.result import Result
@@ -68,7 +69,8 @@ def study_html(study: Study) -> str:
     if study.failed:
         rows.append(("failed", f"{len(study.failed):,} (reasons in .failed)"))
     for name, values in list(study.parameters.items())[:_MOST_PARAMETERS]:
-        rows.append((f"{_words(name)}{_in(study.units.get(name, ''))}", _range(values)))
+        column = shown_column(name, study.units.get(name, ""))
+        rows.append((column.label, _range(values / column.size if values.dtype.kind == "f" else values)))
     if len(study.parameters) > _MOST_PARAMETERS:
         rows.append(("more parameters", str(len(study.parameters) - _MOST_PARAMETERS)))
     tables = table_html(("", ""), rows) + _spread_table(study)
@@ -102,10 +104,6 @@ def _card(head: str, tables: str, picture: str) -> str:
         '<div style="display:flex;flex-wrap:wrap;gap:16px;align-items:flex-start">'
         f"<div>{tables}</div><div>{picture}</div></div></div>"
     )
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ")
 
 
 def _in(unit: str) -> str:

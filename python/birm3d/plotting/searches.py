@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..base.shown_numbers import shown_unit, shown_value
 from ..result.metrics import METRIC_UNITS
+from ..study.shown_columns import shown_column, shown_metric
 from .figure import new_figure
 from .studies import axis_label
 from .style import BLUE, CYCLE, DASHED, GREEN, RED, legend, prepare, wrapped
@@ -70,7 +70,7 @@ def _runs(axes: Axes, limit: Limit, heights: list[float]) -> None:
 
 def plot_worst_offset(found: WorstOffset) -> Figure:
     """Return the metric over the offset for each spacing, and its greatest value over the spacing."""
-    size, _ = shown_unit(METRIC_UNITS[found.metric])
+    size = shown_column(found.metric, METRIC_UNITS[found.metric]).size
     label = found.label
     several = len(found.rows) > 1
     figure = new_figure(11.0 if several else 7.0, 4.8)
@@ -96,7 +96,7 @@ def plot_worst_offset(found: WorstOffset) -> Figure:
         axes.set_title("Greatest value; numbers: distance from a post over the spacing", fontsize="medium")
     worst = found.worst
     place = f"spacing {worst.spacing:g} m, offset {worst.offset:.2f} m"
-    value = f"{found.words} {shown_value(worst.value, METRIC_UNITS[found.metric])}"
+    value = f"{found.words} {shown_metric(found.metric, worst.value)}"
     head = f"{wrapped(worst.search.grid.scene_title, figure)}\nworst: {value} at {place}"
     figure.suptitle(head, fontsize="medium" if several else "small")
     return figure
