@@ -65,9 +65,9 @@ def standard_vehicle(
         If the standard does not know it; the message names those that it knows.
     """
     if code is not None:
-        for one in known:
-            if one.code == code:
-                return one
+        called = [one for one in known if one.code == code]
+        if called:  # one code may stand for two masses, as N3 of PAS 68
+            return next((one for one in called if one.weighs(vehicle)), called[0])
         codes = ", ".join(one.code for one in known)
         raise ValueError(f"vehicle_class must be one of {codes} for {standard}; got {code!r}")
     for one in known:
