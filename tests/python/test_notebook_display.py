@@ -141,10 +141,13 @@ def test_figures_of_studies_name_their_scene(tmp_path: Path) -> None:
     heads.append(point.plot().axes[0].get_title())
     bands = birm3d.history_bands(swept, ["travel"], progress=False)
     heads.append(bands.plot().get_suptitle())
-    mass, row = posts.scene.vehicle.mass, "3 bollards, Ø 0.32 m, 1 m high, 0.8 m apart"
+    mass, row = (
+        posts.scene.vehicle.mass,
+        "3 bollards, Ø 0.32 m, 1 m high, 0.8 m between axes \\(0.48 m clear\\)",
+    )
     for i, head in enumerate(head.replace("\n", " ") for head in heads):
         if i == 1:  # of a file, which has no scene
-            assert head.startswith(f"Laboratory block: {row}")
+            assert re.match(f"Laboratory block: {row}", head)
             continue
         kg = r"[67],\d+ to 7,0\d\d" if i in (3, 4, 5) else f"{mass:,.0f}"
         speed = r"5.00 m/s \(11.2 mph\)" if i in (4, 5) else r"4.00 to 5.00 m/s \(8.9 to 11.2 mph\)"
@@ -155,7 +158,9 @@ def test_figures_of_studies_name_their_scene(tmp_path: Path) -> None:
     )
     vehicles = birm3d.sweep(posts, vehicle=[scenes.elastic_block(150)], impact_angle=[60.0, 90.0], **kept)
     assert vehicles.scene_title.startswith("several vehicles, 5.00 m/s (11.2 mph) at 60 to 90°: 3 bollards")
-    assert birm3d.sweep(posts, {"barrier.count": [3]}, **kept).title.endswith("0.8 m apart; count varied")
+    assert birm3d.sweep(posts, {"barrier.count": [3]}, **kept).title.endswith(
+        "0.8 m between axes (0.48 m clear); count varied"
+    )
 
 
 def test_drawn_runs_are_a_scatter_with_marginals(drawn: Study, simulation: Simulation) -> None:

@@ -91,7 +91,7 @@ def plot_worst_offset(found: WorstOffset) -> Figure:
                 fontsize="small",
             )
         axes.margins(y=0.15)
-        axes.set_xlabel("spacing [m]")
+        axes.set_xlabel("spacing between axes [m]")
         axes.set_ylabel(label)
         axes.set_title("Greatest value; numbers: distance from a post over the spacing", fontsize="medium")
     worst = found.worst
