@@ -55,6 +55,7 @@ class Barrier(BarrierMakers):
 
     _counts: ClassVar[tuple[str, ...]] = ()  # fields that are whole numbers
 
+    _of_text: ClassVar[str] = "Barrier.bollards() and others like it return one"
     title: ClassVar[str] = "barrier"
     """What help texts call this kind."""
     sizes: ClassVar[tuple[Size, ...]] = ()

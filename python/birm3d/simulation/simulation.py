@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from typing import ClassVar
 
 from .. import _core
 from .._version import __version__
@@ -84,6 +85,8 @@ class Simulation:
     CoarseSkinWarning
         As a warning, if the barrier is so narrow that it can pass between the nodes of the skin.
     """
+
+    _leads_to: ClassVar = {"Result": "its run() returns one"}
 
     def __init__(
         self,
