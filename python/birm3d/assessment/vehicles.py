@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from ..vehicle import Vehicle
 
-__all__ = ["A_PILLAR", "LOAD_BED", "StandardVehicle", "standard_vehicle"]
+__all__ = ["A_PILLAR", "HEAVY_KG", "LOAD_BED", "StandardVehicle", "standard_vehicle"]
 
 A_PILLAR = "a_pillar_base"
 LOAD_BED = "load_bed_leading_edge"
+HEAVY_KG = 3500.0
+"""From here on vehicles are trucks and buses: no standard judges their occupants."""
 
 
 class StandardVehicle(NamedTuple):
