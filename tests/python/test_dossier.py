@@ -102,6 +102,9 @@ def test_verdict_comes_first(page: Page, result: Result) -> None:
     )
     most = max(result.element_loads, key=lambda load: load.peak_force_50ms)
     assert f"up to {most.peak_force_50ms / 1e3:,.0f} kN" in glance["What does the barrier have to carry?"]
+    crush = result.metrics["dynamic_crush"]
+    assert crush > 0.75
+    assert glance["Is the crush within what was tested?"].startswith(f"NO: greatest {crush:.2f} m, and ")
     assert page.texts["h1"] == ["Posts"]
     assert page.texts["dd"][:4] == list(FACTS.values())
 

@@ -18,6 +18,7 @@ from ..result.summary import shown_as
 from ..vehicle.title import kind_words
 from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import band_of, headline_table
+from .evidence import beyond_tests
 from .given_tests import Compared, errors
 from .numbers import percent
 from .study_case import ROADSIDE, Case, is_oblique
@@ -115,11 +116,11 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
             "What does its foundation have to carry?",
             f"{alone}{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
             f"{row.height:.2f} m, natural period {period:g} s{assumed}, ductility "
-            f"{case.design_loads.ductility:g}"
-            f"{_design_band(row)}",
+            f"{case.design_loads.ductility:g}{_design_band(row)}",
         )
     yield "Would occupants be at risk?", _risk_line(case)
     yield "How well is it computed?", _computed_line(case)
+    yield from beyond_tests(case)
     found = errors(case.tests)
     rights = [one.right for one in case.tests if one.right is not None]
     told = []
@@ -217,9 +218,8 @@ def _assumed(loads: DesignLoad) -> str:
     if ASSUMED not in loads.caution:
         return ""
     found = greatest_of_periods(loads)
-    return (
-        " (assumed)" if found is None else f" (assumed; up to {found[0] / 1e3:,.0f} kN at {found[1]:.2g} s)"
-    )
+    more = "" if found is None else f"; up to {found[0] / 1e3:,.0f} kN at {found[1]:.2g} s"
+    return f" (assumed{more})"
 
 
 def _design_band(row: ElementDesign) -> str:
