@@ -220,3 +220,37 @@ def test_profiles_are_smooth_and_go_through_what_was_computed() -> None:
     assert len(x) >= 200
     assert rise[np.isin(x, values)] == pytest.approx(profile.rise, abs=1e-12)
     assert np.abs(rise - (x - 1.0) ** 2).max() < 1e-9
+
+
+def test_cards_of_what_a_scene_is_made_of() -> None:
+    car, posts = Vehicle.preset("passenger_car", mesh_density=0.05), Barrier.bollards(heading=10.0)
+    card = Cells(car._repr_html_()).cells
+    assert card[card.index("mass") + 1] == f"{car.mass:,.0f} kg"
+    sizes = f"{car.length:.2f} x {car.width:.2f} x {car.height:.2f} m"
+    assert card[card.index("length x width x height") + 1] == sizes
+    card = Cells(posts._repr_html_()).cells
+    assert card[card.index("kind") + 1] == "bollards"
+    assert card[card.index("spacing (axis to axis)") + 1] == "1.2 m"
+    assert card[card.index("heading") + 1] == "10°"
+    impact = Simulation(car, posts, "50 km/h", 60.0, 0.25, duration="200 ms", impact_yaw=5.0)
+    card = Cells(impact._repr_html_()).cells
+    assert card[card.index("speed") + 1] == "13.89 m/s (50.0 km/h, 31.1 mph)"
+    assert card[card.index("angle") + 1] == "60°"
+    assert card[card.index("offset") + 1] == "0.25 m"
+    assert card[card.index("yaw") + 1] == "5°"
+    assert card[card.index("duration") + 1] == "0.2 s"
+    assert {"passenger_car", "bollards"} <= set(card)
+
+
+def test_cards_of_all_kinds() -> None:
+    for barrier in (
+        *(Barrier.rigid_wall(), Barrier.pole(), Barrier.planter(), Barrier.jersey()),
+        Barrier.jersey(length=12.0, segments=4, free_standing=True),
+    ):
+        card = Cells(barrier._repr_html_()).cells
+        assert card[card.index("kind") + 1] == barrier.title
+    assert card[card.index("free standing") + 1] == "yes"
+    semi = Vehicle.preset("semi_truck", mesh_density=0.05)
+    assert any("semi_trailer" in cell for cell in Cells(semi._repr_html_()).cells)
+    alone = Cells(Simulation(semi, None, 10.0, duration=0.1)._repr_html_()).cells
+    assert "angle" not in alone

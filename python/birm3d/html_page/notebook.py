@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..result.result import Result
     from ..study.table import Study
 
-__all__ = ["figure_html", "result_html", "study_html", "table_html", "text_html"]
+__all__ = ["card", "figure_html", "result_html", "study_html", "table_html", "text_html"]
 
 _MOST_METRICS = 8
 _MOST_PARAMETERS = 12
@@ -53,7 +53,7 @@ def result_html(result: Result) -> str:
 
     rows = [(label, f"{value} {unit}".strip()) for label, value, unit in headline_rows(result)]
     picture = figure_html(plot_thumbnail(result), "plan view of start and end")
-    return _card(scene_text(result.scene), table_html(("", ""), rows), picture)
+    return card(scene_text(result.scene), table_html(("", ""), rows), picture)
 
 
 def study_html(study: Study) -> str:
@@ -76,7 +76,7 @@ def study_html(study: Study) -> str:
     tables = table_html(("", ""), rows) + _spread_table(study)
     figure = plot_small(study)
     picture = "" if figure is None else figure_html(figure, "scatter of the runs")
-    return _card(study.scene_title, tables, picture)
+    return card(study.scene_title, tables, picture)
 
 
 def text_html(text: str, figure: Any, name: str) -> str:
@@ -98,7 +98,8 @@ def _spread_table(study: Study) -> str:
     return table_html(("metric", "mean", "st. dev.", "5 %", "median", "95 %"), rows) if rows else ""
 
 
-def _card(head: str, tables: str, picture: str) -> str:
+def card(head: str, tables: str, picture: str = "") -> str:
+    """Return a card: a heading, tables, and a picture beside them."""
     return (
         f'<div><div style="font-weight:600;margin-bottom:4px">{escape(head)}</div>'
         '<div style="display:flex;flex-wrap:wrap;gap:16px;align-items:flex-start">'

@@ -6,7 +6,7 @@ import time
 from collections.abc import Sequence
 from typing import ClassVar
 
-from .. import _core
+from .. import _core, pictures
 from .._version import __version__
 from ..barrier.base import Barrier
 from ..base.arguments import checked
@@ -266,6 +266,9 @@ class Simulation:
                     "restored from a run of another duration; copy.copy() keeps the state"
                 )
             return (_stepped, (self._scene, steps, self._core.state_hash, __version__))
+
+    def _repr_html_(self) -> str:
+        return pictures.scene_html(self._scene)
 
     def __repr__(self) -> str:
         scene = self._scene

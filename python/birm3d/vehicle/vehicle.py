@@ -287,6 +287,10 @@ class Vehicle(OldVehicleNames):
         """
         return pictures.plot_vehicle(self)
 
+    def _repr_html_(self) -> str:
+        """Return what notebooks show: name, kind, mass and sizes."""
+        return pictures.vehicle_html(self)
+
     def save(self, path: str | Path) -> None:
         """Write the vehicle to a file (TOML) that :meth:`from_file` reads back as the same vehicle.
 
