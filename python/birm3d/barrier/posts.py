@@ -150,7 +150,7 @@ class Bollards(Barrier):
         text = f"{rows}{self.count} bollard{'s' if many else ''}, Ø {self.diameter:g} m"
         text += f", {height_text(self.height)}"
         if self.count > 1:
-            text += f", {self.spacing:g} m between axes ({self.spacing - self.diameter:.4g} m clear)"
+            text += f", {self.spacing:g} m between axes ({self.spacing - self.diameter:.3g} m clear)"
         return text + (f", rows {self.row_spacing:g} m apart (axis to axis)" if self.rows > 1 else "")
 
     def load_front(self) -> PostFront:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias
@@ -201,8 +202,10 @@ def legend(axes: Sequence[Axes]) -> None:
 
 
 def wrapped(text: str, figure: Figure) -> str:
-    """Return a title in as many lines as the width of the figure asks for."""
-    return "\n".join(textwrap.wrap(text, round(_LETTERS_PER_INCH * figure.get_figwidth())))
+    """Return a title in as many lines as the figure's width asks for; the barrier begins a line."""
+    letters = round(_LETTERS_PER_INCH * figure.get_figwidth())
+    parts = [text] if len(text) <= letters else re.split("(?<=:) ", text, maxsplit=1)
+    return "\n".join(line for part in parts for line in textwrap.wrap(part, letters))
 
 
 def _columns(axes: Axes, labels: Sequence[str]) -> int:
