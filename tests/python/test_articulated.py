@@ -375,7 +375,10 @@ def test_bad_vehicles_are_refused() -> None:
         Vehicle.articulated([leading, trailing, trailing], vehicle.joint)
     with pytest.raises(ValueError, match=r"units\[1\] must be a vehicle of one unit"):
         Vehicle.articulated([leading, vehicle], vehicle.joint)
-    with pytest.raises(TypeError, match=r"units\[0\] must be a birm3d\.Vehicle, got str"):
+    with pytest.raises(
+        TypeError,
+        match=r"units\[0\] must be a birm3d\.Vehicle, got 'semi_truck'; Vehicle\.preset\('semi_truck'\) returns one",
+    ):
         Vehicle.articulated(["semi_truck", trailing], vehicle.joint)
     with pytest.raises(TypeError, match=r"joint must be a birm3d\.Joint, got str"):
         Vehicle.articulated([leading, trailing], "welded")

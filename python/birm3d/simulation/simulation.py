@@ -81,7 +81,7 @@ class Simulation:
     ValueError
         Naming the argument, its limit and the value received.
     UnitWarning
-        As a warning, if a number is most likely in another unit, as an impact_speed of 300.
+        As a warning, if a number is most likely in another unit, as an impact_speed of 50 (180 km/h).
     CoarseSkinWarning
         As a warning, if the barrier is so narrow that it can pass between the nodes of the skin.
     """
