@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from .result.element_loads import ElementLoad
     from .result.energy_balance import BalanceWarning
     from .result.load_map import LoadMap
+    from .result.missed import MissedBarrierWarning
     from .result.overlap import OverlapWarning
     from .result.result import load, write_capsule
     from .scene.mesh_check import CoarseSkinWarning
@@ -86,6 +87,7 @@ __all__ = [
     "Limit",
     "LoadMap",
     "MassWarning",
+    "MissedBarrierWarning",
     "NotInRangeError",
     "OccupantRisk",
     "OverlapWarning",
@@ -164,6 +166,7 @@ _WHERE = {
     "Limit": "study.limit_search:Limit",
     "LoadMap": "result.load_map:LoadMap",
     "MassWarning": "vehicle.mass_check:MassWarning",
+    "MissedBarrierWarning": "result.missed:MissedBarrierWarning",
     "NotInRangeError": "study.limit_search:NotInRangeError",
     "OccupantRisk": "assessment:OccupantRisk",
     "OverlapWarning": "result.overlap:OverlapWarning",

@@ -19,9 +19,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .assessment.design_table import DesignLoad
+    from .barrier.base import Barrier
     from .calibration.result import CalibrationResult
     from .result.load_map import LoadMap
     from .result.result import Result
+    from .scene.scene import Scene
     from .signals.compare import CurveComparison
     from .study.fragility import Fragility
     from .study.history_bands import HistoryBands
@@ -39,6 +41,7 @@ __all__ = [
     "Side",
     "View",
     "animate",
+    "barrier_html",
     "plot",
     "plot_comparison",
     "plot_critical_point",
@@ -64,10 +67,12 @@ __all__ = [
     "plot_worst_offset",
     "render",
     "result_html",
+    "scene_html",
     "show",
     "study_html",
     "table_html",
     "text_html",
+    "vehicle_html",
     "write_gltf",
     "write_html",
     "write_vtk",
@@ -365,6 +370,27 @@ def study_html(study: Study) -> str:
     from .html_page.notebook import study_html
 
     return study_html(study)
+
+
+def vehicle_html(vehicle: Vehicle) -> str:
+    """Return what notebooks show of a vehicle."""
+    from .html_page.scene_cards import vehicle_html
+
+    return vehicle_html(vehicle)
+
+
+def barrier_html(barrier: Barrier) -> str:
+    """Return what notebooks show of a barrier."""
+    from .html_page.scene_cards import barrier_html
+
+    return barrier_html(barrier)
+
+
+def scene_html(scene: Scene) -> str:
+    """Return what notebooks show of a simulation."""
+    from .html_page.scene_cards import scene_html
+
+    return scene_html(scene)
 
 
 def table_html(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -375,9 +375,12 @@ def test_bad_vehicles_are_refused() -> None:
         Vehicle.articulated([leading, trailing, trailing], vehicle.joint)
     with pytest.raises(ValueError, match=r"units\[1\] must be a vehicle of one unit"):
         Vehicle.articulated([leading, vehicle], vehicle.joint)
-    with pytest.raises(TypeError, match=r"units\[0\] must be a birm3d\.Vehicle, got str"):
+    with pytest.raises(
+        TypeError,
+        match=r"units\[0\] must be a birm3d\.Vehicle, got 'semi_truck'; Vehicle\.preset\('semi_truck'\)",
+    ):
         Vehicle.articulated(["semi_truck", trailing], vehicle.joint)
-    with pytest.raises(TypeError, match=r"joint must be a birm3d\.Joint, got str"):
+    with pytest.raises(TypeError, match=r"joint must be a birm3d\.Joint, got 'welded'"):
         Vehicle.articulated([leading, trailing], "welded")
     with pytest.raises(ValueError, match=r"gvw must be above the leading unit's mass \(8633 kg\), got 8000"):
         vehicle.with_gvw(8000.0)

@@ -317,6 +317,27 @@ def test_sweep_of_a_scene_file_as_json(command, capsys, tmp_path):
     assert outcome["runs"]["state_hash"][0] == by_hand["state_hash"]
 
 
+def test_tables_of_sweeps_are_in_units_of_practice(command, capsys, tmp_path):
+    table = tmp_path / "runs.csv"
+    names = "peak_deceleration_cfc60,peak_normal_force_cfc60"
+    vary = ["--vary", "impact_speed=9m/s,10m/s", "--metrics", names]
+    assert command(*SWEEP, *vary, "--csv", str(table)) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    study = Study.load(table)
+    assert dict(study.units)["peak_normal_force_cfc60"] == "N", "files are in SI"
+    assert "[g]" in printed
+    assert "[kN]" in printed
+    assert "9.00 to 10.00 m/s" in printed
+    for deceleration, force in zip(*(study[name] for name in names.split(",")), strict=True):
+        assert f"{deceleration / units.g:,.4g}" in printed
+        assert f"{force / 1e3:,.4g}" in printed
+    random = ["--vary", "impact_speed=uniform(9m/s, 10m/s)", "--random", "4", "--metrics", names]
+    assert command(*SWEEP, "--speed", "20mph", *random) == 0
+    printed = capsys.readouterr().out
+    assert "[g]" in printed
+    assert "m/s^2" not in printed
+
+
 def test_random_sweep(command, capsys):
     vary = [
         *SWEEP,

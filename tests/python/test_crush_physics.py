@@ -116,6 +116,7 @@ def test_offset_poles_turn_the_vehicle_and_mirror(indentation_length: float) -> 
     assert left.metrics["dynamic_crush"] == pytest.approx(right.metrics["dynamic_crush"], rel=1e-6)
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.MissedBarrierWarning")
 def test_a_pole_that_is_passed_by_is_not_touched() -> None:
     car = Vehicle.preset("passenger_car", mesh_density=0.2)
     result = Simulation(car, Barrier.pole(diameter=0.3), 12.0, 90.0, 2.0, duration=0.8).run()

@@ -500,3 +500,13 @@ def test_loads_of_a_vehicle_that_gets_past_are_told() -> None:
     assert past.governing.peak_force > 0.0
     assert "gets past the barrier: stopping it asks for more" in past.caution
     assert "gets past" not in held.caution
+
+
+def test_a_heavy_vehicle_loads_a_wall_lower_than_design_tables_have_it() -> None:
+    told = "the computed force acts lower than design tables have it"
+    wall = Barrier.rigid_wall(height=1.07, width=60.0, segments=12)
+    for name, heavy in (("bus_13t", True), ("passenger_car", False)):
+        vehicle = Vehicle.preset(name, mesh_density=0.1)
+        loads = birm3d.design_load(Simulation(vehicle, wall, 15.0, 20.0), draws=0, progress=False)
+        assert (told in loads.caution) is heavy
+        assert (told in loads.summary()) is heavy

@@ -24,10 +24,11 @@ from birm3d.reporting.given_tests import Facts, _facts, errors, given_tests, nea
 from birm3d.reporting.numbers import percent
 from birm3d.reporting.page import _mark
 from birm3d.reporting.shares import share_of_runs
-from birm3d.reporting.uncertainty import _bands, _input_words
+from birm3d.reporting.uncertainty import _bands
 from birm3d.reporting.verdict import _judges
 from birm3d.result.skin import skins_at
 from birm3d.result.summary import element_rows, headline_rows
+from birm3d.study.shown_columns import parameter_words
 from scipy import stats
 
 FACTS = {"project": "Plaza <north>", "client": "City", "author": "A. Engineer", "date": "2030-01-02"}
@@ -101,6 +102,9 @@ def test_verdict_comes_first(page: Page, result: Result) -> None:
     )
     most = max(result.element_loads, key=lambda load: load.peak_force_50ms)
     assert f"up to {most.peak_force_50ms / 1e3:,.0f} kN" in glance["What does the barrier have to carry?"]
+    crush = result.metrics["dynamic_crush"]
+    assert crush > 0.75
+    assert glance["Is the crush within what was tested?"].startswith(f"NO: greatest {crush:.2f} m, and ")
     assert page.texts["h1"] == ["Posts"]
     assert page.texts["dd"][:4] == list(FACTS.values())
 
@@ -161,6 +165,7 @@ def test_design_loads_are_those_of_the_api(page: Page, result: Result, folder: P
         f"{most.name}: equivalent static force {most.equivalent_static_force / 1e3:,.0f} kN"
     )
     assert loads.caution in " ".join(page.texts["p"])
+    assert "The vehicle is heavy: the computed force acts lower" in loads.caution
     assert (folder / "design_loads.csv").read_text(encoding="utf-8").count("bollard") == len(loads)
 
 
@@ -275,9 +280,9 @@ def test_a_run_that_nobody_rates_says_so_at_a_glance(tmp_path: Path, monkeypatch
 
 
 def test_inputs_of_a_study_are_words() -> None:
-    assert _input_words("barrier.friction") == "barrier: friction"
-    assert _input_words("zone.front.k_initial") == "zone front: k initial"
-    assert _input_words("impact_speed") == "impact speed"
+    assert parameter_words("barrier.spacing") == "barrier: spacing"
+    assert parameter_words("zone.front.k_initial") == "zone front: k initial"
+    assert parameter_words("impact_speed") == "impact speed"
 
 
 def test_each_zone_has_a_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

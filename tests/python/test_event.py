@@ -26,6 +26,8 @@ AT_SEPARATION = (
     ),
 )
 
+MISSES = pytest.mark.filterwarnings("ignore::birm3d.MissedBarrierWarning")
+
 
 @cache
 def car(gvw: float = 900.0) -> Vehicle:
@@ -112,7 +114,7 @@ def test_the_instant_is_the_last_loss_of_contact(name: str) -> None:
         ("head_on", "stopped", "rebounded"),
         ("pole_beside", "stopped", "rebounded"),  # it turns about the pole on its way back
         ("gap", "passed", "between two elements of the barrier, untouched"),
-        ("end", "passed", "the barrier's end"),
+        pytest.param("end", "passed", "the barrier's end", marks=MISSES),
         ("curb", "overridden", "over the top"),
         ("low_posts", "overridden", "over the top"),
     ],
@@ -173,6 +175,7 @@ def test_a_truck_that_its_tires_press_on_a_long_barrier_is_redirected() -> None:
     assert "time_of_separation" not in result.metrics
 
 
+@MISSES
 def test_no_angle_of_what_passed_and_none_without_a_barrier() -> None:
     with pytest.raises(KeyError, match=r"does not leave on the traffic side|did not separate"):
         run("end").metrics["exit_angle"]

@@ -69,7 +69,7 @@ def test_each_criterion_has_its_band() -> None:
 def test_mixed_or_missing_tests_are_refused() -> None:
     small, large = predictions()
     run = large.study.simulation(0).run()
-    with pytest.raises(ValueError, match=r"a list of birm3d\.Results or a list of"):
+    with pytest.raises(ValueError, match=r"a list of birm3d\.Result or a list of"):
         birm3d.rate([small, run], LEVEL)
     with pytest.raises(ValueError, match="one study for each test of EN 1317 H1, got TB11, TB11"):
         birm3d.rate([small, small], LEVEL)

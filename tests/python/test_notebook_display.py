@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -120,7 +121,7 @@ def test_study_card(drawn: Study) -> None:
     assert "rigid wall without end; friction varied" in drawn._repr_html_()
 
 
-def test_figures_of_studies_name_the_barrier(tmp_path: Path) -> None:
+def test_figures_of_studies_name_their_scene(tmp_path: Path) -> None:
     heads = []
     unknown = {"vehicle.gvw": stats.norm(7000.0, 10.0)}
     posts = Simulation(scenes.elastic_block(150), Barrier.bollards(count=3, spacing=0.8), 5.0)
@@ -138,13 +139,28 @@ def test_figures_of_studies_name_the_barrier(tmp_path: Path) -> None:
         posts, "dynamic_crush", {"impact_speed": (4.0, 5.0)}, points=3, max_runs=4
     )
     heads.append(point.plot().axes[0].get_title())
-    for head in heads:
-        assert head.startswith("Laboratory block: 3 bollards, Ø 0.32 m, 1 m high, 0.8 m apart"), head
+    bands = birm3d.history_bands(swept, ["travel"], progress=False)
+    heads.append(bands.plot().get_suptitle())
+    mass, row = (
+        posts.scene.vehicle.mass,
+        "3 bollards, Ø 0.32 m, 1 m high, 0.8 m between axes \\(0.48 m clear\\)",
+    )
+    for i, head in enumerate(head.replace("\n", " ") for head in heads):
+        if i == 1:  # of a file, which has no scene
+            assert re.match(f"Laboratory block: {row}", head)
+            continue
+        kg = r"[67],\d+ to 7,0\d\d" if i in (3, 4, 5) else f"{mass:,.0f}"
+        speed = r"5.00 m/s \(11.2 mph\)" if i in (4, 5) else r"4.00 to 5.00 m/s \(8.9 to 11.2 mph\)"
+        assert re.match(rf"Laboratory block, {kg} kg, {speed} at 90°: {row}", head), head
     assert (
         birm3d.sweep(posts, {"barrier": [Barrier.pole()]}, **kept).title
         == "Laboratory block: several barriers"
     )
-    assert birm3d.sweep(posts, {"barrier.count": [3]}, **kept).title.endswith("0.8 m apart; count varied")
+    vehicles = birm3d.sweep(posts, vehicle=[scenes.elastic_block(150)], impact_angle=[60.0, 90.0], **kept)
+    assert vehicles.scene_title.startswith("several vehicles, 5.00 m/s (11.2 mph) at 60 to 90°: 3 bollards")
+    assert birm3d.sweep(posts, {"barrier.count": [3]}, **kept).title.endswith(
+        "0.8 m between axes (0.48 m clear); count varied"
+    )
 
 
 def test_drawn_runs_are_a_scatter_with_marginals(drawn: Study, simulation: Simulation) -> None:
@@ -170,7 +186,7 @@ def test_sobol_bars(simulation: Simulation) -> None:
     widths = [bar.get_width() for bar in axes.patches]
     index = found.metrics["dynamic_crush"]
     assert widths == pytest.approx([*index.first, *index.total])
-    assert [text.get_text() for text in axes.get_yticklabels()] == ["impact speed", "barrier.friction"]
+    assert [text.get_text() for text in axes.get_yticklabels()] == ["impact speed", "friction at the barrier"]
     assert isinstance(found, SobolIndices)
     assert "<img" in found._repr_html_()
     with pytest.raises(ValueError, match="metrics must have indices, got 'max_yaw'"):
@@ -204,3 +220,37 @@ def test_profiles_are_smooth_and_go_through_what_was_computed() -> None:
     assert len(x) >= 200
     assert rise[np.isin(x, values)] == pytest.approx(profile.rise, abs=1e-12)
     assert np.abs(rise - (x - 1.0) ** 2).max() < 1e-9
+
+
+def test_cards_of_what_a_scene_is_made_of() -> None:
+    car, posts = Vehicle.preset("passenger_car", mesh_density=0.05), Barrier.bollards(heading=10.0)
+    card = Cells(car._repr_html_()).cells
+    assert card[card.index("mass") + 1] == f"{car.mass:,.0f} kg"
+    sizes = f"{car.length:.2f} x {car.width:.2f} x {car.height:.2f} m"
+    assert card[card.index("length x width x height") + 1] == sizes
+    card = Cells(posts._repr_html_()).cells
+    assert card[card.index("kind") + 1] == "bollards"
+    assert card[card.index("spacing (axis to axis)") + 1] == "1.2 m"
+    assert card[card.index("heading") + 1] == "10°"
+    impact = Simulation(car, posts, "50 km/h", 60.0, 0.25, duration="200 ms", impact_yaw=5.0)
+    card = Cells(impact._repr_html_()).cells
+    assert card[card.index("speed") + 1] == "13.89 m/s (50.0 km/h, 31.1 mph)"
+    assert card[card.index("angle") + 1] == "60°"
+    assert card[card.index("offset") + 1] == "0.25 m"
+    assert card[card.index("yaw") + 1] == "5°"
+    assert card[card.index("duration") + 1] == "0.2 s"
+    assert {"passenger_car", "bollards"} <= set(card)
+
+
+def test_cards_of_all_kinds() -> None:
+    for barrier in (
+        *(Barrier.rigid_wall(), Barrier.pole(), Barrier.planter(), Barrier.jersey()),
+        Barrier.jersey(length=12.0, segments=4, free_standing=True),
+    ):
+        card = Cells(barrier._repr_html_()).cells
+        assert card[card.index("kind") + 1] == barrier.title
+    assert card[card.index("free standing") + 1] == "yes"
+    semi = Vehicle.preset("semi_truck", mesh_density=0.05)
+    assert any("semi_trailer" in cell for cell in Cells(semi._repr_html_()).cells)
+    alone = Cells(Simulation(semi, None, 10.0, duration=0.1)._repr_html_()).cells
+    assert "angle" not in alone

@@ -334,7 +334,7 @@ ROW = channel(PULSES["half sine"][0], -1.0, 0.3)
         (lambda: occupant_risk(x=ROW, y=0, edition=2020), "edition of EN 1317-1 must be 1998 or 2010"),
         (lambda: occupant_risk(x=ROW, y=0, time_zero=math.nan), "time_zero must be finite"),
         (lambda: occupant_risk(x=ROW, y=0).passed("EU"), "standard must be one of MASH, NCHRP 350, EN 1317"),
-        (lambda: occupant_risk("result"), "result must be a birm3d.Result or .*Prediction, got str"),
+        (lambda: occupant_risk("result"), "result must be a birm3d.Result, .*Prediction, got 'result'"),
     ],
 )
 def test_bad_input(call: Callable[[], object], message: str) -> None:

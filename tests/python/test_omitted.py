@@ -10,6 +10,7 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, FreeStanding, Result, Settings, Simulation, Vehicle, _core, scenes
+from birm3d.units import Quantity
 
 WEIGHTLESS = Settings(gravity=0.0, ground=False)
 COUNTS = [name for name, value in vars(_core.StepStatistics).items() if isinstance(value, property)]
@@ -36,7 +37,7 @@ def plates(wheels: bool = False) -> Vehicle:
     )
 
 
-def run(vehicle: Vehicle, barrier: Barrier | None, speed: float = 10.0, **more: Any) -> Result:
+def run(vehicle: Vehicle, barrier: Barrier | None, speed: Quantity = 10.0, **more: Any) -> Result:
     return Simulation(vehicle, barrier, speed, **more).run()
 
 
@@ -114,7 +115,7 @@ def test_steps_without_contact_of_the_rigid_body() -> None:
     steps = soft.statistics.steps
     assert soft.statistics.body_steps == 0
     assert f"their own contact in all {steps:,} steps (no truss was bottomed out)" in omitted(soft)
-    hard = run(plates(), Barrier.rigid_wall(), 60.0, settings=WEIGHTLESS)
+    hard = run(plates(), Barrier.rigid_wall(), "60 m/s", settings=WEIGHTLESS)
     steps, held = hard.statistics.steps, hard.statistics.body_steps
     assert 0 < held < steps
     assert f"their own contact in {steps - held:,} of {steps:,} steps" in omitted(hard)

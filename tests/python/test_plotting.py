@@ -298,11 +298,12 @@ def test_a_tractor_and_its_trailer_are_one_outline() -> None:
         (Barrier.rigid_wall(height=0.8), "rigid wall without end, 0.8 m high, 0.5 m thick"),
         (Barrier.pole(diameter=0.254), "pole, Ø 0.254 m"),
         (Barrier.planter(length=1.5), "planter, 1.5 m long, 1 m wide, 1 m high"),
-        (Barrier.bollards(), "5 bollards, Ø 0.32 m, 1 m high, 1.2 m apart"),
+        (Barrier.bollards(), "5 bollards, Ø 0.32 m, 1 m high, 1.2 m between axes (0.88 m clear)"),
         (Barrier.bollards(count=1), "1 bollard, Ø 0.32 m, 1 m high"),
         (
             Barrier.bollards(count=2, rows=2),
-            "2 rows of 2 bollards, Ø 0.32 m, 1 m high, 1.2 m apart, rows 1.2 m apart",
+            "2 rows of 2 bollards, Ø 0.32 m, 1 m high, 1.2 m between axes (0.88 m clear), "
+            "rows 1.2 m apart (axis to axis)",
         ),
         (Barrier.jersey(), "New Jersey barrier, 0.813 m high, without end"),
         (

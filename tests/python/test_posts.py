@@ -80,6 +80,7 @@ def test_a_post_before_the_front_takes_most_of_its_load_forward(name: str) -> No
         last = left / forward
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.MissedBarrierWarning")
 @pytest.mark.parametrize("name", list(SPEED))
 def test_a_load_ends_where_a_post_is_beside_the_vehicle(name: str) -> None:
     """The last fiftieth of the radius over the edge takes little, and what is beside nothing."""

@@ -9,6 +9,7 @@ from birm3d import Barrier, Simulation, Vehicle
 CARS = [Vehicle.preset(name, mesh_density=0.2) for name in ("passenger_car", "pickup", "paper_pickup")]
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.MissedBarrierWarning")  # some go past the pole
 # Of a coarse mesh a pole can enter the side of the core between anchors: that is warned of.
 @pytest.mark.filterwarnings("ignore::birm3d.OverlapWarning")
 @pytest.mark.parametrize("seed", range(40))

@@ -333,6 +333,45 @@ def test_conditions_of_all_tests(standard) -> None:
             assert test.severity / 1e3 == pytest.approx(published[name], rel=5e-3), name
 
 
+@pytest.fixture(scope="module")
+def heavy_pickup() -> dict[str, Result]:
+    """Of 3.4 t, which no roadside standard has: along a barrier, and head-on."""
+    pickup = Vehicle.preset("pickup", mesh_density=0.1).with_gvw(3450.0)
+    along = Simulation(pickup, Barrier.jersey(), units.km_h(80.0), 20.0).run()
+    return {"along": along, "head_on": Simulation(pickup, Barrier.bollards(), units.km_h(48.0)).run()}
+
+
+@pytest.mark.parametrize("standard", [MASH, EN_1317])
+def test_no_level_takes_a_vehicle_outside_its_masses(standard, heavy_pickup: dict[str, Result]) -> None:
+    result = heavy_pickup["along"]
+    for asked in ("", *standard.levels, *standard.tests):
+        name = f"{standard.name} {asked}".strip()
+        with pytest.raises(ValueError, match=r"vehicle must be one that .* knows: .* \+-.*pickup, 3,450 kg"):
+            rate(result, name)
+    for level, tests in standard.levels.items():
+        for code in {standard.tests[test].vehicle.code for test in tests}:
+            rating = rate(result, f"{standard.name} {level}", vehicle_class=code)
+            assert ": no rating: mass" in rating.designation
+            assert not rating.passed
+
+
+@pytest.mark.parametrize("name", ["IWA 14-1", "ISO 22343-1", "PAS 68"])
+def test_goods_vehicle_n1_is_a_van_and_no_pickup(name: str, heavy_pickup: dict[str, Result]) -> None:
+    """N1 of these is a van of 3.5 t; the level N1 of EN 1317 is another thing."""
+    with pytest.raises(ValueError, match=r"N1 \(van, 3,500 \+-100 kg\).*got 'pickup' \(pickup, 3,450 kg\)"):
+        rate(heavy_pickup["head_on"], name)
+    for vehicle in SECURITY[name].vehicles:
+        if vehicle.code != "N1":
+            rating = rate(heavy_pickup["head_on"], name, vehicle_class=vehicle.code)
+            assert rating.designation.startswith("no rating: mass")
+
+
+def test_a_code_of_two_masses_is_that_of_the_vehicle() -> None:
+    result = head_on(units.km_h(80.0), block(mass=30_000.0, k=9e6))
+    rating = rate(result, "PAS 68", vehicle_class="N3", reference_point=[2.0, 0.0, 0.6])
+    assert rating.designation.startswith("V/30000[N3]/80/90:")
+
+
 def test_roll_fails_a_test() -> None:
     """A pickup that arrives on two wheels at a low barrier rolls over it."""
     pickup = Vehicle.preset("pickup", mesh_density=0.3).scaled_to(2270.0)

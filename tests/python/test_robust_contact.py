@@ -195,7 +195,7 @@ def test_nodes_whose_post_has_moved_on_are_released() -> None:
     result = Simulation(
         minivan,
         pole,
-        56.56044353285878,
+        "56.56044353285878 m/s",
         68.3688715345136,
         0.5155715667487235,
         impact_yaw=-48.28742291986373,

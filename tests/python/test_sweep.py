@@ -25,7 +25,7 @@ from typing import Any
 import birm3d
 import numpy as np
 import pytest
-from birm3d import Study, Vehicle, scenes
+from birm3d import Barrier, Simulation, Study, Vehicle, scenes, sweep, units
 from birm3d.base.fingerprint import fingerprint
 from birm3d.study.runner import run_study
 
@@ -209,10 +209,28 @@ def test_plot(study: Study) -> None:
     figure = study.plot("impact_speed", "dynamic_crush", by="impact_angle")
     axes = figure.axes[0]
     assert axes.get_xlabel() == "impact speed [m/s]"
-    assert axes.get_ylabel() == "dynamic crush [m]"
+    assert axes.get_ylabel() == "dynamic crush (greatest truss shortening) [m]"
     assert sum(len(line.get_xdata()) for line in axes.get_lines()) == 8  # the others have failed
     with pytest.raises(ValueError, match=r"y must be one of .*; got 'dynamic_crash'"):
         study.plot("impact_speed", "dynamic_crash")
+
+
+def test_axes_have_words_and_units_of_practice() -> None:
+    base = Simulation(scenes.elastic_block(30), Barrier.rigid_wall(), 5.0)
+    kept = ["peak_deceleration_cfc60", "peak_normal_force_cfc60", "peak_overturning_moment"]
+    found = sweep(base, {"vehicle.gvw": [7000.0, 7100.0]}, metrics=kept)
+    axes = found.plot("vehicle.gvw", kept[0]).axes[0]
+    assert axes.get_xlabel() == "vehicle mass [kg]"
+    assert axes.get_ylabel() == "peak deceleration along the vehicle, CFC 60\n[g]"
+    assert axes.get_lines()[0].get_ydata() == pytest.approx(found[kept[0]] / units.g(1.0))
+    axes = found.plot("vehicle.gvw", kept[1], by="outcome").axes[0]
+    assert axes.get_ylabel() == "peak barrier force along the normal, CFC 60\n[kN]"
+    # The unit is not broken, and the columns themselves stay SI.
+    assert (
+        found.plot(kept[2], kept[0]).axes[0].get_xlabel().splitlines()[-1].endswith("[kN\N{NO-BREAK SPACE}m]")
+    )
+    assert found.units[kept[0]] == "m/s^2"
+    assert found.to_dataframe()[kept[0]].tolist() == found[kept[0]].tolist()
 
 
 def test_summary(study: Study) -> None:

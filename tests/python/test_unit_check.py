@@ -155,7 +155,11 @@ def box(size: float) -> Any:
 
 
 WRONG: dict[str, tuple[Callable[[], Any], str]] = {
-    "speed in km/h": (lambda: at(300.0), r"impact_speed = 300 m/s .* 0 to 90 m/s"),
+    "speed in km/h": (lambda: at(300.0), r"impact_speed = 300 m/s .* 0 to 45 m/s"),
+    "speed in km/h of a road": (
+        lambda: at(50),
+        r"impact_speed = 50 m/s \(180 km/h\) is most likely in another unit: .* as '50 km/h'",
+    ),
     "angle in rad": (
         lambda: at(impact_angle=1.57),
         r"impact_angle = 1.57 deg .* in radians .* 0 or 1 to 180 deg",
@@ -203,7 +207,7 @@ def test_what_is_usual_or_says_its_unit_is_not_warned_of() -> None:
         warnings.simplefilter("error")
         at("300 km/h", impact_yaw="1.5708 deg", duration="101 s")
         for yaw in (0.0, 1.0, 2.0, 0.5, 90.0, -30.0):
-            at(60.0, impact_angle=4.0, impact_yaw=yaw, impact_roll=-yaw)
+            at(45.0, impact_angle=4.0, impact_yaw=yaw, impact_roll=-yaw)
         at(barrier=Barrier.rigid_wall(width=6.0, thickness=4.0), impact_angle=0.0)
         box(0.15)
         Simulation.from_scene(at("400 km/h").scene)  # known already

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import overload
@@ -25,6 +26,7 @@ __all__ = ["STANDARDS", "rate", "split_standard"]
 _ROADSIDE = {one.name: one for one in (MASH, EN_1317)}
 STANDARDS = (*SECURITY, *_ROADSIDE)
 """Names of the standards that :func:`rate` knows."""
+_LEVELS = tuple(f"{name} {one}" for name, rules in _ROADSIDE.items() for one in (*rules.levels, *rules.tests))
 
 
 @overload
@@ -139,11 +141,17 @@ def split_standard(standard: str) -> tuple[str, str | None]:
             return name, None
         if standard.startswith(f"{name} "):
             return name, standard.removeprefix(f"{name} ").strip()
+    meant = [name for name in _LEVELS if _plain(standard) in (_plain(name), _plain(name.split(" ")[-1]))]
+    near = f", did you mean {' or '.join(map(repr, meant))}?" if meant else did_you_mean(standard, STANDARDS)
     raise ValueError(
-        f"standard must be one of {', '.join(STANDARDS)}; got {standard!r}"
-        f"{did_you_mean(standard, STANDARDS) or '.'} Levels of security barriers (M30, K12) follow from "
-        "the run"
+        f"standard must be one of {', '.join(STANDARDS)}; got {standard!r}{near or '.'} Levels of security "
+        "barriers are named beside the standard in a matrix ('ASTM F2656 M50'), and follow from the run in a "
+        "rating"
     )
+
+
+def _plain(text: str) -> str:
+    return re.sub(r"[^a-z0-9]", "", text.lower())
 
 
 def _of_run(

@@ -25,7 +25,7 @@ from .measures import (
 from .occupant import occupant_risk
 from .rating import MODEL_CAUTION, Rating, first_reached
 from .roadside import RoadsideStandard, RoadsideTest
-from .vehicles import StandardVehicle, standard_vehicle
+from .vehicles import HEAVY_KG, StandardVehicle, standard_vehicle
 
 if TYPE_CHECKING:
     from ..result import Result
@@ -34,7 +34,6 @@ __all__ = ["rate_roadside"]
 
 _STILL = 0.5  # m/s into the barrier, of a vehicle that slides along it
 _MOST_ROLL = 75.0  # deg; MASH criterion F
-_LIGHT_KG = 3500.0  # below it vehicles are cars and pickups
 _SLACK = 1e-9  # rounding of the units
 _LEAST_SEVERITY = 0.92  # of the nominal impact severity, MASH
 _TIPS = (
@@ -67,7 +66,7 @@ def rate_roadside(
     check_side_on(result)
     test = _test_of(result, standard, asked, vehicle_class)
     conditions = _conditions(result, standard, test)
-    light = test.vehicle.mass < _LIGHT_KG
+    light = test.vehicle.mass < HEAVY_KG
     intrusion = vehicle_intrusion(result)
     judge = _mash if standard.name == "MASH" else _european
     judged, classes = judge(result, test, light, intrusion)
@@ -93,7 +92,7 @@ def rate_roadside(
 
 def _of_heavy(test: RoadsideTest) -> list[str]:
     """Return what bears on tests with trucks and buses."""
-    if test.vehicle.mass < _LIGHT_KG:
+    if test.vehicle.mass < HEAVY_KG:
         return []
     return [_ROLLS_LITTLE, _TANK] if test.vehicle.code == "36000T" else [_ROLLS_LITTLE]
 

@@ -46,7 +46,7 @@ _K_TRUCK = (StandardVehicle("15,000-lb truck", ("truck",), 6804.0, 140.0, LOAD_B
 _IWA = (
     StandardVehicle("M1", ("car",), 1500.0, 75.0, A_PILLAR),
     StandardVehicle("N1G", ("pickup",), 2500.0, 125.0, LOAD_BED),
-    StandardVehicle("N1", ("van", "pickup"), 3500.0, 100.0, LOAD_BED),
+    StandardVehicle("N1", ("van",), 3500.0, 100.0, LOAD_BED),
     StandardVehicle("N3C", ("cab_over_truck",), 7200.0, 140.0, LOAD_BED),
     StandardVehicle("N2A", ("cab_over_truck", "truck"), 7200.0, 140.0, LOAD_BED, chosen=False),
     StandardVehicle("N2B", ("cab_over_truck", "truck"), 7200.0, 140.0, LOAD_BED, chosen=False),

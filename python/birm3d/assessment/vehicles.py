@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from ..vehicle import Vehicle
 
-__all__ = ["A_PILLAR", "LOAD_BED", "StandardVehicle", "standard_vehicle"]
+__all__ = ["A_PILLAR", "HEAVY_KG", "LOAD_BED", "StandardVehicle", "standard_vehicle"]
 
 A_PILLAR = "a_pillar_base"
 LOAD_BED = "load_bed_leading_edge"
+HEAVY_KG = 3500.0
+"""From here on vehicles are trucks and buses: no standard judges their occupants."""
 
 
 class StandardVehicle(NamedTuple):
@@ -65,9 +67,9 @@ def standard_vehicle(
         If the standard does not know it; the message names those that it knows.
     """
     if code is not None:
-        for one in known:
-            if one.code == code:
-                return one
+        called = [one for one in known if one.code == code]
+        if called:  # one code may stand for two masses, as N3 of PAS 68
+            return next((one for one in called if one.weighs(vehicle)), called[0])
         codes = ", ".join(one.code for one in known)
         raise ValueError(f"vehicle_class must be one of {codes} for {standard}; got {code!r}")
     for one in known:

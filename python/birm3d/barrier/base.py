@@ -11,7 +11,7 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .. import _core
+from .. import _core, pictures
 from ..base.arguments import check_fields, checked
 from ..base.checks import MOST_ELEMENTS, whole_number
 from ..unit_check import USUAL, given
@@ -55,6 +55,7 @@ class Barrier(BarrierMakers):
 
     _counts: ClassVar[tuple[str, ...]] = ()  # fields that are whole numbers
 
+    _of_text: ClassVar[str] = "Barrier.bollards() and others like it return one"
     title: ClassVar[str] = "barrier"
     """What help texts call this kind."""
     sizes: ClassVar[tuple[Size, ...]] = ()
@@ -189,6 +190,9 @@ class Barrier(BarrierMakers):
             raise ValueError(f"point must be two or three finite numbers (m), got {point}")
         angle = math.radians(self.heading)
         return float(place[1] * math.cos(angle) - place[0] * math.sin(angle))
+
+    def _repr_html_(self) -> str:
+        return pictures.barrier_html(self)
 
     def __getstate__(self) -> dict[str, object]:
         return {field.name: getattr(self, field.name) for field in fields(self)}

@@ -89,7 +89,7 @@ class Bollards(Barrier):
         Size("count", "count", "in each row"),
         Size("diameter"),
         Size("height"),
-        Size("spacing", hint="centre to centre"),
+        Size("spacing", hint="axis to axis"),
         Size("rows", "count"),
         Size("row_spacing", hint="from row to row, axis to axis"),
         Size("row_offset", hint="shift of each row from the one before it"),
@@ -150,8 +150,8 @@ class Bollards(Barrier):
         text = f"{rows}{self.count} bollard{'s' if many else ''}, Ø {self.diameter:g} m"
         text += f", {height_text(self.height)}"
         if self.count > 1:
-            text += f", {self.spacing:g} m apart"
-        return text + (f", rows {self.row_spacing:g} m apart" if self.rows > 1 else "")
+            text += f", {self.spacing:g} m between axes ({self.spacing - self.diameter:.3g} m clear)"
+        return text + (f", rows {self.row_spacing:g} m apart (axis to axis)" if self.rows > 1 else "")
 
     def load_front(self) -> PostFront:
         """Return the row of posts."""

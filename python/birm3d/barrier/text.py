@@ -10,7 +10,7 @@ __all__ = ["barrier_text", "varied_barrier_text"]
 
 
 def barrier_text(barrier: Barrier | None) -> str:
-    """Return kind, count and sizes of a barrier, as ``5 bollards, Ø 0.32 m, 1 m high, 1.2 m apart``."""
+    """Return kind, count and sizes of a barrier, as ``5 bollards, Ø 0.32 m, 1 m high, ...``."""
     return "no barrier" if barrier is None else barrier.text
 
 

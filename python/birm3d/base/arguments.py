@@ -15,7 +15,8 @@ from typing import Any, Literal, NamedTuple, NoReturn, TypeVar, Union
 
 import numpy as np
 
-from .checks import is_number, is_whole, shown
+from .argument_words import either, got, named, plural, refuse_unknown
+from .checks import is_number, is_whole
 
 __all__ = ["WrongTypeError", "caller_level", "check_fields", "checked"]
 
@@ -33,6 +34,7 @@ class Kind(NamedTuple):
     holds: Callable[[Any], bool]
     by_type: bool = False  # whether a message shows the type of a value and not the value
     item: Any = None  # kind of the items of a list, of which a message names the first that is wrong
+    classes: tuple[type, ...] = ()  # of this package, that a value may be an instance of
 
 
 def checked(public: Checked) -> Checked:
@@ -86,6 +88,8 @@ def _checked_function(function: Callable[..., Any], owner: type | None = None) -
             if kind is not None and not kind.holds(value):
                 _refuse(places[place], kind, value)
         for name, value in kwargs.items():
+            if name not in kinds and "**" not in kinds:
+                refuse_unknown(function, owner, name, list(kinds))
             kind = kinds[name] if name in kinds else kinds.get("**")
             if kind is not None and not kind.holds(value):
                 _refuse(name, kind, value)
@@ -115,8 +119,7 @@ def _refuse(name: str, kind: Kind, value: Any) -> NoReturn:
         for i, item in enumerate(value):
             if not kind.item.holds(item):
                 _refuse(f"{name}[{i}]", kind.item, item)
-    got = type(value).__name__ if kind.by_type and value is not None else shown(value)
-    raise WrongTypeError(f"{name} must be {kind.words}, got {got}")
+    raise WrongTypeError(f"{name} must be {kind.words}, got {got(value, kind.by_type, kind.classes)}")
 
 
 @functools.cache
@@ -177,8 +180,13 @@ def _kind(annotation: Any) -> Kind | None:
     if origin is not None:
         return _container(origin, parts)
     if isinstance(annotation, type) and annotation is not object:
-        return Kind(_named(annotation), lambda value: isinstance(value, annotation), by_type=True)
+        holds = functools.partial(_instance_of, annotation)
+        return Kind(named(annotation), holds, by_type=True, classes=(annotation,))
     return None
+
+
+def _instance_of(wanted: type, value: Any) -> bool:
+    return isinstance(value, wanted)
 
 
 def _one_of(parts: tuple[Any, ...]) -> Kind | None:
@@ -195,10 +203,11 @@ def _one_of(parts: tuple[Any, ...]) -> Kind | None:
     others = [kind for kind in known if kind is not _NONE]
     words = list(dict.fromkeys(kind.words for kind in others))
     return Kind(
-        " or ".join(words),
+        either(words),
         lambda value: any(kind.holds(value) for kind in known),
         by_type=any(kind.by_type for kind in known),
         item=others[0].item if len(others) == 1 else None,
+        classes=tuple(one for kind in others for one in kind.classes),
     )
 
 
@@ -208,7 +217,7 @@ def _container(origin: Any, parts: tuple[Any, ...]) -> Kind | None:
     if issubclass(origin, abc.Mapping):
         values = _kind(parts[1])
         return Kind(
-            "a mapping of names" + (f" to {_plural(values.words)}" if values else ""),
+            "a mapping of names" + (f" to {plural(values.words)}" if values else ""),
             lambda found: (
                 isinstance(found, abc.Mapping)
                 and all(isinstance(name, str) for name in found)
@@ -222,7 +231,7 @@ def _container(origin: Any, parts: tuple[Any, ...]) -> Kind | None:
     item = _kind(parts[0])
     once = origin in (abc.Iterable, abc.Iterator)
     return Kind(
-        f"a list of {_plural(item.words) if item else 'values'}",
+        f"a list of {plural(item.words) if item else 'values'}",
         lambda found: _is_list(found) and (once or item is None or _all_hold(item, found)),
         item=item,
     )
@@ -231,7 +240,7 @@ def _container(origin: Any, parts: tuple[Any, ...]) -> Kind | None:
 def _row(items: list[Kind | None]) -> Kind:
     """Of values in a row, whose number is the function's own limit."""
     known = [item for item in items if item is not None]
-    words = _plural(known[0].words) if len(known) == len(items) else "values"
+    words = plural(known[0].words) if len(known) == len(items) else "values"
     return Kind(f"a list of {words}", lambda found: _is_list(found) and _each_holds(known, items, found))
 
 
@@ -264,22 +273,6 @@ def _is_array(value: Any) -> bool:
         return np.asarray(value).dtype.kind in "iuf"
     except (TypeError, ValueError, OverflowError):
         return False
-
-
-def _named(kind: type) -> str:
-    package = __name__.partition(".")[0]
-    public = kind.__module__.partition(".")[0] == package
-    # A class may stand for the public one that is made of it.
-    name: str = getattr(kind, "_public_name", kind.__name__)
-    return f"a {package}.{name}" if public else f"a {name}"
-
-
-def _plural(words: str) -> str:
-    """Return "numbers" for "a number", "lists of numbers" for "a list of numbers"."""
-    if words.startswith("a list of "):
-        return words.replace("a list of", "lists of")
-    one = words.removeprefix("a ").removeprefix("an ")
-    return one if one == words or " " in one else f"{one}s"
 
 
 _NUMBER = Kind("a number", is_number)

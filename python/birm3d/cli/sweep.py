@@ -25,6 +25,7 @@ from .table import print_table
 
 if TYPE_CHECKING:
     from ..study import Study
+    from ..study.shown_columns import ShownColumn
 
 __all__ = ["sweep", "values"]
 
@@ -231,9 +232,9 @@ def _print_runs(study: Study, metrics: Sequence[str]) -> None:
     from rich.table import Table
 
     shown = [*study.parameters, "outcome", *(name for name in metrics if name in study.metrics)]
-    table = Table(*(_heading(study, name) for name in shown), title=f"{study.title}, {len(study)} runs")
+    table = Table(*(_heading(study, name) for name in shown), title=f"{study.scene_title}, {len(study)} runs")
     for i in range(len(study)):
-        cells = [_cell(study[name][i]) for name in shown]
+        cells = [_cell(study[name][i], _column(study, name).size) for name in shown]
         if study.error[i]:
             cells[len(study.parameters) :] = ["failed"] + [""] * (len(shown) - len(study.parameters) - 1)
         table.add_row(*cells)
@@ -247,14 +248,15 @@ def _print_summary(study: Study) -> None:
 
     table = Table(
         *("metric", "runs", "mean", "standard deviation", "5 %", "median", "95 %"),
-        title=f"{study.title}, {len(study)} random runs over {', '.join(study.parameters)}",
+        title=f"{study.scene_title}, {len(study)} random runs over {', '.join(study.parameters)}",
     )
     for name, row in study.summary().items():
         if is_count(name):
             continue
-        deviation = "" if row.standard_deviation is None else _cell(row.standard_deviation)
-        numbers = (_cell(value) for value in (row.p05, row.median, row.p95))
-        table.add_row(_heading(study, name), str(row.n), _cell(row.mean), deviation, *numbers)
+        size = _column(study, name).size
+        deviation = "" if row.standard_deviation is None else _cell(row.standard_deviation, size)
+        numbers = (_cell(value, size) for value in (row.p05, row.median, row.p95))
+        table.add_row(_heading(study, name), str(row.n), _cell(row.mean, size), deviation, *numbers)
     print_table(table)
     counts = Table("outcome", "runs")
     for outcome, n in study.outcomes.items():
@@ -265,11 +267,21 @@ def _print_summary(study: Study) -> None:
 
 
 def _heading(study: Study, name: str) -> str:
-    unit, words = study.units.get(name, ""), name.replace("_", " ")
-    return f"{words} \\[{unit}]" if unit else words  # rich would take [m] for a style
+    from rich.markup import escape
+
+    return escape(_column(study, name).label)  # rich would take [m] for a style
 
 
-def _cell(value: Any) -> str:
+def _column(study: Study, name: str) -> ShownColumn:
+    """Return how a column is shown; files and JSON have it in SI."""
+    from ..study.shown_columns import shown_column
+
+    return shown_column(name, study.units.get(name, ""))
+
+
+def _cell(value: Any, size: float) -> str:
+    """Return a value in a unit of this size."""
     if isinstance(value, float):
+        value /= size
         return "" if math.isnan(value) else f"{value:,.4g}" if abs(value) < 1e4 else f"{value:,.0f}"
     return str(value)

@@ -14,12 +14,13 @@ from ..result.event import outcome_words
 from ..result.summary import HEADLINES, headline_rows, shown_as
 from ..scene.text import scene_text
 from ..study.counted import counted, is_count
+from ..study.shown_columns import shown_column
 
 if TYPE_CHECKING:
     from ..result.result import Result
     from ..study.table import Study
 
-__all__ = ["figure_html", "result_html", "study_html", "table_html", "text_html"]
+__all__ = ["card", "figure_html", "result_html", "study_html", "table_html", "text_html"]
 
 _MOST_METRICS = 8
 _MOST_PARAMETERS = 12
@@ -52,7 +53,7 @@ def result_html(result: Result) -> str:
 
     rows = [(label, f"{value} {unit}".strip()) for label, value, unit in headline_rows(result)]
     picture = figure_html(plot_thumbnail(result), "plan view of start and end")
-    return _card(scene_text(result.scene), table_html(("", ""), rows), picture)
+    return card(scene_text(result.scene), table_html(("", ""), rows), picture)
 
 
 def study_html(study: Study) -> str:
@@ -68,12 +69,14 @@ def study_html(study: Study) -> str:
     if study.failed:
         rows.append(("failed", f"{len(study.failed):,} (reasons in .failed)"))
     for name, values in list(study.parameters.items())[:_MOST_PARAMETERS]:
-        rows.append((f"{_words(name)}{_in(study.units.get(name, ''))}", _range(values)))
+        column = shown_column(name, study.units.get(name, ""))
+        rows.append((column.label, _range(values / column.size if values.dtype.kind == "f" else values)))
     if len(study.parameters) > _MOST_PARAMETERS:
         rows.append(("more parameters", str(len(study.parameters) - _MOST_PARAMETERS)))
     tables = table_html(("", ""), rows) + _spread_table(study)
     figure = plot_small(study)
-    return _card(study.title, tables, "" if figure is None else figure_html(figure, "scatter of the runs"))
+    picture = "" if figure is None else figure_html(figure, "scatter of the runs")
+    return card(study.scene_title, tables, picture)
 
 
 def text_html(text: str, figure: Any, name: str) -> str:
@@ -95,16 +98,13 @@ def _spread_table(study: Study) -> str:
     return table_html(("metric", "mean", "st. dev.", "5 %", "median", "95 %"), rows) if rows else ""
 
 
-def _card(head: str, tables: str, picture: str) -> str:
+def card(head: str, tables: str, picture: str = "") -> str:
+    """Return a card: a heading, tables, and a picture beside them."""
     return (
         f'<div><div style="font-weight:600;margin-bottom:4px">{escape(head)}</div>'
         '<div style="display:flex;flex-wrap:wrap;gap:16px;align-items:flex-start">'
         f"<div>{tables}</div><div>{picture}</div></div></div>"
     )
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ")
 
 
 def _in(unit: str) -> str:

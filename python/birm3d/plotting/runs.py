@@ -16,7 +16,7 @@ from ..scene.scene import Scene
 from ..scene.text import overlap_text
 from ..vehicle.title import vehicle_text
 from .figure import new_figure
-from .style import BLUE, CYCLE, LEAST_ANGLE, SOLID, at_least, legend, prepare
+from .style import BLUE, CYCLE, LEAST_ANGLE, SOLID, at_least, legend, prepare, wrapped
 from .time_axis import calm_from, shown_time
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def plot_history_bands(bands: HistoryBands) -> Figure:
         room = 0.08 * max(high - low, 1e-9)
         axes.set_ylim(low - room, high + room)
         legend([axes])
-    figure.suptitle(bands.title, fontsize="medium")
+    figure.suptitle(wrapped(bands.title, figure), fontsize="medium")
     return figure
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections import Counter
 from typing import TYPE_CHECKING
 
@@ -10,19 +9,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..base.shown_numbers import shown_unit, shown_value
 from ..result.metrics import METRIC_UNITS
+from ..study.shown_columns import shown_column, shown_metric
 from .figure import new_figure
 from .studies import axis_label
-from .style import BLUE, CYCLE, DASHED, GREEN, RED, legend, prepare
+from .style import BLUE, CYCLE, DASHED, GREEN, RED, legend, prepare, wrapped
 
 if TYPE_CHECKING:
     from ..study.limit_search import Limit
     from ..study.worst_offset import WorstOffset
 
 __all__ = ["plot_limit", "plot_worst_offset"]
-
-_LETTERS = 85  # of a title in one line
 
 
 def plot_limit(limit: Limit) -> Figure:
@@ -45,8 +42,8 @@ def plot_limit(limit: Limit) -> Figure:
         panels[1].set_ylabel("impact offset [m]")
     panels[-1].set_xlabel(f"{limit.name} [{limit.unit}]")
     note = "" if limit.monotonic else "; not monotonic"
-    head = textwrap.wrap(limit.study.scene_title, _LETTERS)
-    panels[0].set_title("\n".join([*head, f"{limit.headline}{note}", limit.band]), fontsize="medium")
+    head = wrapped(limit.study.scene_title, figure)
+    panels[0].set_title("\n".join([head, f"{limit.headline}{note}", limit.band]), fontsize="medium")
     legend([panels[0]])
     return figure
 
@@ -73,7 +70,7 @@ def _runs(axes: Axes, limit: Limit, heights: list[float]) -> None:
 
 def plot_worst_offset(found: WorstOffset) -> Figure:
     """Return the metric over the offset for each spacing, and its greatest value over the spacing."""
-    size, _ = shown_unit(METRIC_UNITS[found.metric])
+    size = shown_column(found.metric, METRIC_UNITS[found.metric]).size
     label = found.label
     several = len(found.rows) > 1
     figure = new_figure(11.0 if several else 7.0, 4.8)
@@ -94,13 +91,13 @@ def plot_worst_offset(found: WorstOffset) -> Figure:
                 fontsize="small",
             )
         axes.margins(y=0.15)
-        axes.set_xlabel("spacing [m]")
+        axes.set_xlabel("spacing between axes [m]")
         axes.set_ylabel(label)
         axes.set_title("Greatest value; numbers: distance from a post over the spacing", fontsize="medium")
     worst = found.worst
     place = f"spacing {worst.spacing:g} m, offset {worst.offset:.2f} m"
-    value = f"{found.words} {shown_value(worst.value, METRIC_UNITS[found.metric])}"
-    head = f"{worst.search.grid.scene_title}\nworst: {value} at {place}"
+    value = f"{found.words} {shown_metric(found.metric, worst.value)}"
+    head = f"{wrapped(worst.search.grid.scene_title, figure)}\nworst: {value} at {place}"
     figure.suptitle(head, fontsize="medium" if several else "small")
     return figure
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,9 +10,9 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..base.shown_numbers import shown_unit
+from ..study.shown_columns import parameter_words, shown_column
 from .figure import new_figure
-from .style import BLUE, RED, legend, prepare
+from .style import BLUE, RED, legend, prepare, wrapped
 
 if TYPE_CHECKING:
     from ..study.fragility import Fragility
@@ -22,6 +23,7 @@ __all__ = ["axis_label", "plot_fragility", "plot_small", "plot_study"]
 Floats = npt.NDArray[np.float64]
 
 _QUANTILES = (0.05, 0.5, 0.95)
+_LETTERS, _FEW_LETTERS = 45, 26  # of an axis label in one line; of a small figure
 
 
 def plot_study(study: Study, x: str, y: str, by: str | None = None) -> Figure:
@@ -47,7 +49,7 @@ def plot_study(study: Study, x: str, y: str, by: str | None = None) -> Figure:
         axes.plot(x_values[rows], y_values[rows], label=label, **more)
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
-    axes.set_title(study.title, fontsize="medium")
+    axes.set_title(wrapped(study.scene_title, figure), fontsize="medium")
     legend([axes])
     return figure
 
@@ -75,7 +77,7 @@ def plot_small(study: Study) -> Figure | None:
     figure = new_figure(3.6, 2.4)
     axes = figure.subplots()
     prepare(axes)
-    (x_values, x_label), (y_values, y_label) = _column(study, x), _column(study, y)
+    (x_values, x_label), (y_values, y_label) = (_column(study, name, _FEW_LETTERS) for name in (x, y))
     axes.plot(x_values, y_values, "o", color=BLUE, ms=2.5, alpha=0.6)
     axes.tick_params(labelsize="x-small")
     axes.set_xlabel(x_label, fontsize="small")
@@ -110,16 +112,17 @@ def plot_fragility(fragility: Fragility) -> Figure:
         axes.fill_between(speeds, low, high, color=RED, alpha=0.15, lw=0, label=f"{level} of the fit")
     axes.set_ylim(-0.03, 1.03)
     axes.set_xlabel("impact speed [m/s]")
-    axes.set_ylabel(f"probability: {fragility.event.replace('_', ' ')}")
-    axes.set_title(fragility.study.title, fontsize="medium")
+    axes.set_ylabel(f"probability: {parameter_words(fragility.event)}")
+    axes.set_title(wrapped(fragility.study.scene_title, figure), fontsize="medium")
     legend([axes])
     return figure
 
 
-def axis_label(name: str, unit: str) -> str:
-    """Return a column's name in words with the unit in which pictures show it."""
-    unit = shown_unit(unit)[1]
-    return f"{name.replace('_', ' ')} [{unit}]" if unit else name.replace("_", " ")
+def axis_label(name: str, unit: str, letters: int = _LETTERS) -> str:
+    """Return a column in words with the unit in which pictures show it, in lines of so many letters."""
+    column = shown_column(name, unit)
+    fixed = column._replace(unit=column.unit.replace(" ", "\N{NO-BREAK SPACE}"))
+    return "\n".join(textwrap.wrap(fixed.label, letters))
 
 
 def _is_drawn(study: Study, x: str) -> bool:
@@ -150,7 +153,8 @@ def _plot_scatter(study: Study, x: str, y: str) -> Figure:
     right.set_xlabel("runs")
     omitted = len(study) - len(x_values)
     rest = f", {omitted:,} without a value left out" if omitted else ""
-    figure.suptitle(f"{study.title}\n{len(x_values):,} runs{rest}", fontsize="medium")
+    head = wrapped(study.scene_title, figure)
+    figure.suptitle(f"{head}\n{len(x_values):,} runs{rest}", fontsize="medium")
     return figure
 
 
@@ -164,15 +168,15 @@ def _histogram(axes: Axes, values: Floats, orientation: Any) -> None:
         line(float(quantile), color="k", lw=1.0, ls=style)
 
 
-def _column(study: Study, name: str) -> tuple[npt.NDArray[Any], str]:
+def _column(study: Study, name: str, letters: int = _LETTERS) -> tuple[npt.NDArray[Any], str]:
     """Return a column in the unit in which pictures show it, and its label."""
     values, unit = study[name], study.units.get(name, "")
-    size, _ = shown_unit(unit)
-    return (values / size if values.dtype.kind == "f" else values), axis_label(name, unit)
+    size = shown_column(name, unit).size
+    return (values / size if values.dtype.kind == "f" else values), axis_label(name, unit, letters)
 
 
 def _group_label(study: Study, by: str, value: Any) -> str:
     if not isinstance(value, float):
         return str(value)
-    size, unit = shown_unit(study.units.get(by, ""))
-    return f"{by.replace('_', ' ')} {value / size:g} {unit}".rstrip()
+    words, size, unit = shown_column(by, study.units.get(by, ""))
+    return f"{words} {value / size:g} {unit}".rstrip()

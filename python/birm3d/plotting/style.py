@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -9,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from cycler import cycler
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from ..scene.text import scene_text
 from ..signals.filters import cfc
@@ -41,6 +44,7 @@ __all__ = [
     "plot_filtered",
     "prepare",
     "title",
+    "wrapped",
 ]
 
 Floats = npt.NDArray[np.float64]
@@ -64,6 +68,7 @@ STYLES = (SOLID, DASHED, DASH_DOT, DOTTED, SOLID, DASHED, SOLID, DASHED)
 WIDTHS = (3.2, 2.0, 1.5, 1.8, 1.2, 1.2, 1.0, 1.0)
 # Of a legend's text: mean width of a letter, of a line sample with its gaps, and height of a row, points.
 _LETTER, _SAMPLE, _ROW = 4.7, 42.0, 13.5
+_LETTERS_PER_INCH = 11.2  # of a title in one line
 
 
 def prepare(*panels: Axes) -> None:
@@ -194,6 +199,13 @@ def legend(axes: Sequence[Axes]) -> None:
     )
     rows = -(-len(labels) // columns)
     axes[0].set_title(axes[0].get_title(), pad=6.0 + _ROW * rows, fontsize=axes[0].title.get_fontsize())
+
+
+def wrapped(text: str, figure: Figure) -> str:
+    """Return a title in as many lines as the figure's width asks for; the barrier begins a line."""
+    letters = round(_LETTERS_PER_INCH * figure.get_figwidth())
+    parts = [text] if len(text) <= letters else re.split("(?<=:) ", text, maxsplit=1)
+    return "\n".join(line for part in parts for line in textwrap.wrap(part, letters))
 
 
 def _columns(axes: Axes, labels: Sequence[str]) -> int:

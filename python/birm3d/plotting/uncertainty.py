@@ -10,12 +10,12 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..base.shown_numbers import shown_unit
 from ..result.metrics import METRIC_UNITS
 from ..simulation.parameters import unit_of
+from ..study.shown_columns import parameter_words, shown_column, shown_metric
 from .figure import new_figure
 from .studies import axis_label
-from .style import BLUE, ORANGE, RED, legend, prepare
+from .style import BLUE, ORANGE, RED, legend, prepare, wrapped
 
 if TYPE_CHECKING:
     from ..study.impact_point import CriticalImpactPoint
@@ -58,16 +58,16 @@ def plot_sobol(indices: SobolIndices, metrics: Sequence[str] | None = None) -> F
     panels = list(figure.subplots(rows, columns, squeeze=False, sharey=True).flat)
     for axes, name in zip(panels, names, strict=False):
         _bars(axes, indices.parameters, indices.metrics[name])
-        axes.set_title(name.replace("_", " "), fontsize="medium")
+        axes.set_title(shown_column(name, "").words, fontsize="medium")
     for unused in panels[len(names) :]:
         unused.set_visible(False)
     panels[0].invert_yaxis()
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize="small")
     level = f"{100 * indices.design.confidence:g} %"
+    head = wrapped(indices.study.scene_title, figure)
     figure.suptitle(
-        f"{indices.study.title}\nSobol indices of {len(indices.study):,} runs, {level} intervals",
-        fontsize="medium",
+        f"{head}\nSobol indices of {len(indices.study):,} runs, {level} intervals", fontsize="medium"
     )
     return figure
 
@@ -82,7 +82,7 @@ def _bars(axes: Axes, parameters: Sequence[str], found: SobolIndex) -> None:
         axes.barh(place + shift, values, _BAR, color=color, label=label)
         axes.errorbar(values, place + shift, xerr=half, fmt="none", ecolor="0.2", elinewidth=1.0, capsize=2.5)
     axes.axvline(0.0, color="k", lw=0.8)
-    axes.set_yticks(place, [name.replace("_", " ") for name in parameters])
+    axes.set_yticks(place, [parameter_words(name) for name in parameters])
     axes.set_xlim(min(0.0, axes.get_xlim()[0]), max(1.0, axes.get_xlim()[1]))
     axes.set_xlabel("share of the variance")
 
@@ -95,7 +95,7 @@ def plot_critical_point(found: CriticalImpactPoint) -> Figure:
     """
     names = sorted(found.effect, key=lambda name: -found.effect[name])[:2]
     names = [name for name in found.point if name in names]
-    size, unit = shown_unit(METRIC_UNITS[found.metric])
+    size = shown_column(found.metric, METRIC_UNITS[found.metric]).size
     figure = new_figure(7.0, 5.2)
     axes = figure.subplots()
     prepare(axes)
@@ -107,10 +107,12 @@ def plot_critical_point(found: CriticalImpactPoint) -> Figure:
         _map(figure, axes, found, names, size, label)
         axes.set_ylabel(axis_label(names[1], unit_of(names[1])))
     axes.set_xlabel(axis_label(names[0], unit_of(names[0])))
-    notes = "".join(f"; {name.replace('_', ' ')} at its bound" for name in found.at_bound)
+    notes = "".join(f"; {parameter_words(name)} at its bound" for name in found.at_bound)
     runs = len(found.grid) + len(found.refinement)
-    value = f"{found.metric.replace('_', ' ')} {found.value / size:.4g} {unit}".rstrip()
-    axes.set_title(f"{found.grid.title}\n{value}, {runs} runs{notes}", fontsize="medium")
+    words = shown_column(found.metric, METRIC_UNITS[found.metric]).words
+    value = f"{words} {shown_metric(found.metric, found.value)}"
+    head = wrapped(found.grid.scene_title, figure)
+    axes.set_title(f"{head}\n{value}, {runs} runs{notes}", fontsize="medium")
     legend([axes])
     return figure
 

@@ -20,7 +20,7 @@ from .numbers import percent
 from .study_case import Case
 from .uncertainty import computing_error
 
-__all__ = ["balance_section", "validation_section"]
+__all__ = ["balance_section", "beyond_tests", "validation_section"]
 
 W179_ENERGY = 0.1
 """Greatest change of the total energy that NCHRP Web-Only Document 179 accepts, of that at the start."""
@@ -91,6 +91,17 @@ def _not_alike(tests: list[Compared]) -> str:
     if not any({"speed", "angle"} <= set(one.alike) for one in both):
         return "No given test with this vehicle and barrier has this speed and angle: the table extrapolates."
     return ""
+
+
+def beyond_tests(case: Case) -> Iterator[tuple[str, str]]:
+    """Yield question and answer of a run that crushes a vehicle deeper than any test that fronts rest on."""
+    crush = case.result.metrics.get("dynamic_crush", 0.0)
+    if crush > _FITTED_CRUSH:
+        yield (
+            "Is the crush within what was tested?",
+            f"NO: greatest {crush:.2f} m, and fronts of presets are fitted to tests up to "
+            f"{_FITTED_CRUSH:g} m; beyond it forces and travel are extrapolated",
+        )
 
 
 def _phenomena(case: Case) -> Iterator[tuple[str, str, str]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 
+from ..assessment.design_caution import height_caution
 from ..result.barrier_fronts import front_of
 from ..result.element_loads import touched_elements
 from ..result.metrics import METRIC_UNITS
@@ -60,7 +61,8 @@ def _map_blocks(result: Result) -> list[Block]:
 def _design_blocks(case: Case) -> list[Block]:
     loads = case.design_loads
     if isinstance(loads, str):
-        return [Text(f"Design loads are not computed: {loads}")]
+        low = height_caution(case.result)
+        return [Text(f"Design loads are not computed: {loads}"), *([Caution(low)] if low else [])]
     cells = [cells for row, cells in zip(loads.rows, loads._cells(), strict=True) if row.touched]
     note = " ".join([*loads._legend(), loads.basis, _IMPULSE])
     return [

@@ -13,6 +13,7 @@ from ..result.metrics import METRIC_UNITS
 from ..result.summary import HEADLINES, shown_as
 from ..study import Study
 from ..study.history_bands import history_bands
+from ..study.shown_columns import parameter_words
 from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import class_blocks
 from .figures import figure
@@ -96,10 +97,10 @@ def _study_blocks(case: Case, study: Study) -> Iterator[Block]:
         size, unit = shown_unit(study.units.get(name, ""))
         if values.dtype.kind == "f":
             low, high = float(np.min(values)) / size, float(np.max(values)) / size
-            rows.append((_input_words(name), f"{low:.5g} to {high:.5g}", unit))
+            rows.append((parameter_words(name), f"{low:.5g} to {high:.5g}", unit))
         else:
             kinds = ", ".join(dict.fromkeys(str(value) for value in values.tolist()))
-            rows.append((_input_words(name), kinds, unit))
+            rows.append((parameter_words(name), kinds, unit))
     yield Table("Inputs of the study", ("input", "range", "unit"), rows)
     yield outcome_table(study, "Outcomes of the study")
     yield _percentiles(case, study)
@@ -119,12 +120,6 @@ def _study_blocks(case: Case, study: Study) -> Iterator[Block]:
             note=f"{n:,} of {len(study):,} runs were rated. {study_note(study)}",
             numbers=True,
         )
-
-
-def _input_words(name: str) -> str:
-    """Return a parameter in words: ``barrier.friction`` is the friction of the barrier."""
-    group, _, number = name.replace("_", " ").rpartition(".")
-    return f"{group.replace('.', ' ')}: {number}" if group else number
 
 
 def _bands(study: Study) -> Iterator[Block]:

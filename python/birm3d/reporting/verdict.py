@@ -11,12 +11,14 @@ from ..assessment import DesignLoad, ElementDesign, OccupantRisk, Rating
 from ..assessment.criteria import Criterion
 from ..assessment.design_load import ASSUMED, greatest_of_periods
 from ..assessment.rating import MODEL_CAUTION
+from ..assessment.vehicles import HEAVY_KG
 from ..result.element_loads import touched_elements
 from ..result.event import outcome_words
 from ..result.summary import shown_as
 from ..vehicle.title import kind_words
 from .blocks import Block, Caution, Section, Table, Text
 from .class_bands import band_of, headline_table
+from .evidence import beyond_tests
 from .given_tests import Compared, errors
 from .numbers import percent
 from .study_case import ROADSIDE, Case, is_oblique
@@ -26,7 +28,6 @@ from .uncertainty import computing_error
 __all__ = ["criteria_table", "risk_section", "verdict_section"]
 
 _ALL_ALIKE = 4  # vehicle, barrier, speed, angle
-_HEAVY = 3500.0  # kg; from here on MASH and EN 1317 do not judge what occupants undergo
 _KNOWS = " knows: "  # in the error of a standard that does not know the vehicle
 _FIRST_UNIT = "Motion and angles are those of the leading unit; a rating has the greatest roll of any."
 _NO_BARRIER = "There is no barrier in this scene: nothing is rated."
@@ -115,11 +116,11 @@ def _glance(case: Case) -> Iterator[tuple[str, str]]:
             "What does its foundation have to carry?",
             f"{alone}{row.name}: equivalent static force {row.equivalent_static_force / 1e3:,.0f} kN at "
             f"{row.height:.2f} m, natural period {period:g} s{assumed}, ductility "
-            f"{case.design_loads.ductility:g}"
-            f"{_design_band(row)}",
+            f"{case.design_loads.ductility:g}{_design_band(row)}",
         )
     yield "Would occupants be at risk?", _risk_line(case)
     yield "How well is it computed?", _computed_line(case)
+    yield from beyond_tests(case)
     found = errors(case.tests)
     rights = [one.right for one in case.tests if one.right is not None]
     told = []
@@ -217,9 +218,8 @@ def _assumed(loads: DesignLoad) -> str:
     if ASSUMED not in loads.caution:
         return ""
     found = greatest_of_periods(loads)
-    return (
-        " (assumed)" if found is None else f" (assumed; up to {found[0] / 1e3:,.0f} kN at {found[1]:.2g} s)"
-    )
+    more = "" if found is None else f"; up to {found[0] / 1e3:,.0f} kN at {found[1]:.2g} s"
+    return f" (assumed{more})"
 
 
 def _design_band(row: ElementDesign) -> str:
@@ -241,7 +241,7 @@ def _risk_line(case: Case) -> str:
         found = case.bands.risk
         good = round(found.passed(standard) * len(found.risks))
         others = f". {good} of {len(found.risks)} vehicles of the class meet all of them"
-    if case.result.scene.vehicle.mass >= _HEAVY:
+    if case.result.scene.vehicle.mass >= HEAVY_KG:
         told = f"{standard} does not judge this for so heavy a vehicle"
         if failed and not asked:
             return f"{told}; its limits for cars and pickups are exceeded: {', '.join(failed)}{others}"
@@ -284,7 +284,7 @@ def risk_section(case: Case) -> Section:
     )
     blocks: list[Block] = [
         Text(when),
-        *([Caution(heavy)] if case.result.scene.vehicle.mass >= _HEAVY else []),
+        *([Caution(heavy)] if case.result.scene.vehicle.mass >= HEAVY_KG else []),
         _risk_table(case, case.risk),
         *(Text(text) for text in case.risk.missing),
         Caution(CAUTION),

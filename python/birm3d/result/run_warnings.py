@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from .core_contact import core_complaints
 from .energy_balance import open_balances
+from .missed import missed_barrier
 from .overlap import overlaps
 
 if TYPE_CHECKING:
@@ -20,16 +21,21 @@ __all__ = ["complaints_of_run", "warn_of_run"]
 
 
 def complaints_of_run(
-    scene: Scene, statistics: _core.StepStatistics, balances: _core.Balances
+    scene: Scene, statistics: _core.StepStatistics, balances: _core.Balances, event: _core.Event
 ) -> Iterator[Complaint]:
-    """Return complaints of overlap of body and barrier, of blows on the core, and of open balances."""
+    """Return complaints of overlap of body and barrier, blows on the core, open balances, missed barriers."""
     return chain(
-        overlaps(scene, statistics), core_complaints(scene, statistics), open_balances(scene, balances)
+        overlaps(scene, statistics),
+        core_complaints(scene, statistics),
+        open_balances(scene, balances),
+        missed_barrier(scene, event),
     )
 
 
-def warn_of_run(scene: Scene, statistics: _core.StepStatistics, balances: _core.Balances) -> None:
-    """Warn of an overlap of body and barrier, of a blow on the core, and of balances that do not close.
+def warn_of_run(
+    scene: Scene, statistics: _core.StepStatistics, balances: _core.Balances, event: _core.Event
+) -> None:
+    """Warn of what makes the numbers of a run unreliable, or leaves it without an impact.
 
     Raises
     ------
@@ -39,6 +45,8 @@ def warn_of_run(scene: Scene, statistics: _core.StepStatistics, balances: _core.
         As a warning, if the barrier's force on the rigid core exceeded the vehicle's weight.
     BalanceWarning
         As a warning, see :func:`birm3d.result.energy_balance.warn_if_open`.
+    MissedBarrierWarning
+        As a warning, if the vehicle went past the end of the barrier and never touched it.
     """
-    for complaint in complaints_of_run(scene, statistics, balances):
+    for complaint in complaints_of_run(scene, statistics, balances, event):
         complaint.warn()

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from typing import ClassVar
 
-from .. import _core
+from .. import _core, pictures
 from .._version import __version__
 from ..barrier.base import Barrier
 from ..base.arguments import checked
@@ -80,10 +81,12 @@ class Simulation:
     ValueError
         Naming the argument, its limit and the value received.
     UnitWarning
-        As a warning, if a number is most likely in another unit, as an impact_speed of 300.
+        As a warning, if a number is most likely in another unit, as an impact_speed of 50 (180 km/h).
     CoarseSkinWarning
         As a warning, if the barrier is so narrow that it can pass between the nodes of the skin.
     """
+
+    _leads_to: ClassVar = {"Result": "its run() returns one"}
 
     def __init__(
         self,
@@ -168,6 +171,8 @@ class Simulation:
         BalanceWarning
             As a warning, if a balance of the run does not close: energy, momentum, or dissipation that falls;
             see :func:`birm3d.result.energy_balance.warn_if_open`.
+        MissedBarrierWarning
+            As a warning, if the vehicle went past the end of the barrier and never touched it.
         ValueError
             If the frames are more than the result's rows or outside the run, or if the run takes more steps
             than a record holds; :meth:`result` has those that were taken.
@@ -182,8 +187,8 @@ class Simulation:
             finally:
                 self._run_time += time.perf_counter() - start
             result = self._result()
-            balances, statistics = self._core.balances, self._core.statistics
-        warn_of_run(result.scene, statistics, balances)
+            balances, statistics, event = self._core.balances, self._core.statistics, self._core.event
+        warn_of_run(result.scene, statistics, balances, event)
         return result if frames is None else result.with_frames(frames)
 
     def step(self) -> bool:
@@ -261,6 +266,9 @@ class Simulation:
                     "restored from a run of another duration; copy.copy() keeps the state"
                 )
             return (_stepped, (self._scene, steps, self._core.state_hash, __version__))
+
+    def _repr_html_(self) -> str:
+        return pictures.scene_html(self._scene)
 
     def __repr__(self) -> str:
         scene = self._scene

@@ -251,7 +251,7 @@ def _outcome(
 ) -> Outcome:
     try:
         end = done.outcome()
-        complaints.add(run, complaints_of_run(scene, end.statistics, end.balances))
+        complaints.add(run, complaints_of_run(scene, end.statistics, end.balances, end.event))
         values = values_of_outcome(scene, end, metrics)
         reason = _END_REASONS[int(end.end_reason)]
         return Outcome(values, reason, end.event.outcome, f"{end.state_hash:016x}")

@@ -48,7 +48,7 @@ class HistoryBands:
         The histories.
     share : float
     title : str
-        Vehicle, barrier and what was varied.
+        Vehicle, mass, speed, angle and barrier, or the ranges of what was varied.
     """
 
     def __init__(self, time: Floats, runs: Mapping[str, Floats], share: float, title: str) -> None:
@@ -156,7 +156,8 @@ def history_bands(
             for name in names:
                 histories[name].append(HISTORY_CHANNELS[name].values(result)[:rows_])
             advance(1)
-    return HistoryBands(time, {name: np.array(all_) for name, all_ in histories.items()}, share, table.title)
+    runs = {name: np.array(all_) for name, all_ in histories.items()}
+    return HistoryBands(time, runs, share, table.scene_title)
 
 
 def _end(table: Study, row: int, scene: Scene) -> float:

@@ -20,7 +20,7 @@ from ..base.arguments import checked
 from ..base.frozen_mapping import FrozenMapping
 from ..base.near_names import did_you_mean
 from ..result.event import OUTCOMES
-from ..scene.text import impact_text
+from ..scene.text import varied_scene_text
 from ..simulation.parameters import unit_of
 from ..vehicle.title import title_of_name
 from .float_rows import FloatRows
@@ -199,14 +199,16 @@ class Study:
 
     @property
     def title(self) -> str:
-        """Vehicle and barrier: what figures and tables of the study are headed with."""
+        """Vehicle and barrier: what tables of the study are headed with."""
         name = title_of_name(self.vehicle) if self._scene is None else self._scene.vehicle.title
         return f"{name}: {self.barrier}" if self.barrier else name
 
     @property
     def scene_title(self) -> str:
-        """The scene that was varied: vehicle, mass, speed, angle, barrier; of a file :attr:`title`."""
-        return self.title if self._scene is None else f"{impact_text(self._scene)}: {self.barrier}"
+        """Vehicle, mass, speed, angle and barrier, or the ranges of what varies; of a file :attr:`title`."""
+        if self._scene is None:
+            return self.title
+        return varied_scene_text(self._scene, self.parameters, self.barrier)
 
     @property
     def outcomes(self) -> Mapping[str, int]:

@@ -156,7 +156,7 @@ def _look_at(look: Callable[[Result], Found], run: int, scene: Scene) -> Look[Fo
         with core:
             core.run()
             result = Result._of(scene, core, 0.0)
-            complaints.add(run, complaints_of_run(scene, core.statistics, core.balances))
+            complaints.add(run, complaints_of_run(scene, core.statistics, core.balances, core.event))
         return Look(run, look(result), "", complaints)
     except Exception as error:  # whatever goes wrong with a run is its reason
         return Look(run, None, f"{type(error).__name__}: {error}", complaints)

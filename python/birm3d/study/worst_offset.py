@@ -13,15 +13,15 @@ from .. import pictures
 from ..barrier.kinds import Bollards
 from ..base.arguments import checked
 from ..base.checks import whole_number
-from ..base.shown_numbers import plain_number, shown_unit, shown_value
+from ..base.shown_numbers import plain_number
 from ..result.event import outcome_words
 from ..result.metrics import METRIC_UNITS
-from ..result.summary import shown_as
 from ..simulation.parameters import varied
 from ..simulation.simulation import Simulation
 from ..unit_check import given
 from ..units import Quantity
 from .impact_point import CriticalImpactPoint, critical_impact_point
+from .shown_columns import shown_column, shown_metric
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -125,7 +125,7 @@ class WorstOffset:
 
     def summary(self) -> str:
         """Return the table and what it rests on as text."""
-        size, _ = shown_unit(METRIC_UNITS[self.metric])
+        size = shown_column(self.metric, METRIC_UNITS[self.metric]).size
         head = (
             "spacing [m]",
             "worst offset [m]",
@@ -150,13 +150,12 @@ class WorstOffset:
     @property
     def words(self) -> str:
         """What tables call the metric."""
-        return shown_as(self.metric)[0]
+        return shown_column(self.metric, METRIC_UNITS[self.metric]).words
 
     @property
     def label(self) -> str:
         """The metric in words, with the unit that it is shown in."""
-        unit = shown_unit(METRIC_UNITS[self.metric])[1]
-        return f"{self.words} [{unit}]" if unit else self.words
+        return shown_column(self.metric, METRIC_UNITS[self.metric]).label
 
     def plot(self) -> Figure:
         """Return the metric over the offset for each spacing, and its greatest value over the spacing."""
@@ -167,7 +166,7 @@ class WorstOffset:
 
     def __repr__(self) -> str:
         worst = self.worst
-        value = shown_value(worst.value, METRIC_UNITS[self.metric])
+        value = shown_metric(self.metric, worst.value)
         return (
             f"WorstOffset({self.metric} = {value} at spacing {worst.spacing:g} m, "
             f"offset {worst.offset:.3f} m; {len(self.rows)} spacings)"

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -73,6 +73,8 @@ class Vehicle(OldVehicleNames):
     indentation_length : float
         Optional physics, see :meth:`with_indentation_length`.
     """
+
+    _of_text: ClassVar[str] = "Vehicle.preset({}) returns one"
 
     @property
     def units(self) -> tuple[Vehicle, ...]:
@@ -284,6 +286,10 @@ class Vehicle(OldVehicleNames):
         Skin coloured by zones, rigid core, wheels, mass centre, sizes, and what was assumed.
         """
         return pictures.plot_vehicle(self)
+
+    def _repr_html_(self) -> str:
+        """Return what notebooks show: name, kind, mass and sizes."""
+        return pictures.vehicle_html(self)
 
     def save(self, path: str | Path) -> None:
         """Write the vehicle to a file (TOML) that :meth:`from_file` reads back as the same vehicle.
