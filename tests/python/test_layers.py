@@ -36,18 +36,8 @@ LAYERS = (
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 WAY_UP = "pictures"
 """Every layer may import it; inside its functions, and for types, it imports any layer."""
-MAKERS = {
-    "barrier.makers": ("barrier.kinds", "barrier.free_standing"),
-    "vehicle.vehicle": (
-        "vehicle.articulated",
-        "vehicle.builder",
-        "vehicle.from_facts",
-        "vehicle.mesh_import.facts",
-        "vehicle.mesh_import.vehicle_of_mesh",
-    ),
-    "vehicle.variants": ("vehicle.builder",),
-}
-"""A class whose methods return classes derived from it, or built of its parts by another module.
+MAKERS = {"barrier.makers": ("barrier.kinds",)}
+"""A class whose methods return classes derived from it: ``Barrier.rigid_wall()`` returns a ``RigidWall``.
 
 Its functions import them, and they import it. Each of both needs the other by its meaning; no order of
 modules could change that.
