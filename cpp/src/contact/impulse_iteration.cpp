@@ -2,10 +2,8 @@
 #include "contact/impulse_iteration.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "birm3d/base/tolerances.hpp"
 #include "contact/rigid_friction.hpp"

@@ -1,7 +1,7 @@
 #include "step/half_kick.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -10,13 +10,9 @@
 #include "contact/impulse_iteration.hpp"
 #include "contact/rigid_contacts.hpp"
 #include "contact/rigid_impact.hpp"
-#include "kernels/detect.hpp"
-#include "kernels/detect_core.hpp"
 #include "kernels/impulse.hpp"
 #include "kernels/integrate.hpp"
-#include "kernels/joints.hpp"
 #include "kernels/suspension.hpp"
-#include "kernels/tires.hpp"
 #include "scene/bodies.hpp"
 #include "scene/obstacles.hpp"
 
@@ -170,8 +166,8 @@ void kick_unconstrained(const Scene& scene, Stage stage, double half, Trial& tri
     add_friction_work(scene, memory.before, memory.pushed, half, state);
 }
 
-// The motions before the first half kick, after the impacts that happen at once. With fixed steps, the impacts of the coming
-// step happen at its start, before any point can pass its surface.
+// Applies the impacts at the start of the step, and sets memory.before to the motions after them. With fixed steps, all
+// impacts of the coming step happen at its start, before any point can pass its surface.
 void impact_before_drift(const Scene& scene, const StepOptions& options, Trial& trial) {
     KickMemory& memory = trial.memory;
     const double reach = options.locate_impacts ? 0.0 : trial.dt;
