@@ -84,9 +84,9 @@ void register_barrier(py::module_& m) {
             py::kw_only(), py::arg("vertices"), py::arg("faces"), py::arg("position"), py::arg("heading"),
             "vertices (n, 3) m, faces (m, 3), counter-clockwise seen from outside.");
 
-    py::enum_<SegmentJoint>(m, "SegmentJoint")
-        .value("pinned", SegmentJoint::pinned)
-        .value("loose", SegmentJoint::loose);
+    py::enum_<SegmentJoint>(m, "SegmentJoint", "What holds neighbouring free-standing segments together.")
+        .value("pinned", SegmentJoint::pinned, "a pin at the middle of their ends; they turn freely about it")
+        .value("loose", SegmentJoint::loose, "nothing");
     py::class_<FreeStanding>(m, "FreeStanding", "Segments that slide on the ground.")
         .def(py::init([](double density, double ground_friction, SegmentJoint joint) {
                  return FreeStanding{density, ground_friction, joint};

@@ -36,8 +36,8 @@ void register_event(py::module_& m) {
                                "undecided, stopped, redirected, passed, overridden or rolled_over")
         .def_property_readonly("manner", &manner, "how it came to that")
         .def_property_readonly("rolled_over", &Event::rolled_over,
-                               "was an up axis beyond the horizontal, of a vehicle that stood upright?")
-        .def_readonly("touching", &Event::touching, "the barrier, at the end")
+                               "did a vehicle that stood upright ever have an up axis beyond the horizontal?")
+        .def_readonly("touching", &Event::touching, "does the vehicle touch the barrier now?")
         .def_property_readonly(
             "time_of_separation",
             [](const Event& event) {
@@ -50,13 +50,13 @@ void register_event(py::module_& m) {
                 const Vec3& v = event.released_velocity;
                 return event.separated ? std::optional(std::tuple(v.x(), v.y(), v.z())) : std::nullopt;
             },
-            "m/s, then, of unit 0, world")
+            "m/s, velocity of unit 0 at the separation, world; None where there was none")
         .def_property_readonly(
             "exit_deflection",
             [](const Event& event) {
                 return event.separated ? std::optional(event.deflection) : std::nullopt;
             },
-            "m, greatest of all trusses when it had left, less their springback")
+            "m, greatest deflection of all trusses when it had left, less their springback")
         .def_readonly("later_contacts", &Event::later_contacts,
                       "contacts with the barrier that began after it had left");
 }

@@ -49,15 +49,17 @@ OutputArray of_segments(const History& history, std::vector<Vec3> SegmentHistory
 void register_history(py::module_& m) {
     py::class_<UnitHistory> unit(m, "UnitHistory",
                                  "Motion of one unit and the forces on it; read-only views.");
-    add_view(unit, "position", &UnitHistory::position, "(n, 3) m, world");
-    add_view(unit, "velocity", &UnitHistory::velocity, "(n, 3) m/s, world");
+    add_view(unit, "position", &UnitHistory::position, "(n, 3) m, mass centre, world");
+    add_view(unit, "velocity", &UnitHistory::velocity, "(n, 3) m/s, velocity of the mass centre, world");
     add_view(unit, "angular_velocity", &UnitHistory::angular_velocity, "(n, 3) rad/s, body axes");
-    add_view(unit, "acceleration", &UnitHistory::acceleration, "(n, 3) m/s^2, interval means, body axes");
-    add_view(unit, "barrier_force", &UnitHistory::barrier_force, "(n, 3) N, interval means, world");
+    add_view(unit, "acceleration", &UnitHistory::acceleration,
+             "(n, 3) m/s^2, of the mass centre, interval means, body axes");
+    add_view(unit, "barrier_force", &UnitHistory::barrier_force,
+             "(n, 3) N, of the barrier on the unit, interval means, world");
     add_view(unit, "ground_force", &UnitHistory::ground_force,
              "(n, 3) N, of the ground on the skin, interval means, world");
     add_view(unit, "tire_friction_force", &UnitHistory::tire_friction_force,
-             "(n, 3) N, interval means, world");
+             "(n, 3) N, of the ground on the tyres, along the ground, interval means, world");
     add_view(unit, "barrier_normal_force", &UnitHistory::barrier_normal_force,
              "(n,) N, component of barrier_force along the barrier's normal, interval means");
     add_view(unit, "sum_of_contact_forces", &UnitHistory::sum_of_contact_forces,
@@ -76,7 +78,7 @@ void register_history(py::module_& m) {
             }
             return angles;
         },
-        "(n, 3) rad");
+        "(n, 3) rad, roll, pitch and yaw of the body axes");
     unit.def_property_readonly(
         "tire_reaction",
         [](const UnitHistory& history) {
@@ -91,7 +93,7 @@ void register_history(py::module_& m) {
             }
             return read_only(std::move(reaction));
         },
-        "(n, wheels) N, interval means");
+        "(n, wheels) N, normal force of the ground on each wheel, interval means");
 
     py::class_<ObstacleHistory> obstacle(m, "ObstacleHistory", "What an element of the barrier feels.");
     obstacle.def_readonly("element", &ObstacleHistory::obstacle, "place among the barrier's elements");
@@ -101,7 +103,8 @@ void register_history(py::module_& m) {
     add_view(unit, "joint_force", &UnitHistory::joint_force,
              "(n, 3) N, of all joints, interval means, world");
 
-    py::class_<JointHistory> joint(m, "JointHistory", "What a joint carries and how it stands.");
+    py::class_<JointHistory> joint(m, "JointHistory",
+                                   "What a joint carries, and the angles between its units.");
     add_view(joint, "force", &JointHistory::force, "(n, 3) N on the leading unit, interval means, world");
     add_view(joint, "moment", &JointHistory::moment, "(n, 3) N m on the leading unit about the joint, world");
     joint.def_property_readonly(
@@ -128,32 +131,38 @@ void register_history(py::module_& m) {
         },
         py::arg("wanted"), py::arg("event"), py::arg("vehicle"), py::arg("barriers"),
         py::call_guard<py::gil_scoped_release>(),
-        "Of a run of this vehicle into this barrier, or into none.");
-    add_view(history, "time", &History::time, "(n,) s");
-    add_view(history, "kinetic", &History::kinetic, "(n,) J");
-    add_view(history, "potential", &History::potential, "(n,) J");
-    add_view(history, "stored", &History::stored, "(n,) J");
-    add_view(history, "crushed", &History::crushed, "(n,) J");
-    add_view(history, "barrier_friction", &History::barrier_friction, "(n,) J");
-    add_view(history, "tire_friction", &History::tire_friction, "(n,) J");
-    add_view(history, "ground_friction", &History::ground_friction, "(n,) J");
-    add_view(history, "impacts", &History::impacts, "(n,) J");
-    add_view(history, "joint_work", &History::joint_work, "(n,) J");
+        "Extremes of a run of this vehicle into this barrier, or into none.");
+    add_view(history, "time", &History::time, "(n,) s, output instants");
+    add_view(history, "kinetic", &History::kinetic, "(n,) J, kinetic energy of all bodies");
+    add_view(history, "potential", &History::potential,
+             "(n,) J, potential energy of the weight, zero at the start");
+    add_view(history, "stored", &History::stored, "(n,) J, elastic energy in trusses");
+    add_view(history, "crushed", &History::crushed, "(n,) J, energy lost in crushed trusses");
+    add_view(history, "barrier_friction", &History::barrier_friction,
+             "(n,) J, energy lost to friction on the barrier");
+    add_view(history, "tire_friction", &History::tire_friction,
+             "(n,) J, energy lost to friction of tyres on the ground");
+    add_view(history, "ground_friction", &History::ground_friction,
+             "(n,) J, energy lost to friction of the skin on the ground");
+    add_view(history, "impacts", &History::impacts, "(n,) J, energy lost in rigid contacts");
+    add_view(history, "joint_work", &History::joint_work,
+             "(n,) J, energy that joints took: zero but for the error of the steps");
     add_view(history, "segment_friction", &History::segment_friction,
-             "(n,) J, of free-standing segments on the ground");
-    add_view(history, "suspension", &History::suspension, "(n,) J, in springs and lost in dampers of wheels");
+             "(n,) J, energy lost to friction of free-standing segments on the ground");
+    add_view(history, "suspension", &History::suspension,
+             "(n,) J, energy in springs of wheels and lost in their dampers");
     history.def_property_readonly(
         "segment_position", [](const History& self) { return of_segments(self, &SegmentHistory::position); },
         "(n, k, 2) m, foot of the axis of each free-standing segment, world");
     history.def_property_readonly(
         "segment_velocity", [](const History& self) { return of_segments(self, &SegmentHistory::velocity); },
-        "(n, k, 2) m/s, of its mass centre, world");
+        "(n, k, 2) m/s, mass centre of each segment, world");
     history.def_property_readonly(
         "segment_yaw", [](const History& self) { return of_segments(self, &SegmentHistory::yaw); },
-        "(n, k) rad, from the start");
+        "(n, k) rad, yaw of each segment since the start");
     history.def_property_readonly(
         "segment_yaw_rate", [](const History& self) { return of_segments(self, &SegmentHistory::yaw_rate); },
-        "(n, k) rad/s");
+        "(n, k) rad/s, yaw rate of each segment");
     history.def_readonly("momentum_residual", &History::momentum_residual,
                          "max |m a - sum of forces| / max |force|");
     history.def_property_readonly(
@@ -164,15 +173,17 @@ void register_history(py::module_& m) {
                 list.append(py::cast(element, py::return_value_policy::reference_internal, self));
             return list;
         },
-        "Of the elements of the barrier that were touched, in their order.");
+        "Loads on the elements of the barrier that were touched, in their order.");
     history.def(
         "unit",
         [](const History& self, std::size_t index) -> const UnitHistory& { return self.units.at(index); },
-        py::return_value_policy::reference_internal, py::arg("index"), "Of one unit of the vehicle.");
+        py::return_value_policy::reference_internal, py::arg("index"),
+        "Motion of one unit of the vehicle and the forces on it.");
     history.def(
         "joint",
         [](const History& self, std::size_t index) -> const JointHistory& { return self.joints.at(index); },
-        py::return_value_policy::reference_internal, py::arg("index"), "Of one joint of the vehicle.");
+        py::return_value_policy::reference_internal, py::arg("index"),
+        "What one joint of the vehicle carries.");
 }
 
 }  // namespace birm3d::bindings

@@ -39,7 +39,8 @@ void register_laws(py::module_& m) {
         .def_readonly("springback", &TrussCurve::springback, "m, without force")
         .def(
             "envelope", [](const TrussCurve& curve, double d) { return envelope_force(curve, d); },
-            py::arg("deflection"))
+            py::arg("deflection"),
+            "Force of the loading envelope at a deflection (m); its unit is that of the slopes times m.")
         .def(
             "follow",
             [](const TrussCurve& curve, const InputArray& path) {

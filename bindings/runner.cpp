@@ -65,14 +65,16 @@ std::vector<Run> run_all(Runner& runner, const std::vector<Job>& jobs, const Ext
 void register_runner(py::module_& m) {
     py::class_<Stop>(m, "Stop", "Ends runs from another thread.")
         .def(py::init<>())
-        .def("set", [](Stop& stop) { stop.set = true; })
-        .def("is_set", [](const Stop& stop) { return stop.set.load(); });
+        .def(
+            "set", [](Stop& stop) { stop.set = true; }, "Ask all runs that look at this stop to end.")
+        .def("is_set", [](const Stop& stop) { return stop.set.load(); }, "Was `set` called?");
 
     py::class_<RunSummary>(m, "Outcome", "What a run came to (SI).")
-        .def_readonly("end_reason", &RunSummary::end_reason)
-        .def_readonly("state_hash", &RunSummary::state_hash)
-        .def_readonly("statistics", &RunSummary::statistics)
-        .def_readonly("balances", &RunSummary::balances)
+        .def_readonly("end_reason", &RunSummary::end_reason, "why the run ended")
+        .def_readonly("state_hash", &RunSummary::state_hash, "hash of all bits of the state at the end")
+        .def_readonly("statistics", &RunSummary::statistics, "counts and lengths of the steps")
+        .def_readonly("balances", &RunSummary::balances,
+                      "J and N s, departures of the energy and momentum balances")
         .def_readonly("run_time", &RunSummary::run_time, "s, wall time of the stepping")
         .def_property_readonly(
             "final_velocity",
@@ -80,11 +82,14 @@ void register_runner(py::module_& m) {
                 const Vec3& v = outcome.final_velocity;
                 return std::tuple(v.x(), v.y(), v.z());
             },
-            "m/s, of unit 0, world")
-        .def_readonly("deflection", &RunSummary::deflection, "m, greatest of all trusses, at the end")
-        .def_readonly("peak_deflection", &RunSummary::peak_deflection, "m, and during the run")
+            "m/s, velocity of unit 0 at the end, world")
+        .def_readonly("deflection", &RunSummary::deflection,
+                      "m, greatest deflection of all trusses at the end")
+        .def_readonly("peak_deflection", &RunSummary::peak_deflection,
+                      "m, greatest deflection of all trusses during the run")
         .def_readonly("event", &RunSummary::event, "what became of the vehicle at the barrier")
-        .def_readonly("extremes", &RunSummary::extremes);
+        .def_readonly("extremes", &RunSummary::extremes,
+                      "the groups of extremes that were wanted, over the output instants");
 
     py::class_<Run>(m, "Run", "A run that is over.")
         .def("outcome", &Run::checked, py::return_value_policy::reference_internal,

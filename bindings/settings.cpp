@@ -64,10 +64,12 @@ Settings settings_from(const py::typing::Dict<py::str, py::object>& given) {
 }  // namespace
 
 void register_settings(py::module_& m) {
-    py::enum_<ContactModel>(m, "ContactModel")
-        .value("projected", ContactModel::projected)
-        .value("along_truss", ContactModel::along_truss);
-    py::enum_<TireModel>(m, "TireModel").value("slip", TireModel::slip).value("skid", TireModel::skid);
+    py::enum_<ContactModel>(m, "ContactModel", "Direction of a truss's force on the vehicle.")
+        .value("projected", ContactModel::projected, "along the surface's normal, by projection")
+        .value("along_truss", ContactModel::along_truss, "along the truss: the paper's rule");
+    py::enum_<TireModel>(m, "TireModel", "Rule of the friction of tyres on the ground.")
+        .value("slip", TireModel::slip, "continuous in the slip angle of each wheel: the brush model")
+        .value("skid", TireModel::skid, "full unless the mass centre moves along r: the paper's rule");
 
     py::class_<Settings>(m, "Settings", "How a scene is computed (SI). Immutable.")
         .def(py::init(&settings_from), py::arg("values"));

@@ -59,64 +59,71 @@ void run(Simulation& simulation, const std::optional<py::typing::Callable<void(d
 }  // namespace
 
 void register_simulation(py::module_& m) {
-    py::enum_<EndReason>(m, "EndReason")
-        .value("running", EndReason::running)
-        .value("duration", EndReason::duration)
-        .value("separated", EndReason::separated)
-        .value("stopped", EndReason::stopped)
-        .value("sliding", EndReason::sliding)
-        .value("longest", EndReason::longest);
+    py::enum_<EndReason>(m, "EndReason", "Why a run ended.")
+        .value("running", EndReason::running, "it has not ended")
+        .value("duration", EndReason::duration, "the time that was asked for is over")
+        .value("separated", EndReason::separated, "the vehicle has left the barrier for good")
+        .value("stopped", EndReason::stopped, "the vehicle rests")
+        .value("sliding", EndReason::sliding,
+               "it slides along a straight barrier, and nothing changes any more")
+        .value("longest", EndReason::longest, "the longest run is over, with an open outcome");
 
-    py::class_<StepStatistics>(m, "StepStatistics")
-        .def_readonly("steps", &StepStatistics::steps)
-        .def_readonly("rejected", &StepStatistics::rejected)
-        .def_readonly("node_evaluations", &StepStatistics::node_evaluations)
-        .def_readonly("shortest_step", &StepStatistics::shortest_step, "s")
-        .def_readonly("longest_step", &StepStatistics::longest_step, "s")
+    py::class_<StepStatistics>(m, "StepStatistics",
+                               "Counts and lengths of the steps of a run, and what they met.")
+        .def_readonly("steps", &StepStatistics::steps, "accepted steps")
+        .def_readonly("rejected", &StepStatistics::rejected, "steps that were tried and found too long")
+        .def_readonly("node_evaluations", &StepStatistics::node_evaluations,
+                      "nodes whose contact was computed, summed over all steps, those rejected too")
+        .def_readonly("shortest_step", &StepStatistics::shortest_step, "s, the shortest accepted step")
+        .def_readonly("longest_step", &StepStatistics::longest_step, "s, the longest accepted step")
         .def_readonly("skin_nodes", &StepStatistics::skin_nodes,
                       "nodes of the skin in blocks that anything came into in any step")
         .def_readonly("tread_nodes", &StepStatistics::tire_nodes, "the same of tyres")
         .def_readonly("near_elements", &StepStatistics::near_elements,
-                      "of the barrier, that any node was within reach of, or the rigid body met")
+                      "elements of the barrier that any node was within reach of, or the rigid body met")
         .def_readonly("free_steps", &StepStatistics::free_steps,
-                      "in which no node was within reach of anything")
-        .def_readonly("free_time", &StepStatistics::free_time, "s, of these steps")
+                      "steps in which no node was within reach of anything")
+        .def_readonly("free_time", &StepStatistics::free_time, "s, sum of these steps")
         .def_readonly("body_steps", &StepStatistics::body_steps,
-                      "in which the rigid body stood against the barrier or the ground")
+                      "steps in which the rigid body stood against the barrier or the ground")
         .def_readonly("core_contact_force", &StepStatistics::core_contact_force,
                       "N, greatest mean over 50 ms of the barrier's force on the rigid core")
-        .def_readonly("core_contact_time", &StepStatistics::core_contact_time, "s")
+        .def_readonly("core_contact_time", &StepStatistics::core_contact_time,
+                      "s, time of that greatest mean")
         .def_readonly("wheels_given_way", &StepStatistics::wheels_given_way,
                       "wheels that were loaded beyond what they carry, and have given way")
         .def_readonly("wheels_on_ground", &StepStatistics::wheels_on_ground,
                       "wheels that carried load, summed over the steps")
         .def_readonly("deepest_point", &StepStatistics::deepest_point,
-                      "m, of the anchors of bottomed-out trusses inside a barrier")
+                      "m, greatest depth of an anchor of a bottomed-out truss inside a barrier")
         .def_readonly("greatest_overlap", &StepStatistics::greatest_overlap,
-                      "m, by which the rigid body's boxes and an element of the barrier overlapped")
-        .def_readonly("greatest_overlap_time", &StepStatistics::greatest_overlap_time, "s")
+                      "m, greatest overlap of the rigid body's boxes and an element of the barrier")
+        .def_readonly("greatest_overlap_time", &StepStatistics::greatest_overlap_time,
+                      "s, time of that overlap")
         .def_readonly("greatest_overlap_element", &StepStatistics::greatest_overlap_element,
-                      "of the barrier, with which")
+                      "number of the barrier's element in that overlap")
         .def_readonly("least_critical_step", &StepStatistics::least_critical_step,
-                      "s, sqrt(3)/omega of the trusses in contact");
+                      "s, least sqrt(3)/omega of the trusses in contact");
 
-    py::class_<Balances::Departure>(m, "Departure", "The greatest so far, when and where.")
-        .def_readonly("size", &Balances::Departure::size, "J, or N s")
-        .def_readonly("time", &Balances::Departure::time, "s")
+    py::class_<Balances::Departure>(m, "Departure",
+                                    "The greatest departure of a balance so far, when and where.")
+        .def_readonly("size", &Balances::Departure::size, "J of energy, N s of momentum")
+        .def_readonly("time", &Balances::Departure::time, "s, end of the step in which it was greatest")
         .def_property_readonly(
             "place",
             [](const Balances::Departure& d) { return std::tuple(d.place.x(), d.place.y(), d.place.z()); },
-            "m, of the mass centre of unit 0, world");
+            "m, mass centre of unit 0 then, world");
 
     py::class_<Balances>(m, "Balances", "How far the balances of energy and momentum are from closing.")
-        .def_readonly("kinetic", &Balances::kinetic, "J, at the start")
+        .def_readonly("kinetic", &Balances::kinetic, "J, kinetic energy at the start")
         .def_readonly("at_disposal", &Balances::at_disposal,
                       "J, kinetic at the start and the most that the weight has done")
-        .def_readonly("energy", &Balances::energy, "of the sum of all terms from that at the start")
+        .def_readonly("energy", &Balances::energy,
+                      "departure of the sum of all energies from that at the start")
         .def_readonly("momentum", &Balances::momentum,
-                      "of a unit's change in a step from the sum of all impulses on it")
+                      "departure of a unit's change of momentum in a step from the sum of all impulses on it")
         .def_readonly("largest_momentum", &Balances::largest_momentum,
-                      "N s, of a unit, or an impulse in a step")
+                      "N s, largest momentum of a unit, or impulse in a step")
         .def_property_readonly(
             "sizes",
             [](const Balances& balances) {
@@ -140,7 +147,7 @@ void register_simulation(py::module_& m) {
                     {"barrier_ground_friction", balances.falls[Balances::segment_friction]},
                     {"suspension", balances.falls[Balances::dampers]}};
             },
-            "of each dissipated term from its highest so far");
+            "by name, the greatest fall of each dissipated energy below its highest value so far");
 
     py::class_<Approach>(m, "Approach", "How the vehicle comes (SI, rad). Immutable.")
         .def(py::init([](double speed, double angle, double offset, double standoff, double yaw,
@@ -151,7 +158,7 @@ void register_simulation(py::module_& m) {
     py::class_<Simulation::Snapshot>(m, "Snapshot",
                                      "A checkpoint: state and record. It lives in memory only.")
         .def_property_readonly(
-            "time", [](const Simulation::Snapshot& s) { return s.state.time; }, "s")
+            "time", [](const Simulation::Snapshot& s) { return s.state.time; }, "s, time of the state")
         .def("__reduce__", [](const Simulation::Snapshot&) -> py::object {
             throw py::type_error(
                 "a snapshot lives in memory and is not pickled: pickle the Simulation, which keeps its "
@@ -183,28 +190,35 @@ void register_simulation(py::module_& m) {
             "run", alone(&run), py::arg("tick") = py::none(),
             "From the present state to the end; Ctrl-C stops it. `tick` is called now and then with the time "
             "(s) and the number of steps.")
-        .def("reset", alone(+[](Simulation& s) { s.reset(); }))
-        .def("snapshot", alone(+[](Simulation& s) { return s.snapshot(); }))
+        .def("reset", alone(+[](Simulation& s) { s.reset(); }), "Go back to the start of the scene.")
+        .def("snapshot", alone(+[](Simulation& s) { return s.snapshot(); }),
+             "A checkpoint of the present state and record.")
         .def("restore", alone(+[](Simulation& s, const Simulation::Snapshot& from) { s.restore(from); }),
-             py::arg("snapshot"))
+             py::arg("snapshot"), "Go back to a snapshot of the same scene.")
         .def("history", alone(+[](Simulation& s) { return s.recorder().resample(s.scene()); }),
              py::call_guard<py::gil_scoped_release>(), "Evenly spaced output so far.")
-        .def_property_readonly("state_hash", alone(+[](Simulation& s) { return s.state().hash(); }))
-        .def_property_readonly("time", alone(+[](Simulation& s) { return s.state().time; }), "s")
-        .def_property_readonly("end_reason", alone(+[](Simulation& s) { return s.end_reason(); }))
+        .def_property_readonly("state_hash", alone(+[](Simulation& s) { return s.state().hash(); }),
+                               "Hash of all bits of the present state.")
+        .def_property_readonly("time", alone(+[](Simulation& s) { return s.state().time; }),
+                               "s, time of the present state")
+        .def_property_readonly("end_reason", alone(+[](Simulation& s) { return s.end_reason(); }),
+                               "Why the run ended; `running` before it does.")
         .def_property_readonly("event", alone(+[](Simulation& s) { return s.event(); }),
                                "What became of the vehicle at the barrier, so far.")
         .def_property_readonly("failed", alone(+[](Simulation& s) { return s.failed(); }),
                                "Did the last step fail half way? Then only reset and restore are of use.")
         .def_property_readonly("replays", alone(+[](Simulation& s) { return s.replays(); }),
                                "Do as many steps from the start lead to this state?")
-        .def_property_readonly("touched", alone(+[](Simulation& s) { return s.state().touched; }))
+        .def_property_readonly("touched", alone(+[](Simulation& s) { return s.state().touched; }),
+                               "Has the vehicle touched the barrier so far?")
         .def_property_readonly("deepest_node", alone(+[](Simulation& s) { return s.deepest_node(); }),
                                "m: depth of the deepest shell node inside the barrier now, 0 if none is")
         .def_property_readonly("deepest_anchor", alone(+[](Simulation& s) { return s.deepest_anchor(); }),
                                "m: depth of the deepest truss anchor inside the barrier now, 0 if none is")
-        .def_property_readonly("statistics", alone(+[](Simulation& s) { return s.state().statistics; }))
-        .def_property_readonly("balances", alone(+[](Simulation& s) { return s.state().balances; }))
+        .def_property_readonly("statistics", alone(+[](Simulation& s) { return s.state().statistics; }),
+                               "Counts and lengths of the steps so far.")
+        .def_property_readonly("balances", alone(+[](Simulation& s) { return s.state().balances; }),
+                               "Departures of the energy and momentum balances so far (J, N s).")
         .def("velocity", alone(+[](Simulation& s, std::size_t unit) {
                  return copy(s.state().units.at(unit).body.velocity);
              }),

@@ -122,7 +122,9 @@ void register_vehicle(py::module_& m) {
             "vehicle's reference point along the ground.\n"
             "core: shape (k, 6), middles and half edges of the boxes that the rigid body fills, body axes, "
             "m.")
-        .def_property_readonly("n_trusses", [](const Unit& unit) { return unit.trusses.count; })
+        .def_property_readonly(
+            "n_trusses", [](const Unit& unit) { return unit.trusses.count; },
+            "number of trusses, and so of nodes of the skin and of tyres")
         .def_property_readonly(
             "input_index",
             [](const Unit& unit) {
@@ -130,9 +132,9 @@ void register_vehicle(py::module_& m) {
                                                 unit.trusses.input_index.end());
             },
             "The caller's number of each truss in the order of the state's columns.");
-    py::enum_<JointKind>(m, "JointKind")
-        .value("fifth_wheel", JointKind::fifth_wheel)
-        .value("welded", JointKind::welded);
+    py::enum_<JointKind>(m, "JointKind", "What a joint between two units holds.")
+        .value("fifth_wheel", JointKind::fifth_wheel, "a point of both, and the roll beyond its limit")
+        .value("welded", JointKind::welded, "a point of both and the whole orientation");
     py::class_<Joint>(m, "Joint", "Two units joined at a point. Immutable.")
         .def(py::init([](JointKind kind, std::size_t leading, std::size_t trailing,
                          const InputArray& place_on_leading, const InputArray& place_on_trailing,

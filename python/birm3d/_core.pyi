@@ -25,27 +25,27 @@ class Balances:
     @property
     def energy(self) -> Departure:
         """
-        of the sum of all terms from that at the start
+        departure of the sum of all energies from that at the start
         """
     @property
     def falls(self) -> dict[str, Departure]:
         """
-        of each dissipated term from its highest so far
+        by name, the greatest fall of each dissipated energy below its highest value so far
         """
     @property
     def kinetic(self) -> float:
         """
-        J, at the start
+        J, kinetic energy at the start
         """
     @property
     def largest_momentum(self) -> float:
         """
-        N s, of a unit, or an impulse in a step
+        N s, largest momentum of a unit, or impulse in a step
         """
     @property
     def momentum(self) -> Departure:
         """
-        of a unit's change in a step from the sum of all impulses on it
+        departure of a unit's change of momentum in a step from the sum of all impulses on it
         """
     @property
     def sizes(self) -> tuple[float, float, float, float, float]:
@@ -71,14 +71,18 @@ class Barrier:
         The elements where they are free-standing, else none.
         """
 class BusyError(RuntimeError):
-    pass
+    """
+    Another thread uses the simulation.
+    """
 class ContactModel:
     """
+    Direction of a truss's force on the vehicle.
+    
     Members:
     
-      projected
+      projected : along the surface's normal, by projection
     
-      along_truss
+      along_truss : along the truss: the paper's rule
     """
     __members__: typing.ClassVar[dict[str, ContactModel]]  # value = {'projected': <ContactModel.projected: 0>, 'along_truss': <ContactModel.along_truss: 1>}
     along_truss: typing.ClassVar[ContactModel]  # value = <ContactModel.along_truss: 1>
@@ -111,22 +115,22 @@ class ContactModel:
         ...
 class Departure:
     """
-    The greatest so far, when and where.
+    The greatest departure of a balance so far, when and where.
     """
     @property
     def place(self) -> tuple[float, float, float]:
         """
-        m, of the mass centre of unit 0, world
+        m, mass centre of unit 0 then, world
         """
     @property
     def size(self) -> float:
         """
-        J, or N s
+        J of energy, N s of momentum
         """
     @property
     def time(self) -> float:
         """
-        s
+        s, end of the step in which it was greatest
         """
 class Element:
     """
@@ -159,19 +163,21 @@ class Element:
         """
 class EndReason:
     """
+    Why a run ended.
+    
     Members:
     
-      running
+      running : it has not ended
     
-      duration
+      duration : the time that was asked for is over
     
-      separated
+      separated : the vehicle has left the barrier for good
     
-      stopped
+      stopped : the vehicle rests
     
-      sliding
+      sliding : it slides along a straight barrier, and nothing changes any more
     
-      longest
+      longest : the longest run is over, with an open outcome
     """
     __members__: typing.ClassVar[dict[str, EndReason]]  # value = {'running': <EndReason.running: 0>, 'duration': <EndReason.duration: 1>, 'separated': <EndReason.separated: 2>, 'stopped': <EndReason.stopped: 3>, 'sliding': <EndReason.sliding: 4>, 'longest': <EndReason.longest: 5>}
     duration: typing.ClassVar[EndReason]  # value = <EndReason.duration: 1>
@@ -213,12 +219,12 @@ class Event:
     @property
     def exit_deflection(self) -> float | None:
         """
-        m, greatest of all trusses when it had left, less their springback
+        m, greatest deflection of all trusses when it had left, less their springback
         """
     @property
     def exit_velocity(self) -> tuple[float, float, float] | None:
         """
-        m/s, then, of unit 0, world
+        m/s, velocity of unit 0 at the separation, world; None where there was none
         """
     @property
     def later_contacts(self) -> int:
@@ -238,7 +244,7 @@ class Event:
     @property
     def rolled_over(self) -> bool:
         """
-        was an up axis beyond the horizontal, of a vehicle that stood upright?
+        did a vehicle that stood upright ever have an up axis beyond the horizontal?
         """
     @property
     def time_of_separation(self) -> float | None:
@@ -248,64 +254,73 @@ class Event:
     @property
     def touching(self) -> bool:
         """
-        the barrier, at the end
+        does the vehicle touch the barrier now?
         """
 class ExtremeAttitude:
     """
-    Greatest magnitudes, rad; yaw from the start.
+    Greatest magnitudes of the angles of unit 0, counted on beyond half a turn.
     """
     @property
     def pitch(self) -> float:
-        ...
+        """
+        rad, greatest magnitude of the pitch
+        """
     @property
     def roll(self) -> float:
-        ...
+        """
+        rad, greatest magnitude of the roll
+        """
     @property
     def yaw(self) -> float:
-        ...
+        """
+        rad, greatest magnitude of the yaw since the start, until separation
+        """
 class ExtremeElementLoads:
     """
-    Greatest of all elements of the barrier; moments about their feet, of walls about their lines.
+    Greatest loads on any element of the barrier; moments about its foot, of walls about their lines.
     """
     @property
     def force(self) -> float:
         """
-        N
+        N, greatest force
         """
     @property
     def force_50ms(self) -> float:
         """
-        N, of means over 50 ms
+        N, greatest mean over 50 ms
         """
     @property
     def moment(self) -> float:
         """
-        N m
+        N m, greatest moment
         """
     @property
     def moment_50ms(self) -> float:
         """
-        N m, of means over 50 ms
+        N m, greatest mean over 50 ms
         """
 class ExtremeEnergy:
+    """
+    How well the energy balance of the run closes.
+    """
     @property
     def residual(self) -> float:
         """
-        J, greatest departure of the sum of all terms
+        J, greatest departure of the sum of all energies from that at the start
         """
     @property
     def start(self) -> float:
         """
-        J, kinetic
+        J, kinetic energy at the start
         """
 class ExtremeFilteredForce:
     """
-    Of the same component.
+    Force of the barrier on all units along its normal, filtered.
     """
     @property
     def cfc60(self) -> float | None:
         """
-        N; None where the rows are too far apart for the filter
+        N, greatest with CFC 60; None where the rows are too far apart for the filter
         """
     @property
     def mean_50ms(self) -> float:
@@ -320,7 +335,7 @@ class ExtremeGroups:
         ...
 class ExtremeJointLoads:
     """
-    Of the first joint.
+    Articulation and force of the first joint.
     """
     @property
     def angle(self) -> float:
@@ -330,26 +345,26 @@ class ExtremeJointLoads:
     @property
     def force(self) -> float:
         """
-        N
+        N, greatest force on the leading unit
         """
     @property
     def force_50ms(self) -> float:
         """
-        N, of means over 50 ms
+        N, greatest mean of that force over 50 ms
         """
 class ExtremeMotion:
     """
-    Of unit 0.
+    Greatest speeds and displacements of unit 0.
     """
     @property
     def approach_speed(self) -> float:
         """
-        m/s, towards the barrier, at the start
+        m/s, speed towards the barrier at the start
         """
     @property
     def deceleration(self) -> float:
         """
-        m/s^2, greatest along r, interval means
+        m/s^2, greatest mean of any interval along r, body axes
         """
     @property
     def reversal_time(self) -> float | None:
@@ -364,27 +379,30 @@ class ExtremeMotion:
     @property
     def travel(self) -> float:
         """
-        m, greatest towards the barrier
+        m, greatest displacement towards the barrier
         """
     @property
     def velocity_change(self) -> float:
         """
-        m/s, greatest from the start
+        m/s, greatest magnitude of the change since the start
         """
 class ExtremeNormalForce:
+    """
+    Force of the barrier on all units along its normal, as means over the output intervals.
+    """
     @property
     def last(self) -> float:
         """
-        N, in the last interval
+        N, the mean of the last interval
         """
     @property
     def peak(self) -> float:
         """
-        N, component of the force on all units along the normal
+        N, the greatest mean of any interval
         """
 class ExtremeSegments:
     """
-    Of a free-standing barrier.
+    How far the segments of a free-standing barrier move.
     """
     @property
     def deflection(self) -> float:
@@ -403,22 +421,28 @@ class ExtremeSegments:
         """
 class Extremes:
     """
-    Of a history, over its output instants; a group that was not wanted raises.
+    Extremes of a history over its output instants; a group that was not wanted raises.
     """
     @property
     def attitude(self) -> ExtremeAttitude:
-        ...
+        """
+        rad, greatest roll, pitch and yaw of unit 0
+        """
     @property
     def element_loads(self) -> ExtremeElementLoads:
-        ...
+        """
+        N and N m, greatest loads on any element of the barrier
+        """
     @property
     def end_time(self) -> float:
         """
-        s, the last of them
+        s, the last output instant
         """
     @property
     def energy(self) -> ExtremeEnergy:
-        ...
+        """
+        J, kinetic energy at the start and the residual of the balance
+        """
     @property
     def filtered_deceleration(self) -> float | None:
         """
@@ -426,15 +450,19 @@ class Extremes:
         """
     @property
     def filtered_force(self) -> ExtremeFilteredForce:
-        ...
+        """
+        N, of the barrier on all units along its normal, filtered
+        """
     @property
     def groups(self) -> dict[str, typing.Any]:
         """
-        those of several numbers that were found, by name
+        by name, the groups of several numbers that were found
         """
     @property
     def joint(self) -> ExtremeJointLoads:
-        ...
+        """
+        rad and N, articulation and force of the first joint
+        """
     @property
     def momentum_residual(self) -> float:
         """
@@ -442,10 +470,14 @@ class Extremes:
         """
     @property
     def motion(self) -> ExtremeMotion:
-        ...
+        """
+        speeds and displacements of unit 0 towards the barrier (SI)
+        """
     @property
     def normal_force(self) -> ExtremeNormalForce:
-        ...
+        """
+        N, of the barrier on all units along its normal
+        """
     @property
     def penetration(self) -> float:
         """
@@ -454,11 +486,13 @@ class Extremes:
     @property
     def rows(self) -> int:
         """
-        output instants
+        number of output instants
         """
     @property
     def segments(self) -> ExtremeSegments:
-        ...
+        """
+        m and m/s^2, displacement and overturning of free-standing segments
+        """
     @property
     def wheel_climb(self) -> float:
         """
@@ -478,50 +512,50 @@ class History:
     """
     def extremes(self, wanted: ExtremeGroups, event: Event, vehicle: Vehicle, barriers: collections.abc.Sequence[Barrier]) -> Extremes:
         """
-        Of a run of this vehicle into this barrier, or into none.
+        Extremes of a run of this vehicle into this barrier, or into none.
         """
     def joint(self, index: typing.SupportsInt | typing.SupportsIndex) -> JointHistory:
         """
-        Of one joint of the vehicle.
+        What one joint of the vehicle carries.
         """
     def unit(self, index: typing.SupportsInt | typing.SupportsIndex) -> UnitHistory:
         """
-        Of one unit of the vehicle.
+        Motion of one unit of the vehicle and the forces on it.
         """
     @property
     def barrier_friction(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J
+        (n,) J, energy lost to friction on the barrier
         """
     @property
     def crushed(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J
+        (n,) J, energy lost in crushed trusses
         """
     @property
     def elements(self) -> list[ObstacleHistory]:
         """
-        Of the elements of the barrier that were touched, in their order.
+        Loads on the elements of the barrier that were touched, in their order.
         """
     @property
     def ground_friction(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J
+        (n,) J, energy lost to friction of the skin on the ground
         """
     @property
     def impacts(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J
+        (n,) J, energy lost in rigid contacts
         """
     @property
     def joint_work(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J
+        (n,) J, energy that joints took: zero but for the error of the steps
         """
     @property
     def kinetic(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J
+        (n,) J, kinetic energy of all bodies
         """
     @property
     def momentum_residual(self) -> float:
@@ -531,12 +565,12 @@ class History:
     @property
     def potential(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J
+        (n,) J, potential energy of the weight, zero at the start
         """
     @property
     def segment_friction(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J, of free-standing segments on the ground
+        (n,) J, energy lost to friction of free-standing segments on the ground
         """
     @property
     def segment_position(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -546,37 +580,37 @@ class History:
     @property
     def segment_velocity(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, k, 2) m/s, of its mass centre, world
+        (n, k, 2) m/s, mass centre of each segment, world
         """
     @property
     def segment_yaw(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, k) rad, from the start
+        (n, k) rad, yaw of each segment since the start
         """
     @property
     def segment_yaw_rate(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, k) rad/s
+        (n, k) rad/s, yaw rate of each segment
         """
     @property
     def stored(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J
+        (n,) J, elastic energy in trusses
         """
     @property
     def suspension(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J, in springs and lost in dampers of wheels
+        (n,) J, energy in springs of wheels and lost in their dampers
         """
     @property
     def time(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) s
+        (n,) s, output instants
         """
     @property
     def tire_friction(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) J
+        (n,) J, energy lost to friction of tyres on the ground
         """
 class Joint:
     """
@@ -588,7 +622,7 @@ class Joint:
         """
 class JointHistory:
     """
-    What a joint carries and how it stands.
+    What a joint carries, and the angles between its units.
     """
     @property
     def force(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -607,11 +641,13 @@ class JointHistory:
         """
 class JointKind:
     """
+    What a joint between two units holds.
+    
     Members:
     
-      fifth_wheel
+      fifth_wheel : a point of both, and the roll beyond its limit
     
-      welded
+      welded : a point of both and the whole orientation
     """
     __members__: typing.ClassVar[dict[str, JointKind]]  # value = {'fifth_wheel': <JointKind.fifth_wheel: 0>, 'welded': <JointKind.welded: 1>}
     fifth_wheel: typing.ClassVar[JointKind]  # value = <JointKind.fifth_wheel: 0>
@@ -686,15 +722,19 @@ class Outcome:
     """
     @property
     def balances(self) -> Balances:
-        ...
+        """
+        J and N s, departures of the energy and momentum balances
+        """
     @property
     def deflection(self) -> float:
         """
-        m, greatest of all trusses, at the end
+        m, greatest deflection of all trusses at the end
         """
     @property
     def end_reason(self) -> EndReason:
-        ...
+        """
+        why the run ended
+        """
     @property
     def event(self) -> Event:
         """
@@ -702,16 +742,18 @@ class Outcome:
         """
     @property
     def extremes(self) -> Extremes:
-        ...
+        """
+        the groups of extremes that were wanted, over the output instants
+        """
     @property
     def final_velocity(self) -> tuple[float, float, float]:
         """
-        m/s, of unit 0, world
+        m/s, velocity of unit 0 at the end, world
         """
     @property
     def peak_deflection(self) -> float:
         """
-        m, and during the run
+        m, greatest deflection of all trusses during the run
         """
     @property
     def run_time(self) -> float:
@@ -720,10 +762,14 @@ class Outcome:
         """
     @property
     def state_hash(self) -> int:
-        ...
+        """
+        hash of all bits of the state at the end
+        """
     @property
     def statistics(self) -> StepStatistics:
-        ...
+        """
+        counts and lengths of the steps
+        """
 class Run:
     """
     A run that is over.
@@ -780,11 +826,13 @@ class Segment:
         """
 class SegmentJoint:
     """
+    What holds neighbouring free-standing segments together.
+    
     Members:
     
-      pinned
+      pinned : a pin at the middle of their ends; they turn freely about it
     
-      loose
+      loose : nothing
     """
     __members__: typing.ClassVar[dict[str, SegmentJoint]]  # value = {'pinned': <SegmentJoint.pinned: 0>, 'loose': <SegmentJoint.loose: 1>}
     loose: typing.ClassVar[SegmentJoint]  # value = <SegmentJoint.loose: 1>
@@ -853,9 +901,13 @@ class Simulation:
         Now: mass centre, (3,) m, world; rotation from body axes to the world's, (3, 3)
         """
     def reset(self) -> None:
-        ...
+        """
+        Go back to the start of the scene.
+        """
     def restore(self, snapshot: Snapshot) -> None:
-        ...
+        """
+        Go back to a snapshot of the same scene.
+        """
     def run(self, tick: collections.abc.Callable[[typing.SupportsFloat | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex], None] | None = None) -> None:
         """
         From the present state to the end; Ctrl-C stops it. `tick` is called now and then with the time (s) and the number of steps.
@@ -865,7 +917,9 @@ class Simulation:
         Now: force of all that nodes push on, without friction, (3,) N, world; friction, (3,) N; sum of the nodes' normal forces, N
         """
     def snapshot(self) -> Snapshot:
-        ...
+        """
+        A checkpoint of the present state and record.
+        """
     def step(self) -> bool:
         """
         One accepted step; False when the run is over.
@@ -880,7 +934,9 @@ class Simulation:
         """
     @property
     def balances(self) -> Balances:
-        ...
+        """
+        Departures of the energy and momentum balances so far (J, N s).
+        """
     @property
     def deepest_anchor(self) -> float:
         """
@@ -893,7 +949,9 @@ class Simulation:
         """
     @property
     def end_reason(self) -> EndReason:
-        ...
+        """
+        Why the run ended; `running` before it does.
+        """
     @property
     def event(self) -> Event:
         """
@@ -911,18 +969,24 @@ class Simulation:
         """
     @property
     def state_hash(self) -> int:
-        ...
+        """
+        Hash of all bits of the present state.
+        """
     @property
     def statistics(self) -> StepStatistics:
-        ...
+        """
+        Counts and lengths of the steps so far.
+        """
     @property
     def time(self) -> float:
         """
-        s
+        s, time of the present state
         """
     @property
     def touched(self) -> bool:
-        ...
+        """
+        Has the vehicle touched the barrier so far?
+        """
 class Snapshot:
     """
     A checkpoint: state and record. It lives in memory only.
@@ -932,13 +996,16 @@ class Snapshot:
     @property
     def time(self) -> float:
         """
-        s
+        s, time of the state
         """
 class StepStatistics:
+    """
+    Counts and lengths of the steps of a run, and what they met.
+    """
     @property
     def body_steps(self) -> int:
         """
-        in which the rigid body stood against the barrier or the ground
+        steps in which the rigid body stood against the barrier or the ground
         """
     @property
     def core_contact_force(self) -> float:
@@ -948,63 +1015,67 @@ class StepStatistics:
     @property
     def core_contact_time(self) -> float:
         """
-        s
+        s, time of that greatest mean
         """
     @property
     def deepest_point(self) -> float:
         """
-        m, of the anchors of bottomed-out trusses inside a barrier
+        m, greatest depth of an anchor of a bottomed-out truss inside a barrier
         """
     @property
     def free_steps(self) -> int:
         """
-        in which no node was within reach of anything
+        steps in which no node was within reach of anything
         """
     @property
     def free_time(self) -> float:
         """
-        s, of these steps
+        s, sum of these steps
         """
     @property
     def greatest_overlap(self) -> float:
         """
-        m, by which the rigid body's boxes and an element of the barrier overlapped
+        m, greatest overlap of the rigid body's boxes and an element of the barrier
         """
     @property
     def greatest_overlap_element(self) -> int:
         """
-        of the barrier, with which
+        number of the barrier's element in that overlap
         """
     @property
     def greatest_overlap_time(self) -> float:
         """
-        s
+        s, time of that overlap
         """
     @property
     def least_critical_step(self) -> float:
         """
-        s, sqrt(3)/omega of the trusses in contact
+        s, least sqrt(3)/omega of the trusses in contact
         """
     @property
     def longest_step(self) -> float:
         """
-        s
+        s, the longest accepted step
         """
     @property
     def near_elements(self) -> int:
         """
-        of the barrier, that any node was within reach of, or the rigid body met
+        elements of the barrier that any node was within reach of, or the rigid body met
         """
     @property
     def node_evaluations(self) -> int:
-        ...
+        """
+        nodes whose contact was computed, summed over all steps, those rejected too
+        """
     @property
     def rejected(self) -> int:
-        ...
+        """
+        steps that were tried and found too long
+        """
     @property
     def shortest_step(self) -> float:
         """
-        s
+        s, the shortest accepted step
         """
     @property
     def skin_nodes(self) -> int:
@@ -1013,7 +1084,9 @@ class StepStatistics:
         """
     @property
     def steps(self) -> int:
-        ...
+        """
+        accepted steps
+        """
     @property
     def tread_nodes(self) -> int:
         """
@@ -1036,16 +1109,22 @@ class Stop:
     def __init__(self) -> None:
         ...
     def is_set(self) -> bool:
-        ...
+        """
+        Was `set` called?
+        """
     def set(self) -> None:
-        ...
+        """
+        Ask all runs that look at this stop to end.
+        """
 class TireModel:
     """
+    Rule of the friction of tyres on the ground.
+    
     Members:
     
-      slip
+      slip : continuous in the slip angle of each wheel: the brush model
     
-      skid
+      skid : full unless the mass centre moves along r: the paper's rule
     """
     __members__: typing.ClassVar[dict[str, TireModel]]  # value = {'slip': <TireModel.slip: 0>, 'skid': <TireModel.skid: 1>}
     skid: typing.ClassVar[TireModel]  # value = <TireModel.skid: 1>
@@ -1081,7 +1160,9 @@ class TrussCurve:
     Piecewise-linear loading envelope with an unloading slope (paper Fig. 3).
     """
     def envelope(self, deflection: typing.SupportsFloat | typing.SupportsIndex) -> float:
-        ...
+        """
+        Force of the loading envelope at a deflection (m); its unit is that of the slopes times m.
+        """
     def follow(self, path: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
         Forces (n,) along a path of deflections (n,) that starts uncrushed.
@@ -1149,7 +1230,9 @@ class Unit:
         """
     @property
     def n_trusses(self) -> int:
-        ...
+        """
+        number of trusses, and so of nodes of the skin and of tyres
+        """
 class UnitHistory:
     """
     Motion of one unit and the forces on it; read-only views.
@@ -1157,7 +1240,7 @@ class UnitHistory:
     @property
     def acceleration(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 3) m/s^2, interval means, body axes
+        (n, 3) m/s^2, of the mass centre, interval means, body axes
         """
     @property
     def angular_velocity(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1167,7 +1250,7 @@ class UnitHistory:
     @property
     def barrier_force(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 3) N, interval means, world
+        (n, 3) N, of the barrier on the unit, interval means, world
         """
     @property
     def barrier_normal_force(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1187,12 +1270,12 @@ class UnitHistory:
     @property
     def position(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 3) m, world
+        (n, 3) m, mass centre, world
         """
     @property
     def roll_pitch_yaw(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 3) rad
+        (n, 3) rad, roll, pitch and yaw of the body axes
         """
     @property
     def sum_of_contact_forces(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1202,20 +1285,22 @@ class UnitHistory:
     @property
     def tire_friction_force(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 3) N, interval means, world
+        (n, 3) N, of the ground on the tyres, along the ground, interval means, world
         """
     @property
     def tire_reaction(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, wheels) N, interval means
+        (n, wheels) N, normal force of the ground on each wheel, interval means
         """
     @property
     def velocity(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 3) m/s, world
+        (n, 3) m/s, velocity of the mass centre, world
         """
 class UnstableError(ValueError):
-    pass
+    """
+    A fixed time step is longer than the stable one, or a scene is too stiff for any step.
+    """
 class Vehicle:
     """
     One or more units and the joints between them. Immutable.

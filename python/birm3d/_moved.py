@@ -33,7 +33,7 @@ _SHORT = {
 _OLD = {
     "along_panel": "vehicle.along_panel",
     "arguments": "base.arguments",
-    "articulated": "vehicle.articulated",
+    "articulated": "vehicle.vehicle",
     "barrier_kinds": "barrier.kinds",
     "barrier_surfaces": "barrier.surfaces",
     "barrier_text": "barrier.text",
@@ -113,6 +113,8 @@ _OLD = {
     "tread": "vehicle.tire_nodes",
     "unit_result": "result.unit_result",
     "unit_shapes": "vehicle.unit_shapes",
+    "vehicle.articulated": "vehicle.vehicle",
+    "vehicle.builder": "vehicle.vehicle",
     "vehicle_blocks": "vehicle.file_schema",
     "vehicle_changes": "vehicle.vehicle_changes",
     "vehicle_file": "vehicle.vehicle_file",

@@ -13,17 +13,6 @@ namespace birm3d {
 
 namespace {
 
-// A pushing node that was nearer than this to a surface at the start of the step counts as on it (m). Nodes follow
-// curved surfaces by chords, which leave such a gap.
-constexpr double on_surface = 1e-4;
-
-// Cosine above which the normals of two instants are of the same face.
-constexpr double same_face = 0.9;
-
-// Size of the gap of a node that already stands on a face. Its sign says whether the node leaves (positive) or the
-// face drives it (negative).
-constexpr double negligible_gap = 1e-30;
-
 // Moves the places of nodes that are inside their nearest face onto it, along its normal.
 BIRM3D_BLOCK_LOOP void move_out(const NodeFaces& faces, const BlockContact& contact, BlockColumn& x,
                                 BlockColumn& y, BlockColumn& z) {
@@ -103,8 +92,8 @@ bool stood_on(const ContactPass& pass, const ContactBlock& block, std::size_t k,
               const Vec3& node) {
     const NearObstacle& near = pass.near[block.reachable[k]];
     const Nearest then = nearest(pass.shape(block.reachable[k]), near.before.to_own(node));
-    return std::abs(then.gap) <= on_surface &&
-           near.before.direction_from_own(then.normal).dot(normal) > same_face;
+    return std::abs(then.gap) <= tolerance::on_surface &&
+           near.before.direction_from_own(then.normal).dot(normal) > tolerance::same_face;
 }
 
 // Adds the faces that a pushing node has been on since the start of the step. Where two segments of a wall meet, the
@@ -165,8 +154,9 @@ void place_in_corner(const ContactPass& pass, const Corner& corner, const Vec3& 
         lost_work = 0.5 * (before - nodes.force[i]) * std::max(0.0, deflection - free);
     }
     nodes.x[i] = to.x(), nodes.y[i] = to.y(), nodes.z[i] = to.z();
-    block.faces.gap[i] =
-        nodes.force[i] > 0.0 && deflection < nodes.deflection[i] ? negligible_gap : -negligible_gap;
+    block.faces.gap[i] = nodes.force[i] > 0.0 && deflection < nodes.deflection[i]
+                             ? tolerance::negligible_gap
+                             : -tolerance::negligible_gap;
     const Vec3 along_truss = (anchor - to).normalized();
     block.set_normals(i, along_truss, along_truss);
     block.faces.per_force[i] = 0.0;

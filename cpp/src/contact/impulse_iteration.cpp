@@ -2,17 +2,14 @@
 #include "contact/impulse_iteration.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "birm3d/base/tolerances.hpp"
+#include "contact/rigid_friction.hpp"
 #include "contact/segment_sliding.hpp"
-#include "kernels/core_friction.hpp"
 #include "kernels/integrate.hpp"
 #include "kernels/joints.hpp"
-#include "kernels/tires.hpp"
 #include "scene/bodies.hpp"
 #include "scene/obstacles.hpp"
 
@@ -22,14 +19,13 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-bool slides(const ContactKick& kicked) {
-    const auto is_there = [](const Wrench& friction) { return !friction.force.isZero(0.0); };
-    return std::any_of(kicked.on_ground.begin(), kicked.on_ground.end(), is_there) ||
-           std::any_of(kicked.on_cores.begin(), kicked.on_cores.end(), is_there);
+bool any_sprung(const KickMemory& memory) {
+    return std::any_of(memory.sprung.begin(), memory.sprung.end(),
+                       [](const std::vector<SuspensionLoad>& loads) { return !loads.empty(); });
 }
 
 // Have the normal impulses converged since the last round? Stores them for the next one.
-bool stayed(const std::vector<RigidContact>& contacts, Column& last) {
+bool has_converged(const std::vector<RigidContact>& contacts, Column& last) {
     last.resize(contacts.size(), -1.0);
     double sum = 0.0, change = 0.0;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -41,8 +37,8 @@ bool stayed(const std::vector<RigidContact>& contacts, Column& last) {
     return change <= tolerance::friction_settled * sum;
 }
 
-// The same for the friction of segments on the ground.
-bool stayed(const std::vector<Wrench>& on_base, std::vector<Wrench>& last) {
+// Has the friction of segments on the ground converged since the last round? Stores it for the next one.
+bool has_converged(const std::vector<Wrench>& on_base, std::vector<Wrench>& last) {
     last.resize(on_base.size());
     double sum = 0.0, change = 0.0;
     for (std::size_t i = 0; i < on_base.size(); ++i) {
@@ -54,108 +50,6 @@ bool stayed(const std::vector<Wrench>& on_base, std::vector<Wrench>& last) {
     // direction.
     constexpr double settled = 1e-6;
     return change <= settled * sum;
-}
-
-// Normal impulses of the tyres by wheel. Springs and dampers take no part in an impact.
-void tire_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory) {
-    for (std::size_t u = 0; u < memory.tire.size(); ++u) {
-        memory.tire[u].assign(scene.vehicle->units[u].wheels.size(), 0.0);
-        if (by.is_impact) continue;
-        for (const SuspensionLoad& load : memory.sprung[u])
-            memory.tire[u][load.wheel] += by.time * (load.spring + load.damper);
-    }
-    for (const RigidContact& contact : memory.kick.contacts)
-        if (contact.source == ContactSource::tire)
-            memory.tire[contact.body][contact.index] += contact.impulse;
-}
-
-bool any_sprung(const KickMemory& memory) {
-    return std::any_of(memory.sprung.begin(), memory.sprung.end(),
-                       [](const std::vector<SuspensionLoad>& loads) { return !loads.empty(); });
-}
-
-// Motions of the bodies at which contacts slide.
-const std::vector<Twist>& sliding_motions(const KickMemory& memory) {
-    return memory.sliding.empty() ? memory.pushed : memory.sliding;
-}
-
-// Motions of the bodies with the normal impulses and those of joints, without friction. Springs push joined units
-// apart, and the joint resists. Without its impulse, tyres would seem to slide.
-void find_held_motions(const Scene& scene, const KickedBy& by, KickMemory& memory) {
-    memory.held.clear();
-    if (scene.vehicle->joints.empty() || by.is_impact) return;
-    memory.held = memory.pushed;
-    const auto add = [&](std::size_t b, const Wrench& push) {
-        memory.held[b].velocity += memory.bodies[b].inverse_mass * push.force;
-        memory.held[b].angular_velocity += memory.bodies[b].inverse_inertia * push.torque;
-    };
-    for (const RigidContact& contact : memory.kick.contacts) {
-        add(contact.body, wrench_on_body(contact));
-        if (contact.other >= 0) add(static_cast<std::size_t>(contact.other), wrench_on_other(contact));
-    }
-}
-
-// Reduces a friction impulse so that it does not reverse the sliding of the body. `motion`: of the body without it.
-Wrench without_reversal(const Wrench& friction, const ContactBody& body, const Twist& motion) {
-    const double slides = -power(friction, motion);
-    const double change =
-        power(friction, {body.inverse_mass * friction.force, body.inverse_inertia * friction.torque});
-    return change > slides ? scaled(friction, std::max(0.0, slides / change)) : friction;
-}
-
-// The motion of a unit before the friction impulse.
-Twist motion_without(const Wrench& friction, const ContactBody& body) {
-    return {body.motion.velocity - body.inverse_mass * friction.force,
-            body.motion.angular_velocity - body.inverse_inertia * friction.torque};
-}
-
-// Greatest speed along the ground that a unit impulse gives any segment that a unit pushes (1/kg).
-double greatest_other_inverse_mass(const std::vector<RigidContact>& contacts, std::size_t unit,
-                                   const std::vector<ContactBody>& bodies) {
-    double greatest = 0.0;
-    for (const RigidContact& contact : contacts) {
-        if (contact.source != ContactSource::core || contact.body != unit || contact.other < 0) continue;
-        if (!(contact.impulse > 0.0)) continue;
-        const ContactBody& other = bodies[static_cast<std::size_t>(contact.other)];
-        greatest = std::max(greatest, other.inverse_mass + other.inverse_inertia(2, 2) *
-                                                               contact.other_arm.head<2>().squaredNorm());
-    }
-    return greatest;
-}
-
-// Friction of both sides of bottomed-out trusses and of tyres, by the present impulses; kicks the units by what has changed.
-void kick_by_friction(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
-    ContactKick& kicked = memory.kick;
-    const std::size_t units = state.units.size();
-    const std::vector<Twist>& motion = sliding_motions(memory);
-    std::vector<Wrench>& on_cores = memory.on_cores;
-    on_cores.assign(memory.bodies.size(), {});
-    for (std::size_t u = 0; u < units; ++u) {
-        const Unit& unit = scene.vehicle->units[u];
-        BodyState& body = state.units[u].body;
-        const bool rolls_freely = !kicked.rolls_freely.empty() && kicked.rolls_freely[u] != 0;
-        Wrench on_ground;
-        if (!rolls_freely) {
-            Wrench all = kicked.on_ground[u];
-            all += kicked.on_cores[u];
-            const bool is_held = !memory.held.empty();
-            const Twist& now = is_held ? memory.held[u] : motion[u];
-            on_ground =
-                without_reversal(tire_friction(unit, scene.settings, body, state.units[u].steering_angle,
-                                               {now, by.at_end[u]}, memory.tire[u]),
-                                 memory.bodies[u], is_held ? now : motion_without(all, memory.bodies[u]));
-        }
-        on_cores[u] = core_friction(kicked.contacts, u, unit.body, scene.full_friction_speed(), motion[u],
-                                    greatest_other_inverse_mass(kicked.contacts, u, memory.bodies));
-        kick(unit.body, difference(on_ground, kicked.on_ground[u]), body);
-        kick(unit.body, difference(on_cores[u], kicked.on_cores[u]), body);
-        kicked.on_ground[u] = on_ground;
-    }
-    for (const RigidContact& contact : kicked.contacts)
-        if (contact.source == ContactSource::core && contact.other >= 0)
-            on_cores[static_cast<std::size_t>(contact.other)] +=
-                {-contact.friction_impulse, -contact.other_arm.cross(contact.friction_impulse)};
-    kicked.on_cores = on_cores;
 }
 
 // Motions of the bodies without normal impulses and pins, at which friction is evaluated.
@@ -179,43 +73,35 @@ void prepare_solver(const Scene& scene, const State& state, KickMemory& memory) 
     memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
 }
 
-// Iterates normal impulses and friction from the present motions. `memory.solver` is prepared.
-void settle_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
+// Starts an iteration without friction from the present motions. Notes how fast the surfaces move on which bottomed-out
+// trusses slide.
+void begin_iteration(const State& state, KickMemory& memory) {
     ContactKick& kicked = memory.kick;
-    std::vector<ContactBody>& bodies = memory.bodies;
-    const std::size_t units = state.units.size();
-    kicked.on_ground.assign(units, {});
-    kicked.on_cores.assign(bodies.size(), {});
-    list_motions(state, bodies, memory.pushed);
+    kicked.on_ground.assign(state.units.size(), {});
+    kicked.on_cores.assign(memory.bodies.size(), {});
+    list_motions(state, memory.bodies, memory.pushed);
     for (RigidContact& contact : kicked.contacts) {
         if (contact.source != ContactSource::core || contact.other < 0) continue;
         const Twist& other = sliding_motions(memory)[static_cast<std::size_t>(contact.other)];
         contact.sliding_surface = other.velocity + other.angular_velocity.cross(contact.other_arm);
     }
-    memory.tire.resize(units);
-    const bool meets = meets_segments(kicked.contacts);
-    if (meets) find_segment_friction(scene, by, state, memory);
-    const auto solve = [&] {
-        if (meets) prepare_solver(scene, state, memory);
-        set_friction_motions(state, kicked, bodies);
-        memory.solver.solve(kicked.contacts, bodies);
-        tire_impulses(scene, by, memory);
-    };
-    solve();
-    find_held_motions(scene, by, memory);
-    // Friction depends on the normal impulses. It also tips the body, which changes these impulses: iterate.
-    constexpr int most_rounds = 30;
+    memory.tire.resize(state.units.size());
     memory.last.clear();
     memory.on_base.clear();
-    for (int round = 0; round < most_rounds; ++round) {
-        const bool pushes_stay = stayed(kicked.contacts, memory.last);
-        const bool frictions_stay = !meets || (round > 0 && stayed(kicked.on_base, memory.on_base));
-        if (round > 0 && pushes_stay && frictions_stay) break;
-        kick_by_friction(scene, by, memory, state);
-        if (meets) find_segment_friction(scene, by, state, memory);
-        if (!meets && !slides(kicked)) break;
-        solve();
-    }
+}
+
+// Finds the normal impulses that belong to the present friction.
+void solve_normal_impulses(const Scene& scene, const KickedBy& by, bool meets, const State& state,
+                           KickMemory& memory) {
+    if (meets) prepare_solver(scene, state, memory);
+    set_friction_motions(state, memory.kick, memory.bodies);
+    memory.solver.solve(memory.kick.contacts, memory.bodies);
+    sum_tire_impulses(scene, by, memory);
+}
+
+// Kicks the units, which have had the friction already, by the normal impulses and those of joints.
+void kick_by_normal_impulses(const Scene& scene, ContactKick& kicked, State& state) {
+    const std::size_t units = state.units.size();
     std::erase_if(kicked.contacts, [&](const RigidContact& row) { return row.body >= units; });
     for (const RigidContact& contact : kicked.contacts) {
         kick_body(scene, contact.body, wrench_on_body(contact), state);
@@ -223,6 +109,31 @@ void settle_impulses(const Scene& scene, const KickedBy& by, KickMemory& memory,
         if (on_unit)
             kick_body(scene, static_cast<std::size_t>(contact.other), wrench_on_other(contact), state);
     }
+}
+
+// Finds normal impulses and friction by turns, and kicks the bodies by them. `memory.solver` is prepared. At given friction,
+// the normal impulses j and the relative velocities w after them fulfil
+//   w = A j + v >= v_target,  j >= 0,  (w - v_target) . j = 0,
+// for one contact Eq. 1 of the paper ("Rigid bodies and impulses" in docs/pages/theory.md). Friction depends on j. It also
+// tips the body, which changes v and so j.
+void solve_with_friction(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
+    ContactKick& kicked = memory.kick;
+    begin_iteration(state, memory);
+    const bool meets = meets_segments(kicked.contacts);
+    if (meets) find_segment_friction(scene, by, state, memory);
+    solve_normal_impulses(scene, by, meets, state, memory);
+    find_held_motions(scene, by, memory);
+    constexpr int most_rounds = 30;
+    for (int round = 0; round < most_rounds; ++round) {
+        const bool normal_converged = has_converged(kicked.contacts, memory.last);
+        const bool base_converged = !meets || (round > 0 && has_converged(kicked.on_base, memory.on_base));
+        if (round > 0 && normal_converged && base_converged) break;
+        kick_by_friction(scene, by, memory, state);
+        if (meets) find_segment_friction(scene, by, state, memory);
+        if (!meets && !any_slides(kicked)) break;
+        solve_normal_impulses(scene, by, meets, state, memory);
+    }
+    kick_by_normal_impulses(scene, kicked, state);
     // An impact that meets no segment does not change the segments.
     if (state.segments.empty() || (by.is_impact && !meets)) return;
     find_segment_friction(scene, by, state, memory);
@@ -258,7 +169,7 @@ void kick_by_contacts(const Scene& scene, const KickedBy& by, KickMemory& memory
         return;
     }
     memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
-    settle_impulses(scene, by, memory, state);
+    solve_with_friction(scene, by, memory, state);
 }
 
 void kick_towards_closed_joints(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
@@ -274,7 +185,7 @@ void kick_towards_closed_joints(const Scene& scene, const KickedBy& by, KickMemo
     for (int round = 0; round < most_rounds; ++round) {
         for (std::size_t b = 0; b < start.size(); ++b)
             body_state(state, b) = start[b];
-        settle_impulses(scene, by, memory, state);
+        solve_with_friction(scene, by, memory, state);
         const double gap = correct_targets(scene, state, by.drift, memory.kick.contacts);
         if (gap <= tolerance::joint_gap || gap >= last) break;
         last = gap;

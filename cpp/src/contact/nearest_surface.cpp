@@ -17,9 +17,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Cosine above which the normals of two instants are of the same face.
-constexpr double same_face = 0.9;
-
 BIRM3D_BLOCK_LOOP void set_nothing_met(NodeFaces& faces, BlockContact& contact,
                                        std::array<std::size_t, block_size>& nearest) {
     BIRM3D_INDEPENDENT
@@ -112,7 +109,7 @@ BIRM3D_BLOCK_LOOP double find_doubtful(const NodeFaces& faces, const BlockContac
     for (std::size_t i = 0; i < block_size; ++i) {
         const double rotation =
             contact.nx[i] * faces.bx[i] + contact.ny[i] * faces.by[i] + contact.nz[i] * faces.bz[i];
-        const bool same = force[i] > 0.0 && rotation > same_face;
+        const bool same = force[i] > 0.0 && rotation > tolerance::same_face;
         doubtful[i] = faces.gap[i] < 0.0 && !same ? 1.0 : 0.0;
     }
     alignas(64) BlockColumn sum = doubtful;

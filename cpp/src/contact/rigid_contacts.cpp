@@ -9,6 +9,8 @@
 #include "birm3d/base/tolerances.hpp"
 #include "contact/segment_sliding.hpp"
 #include "kernels/core_friction.hpp"
+#include "kernels/detect.hpp"
+#include "kernels/detect_core.hpp"
 #include "kernels/integrate.hpp"
 #include "kernels/joints.hpp"
 #include "kernels/tires.hpp"
@@ -30,7 +32,59 @@ void add_to_obstacle(const Scene& scene, const State& state, const RigidContact&
     sum->torque -= (place - pose_of(scene, contact.obstacle, state).position).cross(impulse);
 }
 
+// Does the obstacle push on any node of the unit?
+bool pushes(const UnitState& unit, std::size_t obstacle) {
+    return std::any_of(unit.contact_loads.begin(), unit.contact_loads.end(), [=](const ContactLoad& load) {
+        return load.obstacle == obstacle && load.normal_force > 0.0;
+    });
+}
+
 }  // namespace
+
+void find_rigid_contacts(const Scene& scene, const State& state, double dt, const StepOptions& options,
+                         KickMemory& memory) {
+    std::vector<RigidContact>& contacts = memory.contacts;
+    std::vector<PlacedShape>& placed = memory.placed;
+    std::vector<std::size_t>& about = memory.about;
+    contacts.clear();
+    for (std::size_t u = 0; u < state.units.size(); ++u) {
+        const Unit& unit = scene.vehicle->units[u];
+        const BodyState& body = state.units[u].body;
+        if (scene.settings.ground)
+            find_tire_contacts(unit, u, body, state.units[u].given_way, WheelAt::bump_stop, contacts);
+        if (scene.obstacles.empty() || !options.hold_core) continue;
+        const Mat3 R = body.orientation.toRotationMatrix();
+        const Twist motion{R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
+        placed.clear();
+        const Box& anchors = unit.trusses.anchors;
+        scene.map.find(body.position, unit.trusses.reach + core_margin(unit.trusses, motion, dt), about);
+        for (const std::size_t i : about) {
+            if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
+            const Obstacle& obstacle = scene.obstacles[i];
+            const Placement in_shape = placement(pose_of(scene, i, state), body);
+            const Twist other = obstacle_motion(scene, i, state, body);
+            const Twist relative{motion.velocity - other.velocity,
+                                 motion.angular_velocity - other.angular_velocity};
+            if (within_reach(obstacle.shape, in_shape, anchors, core_margin(unit.trusses, relative, dt)))
+                placed.push_back(
+                    {&obstacle.shape, in_shape, i, obstacle.friction, other, pushes(state.units[u], i)});
+        }
+        if (placed.empty()) continue;
+        const std::size_t first = contacts.size();
+        find_core_contacts(unit, u, state.units[u], placed, motion, dt, contacts);
+        for (std::size_t i = first; i < contacts.size(); ++i) {
+            RigidContact& contact = contacts[i];
+            contact.other = body_of_obstacle(scene, contact.obstacle);
+            if (contact.other >= 0)
+                contact.other_arm = contact.arm + body.position -
+                                    body_state(state, static_cast<std::size_t>(contact.other)).position;
+        }
+    }
+    const std::vector<Joint>& joints = scene.vehicle->joints;
+    for (std::size_t j = 0; j < joints.size(); ++j)
+        find_joint_rows(joints[j], j, body_state(state, joints[j].leading),
+                        body_state(state, joints[j].trailing), contacts);
+}
 
 void set_motions(const State& state, std::vector<ContactBody>& bodies) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {

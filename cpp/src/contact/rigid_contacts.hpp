@@ -1,5 +1,5 @@
-// Rigid contacts and joints at one end of the drift: their impulses and friction, the kicks, and their terms in sums
-// and balances.
+// Rigid contacts and joints at one end of the drift: finding them, their impulses and friction, and their terms in sums and
+// balances.
 #pragma once
 
 #include <span>
@@ -10,6 +10,10 @@
 #include "state/rigid_contact.hpp"
 
 namespace birm3d {
+
+// Lists in memory.contacts every rigid contact that is possible within a step of dt (s), and the constraints of joints.
+void find_rigid_contacts(const Scene& scene, const State& state, double dt, const StepOptions& options,
+                         KickMemory& memory);
 
 // The energy term that friction on an obstacle adds to.
 double& friction_of(const Scene& scene, std::size_t obstacle, Energies& energies);

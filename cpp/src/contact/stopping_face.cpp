@@ -11,12 +11,6 @@ namespace birm3d {
 
 namespace {
 
-// A node that was nearer than this to a face at the start of the step counts as on it (m).
-constexpr double on_surface = 1e-4;
-
-// Size of the gap of a node that stands on a face. Below zero the face drives the node.
-constexpr double negligible_gap = 1e-30;
-
 // Distances beyond the stop at which the face is searched, one after the other (m).
 constexpr double behind_stop[] = {1e-5, 1e-4, 1e-3};
 
@@ -66,7 +60,8 @@ Corner corner_of(const StoppedNode& node, const ContactBlock& block) {
 bool stays_on(const ContactPass& pass, const ContactBlock& block, const StoppedNode& node, const Vec3& was) {
     const NearObstacle& near = pass.near[node.stopped_by.near];
     const Vec3 moved = near.before.to_own(was) - near.now.to_own(node.place);
-    if (std::abs(near.now.direction_to_own(node.stopped_by.normal).dot(moved)) > on_surface) return false;
+    if (std::abs(near.now.direction_to_own(node.stopped_by.normal).dot(moved)) > tolerance::on_surface)
+        return false;
     const std::size_t i = node.node_index;
     const Vec3 to = was + corner_of(node, block).displacement();
     const Vec3 arm = anchor_of(pass.mesh.block[block.index], i) - to;
@@ -105,7 +100,7 @@ void stand_on_stopping_faces(const ContactPass& pass, ContactBlock& block) {
         const CornerFace face = corner_face(node.stopped_by, block);
         if (face.reachable_index == block.reachable.size()) continue;
         block.nearest[i] = face.reachable_index;
-        block.faces.gap[i] = -negligible_gap;
+        block.faces.gap[i] = -tolerance::negligible_gap;
         block.set_normals(i, face.normal, face.normal);
     }
 }

@@ -40,7 +40,6 @@ Box box_of_structure(const Scene& scene, std::size_t i) {
 // Is the vehicle still lifting a wheel from the ground, tilting further, or tipped over and not yet at rest?
 bool tips(const Scene& scene, const State& state) {
     if (!scene.settings.ground || scene.settings.gravity == 0.0) return false;
-    constexpr double tipped = 0.7;       // cosine of the up axis to the vertical: about 45 degrees
     constexpr double least_tilt = 0.01;  // sine; below it the direction of tilting is not clear
     std::vector<RigidContact> wheels;
     for (std::size_t u = 0; u < state.units.size(); ++u) {
@@ -48,7 +47,7 @@ bool tips(const Scene& scene, const State& state) {
         const Unit& unit = scene.vehicle->units[u];
         if (unit.wheels.empty()) continue;
         const Vec3 up = body.orientation * Vec3::UnitZ();
-        if (up.z() < tipped) return true;
+        if (up.z() < tolerance::upright_cosine) return true;
         const Vec3 level_axis = Vec3::UnitZ().cross(up);  // a rotation about it tilts the vehicle further
         if (angular_velocity(unit.body, body).dot(level_axis) >
             tolerance::tilting_rate * std::max(least_tilt, level_axis.norm()))

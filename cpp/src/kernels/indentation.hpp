@@ -41,8 +41,8 @@
 //
 // A vertical face with a top edge (top_edge.hpp) holds the skin before it, and draws in the skin above its top:
 //   D(w, l) = E(w) - s (l - top)+
-// E is the place of the edge along e, a line that may be oblique to the panel. The skin goes in with the edge, straight along e, by
-// du = (1 - ds/dd (l - top)) dE. The force follows by virtual work, as that of a post. The skin does
+// E is the place of the edge along e, a line that may be oblique to the panel. The skin goes in with the edge, straight along e,
+// by du = (1 - ds/dd (l - top)) dE. The force follows by virtual work, as that of a post. The skin does
 // not slide over the edge as over a wedge. Skin that sinks below the edge while it hangs over it stays with the edge. Beside the
 // face's ends nothing is drawn in; rounded edges there are posts.
 //

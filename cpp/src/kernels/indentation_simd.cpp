@@ -2,14 +2,11 @@
 #include "kernels/indentation_simd.hpp"
 
 #include "base/packet.hpp"
-#include "kernels/followed_place.hpp"
+#include "kernels/indentation_packets.hpp"
 
 namespace birm3d::BIRM3D_INSTRUCTION_SET {
 
 namespace {
-
-// Least value that marks a node as following an indentation.
-constexpr double least_drawn = 1e-9;
 
 // A node that was further inside a face than this as the step began is not held by it (m).
 constexpr double least_lag = 1e-8;
@@ -17,17 +14,8 @@ constexpr double least_lag = 1e-8;
 // The face of a wall holds a node that pushes beside its edge if it is no further away: more than a step's motion (m).
 constexpr double in_reach = 0.01;
 
-// Lower bound of the gaps: the post is taken as deep everywhere as in its middle, with the least slope beside it.
-BIRM3D_INLINE Packet no_less_than(const IndentationNumbers& d, const Standing& s) {
-    const Packet zero = 0.0, by_depth = (s.deepest - d.surface) * d.per_reach;
-    const Packet flattest_face = d.side_low.slope < d.side_high.slope ? d.side_low.slope : d.side_high.slope;
-    const Packet slope = lesser(lesser(greater(by_depth, least_slope), steepest), flattest_face);
-    const Packet beside = greater(greater(s.w - d.most_w, d.least_w - s.w), zero);
-    return s.e - (s.deepest - slope * (beside + (s.l - s.up)));
-}
-
-// `yes` for nodes that a face of the edge holds, else `no`: they are further along it than the axis of the edge. A face that falls
-// off from the panel holds those that lie on it alone: without skin on the other side nothing keeps them from sliding along it.
+// `yes` for nodes that a face of the edge holds, else `no`: they are further along it than the axis of the edge. A face that
+// falls off from the panel holds those that lie on it alone: without skin on the other side they slide along it.
 // A node that lags inside the face stays with the edge. The face would move it in one step, and the energy would jump.
 BIRM3D_INLINE Packet where_beside_face(const IndentationNumbers& d, const KnownFaces& known,
                                        const Standing& s, const FollowedPlace& h, const Packet& yes,
@@ -71,28 +59,6 @@ BIRM3D_INLINE bool any_matters(const PanelNodes& nodes, const KnownFaces& known,
     return any_above(where_on(nodes, below, -infinitely_far, i), least);
 }
 
-// Displacement along e of a following node for a unit displacement of the post inwards, and along the panel.
-struct Drawn {
-    Packet in, across;
-    Packet by_turn;  // for each unit by which the slope of the face becomes less
-};
-BIRM3D_INLINE Drawn drawn(const IndentationNumbers& d, const FollowedPlace& h) {
-    const Packet zero = 0.0, low = d.flank_low * d.grip, high = d.flank_high * d.grip;
-    const Packet slope = h.slope.slope, flank = lesser(greater(h.rise.across, -1.0 * slope), slope);
-    const Packet factor = where_above(h.a, zero, high, low);
-    return {greater(d.grip * (1.0 - h.slope.grows * h.beyond), least_drawn),
-            factor * flank / square_root(1.0 + flank * flank), d.grip * h.on_face};
-}
-
-// Outward displacement of the nodes within the step. `flatter`: by how much the slope of the edge's face has become less.
-BIRM3D_INLINE Packet outward_displacement(const Standing& now, const Standing& then, const Drawn& at_end,
-                                          const Drawn& at_start, const Packet& flatter) {
-    const Packet zero = 0.0, in = (now.deepest - now.e) - (then.deepest - then.e), across = now.w - then.w;
-    const Packet turn = where_above(lesser(at_end.by_turn, at_start.by_turn), zero, flatter, zero);
-    return -0.5 * ((at_end.in + at_start.in) * in + (at_end.across + at_start.across) * across +
-                   (at_end.by_turn + at_start.by_turn) * turn);
-}
-
 // By how much another surface must be nearer than the edge's face to hold skin that lies on it (m): the face itself is no other
 // surface, to rounding and to the chords of its arc.
 constexpr double coincident = 1e-3;
@@ -109,25 +75,77 @@ BIRM3D_INLINE Packet gap_of_holding_surface(const IndentationNumbers& d, const K
     return where_above(Packet::load(known.per_force + i), zero, far, other);
 }
 
-// Required gap of each node. A loaded node follows the indentation while that extends over it, and is released afterwards.
-// An unloaded one follows once the indentation has reached it.
-struct Asked {
-    Packet gap, releases, rank;
+// Gap of nodes that do not push (m): e - D, with D of kernels/indentation.hpp. A node inside is at most as deep as the post drew
+// it in within the step. Beside the face of a wall, its edge holds no node.
+BIRM3D_INLINE Packet gap_of_free(const IndentationNumbers& d, const KnownFaces& known, const Standing& s,
+                                 const FollowedPlace& h, const Packet& outward, std::size_t i) {
+    const Packet zero = 0.0, far = infinitely_far;
+    const Packet reached = where_above(h.gap, zero, h.gap, greater(h.gap, outward));
+    return where_beside_face(d, known, s, h, far, reached, i);
+}
+
+// Gap of loaded nodes under the indentation (m): their displacement du within the step, so that their depth u follows the post.
+// A node that another surface holds follows the indentation only once that has reached it.
+BIRM3D_INLINE Packet gap_of_loaded(const IndentationNumbers& d, const KnownFaces& known,
+                                   const FollowedPlace& h, const Packet& outward, std::size_t i) {
+    const Packet zero = 0.0, far = infinitely_far;
+    const Packet unless_held = where_above(far, gap_of_holding_surface(d, known, h, i), far, outward);
+    return where_above(zero, h.gap, outward, unless_held);
+}
+
+// 1 where the indentation extends over a node, else 0: D is beyond the panel's outermost node there.
+BIRM3D_INLINE Packet extends_over(const IndentationNumbers& d, const KnownFaces& known, const Standing& s,
+                                  const FollowedPlace& h, std::size_t i) {
+    const Packet zero = 0.0, one = 1.0, surface = d.surface, holds = d.grip > 0.0 ? one : zero;
+    return where_above(s.e - h.gap, surface, where_beside_face(d, known, s, h, zero, holds, i), zero);
+}
+
+// The gap that the indentation asks of each node (m). A loaded node follows the indentation while that extends over it, and is
+// released afterwards. An unloaded one follows once the indentation has reached it.
+struct RequiredGap {
+    Packet gap;
+    Packet releases;  // 1 for nodes that the indentation releases, else 0
+    Packet rank;      // of several indentations, that of lowest rank holds the node: the deepest one there
 };
-BIRM3D_INLINE Asked ask(const IndentationNumbers& d, const PanelNodes& nodes, const KnownFaces& known,
-                        const Standing& s, const FollowedPlace& h, const Packet& outward, std::size_t i) {
-    const Packet zero = 0.0, one = 1.0, far = infinitely_far, surface = d.surface;
-    const Packet pushes = Packet::load(nodes.force + i), holds = d.grip > 0.0 ? one : zero;
-    const Packet comes = where_above(h.gap, zero, h.gap, greater(h.gap, outward));
-    // A node on another surface follows the indentation only once that has reached it.
-    const Packet other = where_above(far, gap_of_holding_surface(d, known, h, i), far, outward);
-    const Packet goes = where_above(zero, h.gap, outward, other);
-    const Packet reaches =
-        where_above(s.e - h.gap, surface, where_beside_face(d, known, s, h, zero, holds, i), zero);
-    const Packet off = where_above(pushes, zero, where_above(reaches, zero, zero, one), zero);
-    const Packet gap = where_above(pushes, zero, where_above(reaches, zero, goes, away),
-                                   where_beside_face(d, known, s, h, far, comes, i));
-    return {gap, off, where_above(off, zero, away, where_above(far, gap, h.gap, far))};
+BIRM3D_INLINE RequiredGap required_gap(const IndentationNumbers& d, const PanelNodes& nodes,
+                                       const KnownFaces& known, const Standing& s, const FollowedPlace& h,
+                                       const Packet& outward, std::size_t i) {
+    const Packet zero = 0.0, one = 1.0, far = infinitely_far, pushes = Packet::load(nodes.force + i);
+    const Packet extends = extends_over(d, known, s, h, i);
+    const Packet of_loaded = where_above(extends, zero, gap_of_loaded(d, known, h, outward, i), away);
+    const Packet gap = where_above(pushes, zero, of_loaded, gap_of_free(d, known, s, h, outward, i));
+    const Packet releases = where_above(pushes, zero, where_above(extends, zero, zero, one), zero);
+    return {gap, releases, where_above(releases, zero, away, where_above(far, gap, h.gap, far))};
+}
+
+// `state`, but 0 for nodes that the indentation would draw into the surface that holds them so far. Nodes that lag inside the
+// surface are left out of that.
+BIRM3D_INLINE Packet unless_drawn_inside(const IndentationNumbers& d, const KnownFaces& known,
+                                         const FollowedPlace& h, const Packet& gap, const Packet& state,
+                                         std::size_t i) {
+    // Skin on a face of the edge goes with the edge, though the face is a surface that holds it, too.
+    const Packet zero = 0.0, favour = where_above(h.on_face, zero, coincident, zero),
+                 gap_so_far = Packet::load(known.gap + i) + favour;
+    const Packet facing =
+        d.ex * Packet::load(known.nx + i) + d.ey * Packet::load(known.ny + i) +
+        d.ez * Packet::load(known.nz + i);  // cosine of the surface's normal and the panel's direction
+    const Packet outside = where_above(zero, gap_so_far - facing * gap, zero, state);
+    return where_above(Packet::load(known.lags + i), zero, state, where_above(zero, facing, outside, state));
+}
+
+// Rank of what holds each node so far: of a loaded node an indentation's rank or the gap of a surface (m), of a free node the
+// gap.
+BIRM3D_INLINE Packet rank_so_far(const IndentationNumbers& d, const PanelNodes& nodes,
+                                 const KnownFaces& known, const Standing& s, const FollowedPlace& h,
+                                 std::size_t i) {
+    const Packet zero = 0.0, far = infinitely_far, near = in_reach, gap_so_far = Packet::load(known.gap + i);
+    const Packet by_indentation =
+        where_above(Packet::load(known.per_force + i), zero, Packet::load(known.rank + i),
+                    gap_of_holding_surface(d, known, h, i));
+    const Packet by_face = where_above(gap_so_far, near, far, gap_so_far);
+    const Packet of_free = where_above(Packet::load(known.lags + i), zero, by_indentation, gap_so_far);
+    return where_above(Packet::load(nodes.force + i), zero,
+                       where_beside_face(d, known, s, h, by_face, by_indentation, i), of_free);
 }
 
 // State of the nodes in this indentation: 1 for those that follow it, 2 for those that it releases, else 0. Of
@@ -135,26 +153,15 @@ BIRM3D_INLINE Asked ask(const IndentationNumbers& d, const PanelNodes& nodes, co
 // step.
 BIRM3D_INLINE Packet find_state(const IndentationNumbers& d, const PanelNodes& nodes, const KnownFaces& known,
                                 const Standing& s, const FollowedPlace& h, const Standing& was,
-                                const Asked& asked, std::size_t i) {
-    const Packet zero = 0.0, one = 1.0, so_far = Packet::load(known.gap + i), gap = asked.gap;
-    const Packet against = d.ex * Packet::load(known.nx + i) + d.ey * Packet::load(known.ny + i) +
-                           d.ez * Packet::load(known.nz + i);
-    const Packet state = one + asked.releases;
-    const Packet favour = where_above(h.on_face, zero, coincident, zero);
-    const Packet drawn_in = where_above(zero, so_far + favour - against * gap, zero, state);
-    const Packet lags = Packet::load(known.lags + i);
-    const Packet nearer = where_above(lags, zero, state, where_above(zero, against, drawn_in, state));
-    const Packet pushes = Packet::load(nodes.force + i), by_surface = gap_of_holding_surface(d, known, h, i);
-    const Packet by_indentation =
-        where_above(Packet::load(known.per_force + i), zero, Packet::load(known.rank + i), by_surface);
-    const Packet near = in_reach, far = infinitely_far, by_face = where_above(so_far, near, far, so_far);
-    const Packet free_last = where_above(lags, zero, by_indentation, so_far);
-    const Packet last =
-        where_above(pushes, zero, where_beside_face(d, known, s, h, by_face, by_indentation, i), free_last);
-    const Packet now = where_above(pushes, zero, asked.rank, gap);
-    const Packet lag = where_above(greater(pushes, lags), zero, was.deepest - was.e, zero);
-    const Packet found = where_drawn(d, s, lag, where_above(last, now, nearer, zero), zero);
-    return where_on(nodes, found, zero, i);
+                                const RequiredGap& required, std::size_t i) {
+    const Packet zero = 0.0, one = 1.0, pushes = Packet::load(nodes.force + i);
+    const Packet state = unless_drawn_inside(d, known, h, required.gap, one + required.releases, i);
+    const Packet rank = where_above(pushes, zero, required.rank, required.gap);
+    const Packet nearest = where_above(rank_so_far(d, nodes, known, s, h, i), rank, state, zero);
+    // How far a node that pushes or lags was behind the face as the step began (m).
+    const Packet lag =
+        where_above(greater(pushes, Packet::load(known.lags + i)), zero, was.deepest - was.e, zero);
+    return where_on(nodes, where_drawn(d, s, lag, nearest, zero), zero, i);
 }
 
 // Displacement of nodes, as a vector in body axes, for a unit rotation of the post or the face about its foot.
@@ -203,8 +210,8 @@ void find_indentation(const IndentationNumbers& d, const IndentationNumbers& the
         const Drawn by = drawn(d, h);
         const Packet outward = outward_displacement(n, was, by, drawn(then, find_followed(then, was)),
                                                     slope_of_face(then, was) - slope_of_face(d, n));
-        const Asked asked = ask(d, nodes, known, n, h, outward, i);
-        const Packet state = find_state(d, nodes, known, n, h, was, asked, i);
+        const RequiredGap required = required_gap(d, nodes, known, n, h, outward, i);
+        const Packet state = find_state(d, nodes, known, n, h, was, required, i);
         if (!any_above(state, zero)) continue;
         state.store(known.follows + i);
         const auto put = [&](double* column, const Packet& found) {
@@ -216,8 +223,8 @@ void find_indentation(const IndentationNumbers& d, const IndentationNumbers& the
         const Packet nx = fe * d.ex - fw * d.wx - fl * d.lx, ny = fe * d.ey - fw * d.wy - fl * d.ly,
                      nz = fe * d.ez - fw * d.wz - fl * d.lz;
         const Packet size = square_root(fe * fe + fw * fw + fl * fl), per = 1.0 / size;
-        put(known.gap, asked.gap);
-        put(known.rank, asked.rank);
+        put(known.gap, required.gap);
+        put(known.rank, required.rank);
         put(known.bx, d.ex);
         put(known.by, d.ey);
         put(known.bz, d.ez);

@@ -9,7 +9,8 @@ namespace birm3d {
 
 namespace {
 
-// Fraction of mu N that the brush model mobilises, in [-1, 1].
+// Fraction of mu N that the brush model mobilises, in [-1, 1]: 1 - (1 - s)^3 up to full sliding at s = 1, odd in s. The
+// formula is in "Tyres on the pavement" of docs/pages/theory.md.
 double brush(double normalised_slip) {
     const double s = std::min(1.0, std::abs(normalised_slip));
     const double rest = 1.0 - s;
@@ -54,6 +55,93 @@ double inverse_mass_at_wheels(const Unit& unit, const Mat3& R, double height) {
     return greatest;
 }
 
+// What both rules of friction need to know of a unit on its tyres.
+struct UnitOnTires {
+    const Unit& unit;
+    const Settings& settings;
+    const TireMotion& motion;
+    Mat3 R;               // body to world axes
+    double height;        // of the mass centre above the ground (m)
+    double speed_change;  // that friction with a coefficient of 1 would take from a wheel (m/s)
+
+    // At small slip the impulse is C N dt v_across / v_along. This lower bound of v_along keeps it from reversing the motion.
+    double slowest() const { return settings.cornering_stiffness * speed_change; }
+
+    // Velocity at `arm` from the mass centre that friction acts against, world axes (m/s). It is that at the end of the step
+    // unless the motion is slow, see TireMotion.
+    Vec3 velocity_at(const Vec3& arm) const {
+        const Vec3 now = motion.now.velocity + motion.now.angular_velocity.cross(arm);
+        const Vec3 then = motion.at_end.velocity + motion.at_end.angular_velocity.cross(arm);
+        return now + std::clamp(now.norm() / slowest() - 1.0, 0.0, 1.0) * (then - now);
+    }
+};
+
+// The paper's rule (5.2): full friction against the velocity of the mass centre, unless the unit moves along r.
+Wrench skid_friction(const UnitOnTires& on, std::span<const double> normal_impulses) {
+    Wrench sum;
+    const double mu = on.settings.mu_tire;
+    const Vec3 moving = on.velocity_at(Vec3::Zero()), velocity(moving.x(), moving.y(), 0.0);
+    const double speed = velocity.norm();
+    const Vec3 heading = Vec3(on.R(0, 0), on.R(1, 0), 0.0).normalized();
+    const double across = std::abs(heading.x() * velocity.y() - heading.y() * velocity.x());
+    // The velocity is "parallel to the r-direction" (paper), up to rounding: the wheel rolls, and only brakes
+    // slow it.
+    const double sliding = across <= 1e-9 * speed ? on.settings.braking : 1.0;
+    if (sliding == 0.0) return sum;
+    const Vec3 direction = -sliding / std::max(speed, mu * on.speed_change) * velocity;
+    for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
+        const Vec3 impulse = mu * normal_impulses[i] * direction;
+        sum += {impulse, point_on_ground(on.unit.wheels[i], on.R, on.height).cross(impulse)};
+    }
+    return sum;
+}
+
+// The direction to the left in which a wheel does not roll: along its axle, seen from above, steered and turned by camber.
+Vec3 direction_across(const Wheel& wheel, const Vec3& left, const Vec3& turned_left, double horizontal,
+                      const Mat3& R) {
+    const Vec3 across = wheel.steers() ? turned_left : left;
+    if (!(wheel.camber_ratio > 0.0)) return across;
+    const double leans_right = std::atan2(R(2, 1), horizontal);
+    return turned_by(-wheel.camber_ratio * leans_right, across);
+}
+
+// The friction that a wheel at this velocity mobilises, as a fraction of mu N, against the returned vector. Brakes have their
+// part b of the friction circle, against the velocity. sqrt(1 - b^2) of it acts across the wheel, by the brush model.
+Vec3 mobilised_friction(const UnitOnTires& on, const Vec3& across, const Vec3& velocity) {
+    const double mu = on.settings.mu_tire, brakes = on.settings.braking;
+    const double steers = std::sqrt(1.0 - brakes * brakes);
+    const Vec3 along(across.y(), -across.x(), 0.0);
+    const double tan_slip = velocity.dot(across) / std::max(std::abs(velocity.dot(along)), on.slowest());
+    const double fraction = brush(on.settings.cornering_stiffness * tan_slip / (3.0 * mu));
+    Vec3 mobilised = steers * fraction * across;
+    if (brakes > 0.0) {
+        const Vec3 ground_velocity(velocity.x(), velocity.y(), 0.0);
+        mobilised += brakes / std::max(ground_velocity.norm(), mu * on.speed_change) * ground_velocity;
+        mobilised /= std::max(1.0, mobilised.norm());
+    }
+    return mobilised;
+}
+
+// The default rule: the brush model at each wheel's own slip angle.
+Wrench slip_friction(const UnitOnTires& on, double steering_angle, std::span<const double> normal_impulses) {
+    Wrench sum;
+    const Vec3 axle(on.R(0, 1), on.R(1, 1), 0.0);  // its direction along the ground
+    const double horizontal = axle.norm();
+    if (horizontal < 1e-9) return sum;
+    const Vec3 left = axle / horizontal;
+    const Vec3 turned_left = turned_by(steering_angle, left);
+    for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
+        if (normal_impulses[i] == 0.0) continue;
+        const Wheel& wheel = on.unit.wheels[i];
+        const Vec3 arm = point_on_ground(wheel, on.R, on.height);
+        const Vec3 across = direction_across(wheel, left, turned_left, horizontal, on.R);
+        const Vec3 mobilised = mobilised_friction(on, across, on.velocity_at(arm));
+        const Vec3 impulse = -on.settings.mu_tire * normal_impulses[i] * mobilised;
+        sum += {impulse, arm.cross(impulse)};
+    }
+    return sum;
+}
+
 }  // namespace
 
 void find_tire_contacts(const Unit& unit, std::size_t body, const BodyState& state, WheelSet given_way,
@@ -82,76 +170,18 @@ WheelSet overloaded(const Unit& unit, double dt, std::span<const double> normal_
     return found;
 }
 
-// Over 60 lines: both tyre models, which share the velocities at the wheels and the limits of slow motion.
 Wrench tire_friction(const Unit& unit, const Settings& settings, const BodyState& state,
                      double steering_angle, const TireMotion& motion,
                      std::span<const double> normal_impulses) {
-    Wrench sum;
-    const double mu = settings.mu_tire;
     double total = 0.0;
     for (const double impulse : normal_impulses)
         total += impulse;
-    if (mu == 0.0 || total == 0.0) return sum;
-
+    if (settings.mu_tire == 0.0 || total == 0.0) return {};
     const Mat3 R = state.orientation.toRotationMatrix();
-    // Speed that friction with a coefficient of 1 would take from a wheel.
-    const double speed_change = total * inverse_mass_at_wheels(unit, R, state.position.z());
-    // At small slip the impulse is C N dt * v_across / v_along. A lower bound of v_along keeps it from reversing the
-    // motion.
-    const double slowest = settings.cornering_stiffness * speed_change;
-    const auto velocity_at = [&](const Vec3& arm) -> Vec3 {
-        const Vec3 now = motion.now.velocity + motion.now.angular_velocity.cross(arm);
-        const Vec3 then = motion.at_end.velocity + motion.at_end.angular_velocity.cross(arm);
-        return now + std::clamp(now.norm() / slowest - 1.0, 0.0, 1.0) * (then - now);
-    };
-
-    if (settings.tire_model == TireModel::skid) {
-        const Vec3 moving = velocity_at(Vec3::Zero()), velocity(moving.x(), moving.y(), 0.0);
-        const double speed = velocity.norm();
-        const Vec3 heading = Vec3(R(0, 0), R(1, 0), 0.0).normalized();
-        const double across = std::abs(heading.x() * velocity.y() - heading.y() * velocity.x());
-        // The velocity is "parallel to the r-direction" (paper), up to rounding: the wheel rolls, and only brakes
-        // slow it.
-        const double sliding = across <= 1e-9 * speed ? settings.braking : 1.0;
-        if (sliding == 0.0) return sum;
-        const Vec3 direction = -sliding / std::max(speed, mu * speed_change) * velocity;
-        for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
-            const Vec3 impulse = mu * normal_impulses[i] * direction;
-            sum += {impulse, point_on_ground(unit.wheels[i], R, state.position.z()).cross(impulse)};
-        }
-        return sum;
-    }
-
-    const Vec3 across_raw(R(0, 1), R(1, 1), 0.0);  // the axle's direction along the ground
-    const double horizontal = across_raw.norm();
-    if (horizontal < 1e-9) return sum;
-    const Vec3 left = across_raw / horizontal;
-    const Vec3 turned_left = turned_by(steering_angle, left);
-    const double brakes = settings.braking, steers = std::sqrt(1.0 - brakes * brakes);
-    for (std::size_t i = 0; i < normal_impulses.size(); ++i) {
-        if (normal_impulses[i] == 0.0) continue;
-        const Vec3 arm = point_on_ground(unit.wheels[i], R, state.position.z());
-        const Vec3 velocity = velocity_at(arm);
-        const Wheel& wheel = unit.wheels[i];
-        Vec3 across = wheel.steers() ? turned_left : left;
-        if (wheel.camber_ratio > 0.0) {
-            const double leans_right = std::atan2(R(2, 1), horizontal);
-            across = turned_by(-wheel.camber_ratio * leans_right, across);
-        }
-        const Vec3 along(across.y(), -across.x(), 0.0);
-        const double tan_slip = velocity.dot(across) / std::max(std::abs(velocity.dot(along)), slowest);
-        const double fraction = brush(settings.cornering_stiffness * tan_slip / (3.0 * mu));
-        // The braking part acts against the velocity; the remaining friction acts across the wheel.
-        Vec3 mobilised = steers * fraction * across;
-        if (brakes > 0.0) {
-            const Vec3 ground_velocity(velocity.x(), velocity.y(), 0.0);
-            mobilised += brakes / std::max(ground_velocity.norm(), mu * speed_change) * ground_velocity;
-            mobilised /= std::max(1.0, mobilised.norm());
-        }
-        const Vec3 impulse = -mu * normal_impulses[i] * mobilised;
-        sum += {impulse, arm.cross(impulse)};
-    }
-    return sum;
+    const double height = state.position.z();
+    const UnitOnTires on{unit, settings, motion, R, height, total * inverse_mass_at_wheels(unit, R, height)};
+    return settings.tire_model == TireModel::skid ? skid_friction(on, normal_impulses)
+                                                  : slip_friction(on, steering_angle, normal_impulses);
 }
 
 }  // namespace birm3d

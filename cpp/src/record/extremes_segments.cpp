@@ -41,7 +41,9 @@ double overturning(const Segment& segment, const SegmentHistory& motion, const O
     const double rows = static_cast<double>(window);
     const double mass = segment.body.mass, half = segment.half_base;
     double greatest = 0.0;
-    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  // sums of the rows within the window
+    // Sums of the rows within the window. WindowSum rounds them in another order, which would change the last digits of a
+    // metric whose values are committed.
+    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
     for (std::size_t k = 0; k < motion.yaw.size(); ++k) {
         if (load) {
             force += load->force[k], moment += load->moment[k];

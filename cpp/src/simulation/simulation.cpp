@@ -165,7 +165,7 @@ void Simulation::fixed_step() {
         // The rigid body met the barrier. In shorter steps the trusses might have stopped it before. Check them along
         // the path.
         Trial free(*scene_.vehicle);
-        for (double part = dt; part > 1e-3 * dt; part *= 0.5) {
+        for (double part = dt; part > tolerance::shortest_trial_part * dt; part *= 0.5) {
             try_step(scene_, state_, part, {.hold_core = false}, free);
             critical = std::min(critical, free.critical_step);
         }

@@ -1,7 +1,7 @@
 #include "step/half_kick.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -10,13 +10,9 @@
 #include "contact/impulse_iteration.hpp"
 #include "contact/rigid_contacts.hpp"
 #include "contact/rigid_impact.hpp"
-#include "kernels/detect.hpp"
-#include "kernels/detect_core.hpp"
 #include "kernels/impulse.hpp"
 #include "kernels/integrate.hpp"
-#include "kernels/joints.hpp"
 #include "kernels/suspension.hpp"
-#include "kernels/tires.hpp"
 #include "scene/bodies.hpp"
 #include "scene/obstacles.hpp"
 
@@ -28,59 +24,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Rounding of the gap of a tyre that stands on the ground (m).
 constexpr double rounding_gap = 1e-12;
-
-// Does the obstacle push on any node of the unit?
-bool pushes(const UnitState& unit, std::size_t obstacle) {
-    return std::any_of(unit.contact_loads.begin(), unit.contact_loads.end(), [=](const ContactLoad& load) {
-        return load.obstacle == obstacle && load.normal_force > 0.0;
-    });
-}
-
-// Lists in memory.contacts every rigid contact that is possible within the step, and the constraints of joints.
-void find_rigid_contacts(const Scene& scene, const State& state, double dt, const StepOptions& options,
-                         KickMemory& memory) {
-    std::vector<RigidContact>& contacts = memory.contacts;
-    std::vector<PlacedShape>& placed = memory.placed;
-    std::vector<std::size_t>& about = memory.about;
-    contacts.clear();
-    for (std::size_t u = 0; u < state.units.size(); ++u) {
-        const Unit& unit = scene.vehicle->units[u];
-        const BodyState& body = state.units[u].body;
-        if (scene.settings.ground)
-            find_tire_contacts(unit, u, body, state.units[u].given_way, WheelAt::bump_stop, contacts);
-        if (scene.obstacles.empty() || !options.hold_core) continue;
-        const Mat3 R = body.orientation.toRotationMatrix();
-        const Twist motion{R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
-        placed.clear();
-        const Box& anchors = unit.trusses.anchors;
-        scene.map.find(body.position, unit.trusses.reach + core_margin(unit.trusses, motion, dt), about);
-        for (const std::size_t i : about) {
-            if (i == scene.ground && !scene.skin_meets_ground[u]) continue;
-            const Obstacle& obstacle = scene.obstacles[i];
-            const Placement in_shape = placement(pose_of(scene, i, state), body);
-            const Twist other = obstacle_motion(scene, i, state, body);
-            const Twist relative{motion.velocity - other.velocity,
-                                 motion.angular_velocity - other.angular_velocity};
-            if (within_reach(obstacle.shape, in_shape, anchors, core_margin(unit.trusses, relative, dt)))
-                placed.push_back(
-                    {&obstacle.shape, in_shape, i, obstacle.friction, other, pushes(state.units[u], i)});
-        }
-        if (placed.empty()) continue;
-        const std::size_t first = contacts.size();
-        find_core_contacts(unit, u, state.units[u], placed, motion, dt, contacts);
-        for (std::size_t i = first; i < contacts.size(); ++i) {
-            RigidContact& contact = contacts[i];
-            contact.other = body_of_obstacle(scene, contact.obstacle);
-            if (contact.other >= 0)
-                contact.other_arm = contact.arm + body.position -
-                                    body_state(state, static_cast<std::size_t>(contact.other)).position;
-        }
-    }
-    const std::vector<Joint>& joints = scene.vehicle->joints;
-    for (std::size_t j = 0; j < joints.size(); ++j)
-        find_joint_rows(joints[j], j, body_state(state, joints[j].leading),
-                        body_state(state, joints[j].trailing), contacts);
-}
 
 // After the drift, contacts stop the approach, and both bodies have the same velocity at a joint. Removes the contacts
 // that do not act.
@@ -138,7 +81,7 @@ Wrench add_spring_impulse(const SuspensionLoad& load, double half, ContactImpuls
     return {impulse, load.arm.cross(impulse)};
 }
 
-// What dampers take, by the mean of the velocities before and after the half kick.
+// Energy that dampers take, by the mean of the velocities before and after the half kick.
 void add_damper_work(const std::vector<std::vector<SuspensionLoad>>& sprung, const std::vector<Twist>& before,
                      const std::vector<Twist>& after, double half, Energies& energies) {
     for (std::size_t u = 0; u < sprung.size(); ++u)
@@ -223,66 +166,88 @@ void kick_unconstrained(const Scene& scene, Stage stage, double half, Trial& tri
     add_friction_work(scene, memory.before, memory.pushed, half, state);
 }
 
+// Applies the impacts at the start of the step, and sets memory.before to the motions after them. With fixed steps, all
+// impacts of the coming step happen at its start, before any point can pass its surface.
+void impact_before_drift(const Scene& scene, const StepOptions& options, Trial& trial) {
+    KickMemory& memory = trial.memory;
+    const double reach = options.locate_impacts ? 0.0 : trial.dt;
+    impact_at_once(scene, Stage::before_drift, reach, memory.before, memory.after, trial);
+    if (trial.at_start.happened) std::swap(memory.before, memory.after);
+}
+
+// Impulses of rigid contacts before the drift: they keep points from passing their surfaces, and close joints.
+void kick_rigid_contacts_before(const Scene& scene, const Column& pressed, Trial& trial) {
+    KickMemory& memory = trial.memory;
+    set_drift_targets(trial.dt, memory.bodies, trial.state, memory.kick.contacts);
+    const KickedBy by{.pressed = pressed,
+                      .at_end = memory.before,
+                      .from = memory.before,
+                      .time = 0.5 * trial.dt,
+                      .drift = trial.dt};
+    kick_towards_closed_joints(scene, by, memory, trial.state);
+}
+
+// Impulses of rigid contacts after the drift: they stop what still approaches. Tyre friction needs the velocity at the end of
+// the step. The contacts' change of velocity until then is taken to be that before the drift.
+void kick_rigid_contacts_after(const Scene& scene, const Column& pressed, Trial& trial) {
+    KickMemory& memory = trial.memory;
+    keep_lasting_contacts(trial.dt, scene.settings.gravity, trial.impulses, memory.bodies,
+                          memory.kick.contacts);
+    combine(memory.pushed, 1.0, trial.by_contacts, memory.rolling);
+    const KickedBy by{
+        .pressed = pressed, .at_end = memory.rolling, .from = memory.before, .time = 0.5 * trial.dt};
+    kick_by_contacts(scene, by, memory, trial.state);
+}
+
+// Adds what the half kick did to the impulses of the step and to the energy balance.
+void book_half_kick(const Scene& scene, double half, Trial& trial) {
+    State& state = trial.state;
+    KickMemory& memory = trial.memory;
+    add_friction_work(scene, memory.before, memory.after, half, state);
+    add_damper_work(memory.sprung, memory.before, memory.after, half, state.energies);
+    book_contacts(scene, memory.kick, memory.before, memory.after, state);
+}
+
 }  // namespace
 
 void half_kick(const Scene& scene, Stage stage, const StepOptions& options, Trial& trial) {
     State& state = trial.state;
     KickMemory& memory = trial.memory;
-    std::vector<ContactBody>& bodies = memory.bodies;
     const double half = 0.5 * trial.dt;
-    const bool start = stage == Stage::before_drift;
+    const bool is_first = stage == Stage::before_drift;
     find_rigid_contacts(scene, state, trial.dt, options, memory);
     if (memory.contacts.empty() && state.segments.empty())
         return kick_unconstrained(scene, stage, half, trial);
 
-    list_bodies(scene, state, bodies);
-    list_motions(state, bodies, memory.before);
-    if (start) {
-        // With fixed steps, the impacts of the coming step happen at its start, before any point can pass its surface.
-        impact_at_once(scene, stage, options.locate_impacts ? 0.0 : trial.dt, memory.before, memory.after,
-                       trial);
-        if (trial.at_start.happened) std::swap(memory.before, memory.after);
-    } else {
+    // memory.before, .pushed and .after: motions before the kick, with the forces, and with the rigid contacts, too.
+    list_bodies(scene, state, memory.bodies);
+    list_motions(state, memory.bodies, memory.before);
+    if (is_first)
+        impact_before_drift(scene, options, trial);
+    else
         note_greatest_depth(memory.contacts, state.statistics);
-    }
 
     for (RigidContact& contact : memory.contacts)
-        contact.is_impact = approaches_hard(contact, bodies);
+        contact.is_impact = approaches_hard(contact, memory.bodies);
     find_sprung_wheels(scene, state, stage, memory);
     const Column pressed = kick_by_forces(scene, stage, half, trial);
-    list_motions(state, bodies, memory.pushed);
-    if (start && options.locate_impacts)
-        trial.impact_after = time_to_impact(tolerance::resting_approach * trial.dt, bodies, memory.contacts);
+    list_motions(state, memory.bodies, memory.pushed);
+    if (is_first && options.locate_impacts)
+        trial.impact_after =
+            time_to_impact(tolerance::resting_approach * trial.dt, memory.bodies, memory.contacts);
     if (trial.impact_within()) return;
-    memory.kick.contacts = memory.contacts;
-    if (start)
-        set_drift_targets(trial.dt, bodies, state, memory.kick.contacts);
-    else
-        keep_lasting_contacts(trial.dt, scene.settings.gravity, trial.impulses, bodies, memory.kick.contacts);
-    // Tyre friction needs the velocity at that end of the step. For the end after the drift, the contacts' change of
-    // velocity is taken to be the one before the drift.
-    if (start) {
-        kick_towards_closed_joints(scene,
-                                   {.pressed = pressed,
-                                    .at_end = memory.before,
-                                    .from = memory.before,
-                                    .time = half,
-                                    .drift = trial.dt},
-                                   memory, state);
-    } else {
-        combine(memory.pushed, 1.0, trial.by_contacts, memory.rolling);
-        kick_by_contacts(scene,
-                         {.pressed = pressed, .at_end = memory.rolling, .from = memory.before, .time = half},
-                         memory, state);
-    }
-    add_impulses(scene, state, memory.kick, trial.impulses, trial.joint_impulses);
-    list_motions(state, bodies, memory.after);
-    if (start) combine(memory.after, -1.0, memory.pushed, trial.by_contacts);
-    add_friction_work(scene, memory.before, memory.after, half, state);
-    add_damper_work(memory.sprung, memory.before, memory.after, half, state.energies);
-    book_contacts(scene, memory.kick, memory.before, memory.after, state);
 
-    if (!start) impact_at_once(scene, stage, 0.0, memory.after, memory.before, trial);
+    memory.kick.contacts = memory.contacts;
+    if (is_first)
+        kick_rigid_contacts_before(scene, pressed, trial);
+    else
+        kick_rigid_contacts_after(scene, pressed, trial);
+    add_impulses(scene, state, memory.kick, trial.impulses, trial.joint_impulses);
+    list_motions(state, memory.bodies, memory.after);
+    if (is_first) combine(memory.after, -1.0, memory.pushed, trial.by_contacts);
+    book_half_kick(scene, half, trial);
+
+    if (!is_first) impact_at_once(scene, stage, 0.0, memory.after, memory.before, trial);
 }
 
 }  // namespace birm3d

@@ -12,9 +12,9 @@ import numpy.typing as npt
 from ..base.arguments import checked
 from ..unit_check import given, warn_if_mesh_unusual
 from ..units import Quantity, si
+from .free_standing import FreeStanding
 
 if TYPE_CHECKING:
-    from .free_standing import FreeStanding
     from .kinds import Bollards, Jersey, MeshBarrier, Planter, Pole, RigidWall
 
 __all__ = ["BarrierMakers", "Point", "point_of"]
@@ -196,7 +196,6 @@ class BarrierMakers:
         ValueError
             If a number is out of range; the message names argument, limit and value.
         """
-        from .free_standing import FreeStanding
         from .kinds import Jersey
 
         if isinstance(free_standing, FreeStanding):

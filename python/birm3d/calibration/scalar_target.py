@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from ..base.arguments import checked
+from ..base.near_names import near_names
 from ..result.metrics import METRIC_UNITS
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ class ScalarTarget:
         """Return the computed value, shape (1,)."""
         metrics = result.metrics
         if self.metric not in metrics:
-            near = get_close_matches(self.metric, metrics, n=3) or sorted(metrics)
+            near = near_names(self.metric, metrics, most=3) or sorted(metrics)
             raise ValueError(f"metric must be one the run has (near: {', '.join(near)}); got {self.metric!r}")
         return np.array([metrics[self.metric]])
 

@@ -9,7 +9,7 @@ from statistics import median
 
 from ..assessment import DesignLoad, ElementDesign, OccupantRisk, Rating
 from ..assessment.criteria import Criterion
-from ..assessment.design_load import ASSUMED, greatest_of_periods
+from ..assessment.design_remarks import ASSUMED, greatest_of_periods
 from ..assessment.rating import MODEL_CAUTION
 from ..assessment.vehicles import HEAVY_KG
 from ..result.element_loads import touched_elements

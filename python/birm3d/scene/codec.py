@@ -26,9 +26,9 @@ def _classes() -> Mapping[str, type[Any]]:
     """Return the classes that scenes are made of by the names they have in files."""
     from ..barrier.free_standing import FreeStanding
     from ..barrier.kinds import KINDS, MeshBarrier
-    from ..vehicle.articulated import ArticulatedVehicle, Joint
+    from ..vehicle.joint import Joint
     from ..vehicle.mesher import ExteriorMesh
-    from ..vehicle.vehicle import Vehicle, Zone
+    from ..vehicle.vehicle import ArticulatedVehicle, Vehicle, Zone
     from ..vehicle.vehicle_file import VehicleFile
     from .scene import Scene
     from .settings import Settings
@@ -112,7 +112,7 @@ def decode(plain: Any, arrays: Arrays) -> Any:
     if hasattr(kind, "model_validate"):
         return kind.model_validate(fields)
     if kind.__name__ == "ArticulatedVehicle":
-        from ..vehicle.articulated import articulate
+        from ..vehicle.vehicle import articulate
 
         return articulate(**fields)
     if kind.__name__ == "Vehicle":  # as files of 0.1.0 have it

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from .articulated import ArticulatedVehicle, Joint
-from .builder import build
 from .combination_recipe import CombinationRecipe
+from .joint import Joint
 from .recipe import VehicleArrays, VehicleRecipe
-from .vehicle import Vehicle
+from .vehicle import ArticulatedVehicle, Vehicle, build
 from .zone import Zone
 
 __all__ = [

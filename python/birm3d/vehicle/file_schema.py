@@ -56,6 +56,7 @@ LawName: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*(\.along)?$"
 Panel: TypeAlias = Literal["front", "rear", "side", "top", "bottom", "tire"]
 # Text that may be broken over several lines of the file.
 Text: TypeAlias = Annotated[str, Field(min_length=1), AfterValidator(lambda text: " ".join(text.split()))]
+# How far a number can be trusted; docs/pages/how-to/vehicle.md says what each word means.
 Status: TypeAlias = Literal["measured", "published", "calibrated", "estimated"]
 # What standards of testing tell apart; a cab-over truck has its cab above the front axle.
 Kind: TypeAlias = Literal[

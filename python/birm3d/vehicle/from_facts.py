@@ -8,15 +8,16 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..units import Quantity, si
-from .builder import build
+from .built_fields import fields_of
 from .file_schema import Assumption, Scatter, Source
+from .read_recipe import read_preset
 from .recipe import VehicleRecipe
 from .scaling import sizes_given
-from .vehicle import Vehicle
+from .variants import VehicleVariants
 from .vehicle_file import VehicleFile
 from .zone import positive
 
-__all__ = ["KINDS", "vehicle_of_facts"]
+__all__ = ["KINDS", "recipe_of_facts", "unit_of"]
 
 KINDS: Mapping[str, tuple[tuple[str, float], ...]] = {
     "car": (("small_car", 900.0), ("mash_1100c", 1100.0), ("sedan_1500", 1500.0), ("passenger_car", 1814.0)),
@@ -55,19 +56,26 @@ _Z = 1.2816  # 80 %, two sides
 _LARGE = 1000.0  # from here on whole numbers are shown
 
 
-def vehicle_of_facts(
+def unit_of(recipe: VehicleRecipe) -> VehicleVariants:
+    """Return a vehicle of one unit: its dimensions, mass properties and the methods that change it."""
+    return VehicleVariants(**fields_of(recipe))
+
+
+def recipe_of_facts(
     kind: str,
     mass: Quantity,
     sizes: Mapping[str, Quantity | None],
     height: Quantity | None,
     mesh_density: float,
-) -> Vehicle:
-    """Return a vehicle of a kind by its facts; see :meth:`birm3d.Vehicle.from_facts`."""
+) -> VehicleRecipe:
+    """Return the recipe of a vehicle of a kind by its facts; see :meth:`birm3d.Vehicle.from_facts`."""
     if kind not in KINDS:
         raise ValueError(f"kind must be one of {', '.join(KINDS)}; got {kind!r}")
     kilograms = positive("mass", si("mass", mass, "mass"))
     base = min(KINDS[kind], key=lambda one: abs(math.log(one[1] / kilograms)))[0]
-    preset = Vehicle.preset(base, mesh_density=mesh_density)
+    of_preset = read_preset(base, None, mesh_density)
+    assert isinstance(of_preset, VehicleRecipe)  # all presets of KINDS have one unit
+    preset = unit_of(of_preset)
     given = sizes_given(**sizes)
     center = sizes_given(mass_center_height=height)["mass_center_height"]
     loaded = kind in _LOADED
@@ -103,7 +111,9 @@ def vehicle_of_facts(
     return _finished(scaled, kind, base, tuple(told), spread)
 
 
-def _scaled(preset: Vehicle, mass: float, sizes: Mapping[str, float | None], loaded: bool) -> Vehicle:
+def _scaled(
+    preset: VehicleVariants, mass: float, sizes: Mapping[str, float | None], loaded: bool
+) -> VehicleVariants:
     """Return the preset at another size and mass: a similar vehicle, or its structure with another load."""
     if not loaded:
         return preset.scaled_to(mass, **sizes)
@@ -124,8 +134,10 @@ def _assumed(name: str, value: float | None, log_sd: float, why: str, unit: str 
     return Assumption(quantity=name, value=value, low=low, high=high, unit=unit, text=text)
 
 
-def _finished(scaled: Vehicle, kind: str, base: str, told: tuple[Assumption, ...], spread: float) -> Vehicle:
-    """Return the vehicle with a file of its own, which says what was assumed."""
+def _finished(
+    scaled: VehicleVariants, kind: str, base: str, told: tuple[Assumption, ...], spread: float
+) -> VehicleRecipe:
+    """Return the recipe with a file of its own, which says what was assumed."""
     recipe = scaled._description
     assert isinstance(recipe, VehicleRecipe)  # all presets of KINDS have one unit
     file = recipe.file
@@ -144,7 +156,7 @@ def _finished(scaled: Vehicle, kind: str, base: str, told: tuple[Assumption, ...
         "assumptions": told,
         "scatter": tuple(_with_height(file, spread)),
     }
-    return build(dataclasses.replace(recipe, name=name, file=file.changed(changes)))
+    return dataclasses.replace(recipe, name=name, file=file.changed(changes))
 
 
 def _with_height(file: VehicleFile, spread: float) -> list[Scatter]:

@@ -11,8 +11,8 @@ import numpy as np
 
 from ..base.arguments import checked
 from ..base.checks import MOST_NODES, whole_number
-from .articulated import ArticulatedVehicle, Joint
-from .vehicle import Vehicle
+from .joint import Joint
+from .vehicle import ArticulatedVehicle, Vehicle
 
 __all__ = ["elastic_block", "laboratory_block", "laboratory_semi"]
 

@@ -7,22 +7,21 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..base.arguments import checked
-from ..unit_check import Usual, given, warn_if_unusual
-from ..units import Quantity, Stated, si
+from ..unit_check import given
+from ..units import Quantity, si
+from .built_fields import fields_of
+from .given_mass import given_mass
+from .recipe import VehicleRecipe
 from .scaling import factors_of, sizes_given
 from .vehicle_data import VehicleData
-from .zone import KNEE, LAW_QUANTITIES, OF_ENVELOPE, OPTIONAL, Zone, positive
+from .zone import KNEE, LAW_QUANTITIES, OF_ENVELOPE, OPTIONAL, Zone
 
 if TYPE_CHECKING:
     from typing_extensions import Self
 
     from .combination_recipe import CombinationRecipe
-    from .recipe import VehicleRecipe
 
 __all__ = ["VehicleVariants"]
-
-# A mass beyond these fractions of the file's is most likely in another unit.
-_LEAST, _MOST = 0.05, 10.0
 
 
 @checked
@@ -56,27 +55,37 @@ class VehicleVariants(VehicleData):
                 )
 
     def _changed(self, recipe: VehicleRecipe | CombinationRecipe) -> Self:
-        """Return the vehicle of another recipe; what it shares with this one is not made again."""
-        from .builder import rebuilt
+        """Return the vehicle of another recipe; what it shares with this one is not made again.
 
-        return rebuilt(self, recipe)
+        Raises
+        ------
+        ValueError
+            As :func:`birm3d.vehicle.build`; and if arrays that ``dataclasses.replace()`` was given would be
+            lost.
+        """
+        now = self._description
+        if recipe is now:
+            return self
+        # A change keeps the number of units; vehicles of two have a method of their own.
+        assert isinstance(recipe, VehicleRecipe)
+        assert isinstance(now, VehicleRecipe)
+        if recipe.body == now.body:
+            return dataclasses.replace(
+                self,
+                name=recipe.name,
+                zones=recipe.zones,
+                rate_sensitivity=recipe.rate_sensitivity,
+                indentation_length=recipe.indentation_length,
+            )
+        if recipe.file is None:
+            return type(self)(**fields_of(recipe))
+        self._require_as_built()
+        same_mesh = recipe.file is now.file and recipe.mesh_density == now.mesh_density
+        return type(self)(**fields_of(recipe, self._shape if same_mesh else None))
 
     def _mass_given(self, name: str, mass: Quantity) -> float:
-        """Return a mass [kg] > 0, and warn if it is far from that of the vehicle's file.
-
-        For ``mass``, which scales the structure too, only a likely wrong unit is warned of.
-        """
-        number = positive(name, si(name, mass, "mass"))
-        usual = self._description.file_mass
-        if not isinstance(mass, (str, Stated)) and usual is not None:
-            unit = Usual(usual * _LEAST, usual * _MOST, "kg", "t")
-            if not unit.low <= number <= unit.high:
-                warn_if_unusual(name, number, unit)
-                return number
-        of_class = self._description.usual_mass
-        if name == "gvw" and of_class is not None:
-            of_class.warn(name, number)
-        return number
+        """Return a mass [kg] > 0, and warn if it is far from that of the vehicle's file."""
+        return given_mass(name, mass, self._description)
 
     def with_gvw(self, gvw: Quantity) -> Self:
         """Return the vehicle with another mass [kg]; every mass property follows.

@@ -1,31 +1,42 @@
-"""Vehicles: a rigid body, its crushable skin and its wheels."""
+"""Vehicles of one rigid body or of two: each has a crushable skin and wheels."""
 
-# Longer than 300 lines: what users read of a vehicle, its fields and how one is made.
+# Longer than 300 lines: what users read of a vehicle and how one is made. Methods of a vehicle of one unit
+# return vehicles of two, which are derived from it: both stand here, so that no modules import each other.
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
 
 import numpy as np
 import numpy.typing as npt
 
-from .. import pictures
+from .. import _core, pictures
 from ..base.arguments import checked
 from ..base.checks import array
 from ..units import Quantity, si
+from .built_fields import fields_of, joined_fields
+from .combination_recipe import CombinationRecipe
+from .core_arguments import core_unit, unit_arguments
+from .given_mass import warn_of_mass
+from .joint import Joint
 from .old_names import OldVehicleNames
+from .read_recipe import read, read_preset
+from .recipe import VehicleRecipe
+from .wheel_arguments import load_on_joint
 from .zone import TRUSS_LAW, Zone
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from typing_extensions import Self
 
-    from .articulated import ArticulatedVehicle
-    from .joint import Joint
+__all__ = ["TRUSS_LAW", "ArticulatedVehicle", "Vehicle", "Zone", "articulate", "build"]
 
-__all__ = ["TRUSS_LAW", "Vehicle", "Zone"]
-
+Floats = npt.NDArray[np.float64]
 FloatsLike = npt.ArrayLike
 
 
@@ -103,9 +114,7 @@ class Vehicle(OldVehicleNames):
         mesh_density
             Number of shell elements relative to the file's choice (about 6,000).
         """
-        from .builder import read_preset
-
-        return read_preset(name, gvw, mesh_density)
+        return _of_read(read_preset(name, gvw, mesh_density), gvw)
 
     @staticmethod
     def from_file(path: str | Path, *, gvw: Quantity | None = None, mesh_density: float = 1.0) -> Vehicle:
@@ -122,17 +131,16 @@ class Vehicle(OldVehicleNames):
             class can have it. The mass in the file's block ``[changes]`` is checked in the same way.
         """
         from ..io.file_format import reading
-        from .builder import read
         from .vehicle_file import VehicleFileError
 
         try:
-            return read(path, gvw, mesh_density)
+            return _of_read(read(path, gvw, mesh_density), gvw)
         except VehicleFileError:
             raise
         except (ValueError, TypeError, ArithmeticError, LookupError, AttributeError):
             # Is it the file or the arguments? Without them a good file gives a vehicle.
             with reading(path, "must be a vehicle", VehicleFileError):
-                read(path, None, 1.0)
+                _of_read(read(path, None, 1.0), None)
             raise
 
     @staticmethod
@@ -173,10 +181,10 @@ class Vehicle(OldVehicleNames):
         ValueError
             If the kind is not known, or a fact is out of range for it.
         """
-        from .from_facts import vehicle_of_facts
+        from .from_facts import recipe_of_facts
 
         sizes = {"length": length, "width": width, "height": height, "wheelbase": wheelbase}
-        return vehicle_of_facts(kind, mass, sizes, mass_center_height, mesh_density)
+        return build(recipe_of_facts(kind, mass, sizes, mass_center_height, mesh_density))
 
     @staticmethod
     def from_mesh(
@@ -269,7 +277,7 @@ class Vehicle(OldVehicleNames):
             If a library that reads the mesh is missing; says what to install.
         """
         from .mesh_import.facts import MeshFacts
-        from .mesh_import.vehicle_of_mesh import vehicle_of_mesh
+        from .mesh_import.recipe_of_mesh import recipe_of_mesh
 
         others = {
             "kind": kind, "unit": unit, "forward": forward, "up": up, "holes": holes, "parts": parts,
@@ -278,7 +286,7 @@ class Vehicle(OldVehicleNames):
             "track": track, "mass_center_height": mass_center_height, "center_of_mass": center_of_mass,
             "inertia": inertia, "use_densities": use_densities, "zones": zones, "core": core, "name": name,
         }  # fmt: skip
-        return vehicle_of_mesh(MeshFacts.given(path, mass, like, others), mesh_density)
+        return build(recipe_of_mesh(MeshFacts.given(path, mass, like, others), mesh_density))
 
     def plot(self) -> Figure:
         """Return a figure of what the vehicle is made of, from four sides.
@@ -420,6 +428,194 @@ class Vehicle(OldVehicleNames):
             If there are not two units of one body, or a zone's name is in both. If the heights of the joint
             on the two units differ by more than 1 mm.
         """
-        from .articulated import articulate
-
         return articulate(units, joint, name)
+
+
+@checked
+@dataclass(frozen=True, eq=False, repr=False)
+class ArticulatedVehicle(Vehicle):
+    """A vehicle of two units; make one with :meth:`Vehicle.articulated`. Immutable.
+
+    It has all that a :class:`Vehicle` has, of the whole in the position of rest. Mass, mass centre (in the
+    leading unit's axes) and inertia about it are those of both units. So are nodes, anchors, quads, wheels
+    and zones, the leading unit's first. ``units`` are the two, each with its own in its own axes; zones keep
+    their names, which differ between the units.
+
+    ``with_zone``, ``with_rate_sensitivity``, ``with_indentation_length``, ``with_mesh_density`` and
+    ``without_tire_contact`` go to the units that they concern. ``with_gvw`` and ``with_payload`` load or
+    lighten the trailing unit; the mass must exceed that of the leading one. ``with_mass_center_height``
+    raises the mass of both by one ratio, and a later mass keeps the height of the whole. ``scaled_to``
+    scales both in proportion, and the places of the joint with them, so that ``wheelbase`` must be ``None``.
+    ``with_unit`` and ``with_joint`` change a part. ``dataclasses.replace()`` changes the name only.
+    """
+
+    _units: tuple[Vehicle, ...] = ()
+    _joint: Joint | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self._own:
+            raise ValueError(
+                f"{', '.join(self._own)} of a vehicle of two units must be changed in its units, from which "
+                f"all of it follows: by with_unit(), or another method of {self.name!r}"
+            )
+
+    @property
+    def units(self) -> tuple[Vehicle, ...]:
+        """The leading and the trailing unit, each a vehicle of its own."""
+        return self._units
+
+    @property
+    def joint(self) -> Joint:
+        """What joins the units."""
+        assert self._joint is not None  # made together with the units
+        return self._joint
+
+    @cached_property
+    def _description(self) -> CombinationRecipe:
+        leading, trailing = (unit._description for unit in self._units)
+        assert isinstance(leading, VehicleRecipe)  # units are of one body, see articulate
+        assert isinstance(trailing, VehicleRecipe)
+        return CombinationRecipe(self.name, leading, trailing, self.joint)
+
+    def _changed(self, recipe: VehicleRecipe | CombinationRecipe) -> Self:
+        if recipe is self._description:
+            return self
+        assert isinstance(recipe, CombinationRecipe)  # a change keeps the number of units
+        units = [unit._changed(new) for unit, new in zip(self._units, recipe.units, strict=True)]
+        return cast("Self", articulate(units, recipe.joint, recipe.name))
+
+    @cached_property
+    def core(self) -> _core.Vehicle:
+        """The same vehicle for the core; its reference point is the leading unit's mass centre."""
+        joint = self.joint
+        leading, trailing = self._units
+        core_joint = _core.Joint(
+            kind=_core.JointKind.__members__[joint.kind],
+            leading=0,
+            trailing=1,
+            place_on_leading=joint.place_on_leading - leading.center_of_mass,
+            place_on_trailing=joint.place_on_trailing - trailing.center_of_mass,
+            roll_limit=math.radians(joint.roll_limit),
+        )
+        return _core.Vehicle([core_unit(*unit) for unit in self._placed_units()], [core_joint])
+
+    def _placed_units(self) -> list[tuple[Vehicle, Floats, tuple[Floats, float]]]:
+        """Return each unit, where its mass centre is, and what presses on it at the joint."""
+        leading, trailing = self._units
+        on_trailing = self.joint.place_on_trailing - trailing.center_of_mass
+        load = load_on_joint(trailing, on_trailing)
+        on_leading = self.joint.place_on_leading - leading.center_of_mass
+        return [
+            (leading, np.zeros(3), (on_leading, load)),
+            (trailing, self._trailing_offset(), (on_trailing, -load)),
+        ]
+
+    def _trailing_offset(self) -> Floats:
+        """Return the trailing mass centre along the ground, from the leading one, shape (3,) [m]."""
+        leading, trailing = self._units
+        offset = trailing.center_of_mass + self.joint.shift - leading.center_of_mass
+        offset[2] = 0.0
+        return offset
+
+    def _core_arguments(self) -> list[dict[str, Any]]:
+        return [unit_arguments(*unit) for unit in self._placed_units()]
+
+    def with_unit(self, index: int, unit: Vehicle) -> ArticulatedVehicle:
+        """Return the vehicle with another leading (0) or trailing (1) unit."""
+        if index not in (0, 1):
+            raise ValueError(f"index must be 0 (leading) or 1 (trailing), got {index}")
+        units = list(self._units)
+        units[index] = unit
+        return articulate(units, self.joint, self.name)
+
+    def with_joint(self, joint: Joint | Literal["fifth_wheel", "welded"]) -> ArticulatedVehicle:
+        """Return the vehicle with another joint, or with the present one of another kind."""
+        if isinstance(joint, str):
+            joint = dataclasses.replace(self.joint, kind=joint)
+        return articulate(self._units, joint, self.name)
+
+    @property
+    def truss_law(self) -> Mapping[str, float]:
+        """Refused: it is asked of one of the units."""
+        raise ValueError(f"truss law must be asked of one of the units, got {self.name!r} of two")
+
+    @property
+    def kind(self) -> str | None:
+        """``"tractor_semitrailer"`` where its units are a tractor and a semi-trailer, else ``None``."""
+        kinds = tuple(unit.kind for unit in self._units)
+        return "tractor_semitrailer" if kinds == ("tractor", "semi_trailer") else None
+
+    @property
+    def points(self) -> Mapping[str, tuple[float, float, float]]:
+        """Refused: each unit has points in its own axes."""
+        raise ValueError(f"points must be asked of one of the units, got {self.name!r} of two")
+
+    @property
+    def has_file(self) -> bool:
+        """Whether both units come from files, so that they can be meshed anew."""
+        return all(unit.has_file for unit in self._units)
+
+    @property
+    def mesh_density(self) -> float:
+        """Number of shell elements relative to the file of the leading unit."""
+        return self._units[0].mesh_density
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Vehicle):
+            return NotImplemented
+        return (
+            isinstance(other, ArticulatedVehicle)
+            and self.name == other.name
+            and self.joint == other.joint
+            and all(a == b for a, b in zip(self._units, other._units, strict=True))
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (articulate, (self._units, self.joint, self.name))
+
+    def __repr__(self) -> str:
+        leading, trailing = self._units
+        return f"ArticulatedVehicle({self.name!r}, {leading!r}, {trailing!r}, {self.joint.kind})"
+
+
+def articulate(units: Sequence[Vehicle], joint: Joint, name: str | None) -> ArticulatedVehicle:
+    """Return a vehicle of two units; see :meth:`Vehicle.articulated`."""
+    if len(units) != 2:
+        raise ValueError(f"units must be two, got {len(units)}")
+    for i, unit in enumerate(units):
+        if not isinstance(unit, Vehicle):
+            raise TypeError(f"units[{i}] must be a birm3d.Vehicle, got {type(unit).__name__}")
+        if len(unit.units) != 1:
+            raise ValueError(f"units[{i}] must be a vehicle of one unit, got {unit.name!r} of two")
+    if not isinstance(joint, Joint):
+        raise TypeError(f"joint must be a birm3d.Joint, got {type(joint).__name__}")
+    leading, trailing = units
+    for zone in trailing.zones:
+        if zone in leading.zones:
+            raise ValueError(f"names of zones must differ between the units, got {zone!r} in both")
+    return ArticulatedVehicle(**joined_fields(units, joint, name), _units=(leading, trailing), _joint=joint)
+
+
+def build(recipe: VehicleRecipe | CombinationRecipe) -> Vehicle:
+    """Return the vehicle of a recipe.
+
+    Equal recipes give equal vehicles, to the last bit; those of one file and mesh density share their mesh.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range; the message names it, the limit and the value.
+    """
+    if isinstance(recipe, CombinationRecipe):
+        return articulate([build(unit) for unit in recipe.units], recipe.joint, recipe.name)
+    return Vehicle(**fields_of(recipe))
+
+
+def _of_read(recipe: VehicleRecipe | CombinationRecipe, gvw: Quantity | None) -> Vehicle:
+    """Return the vehicle of a recipe that was read, and warn of a mass that its class can not have."""
+    vehicle = build(recipe)
+    warn_of_mass(gvw, recipe)
+    return vehicle

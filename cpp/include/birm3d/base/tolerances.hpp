@@ -29,6 +29,10 @@ inline constexpr double stable_fraction = 0.65;
 // reversals.
 inline constexpr double advised_fraction = 0.25;
 
+// Where the rigid body met the barrier in a fixed step, the trusses are checked in trial steps. These are halved down to this part
+// of the step: ten of them. Large: a truss that is loaded shortly before the impact is not seen. Small: more trial steps.
+inline constexpr double shortest_trial_part = 1e-3;
+
 // Longest and shortest adaptive step (s). Above the longest, too few loads are known to estimate an error. A scene
 // that needs steps below the shortest is refused.
 inline constexpr double longest_step = 50e-3;
@@ -98,6 +102,20 @@ inline constexpr double friction_settled = 1e-9;
 // Points nearer than this to a rigid surface count as touching it (m).
 inline constexpr double touching_gap = 1e-6;
 
+// A node that was nearer than this to a surface at the start of the step was on it (m). A node follows a curved surface by
+// chords: one of length s leaves a gap of s^2 / (8 r), which is 1e-4 m for 9 mm and a radius of 0.1 m. Large: nodes that are
+// still arriving count as sliding nodes.
+inline constexpr double on_surface = 1e-4;
+
+// Size of the gap of a node that already stands on a face (m). Only the sign has a meaning: positive, the node leaves; negative,
+// the face drives it. It is far below the rounding of any position, so that it moves no node.
+inline constexpr double negligible_gap = 1e-30;
+
+// Cosine of the angle between the normals of two instants above which they are of the same face: 26 degrees. Small: the two
+// sloped faces of a Jersey barrier, 29 degrees apart, count as one. Large: an obstacle that rotates within a step seems to
+// show another face.
+inline constexpr double same_face = 0.9;
+
 // In a rigid impact, all points nearer to a surface than this take part (m). Otherwise rounding would decide which of
 // two wheels lands first. Large: points that are still in the air are stopped.
 inline constexpr double joint_impact_gap = 1e-3;
@@ -115,6 +133,10 @@ inline constexpr double joint_gap = 1e-12;
 // After the vehicle has left the barrier for good the run goes on for this long (s), so that filtered
 // histories settle.
 inline constexpr double tail_duration = 0.02;
+
+// Cosine of the angle between the up axis and the vertical below which a vehicle does not stand upright any more: 46 degrees,
+// halfway to its side. Large: a roll from which the vehicle comes back counts as tipping over.
+inline constexpr double upright_cosine = 0.7;
 
 // A run goes on while any wheel is higher than this above the ground and rises (m): roll and pitch may still grow.
 // Small: every small hop after an impact makes the run longer.

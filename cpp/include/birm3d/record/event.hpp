@@ -9,55 +9,54 @@
 namespace birm3d {
 
 enum class Verdict {
-    undecided,    // the run ended before
-    stopped,      // contained: the motion into the barrier ended, the vehicle rebounds or rests
-    redirected,   // contained: it goes on along the barrier
-    passed,       // past the barrier's line or its end
-    overridden,   // the same, with the barrier's top under the rigid body
-    rolled_over,  // contained or undecided, and an up axis was beyond the horizontal
+    undecided,    // the run ended before the outcome was known
+    stopped,      // the barrier contained the vehicle, which rebounds from it or rests
+    redirected,   // the barrier contained the vehicle, which goes on along it
+    passed,       // the vehicle got past the barrier's line or its end
+    overridden,   // it got past the line with the barrier's top under its rigid body
+    rolled_over,  // it did not get past the line, and an up axis of a unit pointed below the horizontal
 };
 
-// How it came to that.
+// How the vehicle came to its verdict.
 enum class Manner {
-    no_barrier,
-    moving,           // undecided
-    rests_untouched,  // before the barrier
-    rests,            // at the barrier
-    rebounds,
-    leaves,         // along the barrier
-    slides_to_end,  // of the barrier, and goes on
-    slides_on,      // along a straight barrier, at rest sideways
-    between,        // two elements
-    beside,         // the barrier's end
-    rests_beyond,
-    over,  // the top
+    no_barrier,       // the scene has no barrier
+    moving,           // the vehicle still moves, and its outcome is not known
+    rests_untouched,  // it rests before the barrier, which it never touched
+    rests,            // it rests at the barrier
+    rebounds,         // it moves back from the barrier
+    leaves,           // it leaves the barrier before its end
+    slides_to_end,    // it slides to the barrier's end and goes on
+    slides_on,        // it slides along a straight barrier without any other motion
+    between,          // it passed between two elements
+    beside,           // it passed beside the barrier's end
+    rests_beyond,     // it rests past the line
+    over,             // it went over the top
 };
 
 struct Event {
-    // Unit vector across the barrier's line, away from the traffic, and where along it the line is (m).
-    Vec3 towards = Vec3::UnitX();
-    double line = 0.0;
+    Vec3 towards = Vec3::UnitX();  // unit vector across the barrier's line, away from the traffic, world axes
+    double line = 0.0;             // coordinate of the line along `towards`, from the base of the scene (m)
 
-    bool upright = true;           // at the start: else rolling over means nothing
-    double least_upright = 1.0;    // cosine between an up axis and the vertical, least of all units and steps
-    bool over_top = false;         // was the mass centre past the line with an element under the rigid body?
-    bool crossed = false;          // was it past the line?
-    Vec3 crossing = Vec3::Zero();  // where it was then, from the base of the scene (m)
+    bool upright = true;  // did all units stand upright at the start? Otherwise rolling over has no meaning
+    double least_upright = 1.0;  // least cosine between an up axis and the vertical, of all units and steps
+    // Was unit 0's mass centre ever past the line with an element under its rigid body?
+    bool over_top = false;
+    bool crossed = false;          // was unit 0's mass centre ever past the line?
+    Vec3 crossing = Vec3::Zero();  // unit 0's mass centre as it first was past the line, world axes (m)
 
-    bool touching = false;  // the barrier, now
-    // The last loss of contact: when (s), and the velocity of unit 0 then, world (m/s).
-    double released_at = 0.0;
-    Vec3 released_velocity = Vec3::Zero();
+    bool touching = false;                  // does the vehicle touch the barrier now?
+    double released_at = 0.0;               // time at which it last lost contact with the barrier (s)
+    Vec3 released_velocity = Vec3::Zero();  // velocity of unit 0's mass centre at that time, world axes (m/s)
 
-    // Since when all that moves has had no more kinetic energy than that of a vehicle at rest (s).
+    // Time since which the kinetic energy of all that moves has been below that of a vehicle at rest (s).
     double slow_since = std::numeric_limits<double>::infinity();
 
-    bool left = false;                 // for good?
-    bool separated = false;            // and had touched: `released_at` and `released_velocity` are final
-    double deflection = 0.0;           // greatest of all trusses when it had left, less their springback (m)
-    std::uint64_t later_contacts = 0;  // contacts that began after it had left
+    bool left = false;        // has the vehicle left the barrier for good?
+    bool separated = false;   // has it touched the barrier and left? Then the values of release are final
+    double deflection = 0.0;  // greatest deflection of any truss as it had left, less its springback (m)
+    std::uint64_t later_contacts = 0;  // number of contacts that began after it had left
 
-    Verdict verdict = Verdict::undecided;  // before rolling over is looked at
+    Verdict verdict = Verdict::undecided;  // the verdict without regard to rolling over, see outcome()
     Manner manner = Manner::no_barrier;
 
     bool decided() const { return verdict != Verdict::undecided; }
@@ -65,28 +64,31 @@ struct Event {
     Verdict outcome() const;
 };
 
-// Contact of an accepted step.
+// What an accepted step says about contact.
 struct StepContact {
-    double begin = 0.0;            // when the step began (s)
-    double released = 0.0;         // when its loads end, after that (s)
-    bool held_by_barrier = false;  // did the barrier hold the rigid body?
+    double begin = 0.0;            // time at which the step began (s)
+    double released = 0.0;         // time after `begin` at which the contact loads of the step end (s)
+    bool held_by_barrier = false;  // did the barrier hold the rigid body in this step?
 };
 
+// The event of a run that starts from `start`.
 Event begin_event(const Scene& scene, const State& start);
 
-// After each accepted step.
+// Updates the event after each accepted step. `state`: at the end of the step.
 void follow_event(const Scene& scene, const State& state, const StepContact& contact, Event& event);
 
 // Is the outcome known, with nothing still to be seen of roll, pitch and what slides? Then the event has its verdict.
 bool is_decided(const Scene& scene, const State& state, Event& event);
 
-// Of a run that ends undecided at the longest event: a vehicle that still slides along the barrier is redirected.
+// Gives a run its verdict that ends undecided at tolerance::longest_event. A vehicle that still slides along the barrier is
+// redirected.
 void judge_at_longest(const Scene& scene, const State& state, Event& event);
 
-// Greatest deflection of all trusses of all units (m): now, less what covers spring back by without force, and
-// during the run.
+// Greatest deflections of all trusses of all units (m).
 struct Deflections {
-    double now, left, peak;
+    double now;   // the greatest deflection of the state
+    double left;  // the same, less what covers spring back by without force
+    double peak;  // the greatest deflection since the run began
 };
 Deflections greatest_deflections(const Vehicle& vehicle, const State& state);
 

@@ -10,13 +10,14 @@
 
 namespace birm3d {
 
-// Which groups of extremes are wanted.
+// Each flag says whether a group of extremes is wanted.
 struct ExtremeGroups {
     bool normal_force = true, motion = true, attitude = true, energy = true;
     bool filtered_force = true, filtered_deceleration = true;
     bool penetration = true, wheel_climb = true, element_loads = true, momentum = true, joint = true,
          segments = true;
 
+    // The columns of the history that the wanted groups need.
     Channels channels() const {
         return {.energies = false,
                 .energy_residual = energy,
@@ -33,66 +34,73 @@ struct ExtremeGroups {
     }
 };
 
-// Of unit 0 where nothing else is said; groups are absent where they are not wanted.
+// Extremes describe unit 0 where they name no other body. Groups that are not wanted are absent.
 struct Extremes {
-    std::size_t rows = 0;   // output instants
-    double end_time = 0.0;  // the last of them (s)
+    std::size_t rows = 0;   // number of output instants
+    double end_time = 0.0;  // the last output instant (s)
 
-    // Of the barrier on all units, component against History::towards, interval means.
+    // Component against History::towards of the barrier's force on all units, as means over the output intervals.
     struct NormalForce {
-        double peak;  // N
-        double last;  // in the last interval (N)
+        double peak;  // the greatest mean of any interval (N)
+        double last;  // the mean of the last interval (N)
     };
     struct Motion {
-        Vec3 towards;                         // History::towards
-        double approach_speed;                // along History::towards, at the start (m/s)
-        std::optional<double> reversal_time;  // when that speed has come down to zero (s)
-        double travel;                        // greatest along History::towards (m)
-        double velocity_change;               // greatest from the start, until separation (m/s)
-        double deceleration;                  // greatest along r, interval means (m/s^2)
+        Vec3 towards;                         // History::towards, world axes
+        double approach_speed;                // speed along History::towards at the start (m/s)
+        std::optional<double> reversal_time;  // time at which that speed has come down to zero (s)
+        double travel;                        // greatest displacement along History::towards (m)
+        double velocity_change;  // greatest magnitude of the change since the start, until separation (m/s)
+        double deceleration;     // greatest mean of any interval along the body's r axis (m/s^2)
     };
-    // Greatest magnitudes, counted on beyond half a turn; yaw from the start, until separation (rad).
+    // Greatest magnitudes of the angles (rad). They are counted on beyond half a turn. Yaw is that since the start, until
+    // separation.
     struct Attitude {
         double roll, pitch, yaw;
     };
     struct Energy {
-        double start;     // kinetic (J)
-        double residual;  // greatest departure of the sum of all terms from that at the start (J)
+        double start;     // kinetic energy at the start (J)
+        double residual;  // greatest departure of the sum of all energies from their sum at the start (J)
     };
-    // Of the same component (N).
+    // Filtered values of the force in NormalForce (N).
     struct FilteredForce {
-        std::optional<double> cfc60;  // absent where the rows are too far apart for the filter
-        double mean_50ms;             // greatest mean over 50 ms
+        // The greatest with CFC 60. It is absent where the rows are too far apart for the filter.
+        std::optional<double> cfc60;
+        double mean_50ms;  // the greatest mean over 50 ms
     };
-    // Greatest of all elements of the barrier; moments about their feet, of walls about their lines.
+    // Greatest magnitudes of the loads on any element of the barrier, and of their means over 50 ms. Moments are about the
+    // elements' feet, those of walls about their lines.
     struct ElementLoads {
         double force = 0.0, force_50ms = 0.0;    // N
         double moment = 0.0, moment_50ms = 0.0;  // N m
     };
-    // Of a free-standing barrier.
+    // Motion and loads of the segments of a free-standing barrier.
     struct Segments {
-        // How far the furthest corner of any base moved square to the line, away from the traffic (m).
+        // Distances by which the furthest corner of any base moved square to the line, away from the traffic (m): the
+        // greatest, and that at the end.
         double deflection = 0.0, residual_deflection = 0.0;
         // Greatest of (|M| + F_z b) / (m b) in means over 50 ms (m/s^2). b is half the base and F_z the vertical
         // force on the segment. M is the moment on it about its long axis, less that of its own inertia.
         double overturning = 0.0;
     };
     struct JointLoads {
-        double angle;              // greatest magnitude of the articulation (rad)
-        double force, force_50ms;  // on the leading unit; of its mean over 50 ms (N)
+        double angle;       // greatest magnitude of the articulation angle (rad)
+        double force;       // greatest magnitude of the force on the leading unit (N)
+        double force_50ms;  // greatest magnitude of the mean of that force over 50 ms (N)
     };
     std::optional<NormalForce> normal_force;
     std::optional<Motion> motion;
     std::optional<Attitude> attitude;
     std::optional<Energy> energy;
     std::optional<FilteredForce> filtered_force;
-    std::optional<double> filtered_deceleration;  // along r, CFC 60 (m/s^2); also absent as cfc60 is
-    std::optional<double>
-        penetration;  // greatest distance of an anchor of any unit past the barrier's line (m)
-    std::optional<double> wheel_climb;  // greatest height of any wheel's lowest point (m)
+    // Greatest deceleration along the body's r axis with CFC 60 (m/s^2). It is absent also where `cfc60` is.
+    std::optional<double> filtered_deceleration;
+    // Greatest distance of an anchor of any unit past the barrier's line (m).
+    std::optional<double> penetration;
+    // Greatest height of any wheel's lowest point above the ground (m).
+    std::optional<double> wheel_climb;
     std::optional<ElementLoads> element_loads;
-    std::optional<double> momentum_residual;  // History::momentum_residual
-    std::optional<JointLoads> joint;          // of the first joint
+    std::optional<double> momentum_residual;  // the History::momentum_residual of the run
+    std::optional<JointLoads> joint;          // the loads of the first joint
     std::optional<Segments> segments;
 };
 
@@ -101,7 +109,7 @@ struct Extremes {
 Extremes extremes_of(const History& history, const Vehicle& vehicle, const Barrier* barrier,
                      const ExtremeGroups& wanted, const Event& event);
 
-// Parts of the above.
+// These compute one group each.
 Extremes::Motion greatest_motion(const History& history, const Event& event);
 Extremes::Attitude greatest_attitude(const History& history, const Event& event);
 Extremes::JointLoads greatest_joint_loads(const History& history);

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..from_facts import KINDS, vehicle_of_facts
+from ..from_facts import KINDS, recipe_of_facts, unit_of
 from ..recipe import VehicleRecipe
 from ..scaling import SIZES, PlaceMap, Scaling
-from ..vehicle import Vehicle
+from ..variants import VehicleVariants
 from ..vehicle_file import VehicleFile
 from .facts import MeshFacts
 from .file_blocks import with_wheels
@@ -34,17 +34,17 @@ class MeshShape(NamedTuple):
     wheels: tuple[FoundWheel, ...]
 
 
-def expected_vehicle(facts: MeshFacts) -> Vehicle:
+def expected_vehicle(facts: MeshFacts) -> VehicleVariants:
     """Return the vehicle that this one is like, before its size is known."""
     if facts.like is not None:
         return facts.like
     assert facts.kind is not None  # see MeshFacts.given
     if facts.kind not in KINDS:
         raise ValueError(f"kind must be one of {', '.join(KINDS)}; got {facts.kind!r}")
-    return vehicle_of_facts(facts.kind, facts.mass, dict.fromkeys(SIZES), None, 0.05)
+    return unit_of(recipe_of_facts(facts.kind, facts.mass, dict.fromkeys(SIZES), None, 0.05))
 
 
-def recipe_of(vehicle: Vehicle) -> VehicleRecipe:
+def recipe_of(vehicle: VehicleVariants) -> VehicleRecipe:
     """Return the recipe of a vehicle of one unit."""
     recipe = vehicle._description
     assert isinstance(recipe, VehicleRecipe)  # of one unit
@@ -65,10 +65,9 @@ def recipe_of_class(shape: MeshShape, facts: MeshFacts, told: list[str]) -> Vehi
     height = facts.mass_center_height
     if facts.like is None:
         assert facts.kind is not None  # see MeshFacts.given
-        vehicle = vehicle_of_facts(facts.kind, facts.mass, sizes, height, 0.05)
+        recipe = recipe_of_facts(facts.kind, facts.mass, sizes, height, 0.05)
     else:
-        vehicle = facts.like.scaled_to(facts.mass, **sizes, mass_center_height=height)
-    recipe = recipe_of(vehicle)
+        recipe = recipe_of(facts.like.scaled_to(facts.mass, **sizes, mass_center_height=height))
     overhang = facts.front_overhang or (-axles[-1] if axles else None)
     if overhang is None:
         told.append(f"front overhang {file_of(recipe).extent.front:.4g} m: that of the class")

@@ -5,18 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ...base.checks import array
 from ...units import Quantity, si
+from ..combination_recipe import CombinationRecipe
+from ..from_facts import unit_of
+from ..read_recipe import read_preset
 from ..scaling import sizes_given
+from ..variants import VehicleVariants
 from ..zone import positive
-
-if TYPE_CHECKING:
-    from ..vehicle import Vehicle
 
 __all__ = ["HOLES", "MeshFacts"]
 
@@ -31,7 +32,7 @@ class MeshFacts:
     path: Path
     mass: float
     kind: str | None
-    like: Vehicle | None
+    like: VehicleVariants | None
     unit: str | None
     forward: str
     up: str
@@ -54,7 +55,7 @@ class MeshFacts:
 
     @staticmethod
     def given(
-        path: str | Path, mass: Quantity, like: Vehicle | str | None, others: dict[str, Any]
+        path: str | Path, mass: Quantity, like: VehicleVariants | str | None, others: dict[str, Any]
     ) -> MeshFacts:
         """Return the facts as numbers.
 
@@ -63,8 +64,6 @@ class MeshFacts:
         ValueError
             Naming the argument that is out of range.
         """
-        from ..vehicle import Vehicle
-
         lengths = (
             "wheelbase",
             "front_overhang",
@@ -104,9 +103,9 @@ class MeshFacts:
             raise ValueError(
                 f"use_densities must be False where {stated[0]} is given: both say where mass is; got True"
             )
-        base = Vehicle.preset(like) if isinstance(like, str) else like
+        base = _preset(like) if isinstance(like, str) else like
         if base is not None and (len(base.units) != 1 or base._file is None):
-            raise ValueError(f"like must be a vehicle of one unit that has a file, got {base.name!r}")
+            raise _no_base(base.name)
         return MeshFacts(
             path=Path(path),
             mass=positive("mass", si("mass", mass, "mass")),
@@ -118,6 +117,17 @@ class MeshFacts:
             core=others.pop("core") or {},
             **{**others, **sizes},
         )
+
+
+def _preset(name: str) -> VehicleVariants:
+    recipe = read_preset(name, None, 1.0)
+    if isinstance(recipe, CombinationRecipe):
+        raise _no_base(recipe.name)
+    return unit_of(recipe)
+
+
+def _no_base(name: str) -> ValueError:
+    return ValueError(f"like must be a vehicle of one unit that has a file, got {name!r}")
 
 
 def _inertia(value: npt.ArrayLike | None) -> npt.NDArray[np.float64] | None:

@@ -1,5 +1,5 @@
-// Where a node of a packet is before a post, an edge or a face, and which of its points the node follows. Compiled with
-// indentation_simd.cpp for each instruction set.
+// Where the nodes of a packet stand before an indentation, which place of the post or edge they follow, and by how much. For
+// files that are compiled once for each instruction set; see base/packet.hpp for what that forbids.
 #pragma once
 
 #include "base/packet.hpp"
@@ -7,7 +7,8 @@
 
 namespace birm3d::BIRM3D_INSTRUCTION_SET {
 
-namespace {
+// Least value that marks a node as following an indentation.
+inline constexpr double least_drawn = 1e-9;
 
 // Depth of the post's surface beyond its axis at `a` across, and its derivative.
 struct Rise {
@@ -36,6 +37,15 @@ BIRM3D_INLINE Standing stand(const IndentationNumbers& d, const PanelNodes& node
     s.up = lesser(s.l, d.top + d.top_slope * s.w);
     s.deepest = d.tilt * s.up + (d.stretch * d.radius + d.face_slope * s.w);
     return s;
+}
+
+// Lower bound of the gaps: the post is taken as deep everywhere as in its middle, with the least slope beside it.
+BIRM3D_INLINE Packet no_less_than(const IndentationNumbers& d, const Standing& s) {
+    const Packet zero = 0.0, by_depth = (s.deepest - d.surface) * d.per_reach;
+    const Packet flattest_face = d.side_low.slope < d.side_high.slope ? d.side_low.slope : d.side_high.slope;
+    const Packet slope = lesser(lesser(greater(by_depth, least_slope), steepest), flattest_face);
+    const Packet beside = greater(greater(s.w - d.most_w, d.least_w - s.w), zero);
+    return s.e - (s.deepest - slope * (beside + (s.l - s.up)));
 }
 
 // The point of the post that each node of a packet follows.
@@ -93,6 +103,27 @@ BIRM3D_INLINE FollowedPlace find_followed(const IndentationNumbers& d, const Sta
     return h;
 }
 
-}  // namespace
+// Displacement along e of a following node for a unit displacement of the post inwards, and along the panel.
+struct Drawn {
+    Packet in, across;
+    Packet by_turn;  // for each unit by which the slope of the face becomes less
+};
+BIRM3D_INLINE Drawn drawn(const IndentationNumbers& d, const FollowedPlace& h) {
+    const Packet zero = 0.0, low = d.flank_low * d.grip, high = d.flank_high * d.grip;
+    const Packet slope = h.slope.slope, flank = lesser(greater(h.rise.across, -1.0 * slope), slope);
+    const Packet factor = where_above(h.a, zero, high, low);
+    return {greater(d.grip * (1.0 - h.slope.grows * h.beyond), least_drawn),
+            factor * flank / square_root(1.0 + flank * flank), d.grip * h.on_face};
+}
+
+// Outward displacement of nodes along e within the step (m): -du of kernels/indentation.hpp, by the trapezoid rule. `flatter`:
+// by how much the slope of the edge's face has become less.
+BIRM3D_INLINE Packet outward_displacement(const Standing& now, const Standing& then, const Drawn& at_end,
+                                          const Drawn& at_start, const Packet& flatter) {
+    const Packet zero = 0.0, in = (now.deepest - now.e) - (then.deepest - then.e), across = now.w - then.w;
+    const Packet turn = where_above(lesser(at_end.by_turn, at_start.by_turn), zero, flatter, zero);
+    return -0.5 * ((at_end.in + at_start.in) * in + (at_end.across + at_start.across) * across +
+                   (at_end.by_turn + at_start.by_turn) * turn);
+}
 
 }  // namespace birm3d::BIRM3D_INSTRUCTION_SET

@@ -13,11 +13,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..builder import build
 from ..file_schema import Assumption, Source
 from ..recipe import VehicleRecipe
 from ..skin_mesh import PANELS, SkinMesh, table_of
-from ..vehicle import Vehicle
 from ..vehicle_file import VehicleFile
 from .class_of import MeshShape, expected_vehicle, file_of, recipe_of, recipe_of_class
 from .closed import closed_skin
@@ -33,7 +31,7 @@ from .surface_file import read_mesh
 from .tires import find_wheels, tire_parts
 from .wrap import WheelSpace, cube_size, enclosed, fitted_to, sampled
 
-__all__ = ["vehicle_of_mesh"]
+__all__ = ["recipe_of_mesh"]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -43,8 +41,8 @@ _FEWEST_NODES, _MOST_NODES = 50, 100_000
 _HOUSE = 1.2  # of the wheel's radius: the wheel house
 
 
-def vehicle_of_mesh(facts: MeshFacts, mesh_density: float) -> Vehicle:
-    """Return the vehicle of a mesh and of what is known beside it."""
+def recipe_of_mesh(facts: MeshFacts, mesh_density: float) -> VehicleRecipe:
+    """Return the recipe of the vehicle of a mesh and of what is known beside it."""
     mesh = _selected(read_mesh(facts.path), facts)
     placed = in_vehicle_axes(mesh, facts.unit, facts.forward, facts.up, expected_vehicle(facts).length)
     points = placed.points + np.array([0.0, 0.0, facts.clearance])
@@ -60,7 +58,7 @@ def vehicle_of_mesh(facts: MeshFacts, mesh_density: float) -> Vehicle:
     if facts.use_densities:
         own = mass_of_deck(mesh, points + shift, facts, told)
         facts = dataclasses.replace(facts, center_of_mass=own.center, inertia=own.inertia)
-    return build(_finished(recipe, skin, facts, mesh, told, mesh_density))
+    return _finished(recipe, skin, facts, mesh, told, mesh_density)
 
 
 def _selected(mesh: RawMesh, facts: MeshFacts) -> RawMesh:

@@ -1,0 +1,140 @@
+#include "record/position_at_barrier.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "birm3d/base/tolerances.hpp"
+#include "scene/obstacles.hpp"
+
+namespace birm3d {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// The least and the greatest coordinate of an element along a direction of the world (m).
+struct Range {
+    double low, high;
+};
+Range range_along(const Scene& scene, std::size_t i, const State& state, const Vec3& direction) {
+    const Pose pose = pose_of(scene, i, state);
+    const Box box = bounds(scene.obstacles[i].shape);
+    const Vec3 local = pose.rotation.transpose() * direction;
+    double middle = pose.position.dot(direction), half = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (std::abs(local[axis]) < tolerance::along_line) continue;  // 0 times infinity would be NaN
+        middle += local[axis] * box.center[axis];
+        half += std::abs(local[axis]) * box.half[axis];
+    }
+    return {middle - half, middle + half};
+}
+
+// Height of the top of a shape, own axes (m). A post has no end in its bounds, but its height is its top.
+double top_of(const Shape& shape) {
+    if (const auto* post = std::get_if<Post>(&shape)) return post->height;
+    const Box box = bounds(shape);
+    return box.center.z() + box.half.z();
+}
+
+}  // namespace
+
+double up_cosine(const BodyState& body) {
+    const Quat& q = body.orientation;
+    return 1.0 - 2.0 * (q.x() * q.x() + q.y() * q.y());
+}
+
+double least_up_cosine(const State& state) {
+    double least = 1.0;
+    for (const UnitState& unit : state.units)
+        least = std::min(least, up_cosine(unit.body));
+    return least;
+}
+
+bool runs_along_line(const Scene& scene) {
+    return std::abs(std::sin(scene.approach.angle)) < tolerance::along_line;
+}
+
+double line_position(const Scene& scene, const State& state, const Vec3& towards) {
+    const bool along = runs_along_line(scene);
+    double first = infinity, last = -infinity;
+    bool mesh = false;
+    for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
+        const bool is_mesh = std::holds_alternative<TriangleMesh>(scene.obstacles[i].shape);
+        if (!along && !is_mesh) continue;
+        const Range range = range_along(scene, i, state, towards);
+        first = std::min(first, range.low), last = std::max(last, range.high);
+        mesh |= is_mesh;
+    }
+    if (along) return first;
+    return mesh ? last : 0.0;
+}
+
+double distance_past_line(const Scene& scene, const State& state, const Event& event) {
+    const Vec3& center = state.units.front().body.position;
+    if (state.segments.empty() || runs_along_line(scene)) return center.dot(event.towards) - event.line;
+    double nearest = infinity, past = 0.0;
+    for (std::size_t i = 0; i < state.segments.size(); ++i) {
+        const Pose pose = pose_of(scene, i, state);
+        const Vec3 local = pose.rotation.transpose() * (center - pose.position);
+        const double beyond = std::max(0.0, std::abs(local.y()) - scene.barrier->segments[i].half_length);
+        const double distance = std::hypot(local.x(), beyond);
+        if (distance < nearest) nearest = distance, past = local.x();
+    }
+    return past;
+}
+
+bool stands_over_barrier(const Scene& scene, const State& state) {
+    const BodyState& body = state.units.front().body;
+    const TrussMesh& mesh = scene.vehicle->units.front().trusses;
+    std::vector<std::size_t> about;
+    scene.map.find(body.position, mesh.reach, about);
+    for (const std::size_t i : about) {
+        if (i == scene.ground) continue;
+        const Pose pose = pose_of(scene, i, state);
+        const Box box = bounds(scene.obstacles[i].shape);
+        const double top = top_of(scene.obstacles[i].shape);
+        if (!(pose.position.z() + top < body.position.z())) continue;
+        // The place of the top that is nearest to the mass centre, seen from above.
+        Vec3 place = pose.rotation.transpose() * (body.position - pose.position);
+        for (int axis = 0; axis < 2; ++axis)
+            place[axis] =
+                std::clamp(place[axis], box.center[axis] - box.half[axis], box.center[axis] + box.half[axis]);
+        place.z() = top;
+        const Vec3 from = pose.position + pose.rotation * place - body.position;
+        if (up_cosine(body) <
+            tolerance::upright_cosine) {  // on its side: its outline from above is taken as a circle
+            if (std::hypot(from.x(), from.y()) < mesh.anchors.half.minCoeff()) return true;
+            continue;
+        }
+        const Vec3 local = body.orientation.conjugate() * from - mesh.anchors.center;
+        if (std::abs(local.x()) < mesh.anchors.half.x() && std::abs(local.y()) < mesh.anchors.half.y())
+            return true;
+    }
+    return false;
+}
+
+Vec3 line_direction(const Event& event) {
+    return {-event.towards.y(), event.towards.x(), 0.0};
+}
+
+bool passes_between(const Scene& scene, const State& state, const Event& event) {
+    const Vec3 line = line_direction(event);
+    const double at = event.crossing.dot(line);
+    bool low = false, high = false;  // is any element on that side?
+    for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
+        const Range range = range_along(scene, i, state, line);
+        (0.5 * (range.low + range.high) < at ? low : high) = true;
+    }
+    return low && high;
+}
+
+bool is_beyond_end(const Scene& scene, const State& state, const Event& event) {
+    const BodyState& body = state.units.front().body;
+    const Vec3 line = line_direction(event), direction = body.velocity.dot(line) < 0.0 ? Vec3(-line) : line;
+    for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i)
+        if (!(range_along(scene, i, state, direction).high < body.position.dot(direction))) return false;
+    return true;
+}
+
+}  // namespace birm3d

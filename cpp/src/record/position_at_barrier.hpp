@@ -1,0 +1,36 @@
+// Where the vehicle is at the barrier: past its line, above its top, between its elements, or beyond its end.
+#pragma once
+
+#include "birm3d/record/event.hpp"
+
+namespace birm3d {
+
+// Cosine of the angle between the body's up axis and the vertical.
+double up_cosine(const BodyState& body);
+
+// The least of these cosines of all units.
+double least_up_cosine(const State& state);
+
+// Does the path at the approach run along the barrier's line, instead of across it?
+bool runs_along_line(const Scene& scene);
+
+// Level unit vector along the barrier's line, world axes.
+Vec3 line_direction(const Event& event);
+
+// Position of the barrier's line along `towards` (m, from the base of the scene). The line is at the base of the elements.
+// Where the path runs along the line, the position is where the barrier begins; of meshes it is where they end.
+double line_position(const Scene& scene, const State& state, const Vec3& towards);
+
+// How far the mass centre of unit 0 is past the line (m). At free-standing segments, it is past the nearest one.
+double distance_past_line(const Scene& scene, const State& state, const Event& event);
+
+// Is the top of any element under the rigid body of unit 0?
+bool stands_over_barrier(const Scene& scene, const State& state);
+
+// Did the mass centre cross the line between two elements? Otherwise it passed beside the barrier's end.
+bool passes_between(const Scene& scene, const State& state, const Event& event);
+
+// Is the mass centre of unit 0 beyond the barrier's end in the direction in which the unit moves along the line?
+bool is_beyond_end(const Scene& scene, const State& state, const Event& event);
+
+}  // namespace birm3d

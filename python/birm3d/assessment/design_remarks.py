@@ -1,0 +1,97 @@
+"""What a reader of design loads has to know of them: their cautions, from all scenes together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from .design_caution import barrier_caution, merged
+from .design_plan import ASSUMED_PERIOD, DesignPlan
+from .design_table import DesignLoad
+from .element_design import ElementDesign
+from .oscillator import LEAST_INTERVALS
+
+__all__ = ["ASSUMED", "design_cautions", "greatest_of_periods"]
+
+ASSUMED = f"The natural period of {ASSUMED_PERIOD:g} s is assumed: give that of the element."
+"""Caution where no natural period was given."""
+_PERIODS, _POINTS = (0.03, 0.3), 31  # s: about a third to three times the period that is assumed
+_MOST_OF_ONE_PULSE = 2.0  # no single pulse has a greater dynamic load factor
+
+
+_ADDED = (
+    "A dynamic load factor above 2 comes from blows that follow each other while the element swings, or from "
+    "peaks that the filter of the peak force takes: damping lessens the first. On a wall that is one element "
+    "blows at distant places add up: give it segments."
+)
+
+
+def design_cautions(
+    load: DesignLoad,
+    plan: DesignPlan,
+    rows: Sequence[ElementDesign],
+    of_runs: Iterable[Mapping[str, tuple[str, ...]]],
+) -> Iterator[str]:
+    """Yield the cautions of an envelope in the order of reading; the same sentence may come twice.
+
+    Parameters
+    ----------
+    load
+        The envelope.
+    plan
+        Its scenes.
+    rows, of_runs
+        Rows and cautions of all runs that are finished.
+    """
+    yield from barrier_caution(plan.barrier)
+    if plan.period_is_assumed:
+        yield ASSUMED
+        yield from _of_other_periods(load)
+    yield from merged(of_runs)
+    least = 0.01 * max(row.peak_force for row in rows)  # what carries less than 1 % is left out
+    if any(row.dynamic_load_factor > _MOST_OF_ONE_PULSE for row in rows if row.peak_force > least):
+        yield _ADDED
+    yield from _at_ends(load, plan.varied)
+
+
+def _of_other_periods(load: DesignLoad) -> Iterator[str]:
+    """Yield what the governing element carries at other periods than the one that was assumed."""
+    found = greatest_of_periods(load)
+    if found is not None:
+        force, period = found
+        yield (
+            f"With natural periods from {_PERIODS[0]:g} to {_PERIODS[1]:g} s, {load.governing.name} carries "
+            f"up to {force / 1e3:,.0f} kN (at {period:.2g} s)."
+        )
+        if force > _MOST_OF_ONE_PULSE * load.governing.peak_force:
+            yield _ADDED
+
+
+def greatest_of_periods(load: DesignLoad) -> tuple[float, float] | None:
+    """Return the greatest equivalent static force of the governing element [N], and its period [s].
+
+    Over a third to three times the period that is assumed where none is given; ``None`` of one that nothing
+    touches, or where the rows are too far apart.
+    """
+    row = load.governing
+    if row.load is None or _PERIODS[0] < LEAST_INTERVALS * row.load.interval:
+        return None
+    periods = np.geomspace(*_PERIODS, _POINTS)
+    forces = load.spectrum(periods)
+    at = int(np.argmax(forces))
+    return float(forces[at]), float(periods[at])
+
+
+def _at_ends(load: DesignLoad, varied: Mapping[str, Sequence[float]]) -> Iterator[str]:
+    """Yield of which lists the governing value is an end, beyond which it may be greater."""
+    row = load.governing
+    if not row.touched:
+        return
+    scene = load.scenes[row.scene["equivalent_static_force"]]
+    for name in ("impact_offset", "impact_angle"):
+        values = varied.get(name, ())
+        if len(set(values)) > 1 and getattr(scene, name) in (min(values), max(values)):
+            words = name.replace("_", " ")
+            if not (name == "impact_angle" and scene.impact_angle == 90.0):
+                yield f"The greatest load comes from the end of the list of {words}s: beyond it may be more."
