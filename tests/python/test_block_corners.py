@@ -1,4 +1,4 @@
-"""Corners of rigid blocks that are met at an angle: they draw in the skin, whichever of their faces points at the vehicle."""
+"""Corners of rigid blocks that are met at an angle draw in the skin, whichever face points at the vehicle."""
 
 from __future__ import annotations
 

@@ -166,15 +166,15 @@ def test_points_found_inside_a_thin_wall_are_not_thrown_out() -> None:
     simulation = Simulation(
         car.with_gvw(1.38026 * car.mass),
         wall,
-        9.87038,
+        14.0,
         19.8186,
-        -0.199047,
-        impact_yaw=-133.4259662188515,
+        0.3,
+        impact_yaw=-100.0,
         duration=0.61,
         settings=Settings(tolerance=1.14350e-3),
     )
     result = simulation.run()
-    assert result.statistics.body_steps > 0
+    assert result.statistics.deepest_point > 5e-4
     impacts = result.energy["impacts"]
     fall = (np.maximum.accumulate(impacts) - impacts).max()
     assert fall < 1e-6 * result.energy["kinetic"][0]
@@ -195,5 +195,5 @@ def test_a_body_that_turns_on_a_point_keeps_it_at_the_surface(tolerance: float) 
         duration=0.4,
         settings=settings,
     ).run()
-    assert result.statistics.body_steps > 30
+    assert result.statistics.body_steps > 20
     assert result.statistics.deepest_point < 5e-6

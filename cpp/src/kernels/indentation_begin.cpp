@@ -10,8 +10,8 @@ namespace {
 // Sine of the angle between a post's axis and a panel beyond which it does not begin to indent it, or ceases to.
 constexpr double most_tilted = 0.5, overturned = 0.95;
 
-// An edge begins to indent a panel if the cosine of the angle between the panel and a face exceeds the first, and stops below the
-// second.
+// Cosines of the angle between a panel and a face of an edge. Above the first the edge begins to indent the panel; below the second
+// it stops.
 constexpr double least_facing = 0.7, turned_away = 0.3;
 
 // Where that face does not look at the traffic, the panel must come towards the edge: the cosine of the angle between it and the
