@@ -206,7 +206,7 @@ def examine(seed: int) -> Found:
     settings = Settings(gravity=0.0, ground=False) if case.vehicle == "block" else None
     made = vehicle(case.vehicle, case.indents)
     simulation = Simulation(
-        made, barrier, case.speed, case.angle, case.offset, duration=duration, settings=settings
+        made, barrier, f"{case.speed} m/s", case.angle, case.offset, duration=duration, settings=settings
     )
     expected = must_hit(case, barrier, simulation)
     watched = watch(simulation)

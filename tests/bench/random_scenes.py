@@ -159,7 +159,7 @@ def draw(seed: int) -> tuple[Drawn, Simulation]:
     simulation = Simulation(
         car.with_gvw((1.0 + load) * car.mass) if load > 0.0 else car,
         barrier,
-        drawn.speed,
+        f"{drawn.speed} m/s",
         drawn.angle,
         drawn.offset,
         impact_yaw=drawn.yaw,

@@ -178,7 +178,7 @@ def test_balances_close_in_any_pose_at_any_barrier(
     simulation = Simulation(
         car,
         barrier,
-        speed,
+        f"{speed} m/s",
         angle,
         impact_yaw=yaw,
         impact_roll=roll,
@@ -205,7 +205,7 @@ def test_energy_of_crush_does_not_fall_in_long_steps(
     simulation = Simulation(
         Vehicle.preset(vehicle, mesh_density=0.2),
         Barrier.rigid_wall(friction=0.0),
-        speed,
+        f"{speed} m/s",
         90.0,
         offset,
         impact_roll=roll,

@@ -503,7 +503,7 @@ def test_loads_of_a_vehicle_that_gets_past_are_told() -> None:
 
 
 def test_a_heavy_vehicle_loads_a_wall_lower_than_design_tables_have_it() -> None:
-    told = "the computed force acts lower than design tables have it"
+    told = "its force is computed lower than design tables have it"
     wall = Barrier.rigid_wall(height=1.07, width=60.0, segments=12)
     for name, heavy in (("bus_13t", True), ("passenger_car", False)):
         vehicle = Vehicle.preset(name, mesh_density=0.1)

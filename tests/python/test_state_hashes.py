@@ -67,7 +67,7 @@ HASHES = {
     "paper pickup, bollards": "c1c364902a2e7f6f",
     "pickup, bollards": "2d14208a69bb1b3c",
     "car, Jersey": "b5d065603ab052c6",
-    "semi, wall": "72cdc7870216e55d",
+    "semi, wall": "fe6e7278f891583e",
     "truck, pole of triangles": "7d4e7705b053977b",
     "free-standing": "8b513e5bd4bc08b5",
     "minivan on its side": "50fa25478b464c0d",

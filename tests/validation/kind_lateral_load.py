@@ -23,8 +23,8 @@ vehicles of MASH are shown as commonly reported. Their source is not at hand, an
 At 0.91 m the front of the 10-t truck acts lower than its rear, which strikes 0.15 s later. The greater of the
 two forces is compared, at its own height.
 
-What the model can not do here: the load of a truck shifts towards the wall; a trailer's floor and its tandem
-strike in turn. A box of skin on a rigid body has one side of one law."""
+What the model can not do here: the load of a truck shifts towards the wall. Frame, floor and load are one
+rigid body, so that they strike together, each with its own zone's law."""
 
 FORCE, HEIGHT = 0.25, 0.15
 

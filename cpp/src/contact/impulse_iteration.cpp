@@ -52,8 +52,9 @@ bool has_converged(const std::vector<Wrench>& on_base, std::vector<Wrench>& last
     return change <= settled * sum;
 }
 
-// Motions of the bodies without normal impulses and pins, at which friction is evaluated.
-void set_friction_motions(const State& state, const ContactKick& kicked, std::vector<ContactBody>& bodies) {
+// Sets the motions that the solver starts from: with friction, without normal impulses and pins.
+void set_motions_with_friction(const State& state, const ContactKick& kicked,
+                               std::vector<ContactBody>& bodies) {
     set_motions(state, bodies);
     const std::size_t units = state.units.size();
     for (std::size_t i = 0; i < kicked.on_base.size(); ++i) {
@@ -94,7 +95,7 @@ void begin_iteration(const State& state, KickMemory& memory) {
 void solve_normal_impulses(const Scene& scene, const KickedBy& by, bool meets, const State& state,
                            KickMemory& memory) {
     if (meets) prepare_solver(scene, state, memory);
-    set_friction_motions(state, memory.kick, memory.bodies);
+    set_motions_with_friction(state, memory.kick, memory.bodies);
     memory.solver.solve(memory.kick.contacts, memory.bodies);
     sum_tire_impulses(scene, by, memory);
 }
@@ -114,7 +115,8 @@ void kick_by_normal_impulses(const Scene& scene, ContactKick& kicked, State& sta
 // Finds normal impulses and friction by turns, and kicks the bodies by them. `memory.solver` is prepared. At given friction,
 // the normal impulses j and the relative velocities w after them fulfil
 //   w = A j + v >= v_target,  j >= 0,  (w - v_target) . j = 0,
-// for one contact Eq. 1 of the paper ("Rigid bodies and impulses" in docs/pages/theory.md). Friction depends on j. It also
+// v: without j, A: change by each unit of j. That is for one contact Eq. 1 of the paper ("Rigid bodies and impulses" in
+// docs/pages/theory.md). Friction depends on j. It also
 // tips the body, which changes v and so j.
 void solve_with_friction(const Scene& scene, const KickedBy& by, KickMemory& memory, State& state) {
     ContactKick& kicked = memory.kick;
@@ -130,7 +132,7 @@ void solve_with_friction(const Scene& scene, const KickedBy& by, KickMemory& mem
         if (round > 0 && normal_converged && base_converged) break;
         kick_by_friction(scene, by, memory, state);
         if (meets) find_segment_friction(scene, by, state, memory);
-        if (!meets && !any_slides(kicked)) break;
+        if (!meets && !any_friction(kicked)) break;
         solve_normal_impulses(scene, by, meets, state, memory);
     }
     kick_by_normal_impulses(scene, kicked, state);
@@ -140,7 +142,7 @@ void solve_with_friction(const Scene& scene, const KickedBy& by, KickMemory& mem
     move_segments(scene, memory, state);
 }
 
-// Subtracts the joint gaps that would remain after the drift from the targets. Returns the greatest gap.
+// Lowers each joint's target velocity by its gap after the drift over dt. Returns the greatest gap (m).
 double correct_targets(const Scene& scene, const State& kicked, double dt,
                        std::vector<RigidContact>& contacts) {
     std::vector<BodyState> bodies;

@@ -5,14 +5,14 @@
 
 namespace birm3d {
 
-// Inputs of a kick, beside the bodies' motions.
+// What a kick needs to know beside the state.
 struct KickedBy {
     const Column& pressed;  // (segments) impulse of all other forces that presses them on the ground (N s)
     std::span<const Twist> at_end;  // (bodies) their motions at that end of the step (see TireMotion)
     std::span<const Twist> from;    // (bodies) their motions before this kick
     double time = 0.0;              // for which the loads of springs and dampers act (s)
     double drift = 0.0;             // length of the drift after which joints are to be closed (s)
-    bool is_impact = false;
+    bool is_impact = false;         // without duration: springs and dampers do not act
 };
 
 // Solves for the impulses of `memory.kick.contacts` and their friction on top of the bodies' motions, and kicks the bodies.

@@ -24,7 +24,7 @@ Twist motion_without(const Wrench& friction, const ContactBody& body) {
             body.motion.angular_velocity - body.inverse_inertia * friction.torque};
 }
 
-// Greatest speed along the ground that a unit impulse gives any segment that a unit pushes (1/kg).
+// Greatest inverse mass of the segments that a unit of the vehicle pushes, at the point of contact along the ground (1/kg).
 double greatest_other_inverse_mass(const std::vector<RigidContact>& contacts, std::size_t unit,
                                    const std::vector<ContactBody>& bodies) {
     double greatest = 0.0;
@@ -40,7 +40,7 @@ double greatest_other_inverse_mass(const std::vector<RigidContact>& contacts, st
 
 }  // namespace
 
-bool any_slides(const ContactKick& kicked) {
+bool any_friction(const ContactKick& kicked) {
     const auto is_there = [](const Wrench& friction) { return !friction.force.isZero(0.0); };
     return std::any_of(kicked.on_ground.begin(), kicked.on_ground.end(), is_there) ||
            std::any_of(kicked.on_cores.begin(), kicked.on_cores.end(), is_there);

@@ -18,9 +18,10 @@
 // flank's cosine, g = 1 - (off / radius)^2. So a load ends where the whole post is beside the panel.
 //
 // An edge that stands obliquely before a panel has a face on either side, which falls off from the panel with the slope q. Where
-// s exceeds q the skin lies on that face: q takes the place of s, and u follows the turning of the face, by |w - w*| dq less.
-// Skin on a face goes straight in, along e, as far as the panel reaches on the other side of the edge: tension holds it. Skin
-// beyond that has no counterpart. It slides along the face, as along any surface.
+// s exceeds q the skin lies on that face: q takes the place of s. Then u follows the turning of the face, too:
+//   du = g dv_e - g |w - w*| dq
+// Let the panel reach x beyond the edge on one side. On the other side skin up to x from the edge is held by tension, and goes
+// straight in along e. Skin further away slides along the face, as along any surface.
 //
 // The force on the vehicle follows by virtual work. A truss force F with direction b, from the node to its anchor, gives
 // F (b . e) times the derivative of u by the post's place, and the torque by its rotation. Both ends of a step share the

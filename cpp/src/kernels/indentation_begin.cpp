@@ -7,25 +7,26 @@ namespace birm3d {
 
 namespace {
 
-// Sine of the angle between a post's axis and a panel beyond which it does not begin to indent it, or ceases to.
+// Cosine of the angle between a post's axis and a panel's direction beyond which it does not begin to indent it, or ceases to.
 constexpr double most_tilted = 0.5, overturned = 0.95;
 
-// Cosines of the angle between a panel and a face of an edge. Above the first the edge begins to indent the panel; below the second
-// it stops.
+// Cosine by which a face of an edge points at a panel, see facing(). Above the first the edge begins to indent the panel; below
+// the second it stops.
 constexpr double least_facing = 0.7, turned_away = 0.3;
 
 // Where that face does not look at the traffic, the panel must come towards the edge: the cosine of the angle between it and the
 // motion exceeds this. A panel that slides along the end of a wall meets the edge as it meets any surface.
 constexpr double least_approach = 0.7;
 
-// Cosine of the angle between a panel and the face of a block; 1 if the face points at it. `behind`: into the block, own axes.
+// Cosine of the angle between a panel's outward direction and the direction into the block behind a face; 1 if the face points
+// at the panel. `behind`: the latter, own axes.
 double facing(const Panel& panel, const Placement& stands, const Vec3& behind) {
     return -panel.inward.dot(stands.direction_from_own(behind));
 }
 
 bool is_upright(const Placement& stands, const Panel& panel, bool indents) {
-    const double sine = std::abs(stands.direction_from_own(Vec3::UnitZ()).dot(panel.inward));
-    return sine < (indents ? overturned : most_tilted);
+    const double cosine = std::abs(stands.direction_from_own(Vec3::UnitZ()).dot(panel.inward));
+    return cosine < (indents ? overturned : most_tilted);
 }
 
 }  // namespace

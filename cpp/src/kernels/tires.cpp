@@ -62,9 +62,10 @@ struct UnitOnTires {
     const TireMotion& motion;
     Mat3 R;               // body to world axes
     double height;        // of the mass centre above the ground (m)
-    double speed_change;  // that friction with a coefficient of 1 would take from a wheel (m/s)
+    double speed_change;  // of a wheel in this half step by friction with a coefficient of 1 (m/s)
 
-    // At small slip the impulse is C N dt v_across / v_along. This lower bound of v_along keeps it from reversing the motion.
+    // At small slip the impulse is C N dt v_across / v_along: C is the cornering stiffness, N the load. This lower bound of
+    // v_along keeps it from reversing the motion.
     double slowest() const { return settings.cornering_stiffness * speed_change; }
 
     // Velocity at `arm` from the mass centre that friction acts against, world axes (m/s). It is that at the end of the step
@@ -105,8 +106,8 @@ Vec3 direction_across(const Wheel& wheel, const Vec3& left, const Vec3& turned_l
     return turned_by(-wheel.camber_ratio * leans_right, across);
 }
 
-// The friction that a wheel at this velocity mobilises, as a fraction of mu N, against the returned vector. Brakes have their
-// part b of the friction circle, against the velocity. sqrt(1 - b^2) of it acts across the wheel, by the brush model.
+// The friction of a wheel at this velocity as a fraction of mu N, with its sign reversed. Brakes have the part b of the friction
+// circle (Settings.braking), along the velocity. sqrt(1 - b^2) of it acts across the wheel, by the brush model.
 Vec3 mobilised_friction(const UnitOnTires& on, const Vec3& across, const Vec3& velocity) {
     const double mu = on.settings.mu_tire, brakes = on.settings.braking;
     const double steers = std::sqrt(1.0 - brakes * brakes);

@@ -17,8 +17,8 @@ bool runs_along_line(const Scene& scene);
 // Level unit vector along the barrier's line, world axes.
 Vec3 line_direction(const Event& event);
 
-// Position of the barrier's line along `towards` (m, from the base of the scene). The line is at the base of the elements.
-// Where the path runs along the line, the position is where the barrier begins; of meshes it is where they end.
+// Position of the barrier's line along `towards` (m). On a path along the line it is where the barrier begins. Across the line
+// it is the far side of meshes, else 0.
 double line_position(const Scene& scene, const State& state, const Vec3& towards);
 
 // How far the mass centre of unit 0 is past the line (m). At free-standing segments, it is past the nearest one.

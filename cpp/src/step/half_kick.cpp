@@ -57,8 +57,8 @@ double time_to_impact(double negligible, std::span<const ContactBody> bodies,
     return earliest;
 }
 
-// Forces of dampers need the velocity at the end of the half kick. After the drift it is predicted: the second half of the
-// step changes it as the first one did. So damping has an error of second order.
+// Dampers need the velocity at that end of the step. After the drift it is predicted: the second half of the step changes it as
+// the first one did. So damping has an error of second order.
 void find_sprung_wheels(const Scene& scene, const State& state, Stage stage, KickMemory& memory) {
     if (!scene.settings.ground) return;
     if (stage == Stage::before_drift) memory.start = memory.before;

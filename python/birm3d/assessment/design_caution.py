@@ -44,8 +44,9 @@ _LATER = "In a run the vehicle touches {elements} again after it has left: the i
 _UNDECIDED = "The outcome was not decided when a run ended: later loads on {elements} are missing."
 
 _LOW = (
-    "The vehicle is heavy: the computed force acts lower than design tables have it, at a wall of TL-5 at "
-    "0.58 m and there at 1.07 m. The moment about the foot is too small by as much: take that height too."
+    "The vehicle is heavy, and its force is computed lower than design tables have it: at a wall of 1.07 m "
+    "(TL-5) it acts at 0.58 m, and AASHTO applies its design force at 1.07 m. Check the moment about the "
+    "foot with the height of your standard, too."
 )
 
 _LEAST_SHARE = 0.01  # elements that carry less than this share of the greatest load are not mentioned

@@ -31,17 +31,17 @@ ASSUMED_PERIOD = 0.1
 
 
 class DesignPlan(NamedTuple):
-    """Scenes at one barrier, and the system that each of its elements is."""
+    """Scenes at one barrier, and the oscillator that stands for each of its elements."""
 
     cases: list[Simulation | Result]
-    """Of each scene what it was made from: a result is taken as it is."""
+    """The simulation or result behind each scene; results are not run again."""
     scenes: list[Scene]
     varied: Mapping[str, Sequence[float]]
     """Lists of which each scene has one value (SI, degrees), by name."""
     barrier: Barrier
     system: System
     quantile: float
-    """Which value of all scenes counts, > 0 and <= 1."""
+    """Quantile over the scenes that is reported, > 0 and <= 1; 1 is the greatest."""
     period_is_assumed: bool
 
     @property

@@ -21,9 +21,9 @@ _MOST_OF_ONE_PULSE = 2.0  # no single pulse has a greater dynamic load factor
 
 
 _ADDED = (
-    "A dynamic load factor above 2 comes from blows that follow each other while the element swings, or from "
-    "peaks that the filter of the peak force takes: damping lessens the first. On a wall that is one element "
-    "blows at distant places add up: give it segments."
+    "A dynamic load factor above 2 has one of two causes. Blows follow each other while the element swings; "
+    "damping lessens that. Or CFC60 cuts the peak off the peak force. On a wall that is one element, blows "
+    "at distant places add up: give it segments."
 )
 
 
@@ -84,7 +84,7 @@ def greatest_of_periods(load: DesignLoad) -> tuple[float, float] | None:
 
 
 def _at_ends(load: DesignLoad, varied: Mapping[str, Sequence[float]]) -> Iterator[str]:
-    """Yield of which lists the governing value is an end, beyond which it may be greater."""
+    """Yield a sentence for each list whose first or last value governs: beyond it the load may be greater."""
     row = load.governing
     if not row.touched:
         return
@@ -94,4 +94,4 @@ def _at_ends(load: DesignLoad, varied: Mapping[str, Sequence[float]]) -> Iterato
         if len(set(values)) > 1 and getattr(scene, name) in (min(values), max(values)):
             words = name.replace("_", " ")
             if not (name == "impact_angle" and scene.impact_angle == 90.0):
-                yield f"The greatest load comes from the end of the list of {words}s: beyond it may be more."
+                yield f"The governing load is at the end of the listed {words}s: add values beyond it."

@@ -13,7 +13,7 @@ __all__ = ["A_PILLAR", "HEAVY_KG", "LOAD_BED", "StandardVehicle", "standard_vehi
 A_PILLAR = "a_pillar_base"
 LOAD_BED = "load_bed_leading_edge"
 HEAVY_KG = 3500.0
-"""From here on vehicles are trucks and buses: no standard judges their occupants."""
+"""Mass from which on a vehicle counts as heavy [kg]. No standard judges the occupants of heavy vehicles."""
 
 
 class StandardVehicle(NamedTuple):

@@ -13,8 +13,8 @@ __all__ = ["either", "got", "named", "plural", "refuse_unknown"]
 _PACKAGE = __name__.partition(".")[0]
 # Names that callers guess -> argument, and what to heed.
 _MEANT = {
-    "gap": ("spacing", "counted from axis to axis: the clear gap and the diameter"),
-    "clear_gap": ("spacing", "counted from axis to axis: the clear gap and the diameter"),
+    "gap": ("spacing", "from axis to axis: the clear gap plus the diameter"),
+    "clear_gap": ("spacing", "from axis to axis: the clear gap plus the diameter"),
     "radius": ("diameter", "twice the radius"),
     "mass": ("gvw", "the mass of the loaded vehicle"),
     "velocity": ("impact_speed", ""),
@@ -51,9 +51,10 @@ def either(words: Iterable[str]) -> str:
 
 
 def got(value: Any, by_type: bool, classes: Iterable[type]) -> str:
-    """Return what was given, and how it leads to an instance of one of the classes where that is known.
+    """Return what was given, and how to make an instance of one of the classes from it, where that is known.
 
-    A class that text leads to says so in ``_of_text``. A class that leads to others says so in ``_leads_to``.
+    ``_of_text`` of a class: how to make one from its name. ``_leads_to`` of the value's class: how to make
+    others from it. ``by_type``: the value's class is shown, not the value.
     """
     if isinstance(value, str):
         hints = [one._of_text for one in classes if hasattr(one, "_of_text")]

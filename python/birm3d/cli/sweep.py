@@ -234,7 +234,7 @@ def _print_runs(study: Study, metrics: Sequence[str]) -> None:
     shown = [*study.parameters, "outcome", *(name for name in metrics if name in study.metrics)]
     table = Table(*(_heading(study, name) for name in shown), title=f"{study.scene_title}, {len(study)} runs")
     for i in range(len(study)):
-        cells = [_cell(study[name][i], _column(study, name).size) for name in shown]
+        cells = [_cell(study[name][i], _column(study, name).divisor) for name in shown]
         if study.error[i]:
             cells[len(study.parameters) :] = ["failed"] + [""] * (len(shown) - len(study.parameters) - 1)
         table.add_row(*cells)
@@ -253,7 +253,7 @@ def _print_summary(study: Study) -> None:
     for name, row in study.summary().items():
         if is_count(name):
             continue
-        size = _column(study, name).size
+        size = _column(study, name).divisor
         deviation = "" if row.standard_deviation is None else _cell(row.standard_deviation, size)
         numbers = (_cell(value, size) for value in (row.p05, row.median, row.p95))
         table.add_row(_heading(study, name), str(row.n), _cell(row.mean, size), deviation, *numbers)

@@ -70,7 +70,7 @@ def study_html(study: Study) -> str:
         rows.append(("failed", f"{len(study.failed):,} (reasons in .failed)"))
     for name, values in list(study.parameters.items())[:_MOST_PARAMETERS]:
         column = shown_column(name, study.units.get(name, ""))
-        rows.append((column.label, _range(values / column.size if values.dtype.kind == "f" else values)))
+        rows.append((column.label, _range(values / column.divisor if values.dtype.kind == "f" else values)))
     if len(study.parameters) > _MOST_PARAMETERS:
         rows.append(("more parameters", str(len(study.parameters) - _MOST_PARAMETERS)))
     tables = table_html(("", ""), rows) + _spread_table(study)

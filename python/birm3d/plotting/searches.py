@@ -70,7 +70,7 @@ def _runs(axes: Axes, limit: Limit, heights: list[float]) -> None:
 
 def plot_worst_offset(found: WorstOffset) -> Figure:
     """Return the metric over the offset for each spacing, and its greatest value over the spacing."""
-    size = shown_column(found.metric, METRIC_UNITS[found.metric]).size
+    size = shown_column(found.metric, METRIC_UNITS[found.metric]).divisor
     label = found.label
     several = len(found.rows) > 1
     figure = new_figure(11.0 if several else 7.0, 4.8)

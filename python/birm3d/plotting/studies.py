@@ -171,7 +171,7 @@ def _histogram(axes: Axes, values: Floats, orientation: Any) -> None:
 def _column(study: Study, name: str, letters: int = _LETTERS) -> tuple[npt.NDArray[Any], str]:
     """Return a column in the unit in which pictures show it, and its label."""
     values, unit = study[name], study.units.get(name, "")
-    size = shown_column(name, unit).size
+    size = shown_column(name, unit).divisor
     return (values / size if values.dtype.kind == "f" else values), axis_label(name, unit, letters)
 
 

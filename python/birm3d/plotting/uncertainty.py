@@ -95,7 +95,7 @@ def plot_critical_point(found: CriticalImpactPoint) -> Figure:
     """
     names = sorted(found.effect, key=lambda name: -found.effect[name])[:2]
     names = [name for name in found.point if name in names]
-    size = shown_column(found.metric, METRIC_UNITS[found.metric]).size
+    size = shown_column(found.metric, METRIC_UNITS[found.metric]).divisor
     figure = new_figure(7.0, 5.2)
     axes = figure.subplots()
     prepare(axes)

@@ -30,8 +30,8 @@ class MissedBarrierWarning(UserWarning):
 class _Path(NamedTuple):
     offset: float  # of the path along the barrier's line [m]
     clearance: float  # between vehicle and barrier, seen along the path [m]; below 0 they meet
-    least: float  # offset at which the vehicle meets the barrier [m]
-    most: float
+    least: float  # offsets at which the vehicle meets the barrier, from here [m]
+    most: float  # to here [m]
 
 
 def missed_barrier(scene: Scene, event: _core.Event) -> Iterator[Complaint]:
@@ -51,11 +51,11 @@ def _text(title: str, path: _Path) -> str:
 
 
 def _path(scene: Scene, offset: float) -> _Path:
-    """Return where the vehicle's first unit goes past the barrier, as it came at t = 0."""
+    """Return clearance and offsets of the straight path that the first unit has at t = 0."""
     barrier = scene.barrier
     assert barrier is not None  # missed_barrier has asked
-    way = math.radians(barrier.heading + 90.0 - scene.impact_angle)
-    to_left = np.array([-math.sin(way), math.cos(way), 0.0])
+    path_angle = math.radians(barrier.heading + 90.0 - scene.impact_angle)
+    to_left = np.array([-math.sin(path_angle), math.cos(path_angle), 0.0])
     origin = np.asarray(barrier.origin)
     points = np.concatenate([vertices for vertices, _ in barrier_surfaces(barrier, [origin])])
     across = (points - origin) @ to_left

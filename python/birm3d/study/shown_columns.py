@@ -19,10 +19,10 @@ _WORDS = {
 
 
 class ShownColumn(NamedTuple):
-    """A column: its words, by what its SI values are divided to be shown, and the unit they have then."""
+    """A column: its words, its unit, and the divisor: the shown value is the SI value over it."""
 
     words: str
-    size: float
+    divisor: float
     unit: str
 
     @property
@@ -50,7 +50,7 @@ def shown_column(name: str, unit: str) -> ShownColumn:
 def shown_metric(name: str, value: float) -> str:
     """Return a value of a metric (SI) as text in the unit in which tables show it."""
     column = shown_column(name, METRICS[name].unit)
-    return f"{plain_number(value / column.size)} {column.unit}".rstrip()
+    return f"{plain_number(value / column.divisor)} {column.unit}".rstrip()
 
 
 def parameter_words(name: str) -> str:

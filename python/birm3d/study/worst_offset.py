@@ -125,7 +125,7 @@ class WorstOffset:
 
     def summary(self) -> str:
         """Return the table and what it rests on as text."""
-        size = shown_column(self.metric, METRIC_UNITS[self.metric]).size
+        size = shown_column(self.metric, METRIC_UNITS[self.metric]).divisor
         head = (
             "spacing [m]",
             "worst offset [m]",
