@@ -25,7 +25,7 @@ bollards: Any = Barrier.bollards
         (lambda: simulate(CAR, POSTS, 10.0, offset=0.2), "got 'offset', did you mean 'impact_offset'?"),
         (
             lambda: bollards(gap=0.9),
-            "got 'gap', did you mean 'spacing' (counted from axis to axis: the clear gap and the diameter)?",
+            "got 'gap', did you mean 'spacing' (from axis to axis: the clear gap plus the diameter)?",
         ),
         (lambda: bollards(radius=0.1), "got 'radius', did you mean 'diameter' (twice the radius)?"),
         (lambda: bollards(colour="red"), "bollards() must be given arguments among count, diameter, height"),

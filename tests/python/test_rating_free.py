@@ -130,15 +130,15 @@ def test_a_truck_that_lies_on_the_barrier_is_not_contained_yet() -> None:
 def test_intrusion_does_not_count_what_is_beyond_the_end() -> None:
     """The truck leaves both barriers at their end, and rolls on behind the second of them."""
     truck, intrusions = Vehicle.preset("mash_10000s", mesh_density=0.2), []
-    for length in (40.0, 30.0):
+    for length in (40.0, 45.0):
         barrier = Barrier.jersey(height=0.81, length=length, heading=20.0, origin=(1.0, 2.0, 0.0))
-        result = Simulation(truck, barrier, units.km_h(95.0), 15.0, barrier.station()).run()
+        result = Simulation(truck, barrier, units.km_h(98.0), 15.0, barrier.station()).run()
         assert result.outcome == "rolled_over"
         intrusions.append(birm3d.rate(result, "MASH 4-12").penetration)
     into = np.array([np.cos(np.radians(20.0)), np.sin(np.radians(20.0))])
     assert ((result.position[:, :2] - barrier.origin[:2]) @ into).max() > 1.0  # the mass centre, behind
     assert intrusions[0] == pytest.approx(intrusions[1], abs=0.02)
-    assert intrusions[0] < 2.7
+    assert intrusions[0] < 2.8
 
 
 def test_a_level_says_which_truck_rolled_over() -> None:
