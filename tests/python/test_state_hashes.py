@@ -68,7 +68,7 @@ HASHES = {
     "pickup, bollards": "2d14208a69bb1b3c",
     "car, Jersey": "b5d065603ab052c6",
     "semi, wall": "fe6e7278f891583e",
-    "truck, pole of triangles": "7d4e7705b053977b",
+    "truck, pole of triangles": "9351a79d842abf38",
     "free-standing": "8b513e5bd4bc08b5",
     "minivan on its side": "50fa25478b464c0d",
     "car, corner of a planter": "7068ea637b442401",

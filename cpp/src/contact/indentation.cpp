@@ -49,7 +49,8 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
         const auto bit = static_cast<std::uint8_t>(1U << p);
         const bool indents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
         if (!panel.any ||
-            !can_indent(obstacle, near.now, panel, approach_of(pass.before.body, panel), indents))
+            !can_indent(obstacle, near.now, panel,
+                        approach_of(pass.unit.body, pass.before.body, near.before, panel), indents))
             continue;
         const Indentation indentation = indentation_by(obstacle, near.now, panel, mesh, pass.scene.settings);
         if (!indents && !(indentation.beside() < 0.0)) continue;

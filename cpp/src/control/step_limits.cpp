@@ -93,7 +93,8 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
                 for (std::size_t b = g * TrussMesh::group_size; b < mesh.end_of_group(g); ++b)
                     longest = untouched_step_of(unit.trusses.block[b], near, fastest, longest);
         }
-        if (mesh.indentation_length > 0.0) longest = step_to_indentation(scene, unit, mesh, fastest, longest);
+        if (mesh.indentation_length > 0.0)
+            longest = step_to_indentation(scene, unit, model, fastest, longest);
     }
     return longest;
 }

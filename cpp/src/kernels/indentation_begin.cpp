@@ -10,13 +10,13 @@ namespace {
 // Cosine of the angle between a post's axis and a panel's direction beyond which it does not begin to indent it, or ceases to.
 constexpr double most_tilted = 0.5, overturned = 0.95;
 
-// Cosine by which a face of an edge points at a panel, see facing(). Above the first the edge begins to indent the panel; below
-// the second it stops.
+// Cosine by which a face that looks at the traffic points at a panel, see facing(). Above the first its edge or its top begins to
+// indent the panel; below the second the top stops.
 constexpr double least_facing = 0.7, turned_away = 0.3;
 
-// Where that face does not look at the traffic, the panel must come towards the edge: the cosine of the angle between it and the
-// motion exceeds this. A panel that slides along the end of a wall meets the edge as it meets any surface.
-constexpr double least_approach = 0.7;
+// The same of any face of an edge that the panel comes towards: the cosine of the angle between the panel's outward direction and
+// its velocity exceeds the third. A panel that slides along the end of a wall meets the edge as it meets any surface.
+constexpr double least_facing_ahead = 0.3, edge_turned_away = 0.1, least_approach = 0.7;
 
 // Cosine of the angle between a panel's outward direction and the direction into the block behind a face; 1 if the face points
 // at the panel. `behind`: the latter, own axes.
@@ -39,8 +39,9 @@ bool can_indent(const Post& post, const Placement& stands, const Panel& panel, d
         const Vec3 behind = post.along_face(k);  // the other face
         const double cosine = facing(panel, stands, behind);
         const bool looks_at_traffic = behind.x() > 0.5;
-        if (indents && cosine > turned_away) return true;
-        if (cosine > least_facing && (looks_at_traffic || approach > least_approach)) return true;
+        if (indents && cosine > edge_turned_away) return true;
+        if (looks_at_traffic && cosine > least_facing) return true;
+        if (approach > least_approach && cosine > least_facing_ahead) return true;
     }
     return false;
 }

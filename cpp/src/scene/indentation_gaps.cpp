@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "birm3d/base/tolerances.hpp"
+#include "kernels/integrate.hpp"
 #include "scene/obstacles.hpp"
 
 namespace birm3d {
@@ -39,9 +40,13 @@ bool draws_in_skin(const Obstacle& obstacle) {
     return obstacle.top_edge.has_value() || std::holds_alternative<Post>(obstacle.shape);
 }
 
-double approach_of(const BodyState& body, const Panel& panel) {
-    const double speed = body.velocity.norm();
-    return speed > 0.0 ? -panel.inward.dot(body.orientation.conjugate() * body.velocity) / speed : 0.0;
+double approach_of(const RigidBody& body, const BodyState& state, const Placement& stands,
+                   const Panel& panel) {
+    const Twist motion = twist(body, state);
+    const Vec3 arm = state.orientation * stands.from_own(Vec3::Zero());
+    const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(arm);
+    const double speed = velocity.norm();
+    return speed > 0.0 ? -panel.inward.dot(state.orientation.conjugate() * velocity) / speed : 0.0;
 }
 
 bool can_indent(const Obstacle& obstacle, const Placement& stands, const Panel& panel, double approach,
@@ -86,8 +91,9 @@ namespace {
 // `about`: indices of the obstacles. `distance`: posts that are no further than this beside, in front of or below a
 // panel count too (m).
 template <class Use>
-void for_each_indentation(const Scene& scene, const UnitState& unit, const TrussMesh& mesh,
+void for_each_indentation(const Scene& scene, const UnitState& unit, const Unit& model,
                           const std::vector<std::size_t>& about, double distance, const Use& use) {
+    const TrussMesh& mesh = model.trusses;
     for (const std::size_t i : about) {
         const Obstacle& obstacle = scene.obstacles[i];
         if (!draws_in_skin(obstacle)) continue;
@@ -95,7 +101,8 @@ void for_each_indentation(const Scene& scene, const UnitState& unit, const Truss
             placement({obstacle.rotation, obstacle.position}, unit.body);  // it is fixed
         for (std::size_t p = 0; p < panels; ++p) {
             const Panel& panel = mesh.panel[p];
-            if (!panel.any || !can_indent(obstacle, in_shape, panel, approach_of(unit.body, panel), false))
+            if (!panel.any || !can_indent(obstacle, in_shape, panel,
+                                          approach_of(model.body, unit.body, in_shape, panel), false))
                 continue;
             Indentation indentation = indentation_by(obstacle, in_shape, panel, mesh, scene.settings);
             if (!(indentation.beside() < distance) || indentation.is_beyond(panel)) continue;
@@ -117,7 +124,7 @@ double overlap_of_indentations(const Scene& scene, const State& state, double de
         const TrussMesh& mesh = scene.vehicle->units[u].trusses;
         if (mesh.indentation_length == 0.0) continue;
         scene.map.find(state.units[u].body.position, state.units[u].trusses.around.radius(), about);
-        for_each_indentation(scene, state.units[u], mesh, about, 0.0,
+        for_each_indentation(scene, state.units[u], scene.vehicle->units[u], about, 0.0,
                              [&](const Indentation& indentation, std::size_t, std::size_t panel) {
                                  const double gap =
                                      gap_of_panel(indentation, panel, mesh, state.units[u], 0.0, -infinity);
@@ -141,13 +148,14 @@ bool indents_already(const UnitState& unit, std::size_t obstacle, std::size_t pa
 
 }  // namespace
 
-double step_to_indentation(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
+double step_to_indentation(const Scene& scene, const UnitState& unit, const Unit& model, double fastest,
                            double longest) {
+    const TrussMesh& mesh = model.trusses;
     std::vector<std::size_t> about;
     const double distance = longest * fastest;
     scene.map.find(unit.body.position, unit.trusses.around.radius() + distance, about);
     for_each_indentation(
-        scene, unit, mesh, about, distance,
+        scene, unit, model, about, distance,
         [&](const Indentation& indentation, std::size_t obstacle, std::size_t panel) {
             if (indents_already(unit, obstacle, panel)) return;
             // A post indents a panel that it moves into from in front.

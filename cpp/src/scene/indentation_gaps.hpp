@@ -9,8 +9,10 @@ namespace birm3d {
 // Is the obstacle a post, or has it a top edge that draws in skin?
 bool draws_in_skin(const Obstacle& obstacle);
 
-// Cosine of the angle between a panel and the motion of its body towards what stands still before it; 0 at rest.
-double approach_of(const BodyState& body, const Panel& panel);
+// Cosine of the angle between a panel's outward direction and the velocity of its body, where that is at the foot of an obstacle
+// that stands still; 0 at rest.
+double approach_of(const RigidBody& body, const BodyState& state, const Placement& stands,
+                   const Panel& panel);
 
 // Is it so placed that it can indent the panel? See can_indent() in kernels/indentation.hpp.
 bool can_indent(const Obstacle& obstacle, const Placement& stands, const Panel& panel, double approach,
@@ -31,7 +33,7 @@ double overlap_of_indentations(const Scene& scene, const State& state, double de
 
 // A step of at most `longest` in which no post begins to indent a panel (s). Posts beside or inside a panel come from
 // the side and make no indentation. `fastest`: bound of the speed of any point of the unit (m/s).
-double step_to_indentation(const Scene& scene, const UnitState& unit, const TrussMesh& mesh, double fastest,
+double step_to_indentation(const Scene& scene, const UnitState& unit, const Unit& model, double fastest,
                            double longest);
 
 }  // namespace birm3d
