@@ -9,8 +9,8 @@ namespace birm3d {
 // Is the obstacle a post, or has it a top edge that draws in skin?
 bool draws_in_skin(const Obstacle& obstacle);
 
-// Cosine of the angle between a panel's outward direction and the velocity of its body, where that is at the foot of an obstacle
-// that stands still; 0 at rest.
+// Cosine of the angle between a panel's outward direction and its body's velocity at the foot of an obstacle; 0 at rest. The
+// obstacle counts as standing still.
 double approach_of(const RigidBody& body, const BodyState& state, const Placement& stands,
                    const Panel& panel);
 

@@ -28,8 +28,10 @@ _SKIN = (
     "for security bollards asks for clear gaps of 1.2 m or less, whatever is computed."
 )
 _OVER = (
-    "Computed, not tested. The springs of the vehicle are estimates, and the barrier does not give "
-    "way under it: leave a margin. Guidance for security bollards asks for 0.5 m or more."
+    "Computed, not tested. Here a barrier that catches the lower edge of the front holds the vehicle, though "
+    "a real front rides up on it: do not go below the bumper beam, about 0.5 m. The springs of the vehicle "
+    "are estimates, and the barrier does not give way under it: leave a margin. Guidance for security "
+    "bollards asks for 0.5 m or more."
 )
 _SLIDES = (
     "Computed, not tested. Segments slide but do not tip, and their joints do not break: look at "
