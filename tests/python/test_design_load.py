@@ -175,7 +175,7 @@ def test_envelope_is_the_greatest_of_its_scenes(envelope: DesignLoad) -> None:
             assert row.scene.get(number, 0) == int(np.argmax(values))
         assert row.touched == any(single[i].touched for single in singles)
         assert row.height == singles[row.scene.get("force_50ms", 0)][i].height
-    assert "end of the list of impact offsets" in envelope.caution
+    assert "end of the listed impact offsets" in envelope.caution
     assert "rigid and fixed" in envelope.caution
 
 
