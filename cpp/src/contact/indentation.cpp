@@ -8,6 +8,7 @@
 
 #include "base/block_loop.hpp"
 #include "birm3d/base/tolerances.hpp"
+#include "kernels/integrate.hpp"
 #include "scene/indentation_gaps.hpp"
 
 namespace birm3d {
@@ -24,14 +25,6 @@ bool stood_before(const ContactPass& pass, std::size_t k, std::size_t p) {
     return then.beside() < 0.0 && gap_of_panel(then, p, pass.mesh, pass.before, 0.0, 0.0) > 0.0;
 }
 
-// Does any node of the unit push on the obstacle?
-bool pushed_before(const ContactPass& pass, std::size_t obstacle) {
-    const std::vector<ContactLoad>& loads = pass.before.contact_loads;
-    return std::any_of(loads.begin(), loads.end(), [=](const ContactLoad& load) {
-        return load.obstacle == obstacle && load.normal_force > 0.0;
-    });
-}
-
 // The panels that the post indents: it came into them from in front and has not released them.
 IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
                                     std::vector<IndentedPanel>& list) {
@@ -42,16 +35,14 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
     const auto known = std::find_if(all.begin(), all.end(),
                                     [&](const IndentedPanels& d) { return d.obstacle == near.index; });
     const IndentedPanels last = known != all.end() ? *known : IndentedPanels{near.index};
-    const bool pushes = pushed_before(pass, near.index);
+    const bool pushes = pushes_on(pass.before, near.index);
+    const Twist motion = twist_in_body_axes(pass.unit.body, pass.before.body);
     IndentedPanels now{near.index};
     for (std::size_t p = 0; p < panels; ++p) {
         const Panel& panel = mesh.panel[p];
         const auto bit = static_cast<std::uint8_t>(1U << p);
         const bool indents = (last.panels & bit) != 0, passed = (last.passed & bit) != 0;
-        if (!panel.any ||
-            !can_indent(obstacle, near.now, panel,
-                        approach_of(pass.unit.body, pass.before.body, near.before, panel), indents))
-            continue;
+        if (!panel.any || !can_indent(obstacle, near.now, panel, motion, indents)) continue;
         const Indentation indentation = indentation_by(obstacle, near.now, panel, mesh, pass.scene.settings);
         if (!indents && !(indentation.beside() < 0.0)) continue;
         if (indentation.is_beyond(panel)) {

@@ -32,13 +32,6 @@ void add_to_obstacle(const Scene& scene, const State& state, const RigidContact&
     sum->torque -= (place - pose_of(scene, contact.obstacle, state).position).cross(impulse);
 }
 
-// Does the obstacle push on any node of the unit?
-bool pushes(const UnitState& unit, std::size_t obstacle) {
-    return std::any_of(unit.contact_loads.begin(), unit.contact_loads.end(), [=](const ContactLoad& load) {
-        return load.obstacle == obstacle && load.normal_force > 0.0;
-    });
-}
-
 }  // namespace
 
 void find_rigid_contacts(const Scene& scene, const State& state, double dt, const StepOptions& options,
@@ -53,8 +46,7 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
         if (scene.settings.ground)
             find_tire_contacts(unit, u, body, state.units[u].given_way, WheelAt::bump_stop, contacts);
         if (scene.obstacles.empty() || !options.hold_core) continue;
-        const Mat3 R = body.orientation.toRotationMatrix();
-        const Twist motion{R.transpose() * body.velocity, R.transpose() * angular_velocity(unit.body, body)};
+        const Twist motion = twist_in_body_axes(unit.body, body);
         placed.clear();
         const Box& anchors = unit.trusses.anchors;
         scene.map.find(body.position, unit.trusses.reach + core_margin(unit.trusses, motion, dt), about);
@@ -67,7 +59,7 @@ void find_rigid_contacts(const Scene& scene, const State& state, double dt, cons
                                  motion.angular_velocity - other.angular_velocity};
             if (within_reach(obstacle.shape, in_shape, anchors, core_margin(unit.trusses, relative, dt)))
                 placed.push_back(
-                    {&obstacle.shape, in_shape, i, obstacle.friction, other, pushes(state.units[u], i)});
+                    {&obstacle.shape, in_shape, i, obstacle.friction, other, pushes_on(state.units[u], i)});
         }
         if (placed.empty()) continue;
         const std::size_t first = contacts.size();

@@ -72,9 +72,7 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
         const auto reaches = [&](const Shape& shape, const Placement& in_shape, const Box& box) {
             return within_reach(shape, in_shape, box, longest * fastest);
         };
-        const Mat3 R = unit.body.orientation.toRotationMatrix();
-        const Vec3 v = R.transpose() * unit.body.velocity;
-        const Vec3 w = R.transpose() * angular_velocity(model.body, unit.body);
+        const Twist motion = twist_in_body_axes(model.body, unit.body);
         const Box& all = unit.trusses.around;
         near.clear();
         scene.map.find(unit.body.position, all.radius() + longest * fastest, about);
@@ -83,7 +81,10 @@ double untouched_step(const Scene& scene, const State& state, double longest) {
             const Placement in_shape = placement(pose_of(scene, i, state), unit.body);
             if (i == scene.ground || !reaches(shape, in_shape, all)) continue;
             const Twist other = obstacle_motion(scene, i, state, unit.body);
-            near.push_back({&shape, in_shape, {v - other.velocity, w - other.angular_velocity}});
+            near.push_back(
+                {&shape,
+                 in_shape,
+                 {motion.velocity - other.velocity, motion.angular_velocity - other.angular_velocity}});
         }
         for (std::size_t g = 0; g < unit.trusses.groups.size(); ++g) {
             const BlockGroup& group = unit.trusses.groups[g];

@@ -9,10 +9,10 @@ struct EdgeFace {
     double e, w, slope;
 };
 
-// Beside an edge: the slope of the face there, or more than the skin ever has. By rotations about l and w the slope
-// becomes less by `turn_l` and `turn_w` (1/rad).
+// Beside an edge: the slope of the face on which skin can lie; without such a face more than the skin ever has. By rotations
+// about l and w the slope becomes less by `turn_l` and `turn_w` (1/rad).
 struct EdgeSide {
-    double slope, turn_l, turn_w;
+    double slope = 1e3, turn_l = 0.0, turn_w = 0.0;
 };
 
 // A post, or a face with a top edge, seen from a panel of the skin. Places from the foot of the post's axis or of the face:
@@ -34,7 +34,7 @@ struct IndentationNumbers {
     double
         grip;  // fraction of the post's displacement that the skin follows, at the deepest point of the post in the panel
     double flank_low, flank_high;  // factors of the flanks on either side, by w
-    EdgeFace face[2];              // of an edge; of a post zero
+    EdgeFace face[2] = {};         // of an edge; of a post zero
     EdgeSide side_low, side_high;  // by w
     double steep_arc, rise_there;  // across and deep, of the place from where the flank is steepest
 };

@@ -41,9 +41,6 @@ double open_side(const Vec3& w, const Placement& stands, double opens) {
     return std::clamp(std::sqrt(2.0) * w.dot(open), -1.0, 1.0);
 }
 
-// Beside a post, and where a face holds the skin itself.
-constexpr EdgeSide no_face = {2.0 * steepest, 0.0, 0.0};
-
 BIRM3D_BLOCK_LOOP double furthest(const BlockColumn& panel_of, double panel, const BlockColumn& force,
                                   const BlockColumn& gap) {
     alignas(64) BlockColumn most;
@@ -99,8 +96,6 @@ Indentation::Indentation(const TopEdge& edge, const Placement& stands, const Pan
     is_face = true;
     grip = 1.0;
     radius = top_rate = flank_low = flank_high = steep_arc = rise_there = 0.0;
-    face[0] = face[1] = {};
-    side_low = side_high = no_face;
 }
 
 Indentation::Indentation(const Post& post, const Placement& stands, const Panel& panel, double length_,
@@ -124,8 +119,6 @@ Indentation::Indentation(const Post& post, const Placement& stands, const Panel&
         post.opens ? std::max(0.0, 1.0 - 2.0 * off) * open_side(w, stands, *post.opens) : 0.0;
     flank_low = flank_factor(-opens, edge_flank_factor);
     flank_high = flank_factor(opens, edge_flank_factor);
-    face[0] = face[1] = {};
-    side_low = side_high = no_face;
     if (post.opens) set_faces(post, stands);
     const double slope_there = steepest * upright, cosine = 1.0 / std::sqrt(1.0 + slope_there * slope_there);
     steep_arc = slope_there * cosine * radius;
@@ -196,9 +189,9 @@ double Indentation::fastest_growth(const Panel& panel) const {
 namespace {
 
 // Greatest indentation at the distance `beside` from a post of at most this depth: the maximum of p - slope(p) beside
-// over depths p. Beside an edge the slope is at most that of its flattest face.
-double most_drawn_in(double deepest, double beside, double reach, double flattest_face) {
-    const double slope = std::min(slope_at<double>(deepest, 1.0 / reach).slope, flattest_face);
+// over depths p. The slope is at most `most_slope`.
+double most_drawn_in(double deepest, double beside, double reach, double most_slope) {
+    const double slope = std::min(slope_at<double>(deepest, 1.0 / reach).slope, most_slope);
     const double by_deepest = deepest - slope * beside;
     if (beside <= reach) return by_deepest;
     const double further = std::sqrt(beside * beside - reach * reach);
@@ -219,9 +212,8 @@ BoxInIndentation box_in_indentation(const Indentation& d, const Box& box, bool h
     // A face draws in what is or was above its top edge, and nothing beside its ends.
     if (d.is_face && (off > 0.0 || (l.high <= tops.low - at_edge && !hangs)))
         return {outermost, depth, -infinity};
-    const double flattest_face = std::min(d.side_low.slope, d.side_high.slope);
     return {outermost, depth,
-            most_drawn_in(depth, off + std::max(l.low - tops.high, 0.0), d.length, flattest_face)};
+            most_drawn_in(depth, off + std::max(l.low - tops.high, 0.0), d.length, flattest_face(d))};
 }
 
 }  // namespace

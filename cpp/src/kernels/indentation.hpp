@@ -100,8 +100,9 @@ struct Indentation : IndentationNumbers {
 };
 
 // Is the post upright enough before the panel to indent it? If it is an edge, does one of its faces point at the panel?
-// `approach`: cosine of the angle between the panel and its motion towards the post. `indents`: does it do so already?
-bool can_indent(const Post& post, const Placement& stands, const Panel& panel, double approach, bool indents);
+// `motion`: of the panel's body, body axes. `indents`: does the post do so already?
+bool can_indent(const Post& post, const Placement& stands, const Panel& panel, const Twist& motion,
+                bool indents);
 // Is the face upright enough before the panel, and does it point at it?
 bool can_indent(const TopEdge& edge, const Placement& stands, const Panel& panel, bool indents);
 

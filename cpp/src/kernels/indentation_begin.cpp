@@ -7,16 +7,20 @@ namespace birm3d {
 
 namespace {
 
-// Cosine of the angle between a post's axis and a panel's direction beyond which it does not begin to indent it, or ceases to.
+// Cosine of the angle between a post's axis and a panel's direction: beyond the first the post does not begin to indent the
+// panel, beyond the second it ceases to.
 constexpr double most_tilted = 0.5, overturned = 0.95;
 
 // Cosine by which a face that looks at the traffic points at a panel, see facing(). Above the first its edge or its top begins to
 // indent the panel; below the second the top stops.
 constexpr double least_facing = 0.7, turned_away = 0.3;
 
-// The same of any face of an edge that the panel comes towards: the cosine of the angle between the panel's outward direction and
-// its velocity exceeds the third. A panel that slides along the end of a wall meets the edge as it meets any surface.
-constexpr double least_facing_ahead = 0.3, edge_turned_away = 0.1, least_approach = 0.7;
+// The same cosines of any face of an edge, where the panel comes towards the edge.
+constexpr double least_facing_ahead = 0.3, edge_turned_away = 0.1;
+
+// A panel comes towards an edge if this cosine is exceeded: of the angle between its outward direction and its velocity at the
+// edge. A panel that slides along the end of a wall meets the edge as it meets any surface.
+constexpr double least_approach = 0.7;
 
 // Cosine of the angle between a panel's outward direction and the direction into the block behind a face; 1 if the face points
 // at the panel. `behind`: the latter, own axes.
@@ -29,9 +33,15 @@ bool is_upright(const Placement& stands, const Panel& panel, bool indents) {
     return cosine < (indents ? overturned : most_tilted);
 }
 
+// Does the panel come towards the foot of an obstacle that stands still? `motion`: of the panel's body, body axes.
+bool comes_towards(const Panel& panel, const Placement& stands, const Twist& motion) {
+    const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(stands.from_own(Vec3::Zero()));
+    return -panel.inward.dot(velocity) > least_approach * velocity.norm();
+}
+
 }  // namespace
 
-bool can_indent(const Post& post, const Placement& stands, const Panel& panel, double approach,
+bool can_indent(const Post& post, const Placement& stands, const Panel& panel, const Twist& motion,
                 bool indents) {
     if (!is_upright(stands, panel, indents)) return false;
     if (!post.opens) return true;
@@ -41,7 +51,7 @@ bool can_indent(const Post& post, const Placement& stands, const Panel& panel, d
         const bool looks_at_traffic = behind.x() > 0.5;
         if (indents && cosine > edge_turned_away) return true;
         if (looks_at_traffic && cosine > least_facing) return true;
-        if (approach > least_approach && cosine > least_facing_ahead) return true;
+        if (cosine > least_facing_ahead && comes_towards(panel, stands, motion)) return true;
     }
     return false;
 }

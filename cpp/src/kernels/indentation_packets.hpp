@@ -42,8 +42,7 @@ BIRM3D_INLINE Standing stand(const IndentationNumbers& d, const PanelNodes& node
 // Lower bound of the gaps: the post is taken as deep everywhere as in its middle, with the least slope beside it.
 BIRM3D_INLINE Packet no_less_than(const IndentationNumbers& d, const Standing& s) {
     const Packet zero = 0.0, by_depth = (s.deepest - d.surface) * d.per_reach;
-    const Packet flattest_face = d.side_low.slope < d.side_high.slope ? d.side_low.slope : d.side_high.slope;
-    const Packet slope = lesser(lesser(greater(by_depth, least_slope), steepest), flattest_face);
+    const Packet slope = lesser(lesser(greater(by_depth, least_slope), steepest), flattest_face(d));
     const Packet beside = greater(greater(s.w - d.most_w, d.least_w - s.w), zero);
     return s.e - (s.deepest - slope * (beside + (s.l - s.up)));
 }

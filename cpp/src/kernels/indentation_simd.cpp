@@ -59,6 +59,12 @@ BIRM3D_INLINE bool any_matters(const PanelNodes& nodes, const KnownFaces& known,
     return any_above(where_on(nodes, below, -infinitely_far, i), least);
 }
 
+// Cosine of the normal of the surface that each node is on, and the panel's direction.
+BIRM3D_INLINE Packet cosine_of_surface(const IndentationNumbers& d, const KnownFaces& known, std::size_t i) {
+    return d.ex * Packet::load(known.nx + i) + d.ey * Packet::load(known.ny + i) +
+           d.ez * Packet::load(known.nz + i);
+}
+
 // By how much another surface must be nearer than the edge's face to hold skin that lies on it (m): the face itself is no other
 // surface, to rounding and to the chords of its arc.
 constexpr double coincident = 1e-3;
@@ -67,8 +73,7 @@ constexpr double coincident = 1e-3;
 BIRM3D_INLINE Packet gap_of_holding_surface(const IndentationNumbers& d, const KnownFaces& known,
                                             const FollowedPlace& h, std::size_t i) {
     const Packet zero = 0.0, far = infinitely_far, faces = Packet::load(known.least_facing + i);
-    const Packet along = d.ex * Packet::load(known.nx + i) + d.ey * Packet::load(known.ny + i) +
-                         d.ez * Packet::load(known.nz + i);
+    const Packet along = cosine_of_surface(d, known, i);
     const Packet gap = where_above(along, faces, Packet::load(known.contact_gap + i), far);
     const Packet other =
         where_above(h.on_face, zero, where_above(h.gap * along - gap, coincident, gap, far), gap);
@@ -126,9 +131,7 @@ BIRM3D_INLINE Packet unless_drawn_inside(const IndentationNumbers& d, const Know
     // Skin on a face of the edge goes with the edge, though the face is a surface that holds it, too.
     const Packet zero = 0.0, favour = where_above(h.on_face, zero, coincident, zero),
                  gap_so_far = Packet::load(known.gap + i) + favour;
-    const Packet facing =
-        d.ex * Packet::load(known.nx + i) + d.ey * Packet::load(known.ny + i) +
-        d.ez * Packet::load(known.nz + i);  // cosine of the surface's normal and the panel's direction
+    const Packet facing = cosine_of_surface(d, known, i);
     const Packet outside = where_above(zero, gap_so_far - facing * gap, zero, state);
     return where_above(Packet::load(known.lags + i), zero, state, where_above(zero, facing, outside, state));
 }

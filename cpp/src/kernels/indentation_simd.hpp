@@ -28,8 +28,13 @@ BIRM3D_INLINE Slope<Number> slope_at(const Number& depth, double per_reach) {
 }
 
 // Does the face of an edge hold the skin itself, as a wall that is met head-on does? The skin never falls off less steeply.
-inline bool is_nearly_parallel(const EdgeFace& face) {
+BIRM3D_INLINE bool is_nearly_parallel(const EdgeFace& face) {
     return face.slope <= least_slope;
+}
+
+// Slope of the flattest face beside an edge; of a post more than the skin ever has.
+BIRM3D_INLINE double flattest_face(const IndentationNumbers& d) {
+    return d.side_low.slope < d.side_high.slope ? d.side_low.slope : d.side_high.slope;
 }
 
 // Nodes that are less than this below a top edge count as above it: the surface that is nearest to them may be the top (m).

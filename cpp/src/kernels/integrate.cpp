@@ -18,6 +18,11 @@ Twist twist(const RigidBody& body, const BodyState& state) {
     return {state.velocity, angular_velocity(body, state)};
 }
 
+Twist twist_in_body_axes(const RigidBody& body, const BodyState& state) {
+    const Mat3 R = state.orientation.toRotationMatrix();
+    return {R.transpose() * state.velocity, R.transpose() * angular_velocity(body, state)};
+}
+
 void kick(const RigidBody& body, const Wrench& impulse, BodyState& state) {
     state.velocity += body.inverse_mass * impulse.force;
     state.angular_momentum += impulse.torque;

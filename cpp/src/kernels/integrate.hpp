@@ -17,7 +17,8 @@ Mat3 inverse_inertia_in_world(const RigidBody& body, const BodyState& state);
 
 Vec3 angular_velocity(const RigidBody& body, const BodyState& state);  // world axes (rad/s)
 
-Twist twist(const RigidBody& body, const BodyState& state);
+Twist twist(const RigidBody& body, const BodyState& state);  // world axes
+Twist twist_in_body_axes(const RigidBody& body, const BodyState& state);
 
 // impulse: linear and angular, world axes, about the mass centre (N s, N m s).
 void kick(const RigidBody& body, const Wrench& impulse, BodyState& state);

@@ -40,19 +40,10 @@ bool draws_in_skin(const Obstacle& obstacle) {
     return obstacle.top_edge.has_value() || std::holds_alternative<Post>(obstacle.shape);
 }
 
-double approach_of(const RigidBody& body, const BodyState& state, const Placement& stands,
-                   const Panel& panel) {
-    const Twist motion = twist(body, state);
-    const Vec3 arm = state.orientation * stands.from_own(Vec3::Zero());
-    const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(arm);
-    const double speed = velocity.norm();
-    return speed > 0.0 ? -panel.inward.dot(state.orientation.conjugate() * velocity) / speed : 0.0;
-}
-
-bool can_indent(const Obstacle& obstacle, const Placement& stands, const Panel& panel, double approach,
+bool can_indent(const Obstacle& obstacle, const Placement& stands, const Panel& panel, const Twist& motion,
                 bool indents) {
     return obstacle.top_edge ? can_indent(*obstacle.top_edge, stands, panel, indents)
-                             : can_indent(std::get<Post>(obstacle.shape), stands, panel, approach, indents);
+                             : can_indent(std::get<Post>(obstacle.shape), stands, panel, motion, indents);
 }
 
 Indentation indentation_by(const Obstacle& obstacle, const Placement& stands, const Panel& panel,
@@ -94,6 +85,7 @@ template <class Use>
 void for_each_indentation(const Scene& scene, const UnitState& unit, const Unit& model,
                           const std::vector<std::size_t>& about, double distance, const Use& use) {
     const TrussMesh& mesh = model.trusses;
+    const Twist motion = twist_in_body_axes(model.body, unit.body);
     for (const std::size_t i : about) {
         const Obstacle& obstacle = scene.obstacles[i];
         if (!draws_in_skin(obstacle)) continue;
@@ -101,9 +93,7 @@ void for_each_indentation(const Scene& scene, const UnitState& unit, const Unit&
             placement({obstacle.rotation, obstacle.position}, unit.body);  // it is fixed
         for (std::size_t p = 0; p < panels; ++p) {
             const Panel& panel = mesh.panel[p];
-            if (!panel.any || !can_indent(obstacle, in_shape, panel,
-                                          approach_of(model.body, unit.body, in_shape, panel), false))
-                continue;
+            if (!panel.any || !can_indent(obstacle, in_shape, panel, motion, false)) continue;
             Indentation indentation = indentation_by(obstacle, in_shape, panel, mesh, scene.settings);
             if (!(indentation.beside() < distance) || indentation.is_beyond(panel)) continue;
             if (distance > 0.0) {

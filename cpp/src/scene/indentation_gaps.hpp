@@ -9,13 +9,8 @@ namespace birm3d {
 // Is the obstacle a post, or has it a top edge that draws in skin?
 bool draws_in_skin(const Obstacle& obstacle);
 
-// Cosine of the angle between a panel's outward direction and its body's velocity at the foot of an obstacle; 0 at rest. The
-// obstacle counts as standing still.
-double approach_of(const RigidBody& body, const BodyState& state, const Placement& stands,
-                   const Panel& panel);
-
 // Is it so placed that it can indent the panel? See can_indent() in kernels/indentation.hpp.
-bool can_indent(const Obstacle& obstacle, const Placement& stands, const Panel& panel, double approach,
+bool can_indent(const Obstacle& obstacle, const Placement& stands, const Panel& panel, const Twist& motion,
                 bool indents);
 
 // The indentation of a panel by a post or a top edge that stands there, seen from the body.

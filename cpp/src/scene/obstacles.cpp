@@ -73,6 +73,12 @@ void find_near(const Scene& scene, std::size_t u, const State& before, const Sta
     }
 }
 
+bool pushes_on(const UnitState& unit, std::size_t obstacle) {
+    return std::any_of(unit.contact_loads.begin(), unit.contact_loads.end(), [=](const ContactLoad& load) {
+        return load.obstacle == obstacle && load.normal_force > 0.0;
+    });
+}
+
 double fastest_point(const Unit& unit, const BodyState& body) {
     return body.velocity.norm() + angular_velocity(unit.body, body).norm() * unit.trusses.reach;
 }

@@ -34,6 +34,9 @@ Twist obstacle_motion(const Scene& scene, std::size_t obstacle, const State& sta
 void find_near(const Scene& scene, std::size_t unit, const State& before, const State& now, double margin,
                std::vector<std::size_t>& about, std::vector<NearObstacle>& near);
 
+// Does any node of the unit push on the obstacle?
+bool pushes_on(const UnitState& unit, std::size_t obstacle);
+
 // Fastest any point of the unit moves (m/s).
 double fastest_point(const Unit& unit, const BodyState& body);
 

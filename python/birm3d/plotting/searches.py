@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..result.metrics import METRIC_UNITS
-from ..study.shown_columns import shown_column, shown_metric
+from ..study.shown_columns import metric_column, shown_metric
 from .figure import new_figure
 from .studies import axis_label
 from .style import BLUE, CYCLE, DASHED, GREEN, RED, legend, prepare, wrapped
@@ -70,7 +70,7 @@ def _runs(axes: Axes, limit: Limit, heights: list[float]) -> None:
 
 def plot_worst_offset(found: WorstOffset) -> Figure:
     """Return the metric over the offset for each spacing, and its greatest value over the spacing."""
-    size = shown_column(found.metric, METRIC_UNITS[found.metric]).divisor
+    size = metric_column(found.metric).divisor
     label = found.label
     several = len(found.rows) > 1
     figure = new_figure(11.0 if several else 7.0, 4.8)

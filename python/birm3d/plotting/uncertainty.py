@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from ..result.metrics import METRIC_UNITS
 from ..simulation.parameters import unit_of
-from ..study.shown_columns import parameter_words, shown_column, shown_metric
+from ..study.shown_columns import metric_column, parameter_words, shown_column, shown_metric
 from .figure import new_figure
 from .studies import axis_label
 from .style import BLUE, ORANGE, RED, legend, prepare, wrapped
@@ -95,7 +95,7 @@ def plot_critical_point(found: CriticalImpactPoint) -> Figure:
     """
     names = sorted(found.effect, key=lambda name: -found.effect[name])[:2]
     names = [name for name in found.point if name in names]
-    size = shown_column(found.metric, METRIC_UNITS[found.metric]).divisor
+    size = metric_column(found.metric).divisor
     figure = new_figure(7.0, 5.2)
     axes = figure.subplots()
     prepare(axes)
@@ -109,7 +109,7 @@ def plot_critical_point(found: CriticalImpactPoint) -> Figure:
     axes.set_xlabel(axis_label(names[0], unit_of(names[0])))
     notes = "".join(f"; {parameter_words(name)} at its bound" for name in found.at_bound)
     runs = len(found.grid) + len(found.refinement)
-    words = shown_column(found.metric, METRIC_UNITS[found.metric]).words
+    words = metric_column(found.metric).words
     value = f"{words} {shown_metric(found.metric, found.value)}"
     head = wrapped(found.grid.scene_title, figure)
     axes.set_title(f"{head}\n{value}, {runs} runs{notes}", fontsize="medium")

@@ -37,7 +37,7 @@ class _Path(NamedTuple):
 def missed_barrier(scene: Scene, event: _core.Event) -> Iterator[Complaint]:
     """Yield a complaint if the vehicle went past the end of the barrier untouched."""
     if scene.barrier is not None and event.manner == "beside" and event.time_of_separation is None:
-        path = _path(scene, scene.path_offset)
+        path = _path(scene)
         if path.clearance > 0.0:
             text = partial(_text, scene.vehicle.title, path)
             yield Complaint(MissedBarrierWarning, "impact_offset", path.clearance, text)
@@ -50,7 +50,7 @@ def _text(title: str, path: _Path) -> str:
     )
 
 
-def _path(scene: Scene, offset: float) -> _Path:
+def _path(scene: Scene) -> _Path:
     """Return clearance and offsets of the straight path that the first unit has at t = 0."""
     barrier = scene.barrier
     assert barrier is not None  # missed_barrier has asked
@@ -68,6 +68,7 @@ def _path(scene: Scene, offset: float) -> _Path:
     else:
         middle, slope = 0.0, float(np.asarray(barrier._past) @ to_left)
     right, left = float(across.min() - max(corners)), float(across.max() - min(corners))
+    offset = scene.path_offset
     place = (offset - middle) * slope
     ends = sorted((middle + right / slope, middle + left / slope))
     return _Path(offset, max(right - place, place - left), *ends)

@@ -8,7 +8,7 @@ from ..base.shown_numbers import plain_number, shown_unit
 from ..result.metric_table import METRICS
 from ..result.summary import shown_as
 
-__all__ = ["ShownColumn", "parameter_words", "shown_column", "shown_metric"]
+__all__ = ["ShownColumn", "metric_column", "parameter_words", "shown_column", "shown_metric"]
 
 # Parameters whose names say less than they could.
 _WORDS = {
@@ -47,9 +47,14 @@ def shown_column(name: str, unit: str) -> ShownColumn:
     return ShownColumn(parameter_words(name), size, shown)
 
 
+def metric_column(name: str) -> ShownColumn:
+    """Return how the column of a metric is shown."""
+    return shown_column(name, METRICS[name].unit)
+
+
 def shown_metric(name: str, value: float) -> str:
     """Return a value of a metric (SI) as text in the unit in which tables show it."""
-    column = shown_column(name, METRICS[name].unit)
+    column = metric_column(name)
     return f"{plain_number(value / column.divisor)} {column.unit}".rstrip()
 
 

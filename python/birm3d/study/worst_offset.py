@@ -21,7 +21,7 @@ from ..simulation.simulation import Simulation
 from ..unit_check import given
 from ..units import Quantity
 from .impact_point import CriticalImpactPoint, critical_impact_point
-from .shown_columns import shown_column, shown_metric
+from .shown_columns import metric_column, shown_metric
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -125,7 +125,7 @@ class WorstOffset:
 
     def summary(self) -> str:
         """Return the table and what it rests on as text."""
-        size = shown_column(self.metric, METRIC_UNITS[self.metric]).divisor
+        size = metric_column(self.metric).divisor
         head = (
             "spacing [m]",
             "worst offset [m]",
@@ -150,12 +150,12 @@ class WorstOffset:
     @property
     def words(self) -> str:
         """What tables call the metric."""
-        return shown_column(self.metric, METRIC_UNITS[self.metric]).words
+        return metric_column(self.metric).words
 
     @property
     def label(self) -> str:
         """The metric in words, with the unit that it is shown in."""
-        return shown_column(self.metric, METRIC_UNITS[self.metric]).label
+        return metric_column(self.metric).label
 
     def plot(self) -> Figure:
         """Return the metric over the offset for each spacing, and its greatest value over the spacing."""

@@ -72,6 +72,30 @@ Vec3 node(std::size_t i) {
     return {uncrushed.block[0].x[i], uncrushed.block[0].y[i], uncrushed.block[0].z[i]};
 }
 
+// Compares forces and torques with the displacements of the nodes for small motions along and about each axis. `follow_at`: how
+// loaded nodes follow from `stands` to a placement. `note`: of each node that was compared.
+template <class FollowAt, class Note>
+void check_by_virtual_work(const Placement& stands, const FollowAt& follow_at, const Note& note) {
+    const double h = 1e-6;
+    const Followed here = follow_at(stands);
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 way = Vec3::Unit(axis);
+        const Placement moved{stands.rotation, stands.position - stands.rotation * (h * way)};
+        const Mat3 turn = Eigen::AngleAxisd(h, way).toRotationMatrix();
+        const Placement turned{stands.rotation * turn.transpose(), stands.position};
+        const Followed forth = follow_at(moved);
+        const Followed right = follow_at(turned);
+        for (std::size_t i = 0; i < block_size; ++i) {
+            if (here.follows[i] != 1.0 || forth.follows[i] != 1.0 || right.follows[i] != 1.0) continue;
+            note(i);
+            const double force = here.per_force[i] * Vec3(here.nx[i], here.ny[i], here.nz[i])[axis];
+            const double torque = here.per_force[i] * Vec3(here.tx[i], here.ty[i], here.tz[i])[axis];
+            CHECK_CLOSE(force, -forth.gap[i] / h, 1e-4, "the difference's error");
+            CHECK_CLOSE(torque, -right.gap[i] / h, 1e-4, "the same");
+        }
+    }
+}
+
 }  // namespace
 
 TEST("trusses that point back belong to the front") {
@@ -146,7 +170,6 @@ TEST("nodes that push go as the post does, wherever they stand, and let it go on
 TEST("force and torque are what the ways of the nodes ask for by virtual work") {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> share(-1.0, 1.0);
-    const double h = 1e-6;
     int above = 0, beside = 0, held = 0;
     for (int round = 0; round < 200; ++round) {
         const Post post(0.2 + 0.1 * share(random), 1.5 + 0.9 * share(random));
@@ -154,24 +177,9 @@ TEST("force and torque are what the ways of the nodes ask for by virtual work") 
         const double lean = 0.3 * share(random), sway = 0.3 * share(random);
         const Placement stands = standing(foot, lean, sway);
         // As far as an indentation of 2 m goes: to all nodes.
-        const Followed here = indentation_by(post, stands, stands, 2.0, 1.0);
-        // Along and about each axis.
-        for (int axis = 0; axis < 3; ++axis) {
-            const Vec3 way = Vec3::Unit(axis);
-            const Placement moved{stands.rotation, stands.position - stands.rotation * (h * way)};
-            const Mat3 turn = Eigen::AngleAxisd(h, way).toRotationMatrix();
-            const Placement turned{stands.rotation * turn.transpose(), stands.position};
-            const Followed forth = indentation_by(post, moved, stands, 2.0, 1.0);
-            const Followed right = indentation_by(post, turned, stands, 2.0, 1.0);
-            for (std::size_t i = 0; i < block_size; ++i) {
-                if (here.follows[i] != 1.0 || forth.follows[i] != 1.0 || right.follows[i] != 1.0) continue;
-                ++held;
-                const double force = here.per_force[i] * Vec3(here.nx[i], here.ny[i], here.nz[i])[axis];
-                const double torque = here.per_force[i] * Vec3(here.tx[i], here.ty[i], here.tz[i])[axis];
-                CHECK_CLOSE(force, -forth.gap[i] / h, 1e-4, "the difference's error");
-                CHECK_CLOSE(torque, -right.gap[i] / h, 1e-4, "the same");
-            }
-        }
+        check_by_virtual_work(
+            stands, [&](const Placement& at) { return indentation_by(post, at, stands, 2.0, 1.0); },
+            [&](std::size_t) { ++held; });
         const Indentation indentation(post, stands, front, 2.0, edge);
         for (std::size_t i = 0; i < block_size; ++i) {
             above += (node(i) - foot).dot(indentation.along()) > indentation.top ? 1 : 0;
@@ -212,7 +220,6 @@ TEST("skin that would fall off more steeply than the faces of an edge lies on th
 TEST("force and torque of an edge are what the ways of the nodes ask for by virtual work") {
     std::mt19937 random(13);
     std::uniform_real_distribution<double> share(-1.0, 1.0);
-    const double h = 1e-6;
     int on_face = 0, held = 0;
     for (int round = 0; round < 300; ++round) {
         const Post post(0.1 + 0.05 * share(random), 1.5 + 0.9 * share(random), 0.75 * pi);
@@ -222,25 +229,13 @@ TEST("force and torque of an edge are what the ways of the nodes ask for by virt
         const double reach = 0.3;
         const Indentation indentation(post, stands, front, reach, edge);
         const double falls = std::min(indentation.side_low.slope, indentation.side_high.slope);
-        const Followed here = indentation_by(post, stands, stands, reach, 1.0);
-        for (int axis = 0; axis < 3; ++axis) {
-            const Vec3 way = Vec3::Unit(axis);
-            const Placement moved{stands.rotation, stands.position - stands.rotation * (h * way)};
-            const Mat3 turn = Eigen::AngleAxisd(h, way).toRotationMatrix();
-            const Placement turned{stands.rotation * turn.transpose(), stands.position};
-            const Followed forth = indentation_by(post, moved, stands, reach, 1.0);
-            const Followed right = indentation_by(post, turned, stands, reach, 1.0);
-            for (std::size_t i = 0; i < block_size; ++i) {
-                if (here.follows[i] != 1.0 || forth.follows[i] != 1.0 || right.follows[i] != 1.0) continue;
+        check_by_virtual_work(
+            stands, [&](const Placement& at) { return indentation_by(post, at, stands, reach, 1.0); },
+            [&](std::size_t i) {
                 ++held;
                 const double w = std::abs((node(i) - indentation.foot()).dot(indentation.across()));
                 on_face += w > 0.2 && slope_by(2.5, reach) > falls ? 1 : 0;
-                const double force = here.per_force[i] * Vec3(here.nx[i], here.ny[i], here.nz[i])[axis];
-                const double torque = here.per_force[i] * Vec3(here.tx[i], here.ty[i], here.tz[i])[axis];
-                CHECK_CLOSE(force, -forth.gap[i] / h, 1e-4, "the difference's error");
-                CHECK_CLOSE(torque, -right.gap[i] / h, 1e-4, "the same");
-            }
-        }
+            });
     }
     CHECK(on_face > 1000);
     CHECK(held > 10000);
@@ -249,7 +244,6 @@ TEST("force and torque of an edge are what the ways of the nodes ask for by virt
 TEST("force and torque of a top edge are what the ways of the nodes ask for by virtual work") {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> share(-1.0, 1.0);
-    const double h = 1e-6;
     int above = 0, sunk = 0;
     for (int round = 0; round < 200; ++round) {
         const TopEdge top{0.0, -3.0, 3.0, 1.0 + 0.8 * share(random)};
@@ -259,24 +253,12 @@ TEST("force and torque of a top edge are what the ways of the nodes ask for by v
         const Mat3 to_own = turned_to.toRotationMatrix().transpose();
         const Placement stands{to_own, -(to_own * Vec3(2.5 + 0.2 * share(random), share(random), -1.0))};
         const Indentation now(top, stands, front, 2.0);
-        const Followed here = follow(now, now, 1.0);
-        for (int axis = 0; axis < 3; ++axis) {
-            const Vec3 way = Vec3::Unit(axis);
-            const Placement moved{stands.rotation, stands.position - stands.rotation * (h * way)};
-            const Mat3 turn = Eigen::AngleAxisd(h, way).toRotationMatrix();
-            const Placement turned{stands.rotation * turn.transpose(), stands.position};
-            const Followed forth = follow(Indentation(top, moved, front, 2.0), now, 1.0);
-            const Followed right = follow(Indentation(top, turned, front, 2.0), now, 1.0);
-            for (std::size_t i = 0; i < block_size; ++i) {
-                if (here.follows[i] != 1.0 || forth.follows[i] != 1.0 || right.follows[i] != 1.0) continue;
-                const double force = here.per_force[i] * Vec3(here.nx[i], here.ny[i], here.nz[i])[axis];
-                const double torque = here.per_force[i] * Vec3(here.tx[i], here.ty[i], here.tz[i])[axis];
-                CHECK_CLOSE(force, -forth.gap[i] / h, 1e-4, "the difference's error");
-                CHECK_CLOSE(torque, -right.gap[i] / h, 1e-4, "the same");
+        check_by_virtual_work(
+            stands, [&](const Placement& at) { return follow(Indentation(top, at, front, 2.0), now, 1.0); },
+            [&](std::size_t i) {
                 const bool is_above = stands.to_own(node(i)).z() > top.height;
                 ++(is_above ? above : sunk);
-            }
-        }
+            });
     }
     CHECK(above > 1000);
     CHECK(sunk > 1000);
