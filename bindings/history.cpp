@@ -107,6 +107,8 @@ void register_history(py::module_& m) {
                                    "What a joint carries, and the angles between its units.");
     add_view(joint, "force", &JointHistory::force, "(n, 3) N on the leading unit, interval means, world");
     add_view(joint, "moment", &JointHistory::moment, "(n, 3) N m on the leading unit about the joint, world");
+    add_view(joint, "slip", &JointHistory::slip,
+             "(n,) m, how far the trailing unit has slid forwards on the leading one");
     joint.def_property_readonly(
         "roll_pitch_yaw",
         [](const JointHistory& history) {
@@ -151,6 +153,7 @@ void register_history(py::module_& m) {
              "(n,) J, energy lost to friction of free-standing segments on the ground");
     add_view(history, "suspension", &History::suspension,
              "(n,) J, energy in springs of wheels and lost in their dampers");
+    add_view(history, "sliding", &History::sliding, "(n,) J, energy lost where a unit slides on another one");
     history.def_property_readonly(
         "segment_position", [](const History& self) { return of_segments(self, &SegmentHistory::position); },
         "(n, k, 2) m, foot of the axis of each free-standing segment, world");

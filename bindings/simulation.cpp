@@ -145,7 +145,8 @@ void register_simulation(py::module_& m) {
                     {"ground_friction", balances.falls[Balances::ground_friction]},
                     {"impacts", balances.falls[Balances::impacts]},
                     {"barrier_ground_friction", balances.falls[Balances::segment_friction]},
-                    {"suspension", balances.falls[Balances::dampers]}};
+                    {"suspension", balances.falls[Balances::dampers]},
+                    {"sliding", balances.falls[Balances::sliding]}};
             },
             "by name, the greatest fall of each dissipated energy below its highest value so far");
 

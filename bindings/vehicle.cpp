@@ -47,6 +47,14 @@ std::vector<Wheel> discs(const InputArray& wheels) {
     return result;
 }
 
+std::vector<SlideKnot> slide_knots(const InputArray& slide) {
+    if (slide.ndim() != 2 || slide.shape(1) != 2) refuse("slide shape", "(n, 2)", shape_text(slide));
+    std::vector<SlideKnot> knots;
+    for (py::ssize_t i = 0; i < slide.shape(0); ++i)
+        knots.push_back({slide.at(i, 0), slide.at(i, 1)});
+    return knots;
+}
+
 }  // namespace
 
 void register_vehicle(py::module_& m) {
@@ -134,21 +142,27 @@ void register_vehicle(py::module_& m) {
             "The caller's number of each truss in the order of the state's columns.");
     py::enum_<JointKind>(m, "JointKind", "What a joint between two units holds.")
         .value("fifth_wheel", JointKind::fifth_wheel, "a point of both, and the roll beyond its limit")
-        .value("welded", JointKind::welded, "a point of both and the whole orientation");
+        .value("welded", JointKind::welded, "a point of both and the whole orientation")
+        .value("sliding", JointKind::sliding,
+               "as welded, but the trailing unit slides lengthwise beyond a force");
     py::class_<Joint>(m, "Joint", "Two units joined at a point. Immutable.")
         .def(py::init([](JointKind kind, std::size_t leading, std::size_t trailing,
                          const InputArray& place_on_leading, const InputArray& place_on_trailing,
-                         double roll_limit) {
+                         double roll_limit, const InputArray& slide) {
                  return Joint{kind,
                               leading,
                               trailing,
                               vector(place_on_leading, "place_on_leading"),
                               vector(place_on_trailing, "place_on_trailing"),
-                              roll_limit};
+                              roll_limit,
+                              slide_knots(slide)};
              }),
              py::kw_only(), py::arg("kind"), py::arg("leading"), py::arg("trailing"),
              py::arg("place_on_leading"), py::arg("place_on_trailing"), py::arg("roll_limit"),
-             "leading, trailing: numbers of the units; places (3,) m, body axes of each; roll_limit rad.");
+             py::arg("slide"),
+             "leading, trailing: numbers of the units; places (3,) m, body axes of each; roll_limit rad; "
+             "slide "
+             "(n, 2): force (N) that a sliding joint holds against slip (m), rows of (slip, force).");
     py::class_<Vehicle, std::shared_ptr<Vehicle>>(m, "Vehicle",
                                                   "One or more units and the joints between them. Immutable.")
         .def(py::init([](std::vector<Unit> units, std::vector<Joint> joints) {

@@ -352,6 +352,11 @@ class ExtremeJointLoads:
         """
         N, greatest mean of that force over 50 ms
         """
+    @property
+    def slip(self) -> float:
+        """
+        m, greatest slip of a sliding joint
+        """
 class ExtremeMotion:
     """
     Greatest speeds and displacements of unit 0.
@@ -593,6 +598,11 @@ class History:
         (n, k) rad/s, yaw rate of each segment
         """
     @property
+    def sliding(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) J, energy lost where a unit slides on another one
+        """
+    @property
     def stored(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) J, elastic energy in trusses
@@ -616,9 +626,9 @@ class Joint:
     """
     Two units joined at a point. Immutable.
     """
-    def __init__(self, *, kind: JointKind, leading: typing.SupportsInt | typing.SupportsIndex, trailing: typing.SupportsInt | typing.SupportsIndex, place_on_leading: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], place_on_trailing: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], roll_limit: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, *, kind: JointKind, leading: typing.SupportsInt | typing.SupportsIndex, trailing: typing.SupportsInt | typing.SupportsIndex, place_on_leading: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], place_on_trailing: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], roll_limit: typing.SupportsFloat | typing.SupportsIndex, slide: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
         """
-        leading, trailing: numbers of the units; places (3,) m, body axes of each; roll_limit rad.
+        leading, trailing: numbers of the units; places (3,) m, body axes of each; roll_limit rad; slide (n, 2): force (N) that a sliding joint holds against slip (m), rows of (slip, force).
         """
 class JointHistory:
     """
@@ -639,6 +649,11 @@ class JointHistory:
         """
         (n, 3) rad, of the trailing unit from the leading one
         """
+    @property
+    def slip(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) m, how far the trailing unit has slid forwards on the leading one
+        """
 class JointKind:
     """
     What a joint between two units holds.
@@ -648,9 +663,12 @@ class JointKind:
       fifth_wheel : a point of both, and the roll beyond its limit
     
       welded : a point of both and the whole orientation
+    
+      sliding : as welded, but the trailing unit slides lengthwise beyond a force
     """
-    __members__: typing.ClassVar[dict[str, JointKind]]  # value = {'fifth_wheel': <JointKind.fifth_wheel: 0>, 'welded': <JointKind.welded: 1>}
+    __members__: typing.ClassVar[dict[str, JointKind]]  # value = {'fifth_wheel': <JointKind.fifth_wheel: 0>, 'welded': <JointKind.welded: 1>, 'sliding': <JointKind.sliding: 2>}
     fifth_wheel: typing.ClassVar[JointKind]  # value = <JointKind.fifth_wheel: 0>
+    sliding: typing.ClassVar[JointKind]  # value = <JointKind.sliding: 2>
     welded: typing.ClassVar[JointKind]  # value = <JointKind.welded: 1>
     def __eq__(self, other: typing.Any) -> bool:
         ...

@@ -354,7 +354,7 @@ def test_the_report_and_the_table_tell_of_the_joint() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"kind": "ball"}, "kind must be 'fifth_wheel' or 'welded', got 'ball'"),
+        ({"kind": "ball"}, "kind must be one of fifth_wheel, welded, sliding, got 'ball'"),
         ({"roll_limit": -1.0}, r"roll_limit must be >= 0 and < 90 deg, got -1.0"),
         ({"roll_limit": np.nan}, r"roll_limit must be >= 0 and < 90 deg, got nan"),
         ({"place_on_leading": (0.0, 0.0)}, "place_on_leading must be three finite numbers"),

@@ -21,11 +21,12 @@ Marks: travel 12 %, force over 50 ms 15 %, impulse sideways on each post 20 kN s
 degrees. They are targets: repeats of a run differ by 5 % in travel and in force over 50 ms. Pitch is the
 greatest until the run ends, 0.12 to 0.25 s after the touch.
 
-What the model can not do here: the engine stops in a post while the frame goes on. The bed slides by up to
-1.5 m and brings a third of the momentum later. A bumper's end is bent away by a post that overlaps it by
-85 mm. A frame that bends jams between two posts. The model's rigid body has none of these; [its
-page](truck.md) has the sizes. The fitted truck pitches as far as the runs because its front wheels give way
-and its front passes on less friction. The preset's front wheels hold, and it pitches later."""
+What the model can not do here: the engine stops in a post while the frame goes on. The bed, which here is
+fixed, slides at the wall at 50 mph and brings a third of the momentum later. A bumper's end is bent away by
+a post that overlaps it by 85 mm. A frame that bends jams between two posts. The model's rigid body has none
+of these; [its page](truck.md) has the sizes, and the same truck with a bed that slides. The fitted truck
+pitches as far as the runs because its front wheels give way and its front passes on less friction. The
+preset's front wheels hold, and it pitches later."""
 
 
 def tasks() -> Sequence[str]:

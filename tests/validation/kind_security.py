@@ -19,9 +19,10 @@ short of the barrier. Contained: 1, else 0.
 Left out: MIL-8IN-B and -C and JERSEY-4000 (their foundations or sections failed: our barriers are rigid),
 TT203, TT210, DSC7000 and RSA-SM (no size of what was hit was found).
 
-What the model can not do here: the bed slides forward over the frame and crushes the cab. With a rigid bed
-the reading is metres short of every published test, so that all limits are met for the wrong reason. Posts
-do not yield, and a rigid one contains. So these rows are checks."""
+What the model can not do here: posts and their foundations do not yield, and a rigid post contains. In
+DSC635 both moved. So these rows are checks. How far the bed gets depends on its fixings as well, see
+[the truck's page](truck.md). "With a sliding bed" is `cargo_truck` by `with_sliding_bed()`. "Weak fixings"
+hold a quarter of that, 4.4 times the weight of bed and load."""
 
 BED = "load_bed_leading_edge"
 PENETRATION_BELOW = -20.0  # m: what is short of the barrier meets an upper limit
@@ -36,24 +37,36 @@ def rows(task: str) -> list[Row]:
     """What one task is compared in."""
     if task in _OTHERS:
         return _other(task)
-    result = _bollards(task).run()
     (fact,) = (fact for fact in facts("security_barriers") if fact["test"] == task)
-    who, most = name_of(result.scene.vehicle), float(fact["penetration_m"])
-    rating = birm3d.rate(result, "ASTM F2656")
-    at_rest = float(result.sensor(BED).position[-1, 0]) - 0.5 * float(fact["diameter_m"])
-    return [
-        Row(task, who, "penetration at rest, limit", "m", most, PENETRATION_BELOW, most, at_rest, "check"),
-        Row(task, who, "contained", "-", 1.0, 1.0, 1.0, float(rating.contained), "check"),
-    ]
+    truck, most = stand_in("truck", float(fact["mass_kg"])), float(fact["penetration_m"])
+    found = []
+    for bed, vehicle in _beds(truck).items():
+        result = _bollards(task, vehicle).run()
+        at_rest = float(result.sensor(BED).position[-1, 0]) - 0.5 * float(fact["diameter_m"])
+        who, quantity = f"{name_of(truck)}{bed}", "penetration at rest, limit"
+        found.append(Row(task, who, quantity, "m", most, PENETRATION_BELOW, most, at_rest, "check"))
+    rating = birm3d.rate(_bollards(task, truck).run(), "ASTM F2656")
+    contained = Row(task, name_of(truck), "contained", "-", 1.0, 1.0, 1.0, float(rating.contained), "check")
+    return [*found, contained]
 
 
-def _bollards(task: str) -> birm3d.Simulation:
+def _beds(truck: birm3d.Vehicle) -> dict[str, birm3d.Vehicle]:
+    """The truck with its bed fixed, with one that slides, and with fixings of a quarter of the force."""
+    slides = truck.with_sliding_bed()
+    weak = [(slip, 0.25 * force) for slip, force in slides.joint.slide]
+    return {
+        "": truck,
+        ", with a sliding bed": slides,
+        ", with weak fixings": truck.with_sliding_bed(weak),
+    }
+
+
+def _bollards(task: str, truck: birm3d.Vehicle | None = None) -> birm3d.Simulation:
     (fact,) = (fact for fact in facts("security_barriers") if fact["test"] == task)
     number = {name: float(fact[f"{name}_m"]) for name in ("diameter", "height", "spacing")}
     posts = birm3d.Barrier.bollards(count=int(fact["count"]), **number)
-    return birm3d.Simulation(
-        stand_in("truck", float(fact["mass_kg"])), posts, units.km_h(float(fact["speed_km_h"]))
-    )
+    vehicle = stand_in("truck", float(fact["mass_kg"])) if truck is None else truck
+    return birm3d.Simulation(vehicle, posts, units.km_h(float(fact["speed_km_h"])))
 
 
 _OTHERS = ("truck at a wall", "truck at five bollards", "DSC635")

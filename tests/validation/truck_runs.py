@@ -72,11 +72,11 @@ class Run:
 
 @dataclass(frozen=True)
 class Figures:
-    """What is compared: travel [m], force over 50 ms [N], greatest pitch and yaw [deg], impulses [N s].
+    """What is compared: travel of the whole, force over 50 ms, greatest pitch and yaw, impulses; SI, deg.
 
     ``up``: impulse of the barrier on the vehicle, upwards [N s]. ``friction``: energy lost by it at the
-    barrier, of the kinetic energy at first. ``core_contact``: whether the rigid core met
-    the barrier.
+    barrier, of the kinetic energy at first. ``core_contact``: whether the rigid core met the barrier.
+    ``slip``: greatest of a bed that slides [m].
     """
 
     travel: float
@@ -87,6 +87,7 @@ class Figures:
     up: float
     friction: float
     core_contact: bool
+    slip: float
 
 
 def _numbers(text: str) -> tuple[float, ...]:
@@ -172,6 +173,12 @@ def scene(
     )
 
 
+def whole_position(result: birm3d.Result) -> Floats:
+    """Place of the mass centre of all units along the barrier's normal, shape (n,) [m]."""
+    parts = [unit.mass * result.unit(i).position[:, 0] for i, unit in enumerate(result.scene.vehicle.units)]
+    return np.asarray(np.sum(parts, axis=0) / result.scene.vehicle.mass)
+
+
 def figures(result: birm3d.Result) -> Figures:
     """Figures of a computed crash."""
     crash = result.scene
@@ -184,7 +191,7 @@ def figures(result: birm3d.Result) -> Figures:
         for load in result.element_loads
     ]
     force = result.barrier_normal_force
-    travel = result.position[:, 0] - result.position[0, 0] - crash.standoff
+    travel = whole_position(result) - whole_position(result)[0] - crash.standoff
     return Figures(
         travel=float(travel.max()),
         force_50ms=float(moving_average(force[:, None], 0.05, interval).max()),
@@ -194,4 +201,5 @@ def figures(result: birm3d.Result) -> Figures:
         up=float(result.barrier_force[1:, 2].sum()) * interval,
         friction=float(result.energy["barrier_friction"][-1] / result.energy["kinetic"][0]),
         core_contact=result.statistics.body_steps > 0,
+        slip=result.metrics.get("bed_slip", 0.0),
     )

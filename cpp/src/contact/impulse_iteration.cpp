@@ -66,6 +66,35 @@ void set_motions_with_friction(const State& state, const ContactKick& kicked,
     }
 }
 
+// Adds the impulses of sliding joints that slide to the motions that the solver starts from.
+void add_sliding_impulses(const std::vector<RigidContact>& contacts, std::vector<ContactBody>& bodies) {
+    for (const RigidContact& contact : contacts) {
+        if (!contact.slides) continue;
+        ContactBody& body = bodies[contact.body];
+        ContactBody& other = bodies[static_cast<std::size_t>(contact.other)];
+        add_impulse(body, wrench_on_body(contact), body.motion);
+        add_impulse(other, wrench_on_other(contact), other.motion);
+    }
+}
+
+// Lets joints slide where holding would take more than they hold for `time` (s), and hold where they would slide the other
+// way. Did any change?
+bool decide_sliding(double time, std::span<const ContactBody> bodies, std::vector<RigidContact>& contacts) {
+    bool any = false;
+    for (RigidContact& contact : contacts) {
+        if (!(contact.holds < infinity)) continue;
+        const double most = time * contact.holds;
+        if (!contact.slides && std::abs(contact.impulse) > most) {
+            contact.slides = any = true;
+            contact.impulse = std::copysign(most, contact.impulse);
+        } else if (contact.slides && contact.impulse * separation_velocity(contact, bodies) > 0.0) {
+            contact.slides = false;
+            any = true;
+        }
+    }
+    return any;
+}
+
 // If the rigid body meets free-standing segments, the pins between them are rows of the solver, too.
 void prepare_solver(const Scene& scene, const State& state, KickMemory& memory) {
     std::erase_if(memory.kick.contacts,
@@ -95,8 +124,15 @@ void begin_iteration(const State& state, KickMemory& memory) {
 void solve_normal_impulses(const Scene& scene, const KickedBy& by, bool meets, const State& state,
                            KickMemory& memory) {
     if (meets) prepare_solver(scene, state, memory);
-    set_motions_with_friction(state, memory.kick, memory.bodies);
-    memory.solver.solve(memory.kick.contacts, memory.bodies);
+    // A joint slides one way or holds, so that it changes at most twice.
+    constexpr int most_changes = 3;
+    for (int change = 0; change <= most_changes; ++change) {
+        set_motions_with_friction(state, memory.kick, memory.bodies);
+        add_sliding_impulses(memory.kick.contacts, memory.bodies);
+        memory.solver.solve(memory.kick.contacts, memory.bodies);
+        if (!decide_sliding(by.time, memory.bodies, memory.kick.contacts)) break;
+        memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
+    }
     sum_tire_impulses(scene, by, memory);
 }
 
@@ -151,7 +187,7 @@ double correct_targets(const Scene& scene, const State& kicked, double dt,
         drift(rigid_body(scene, b), dt, bodies[b]);
     double widest = 0.0;
     for (RigidContact& contact : contacts) {
-        if (!contact.bilateral) continue;
+        if (!contact.bilateral || contact.holds < infinity) continue;
         const Joint& joint = scene.joints[contact.index];
         const double gap = bilateral_gap(joint, contact, bodies[joint.leading], bodies[joint.trailing]);
         contact.target -= gap / dt;

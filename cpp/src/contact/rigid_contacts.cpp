@@ -32,6 +32,12 @@ void add_to_obstacle(const Scene& scene, const State& state, const RigidContact&
     sum->torque -= (place - pose_of(scene, contact.obstacle, state).position).cross(impulse);
 }
 
+// The energy term that the loss of a contact's normal impulse adds to.
+double& lost_in(const RigidContact& contact, Energies& energies) {
+    if (!contact.bilateral) return energies.impacts;
+    return contact.holds < std::numeric_limits<double>::infinity() ? energies.sliding : energies.joints;
+}
+
 }  // namespace
 
 void find_rigid_contacts(const Scene& scene, const State& state, double dt, const StepOptions& options,
@@ -182,8 +188,7 @@ void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vec
     for (std::size_t u = 0; u < kicked.on_ground.size(); ++u)
         state.energies.tire_friction -= power(kicked.on_ground[u], motion(u));
     for (const RigidContact& contact : kicked.contacts) {
-        (contact.bilateral ? state.energies.joints : state.energies.impacts) +=
-            loss_of(contact, before, after);
+        lost_in(contact, state.energies) += loss_of(contact, before, after);
         if (contact.source == ContactSource::core)
             friction_of(scene, contact.obstacle, state.energies) -=
                 power({contact.friction_impulse, contact.arm.cross(contact.friction_impulse)},

@@ -67,8 +67,7 @@ void find_held_motions(const Scene& scene, const KickedBy& by, KickMemory& memor
     if (scene.vehicle->joints.empty() || by.is_impact) return;
     memory.held = memory.pushed;
     const auto add = [&](std::size_t b, const Wrench& push) {
-        memory.held[b].velocity += memory.bodies[b].inverse_mass * push.force;
-        memory.held[b].angular_velocity += memory.bodies[b].inverse_inertia * push.torque;
+        add_impulse(memory.bodies[b], push, memory.held[b]);
     };
     for (const RigidContact& contact : memory.kick.contacts) {
         add(contact.body, wrench_on_body(contact));

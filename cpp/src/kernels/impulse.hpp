@@ -37,6 +37,12 @@ struct ContactBody {
     bool planar = false;  // moves along the ground and rotates about the vertical only
 };
 
+// Adds what an impulse on a body changes to a motion of it.
+inline void add_impulse(const ContactBody& body, const Wrench& impulse, Twist& motion) {
+    motion.velocity += body.inverse_mass * impulse.force;
+    motion.angular_velocity += body.inverse_inertia * impulse.torque;
+}
+
 // Velocity of the contact's point along its normal, or turning about its axis, relative to the other body;
 // negative = approaching.
 double separation_velocity(const RigidContact& contact, std::span<const ContactBody> bodies);
@@ -53,7 +59,7 @@ class ImpulseSolver {
                  double speed_scale);
 
     // Sets each contact's impulse so that its separation velocity is at least its target, and equal to it for
-    // bilateral rows. Updates the bodies' motions.
+    // bilateral rows. Updates the bodies' motions. Leaves out rows that slide: the motions have their impulses.
     void solve(std::span<RigidContact> contacts, std::span<ContactBody> bodies);
 
   private:
@@ -69,6 +75,7 @@ class ImpulseSolver {
         double rhs = 0.0;          // target less separation velocity without impulses
         double shifted_rhs = 0.0;  // right-hand side of the proximal-point step: rhs + C j_old
         bool bilateral = false;
+        bool given = false;  // its impulse is no unknown
         bool active = false;
         bool settled = false;  // became inactive at once, or repeatedly: at its target to rounding
         int joined = 0;        // how often activated alone

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 
 namespace birm3d {
 
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Vec3 place_of(const BodyState& body, const Vec3& place) {
     return body.position + body.orientation * place;
@@ -20,6 +23,25 @@ Vec3 rotation_between(const BodyState& leading, const BodyState& trailing) {
     const double sine = half.norm();
     if (sine < 1e-6) return 2.0 * half;
     return 2.0 * std::atan2(sine, std::abs(rotation.w())) / sine * half;
+}
+
+// Rows of a sliding joint from one that has what they share: displacements along the leading body's axes, of which that
+// along r is limited, and rotations.
+void find_sliding_rows(const Joint& joint, const BodyState& leading, const BodyState& trailing,
+                       RigidContact row, std::vector<RigidContact>& rows) {
+    for (const int axis : {0, 1, 2}) {
+        row.normal = leading.orientation * Vec3::Unit(axis);
+        row.axis = axis;
+        row.holds = axis == 0 ? slide_force(joint, slip_of(joint, leading, trailing)) : infinity;
+        row.gap = axis == 0 ? 0.0 : bilateral_gap(joint, row, leading, trailing);
+        rows.push_back(row);
+    }
+    row.about_axis = true;
+    for (const int axis : {0, 1, 2}) {
+        row.normal = Vec3::Unit(axis);
+        row.gap = bilateral_gap(joint, row, leading, trailing);
+        rows.push_back(row);
+    }
 }
 
 }  // namespace
@@ -45,6 +67,7 @@ void find_joint_rows(const Joint& joint, std::size_t index, const BodyState& lea
         }
         return;
     }
+    if (joint.kind == JointKind::sliding) return find_sliding_rows(joint, leading, trailing, row, rows);
     const auto hold_along_axes = [&] {
         for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())}) {
             row.normal = direction;
@@ -75,8 +98,28 @@ void find_joint_rows(const Joint& joint, std::size_t index, const BodyState& lea
 double bilateral_gap(const Joint& joint, const RigidContact& row, const BodyState& leading,
                      const BodyState& trailing) {
     if (row.about_axis) return row.normal.dot(rotation_between(leading, trailing));
-    return row.normal.dot(place_of(leading, joint.place_on_leading) -
-                          place_of(trailing, joint.place_on_trailing));
+    // The axes of a sliding joint turn with the leading body.
+    const Vec3 direction =
+        joint.kind == JointKind::sliding ? Vec3(leading.orientation * Vec3::Unit(row.axis)) : row.normal;
+    return direction.dot(place_of(leading, joint.place_on_leading) -
+                         place_of(trailing, joint.place_on_trailing));
+}
+
+double slip_of(const Joint& joint, const BodyState& leading, const BodyState& trailing) {
+    const Vec3 apart =
+        place_of(trailing, joint.place_on_trailing) - place_of(leading, joint.place_on_leading);
+    return apart.dot(leading.orientation * Vec3::UnitX());
+}
+
+double slide_force(const Joint& joint, double slip) {
+    const double size = std::abs(slip);
+    const std::vector<SlideKnot>& knots = joint.slide;
+    for (std::size_t i = 1; i < knots.size(); ++i) {
+        if (size >= knots[i].slip) continue;
+        const double part = (size - knots[i - 1].slip) / (knots[i].slip - knots[i - 1].slip);
+        return knots[i - 1].force + part * (knots[i].force - knots[i - 1].force);
+    }
+    return knots.back().force;
 }
 
 JointAngles joint_angles(const Quat& leading, const Quat& trailing) {

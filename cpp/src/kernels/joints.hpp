@@ -1,7 +1,7 @@
 // Joints as rows of the impulse solver, for any two bodies.
 //
-// A joint has rows for displacements along the world's x, y and z; a welded joint also for rotations about them. Impulses
-// act halfway between the joint's places on the two bodies. So a pair of impulses keeps the angular momentum, whatever
+// A joint has rows for displacements along the world's x, y and z; a welded joint also for rotations about them. Those of
+// a sliding joint are along the leading body's axes, and the row along r carries a force up to a limit only. Impulses act halfway between the joint's places on the two bodies. So a pair of impulses keeps the angular momentum, whatever
 // the gap between these places. The stops of a fifth wheel are two rows about the Cardan axis s_leading x t_trailing.
 // The difference of the angular velocities along it is the rate of the relative roll, sin(roll) = -s_leading . t_trailing.
 #pragma once
@@ -23,6 +23,12 @@ void find_joint_rows(const Joint& joint, std::size_t index, const BodyState& lea
 // one in the row's direction.
 double bilateral_gap(const Joint& joint, const RigidContact& row, const BodyState& leading,
                      const BodyState& trailing);
+
+// How far a sliding joint's trailing body has slid forwards along the leading body's r axis (m).
+double slip_of(const Joint& joint, const BodyState& leading, const BodyState& trailing);
+
+// Force that a sliding joint holds at that slip (N).
+double slide_force(const Joint& joint, double slip);
 
 // Of the trailing body relative to the leading one.
 JointAngles joint_angles(const Quat& leading, const Quat& trailing);

@@ -105,6 +105,26 @@ bool stands_on_wheels(const Unit& unit) {
     return true;
 }
 
+namespace {
+
+// Of a sliding joint at least one knot, at slips that increase from zero on, with forces that are no less than zero.
+void check_slide(const Joint& joint, const std::string& name) {
+    const bool slides = joint.kind == JointKind::sliding;
+    if (slides == joint.slide.empty())
+        refuse(name + " slide",
+               slides ? "a knot or more of a sliding joint" : "none of a joint that does not slide",
+               static_cast<double>(joint.slide.size()));
+    for (std::size_t k = 0; k < joint.slide.size(); ++k) {
+        const auto& [slip, force] = joint.slide[k];
+        const bool follows = k == 0 ? slip == 0.0 : slip > joint.slide[k - 1].slip;
+        if (!follows || !std::isfinite(slip))
+            refuse(name + " slide", "0 first, then increasing and finite slips", slip);
+        if (!(force >= 0.0) || !std::isfinite(force)) refuse(name + " slide", "finite forces >= 0", force);
+    }
+}
+
+}  // namespace
+
 Vehicle joined(std::vector<Unit> units, std::vector<Joint> joints) {
     for (std::size_t i = 0; i < joints.size(); ++i) {
         Joint& joint = joints[i];
@@ -117,6 +137,7 @@ Vehicle joined(std::vector<Unit> units, std::vector<Joint> joints) {
         for (const Vec3& place : {joint.place_on_leading, joint.place_on_trailing})
             if (!place.allFinite()) refuse(name + " place", "finite", "a coordinate that is not");
         require_within((name + " roll_limit").c_str(), joint.roll_limit, 0.0, 0.5 * std::numbers::pi);
+        check_slide(joint, name);
         const Vec3 place = units[joint.leading].place() + joint.place_on_leading;
         const Vec3 on_trailing = place - units[joint.trailing].place();
         const double apart = (on_trailing - joint.place_on_trailing).norm();

@@ -214,13 +214,20 @@ Joint joint_of(Reader& in) {
     const std::string_view kind = in.word();
     if (kind == "welded")
         joint.kind = JointKind::welded;
+    else if (kind == "sliding")
+        joint.kind = JointKind::sliding;
     else if (kind != "fifth_wheel")
-        in.wrong("fifth_wheel or welded", Reader::quoted(kind));
+        in.wrong("fifth_wheel, welded or sliding", Reader::quoted(kind));
     joint.leading = in.index();
     joint.trailing = in.index();
     joint.place_on_leading = in.vector();
     joint.place_on_trailing = in.vector();
     joint.roll_limit = in.number();
+    if (joint.kind != JointKind::sliding) return joint;
+    for (std::size_t left = in.count("slide"); left > 0; --left) {
+        const double slip = in.number();
+        joint.slide.push_back({slip, in.number()});
+    }
     return joint;
 }
 

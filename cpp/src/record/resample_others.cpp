@@ -12,6 +12,24 @@
 
 namespace birm3d {
 
+namespace {
+
+// How far the trailing unit has slid forwards (m); zero but for rounding where the joint does not slide.
+Column slips(const Joint& joint, const History& history) {
+    const UnitHistory &leading = history.units[joint.leading], &trailing = history.units[joint.trailing];
+    Column slip;
+    slip.reserve(history.time.size());
+    for (std::size_t k = 0; k < history.time.size(); ++k) {
+        BodyState ahead, behind;
+        ahead.position = leading.position[k], ahead.orientation = leading.orientation[k];
+        behind.position = trailing.position[k], behind.orientation = trailing.orientation[k];
+        slip.push_back(slip_of(joint, ahead, behind));
+    }
+    return slip;
+}
+
+}  // namespace
+
 void Recorder::resample_joints(const Scene& scene, const OutputInstants& output, History& history) const {
     const std::vector<Joint>& joints = scene.vehicle->joints;
     const std::size_t first = width_ - segment_width * scene.free_segments() - joint_width * joints.size(),
@@ -24,6 +42,7 @@ void Recorder::resample_joints(const Scene& scene, const OutputInstants& output,
         const auto& trailing = history.units[joints[j].trailing].orientation;
         for (std::size_t k = 0; k < count; ++k)
             joint.angles.push_back(joint_angles(leading[k], trailing[k]));
+        joint.slip = slips(joints[j], history);
 
         const auto add = [&](std::size_t row, double fraction, Wrench& sum) {
             const double* impulse = output.view(row, first + j * joint_width).b;

@@ -1,6 +1,8 @@
 // Rigid contacts and joints as rows of the impulse solver.
 #pragma once
 
+#include <limits>
+
 #include "birm3d/base/types.hpp"
 
 namespace birm3d {
@@ -27,7 +29,11 @@ struct RigidContact {
     bool bilateral = false;   // acts both ways
     bool is_impact = false;   // did it approach hard before the forces of the half step?
     bool about_axis = false;  // turns the bodies about `normal` instead of pushing along it
-    double friction = 0.0;    // Coulomb coefficient of a bottomed-out truss
+    int axis = 0;             // of a sliding joint: body axis of the leading body along which `normal` points
+    double holds =
+        std::numeric_limits<double>::infinity();  // greatest force of a sliding joint along its axis (N)
+    bool slides = false;    // result of a sliding joint: `impulse` is given by `holds`, not by the target
+    double friction = 0.0;  // Coulomb coefficient of a bottomed-out truss
     Vec3 sliding_surface = Vec3::Zero();   // velocity of the obstacle's surface there (m/s)
     Vec3 friction_impulse = Vec3::Zero();  // result: its friction impulse (N s)
 };

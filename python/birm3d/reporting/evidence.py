@@ -115,7 +115,14 @@ def _phenomena(case: Case) -> Iterator[tuple[str, str, str]]:
         f"{': beyond it this run extrapolates' if crush > _FITTED_CRUSH else ''}; sides and rears are orders "
         "of magnitude",
     )
-    yield "engine stops before the cabin; load bed slides on the frame", "no", "one rigid body a unit"
+    yield "engine stops before the cabin", "no", "one rigid body a unit"
+    slides = result.scene.vehicle.slides
+    told = (
+        f"slid by {metrics['bed_slip']:.2f} m here; the strength of its fixings is an estimate"
+        if slides
+        else "fixed to the frame; Vehicle.with_sliding_bed() lets it go where the vehicle's file has a bed"
+    )
+    yield "load bed slides on the frame", "yes" if slides else "no", told
     springs = result.scene.vehicle.has_springs
     told = (
         "springs, dampers and bump stops of wheels without mass"

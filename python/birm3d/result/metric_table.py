@@ -53,7 +53,8 @@ class Metric(NamedTuple):
     value
         Makes it of a run; ``None``: the run does not have it.
     of
-        What a run must have: nothing ("run"), a "barrier", "segments" that stand free, or a "joint".
+        What a run must have: nothing ("run"), a "barrier", "segments" that stand free, a "joint", or one of
+        kind "sliding".
     error
         "answer": it has an error; "balance": it is one itself; "effort": it says how an answer was found.
     shown
@@ -65,7 +66,7 @@ class Metric(NamedTuple):
     meaning: str
     needs: str
     value: Callable[[RunValues], float | None]
-    of: Literal["run", "barrier", "segments", "joint"] = "barrier"
+    of: Literal["run", "barrier", "segments", "joint", "sliding"] = "barrier"
     error: Literal["answer", "balance", "effort"] = "answer"
     shown: Shown | None = None
 
@@ -313,6 +314,11 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
             *("N", "joint", "of the magnitude of that force's mean over 50 ms", "joint"),
             *(lambda run: run.extremes.joint.force_50ms, "joint"),
             shown=_asked("peak 50-ms force of the joint", "kN", 1e3),
+        ),
+        "bed_slip": Metric(
+            *("m", "joint", "greatest distance that a load bed slid along its frame", "joint"),
+            *(lambda run: run.extremes.joint.slip, "sliding"),
+            shown=_metres("greatest slip of the load bed", headline=True),
         ),
         "energy_residual": Metric(
             "",

@@ -122,4 +122,6 @@ def _guarded(metric: Metric) -> _Function:
         return lambda run: value(run) if run.segments else None
     if metric.of == "joint":
         return lambda run: value(run) if run.joined else None
+    if metric.of == "sliding":
+        return lambda run: value(run) if run.slides else None
     return value

@@ -168,6 +168,11 @@ class RunRecord:
         return 0 if barrier is None else len(barrier.core.segments)
 
     @property
+    def _slides(self) -> bool:
+        """Whether a unit can slide on another one."""
+        return self.scene.vehicle.slides
+
+    @property
     def _pinned(self) -> bool:
         """Whether the barrier has segments that are pinned to each other."""
         barrier = self.scene.barrier
@@ -255,6 +260,13 @@ class RunRecord:
         return self._joint_angles[:, 1]
 
     @property
+    def bed_slip(self) -> Floats:
+        """How far the load bed has slid forwards along the frame, shape (n,) [m]; of a sliding joint."""
+        if not self._slides:
+            raise ValueError(f"bed_slip needs a vehicle with_sliding_bed(), got {self.scene.vehicle.name!r}")
+        return self._joint.slip
+
+    @property
     def _joint(self) -> _core.JointHistory | Stored:
         if self.scene.vehicle.joint is None:
             raise ValueError(f"a joint needs a vehicle of two units, got {self.scene.vehicle.name!r} of one")
@@ -276,7 +288,8 @@ class RunRecord:
         Where wheels have springs also ``suspension``: of springs less that at rest, and lost in dampers.
         Where units or segments are joined also ``joints``: the work of joint forces in the held directions.
         It is zero up to the error of the steps, and is separate so that this error is not mistaken for a
-        loss. The loss at the stops of a fifth wheel is in ``impacts``.
+        loss. The loss at the stops of a fifth wheel is in ``impacts``. Where a load bed can slide also
+        ``sliding``, what that lost.
         """
         terms = {name: getattr(self._history, name) for name in _ENERGIES}
         if self._segments:
@@ -285,6 +298,8 @@ class RunRecord:
             terms["joints"] = self._history.joint_work
         if self.scene.vehicle.has_springs:
             terms["suspension"] = self._history.suspension
+        if self._slides:
+            terms["sliding"] = self._history.sliding
         total = np.sum(list(terms.values()), axis=0)
         return FrozenMapping({**terms, "total": read_only(total), "residual": read_only(total - total[0])})
 

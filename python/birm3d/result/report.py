@@ -65,6 +65,7 @@ def report(result: RunAnalysis) -> str:
             f"  {vehicle.joint.kind}: peak 50-ms mean of the force "
             f"{metrics['peak_joint_force_50ms'] / 1e3:.3g} kN, greatest articulation angle "
             f"{metrics['max_articulation_angle']:.1f} deg"
+            + (f", greatest slip {metrics['bed_slip']:.3f} m" if vehicle.slides else "")
         )
     if "barrier_deflection" in metrics:
         lines.append(

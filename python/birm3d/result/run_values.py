@@ -77,6 +77,11 @@ class RunValues:
         """Whether the vehicle has two units."""
         return self.scene.vehicle.joint is not None
 
+    @property
+    def slides(self) -> bool:
+        """Whether one of the vehicle's units is a load bed that can slide."""
+        return self.scene.vehicle.slides
+
     @cached_property
     def segments(self) -> bool:
         """Whether the barrier stands free."""

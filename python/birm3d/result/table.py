@@ -50,6 +50,8 @@ def to_dataframe(self: RunAnalysis) -> pd.DataFrame:
         for i, axis in enumerate("xyz"):
             columns[f"joint_force_{axis} [N]"] = self.joint_force[:, i]
         columns["articulation_angle [deg]"] = self.articulation_angle
+    if self.scene.vehicle.slides:
+        columns["bed_slip [m]"] = self.bed_slip
     for name, values in self.energy.items():
         columns[f"energy_{name} [J]"] = values
     return pd.DataFrame(columns, index=pd.Index(self.time, name="time [s]"))

@@ -74,7 +74,7 @@ def ensemble(
     from .executors import ExecutorError, run_all
     from .outcome_table import OutcomeTable
 
-    wanted = checked_metrics(metrics, joined=True, free=True)
+    wanted = checked_metrics(metrics, joined=True, free=True, slides=True)
     units = {name: METRIC_UNITS[name] for name in wanted}
     total = len(simulations) if isinstance(simulations, Sized) else None
     outcomes = OutcomeTable(len(wanted), total)

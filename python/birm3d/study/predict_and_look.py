@@ -49,7 +49,7 @@ def predict_and_look(
     columns = drawn_parameters(simulation, check_draws("n", n))
     scene, rows = simulation.scene, np.column_stack(list(columns.values()))
     free = scene.barrier is not None and bool(scene.barrier.core.segments)
-    wanted = checked_metrics(None, scene.vehicle.joint is not None, free)
+    wanted = checked_metrics(None, scene.vehicle.joint is not None, free, scene.vehicle.slides)
     scenes = [varied_scene(scene, dict(zip(columns, map(float, row), strict=True))) for row in rows]
     outcomes = OutcomeTable(len(wanted), len(rows))
     found: dict[int, Found] = {}

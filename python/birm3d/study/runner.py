@@ -137,10 +137,13 @@ def run_study(
     from .store import RunStore, StoreError
 
     names = tuple(names)
-    joined = simulation.scene.vehicle.joint is not None or "vehicle" in names
+    vehicle = simulation.scene.vehicle
+    any_vehicle = "vehicle" in names
+    joined = vehicle.joint is not None or any_vehicle
+    slides = vehicle.slides or any_vehicle
     barrier = simulation.scene.barrier
     free = (barrier is not None and bool(barrier.core.segments)) or "barrier" in names
-    wanted = checked_metrics(metrics, joined, free)
+    wanted = checked_metrics(metrics, joined, free, slides)
     table: Sequence[tuple[Any, ...]]
     if isinstance(rows, np.ndarray):
         table = FloatRows(np.asarray(rows, float))
@@ -209,9 +212,9 @@ def run_study(
     return study(outcomes, grid=grid)
 
 
-def checked_metrics(metrics: Sequence[str] | None, joined: bool, free: bool) -> tuple[str, ...]:
+def checked_metrics(metrics: Sequence[str] | None, joined: bool, free: bool, slides: bool) -> tuple[str, ...]:
     """Return the metrics of a study; those of joints and segments by themselves only where there may be."""
-    absent = {"joint": not joined, "segments": not free}
+    absent = {"joint": not joined, "segments": not free, "sliding": not slides}
     usual = tuple(name for name in _STUDY_METRICS if not absent.get(METRICS[name].of, False))
     wanted = usual if metrics is None else tuple(dict.fromkeys(metrics))
     if not wanted:

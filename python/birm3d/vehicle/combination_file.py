@@ -7,10 +7,11 @@
     file = "units/semi_trailer.toml"
 
     [joint]
-    kind = "fifth_wheel"                # or "welded"
+    kind = "fifth_wheel"                # or "welded", or "sliding"
     place_on_leading_m = [-5.635, 0.0, 1.20]
     place_on_trailing_m = [0.0, 0.0, 1.20]
-    roll_limit_deg = 2.0
+    roll_limit_deg = 2.0                # of a fifth wheel
+    # slide_m_N = [[0.0, 6e5], [0.1, 0.0]]  # of a sliding joint: slip and the force held there
     source = ["..."]
     status = "estimated"
 
@@ -29,7 +30,9 @@ from pydantic import Field, model_validator
 from ..io.file_format import reads
 from ..io.toml import KeyPath, Strict, frozen, reject
 from .file_schema import Block, Point, Positive, Source, Text, check_known
+from .joint import JointKind
 from .vehicle_file import VehicleFile, VehicleFileError, ZonesInOrder, read_vehicle_file
+from .zone_law import NonNegative
 
 __all__ = ["Combination", "CombinationFile", "JointBlock", "UnitReference", "read_combination"]
 
@@ -48,10 +51,11 @@ class UnitReference(Strict):
 class JointBlock(Block):
     """How the trailing unit is attached to the leading one; see :class:`birm3d.Joint`."""
 
-    kind: Literal["fifth_wheel", "welded"]
+    kind: JointKind
     place_on_leading_m: Point
     place_on_trailing_m: Point
-    roll_limit_deg: Annotated[float, Field(ge=0.0, lt=90.0)]
+    roll_limit_deg: Annotated[float, Field(ge=0.0, lt=90.0)] | None = None
+    slide_m_N: tuple[tuple[NonNegative, NonNegative], ...] = ()  # noqa: N815 - units in the key
 
     @model_validator(mode="after")
     def _check(self) -> JointBlock:
@@ -59,6 +63,8 @@ class JointBlock(Block):
         if not abs(leading - trailing) <= _FIT:
             message = f"must be as high as on the leading unit, {leading} m within {_FIT} m; got {trailing}"
             reject("place_on_trailing_m", message)
+        if self.kind == "fifth_wheel" and self.roll_limit_deg is None:
+            reject("roll_limit_deg", "must be given for a fifth wheel")
         return self
 
 

@@ -43,6 +43,8 @@ def _lines(vehicle: VehicleVariants) -> Iterator[str]:
         )
         yield "joints 1"
         yield f"{joint.kind} 0 1 {_numbers((*places, math.radians(joint.roll_limit)))}"
+        if joint.kind == "sliding":
+            yield from _rows("slide", joint.slide)
     yield "end"
 
 

@@ -507,6 +507,31 @@ class CoreBox(Block):
         return self
 
 
+class Bed(Block):
+    """Load bed that can slide along the frame, see :meth:`birm3d.Vehicle.with_sliding_bed`.
+
+    solids, points: names of those that go with the bed, its load included. block: upper block that is its
+    skin. underside: zone whose law its underside takes. slide_m_N: force that holds it, by slip. core: boxes
+    of its rigid core; without them, those that the zones of its block name.
+    """
+
+    solids: Annotated[tuple[Name, ...], Field(min_length=1)]
+    points: tuple[Name, ...] = ()
+    block: Name
+    underside: Name
+    slide_m_N: Annotated[  # noqa: N815 - units in the key
+        tuple[tuple[NonNegative, NonNegative], ...], Field(min_length=1)
+    ]
+    core: tuple[CoreBox, ...] = ()
+
+    @model_validator(mode="after")
+    def _check(self) -> Bed:
+        if self.slide_m_N[0][0] != 0.0:
+            reject("slide_m_N", f"must start at a slip of 0, got {self.slide_m_N[0][0]}")
+        _check_order("slide_m_N", [row[0] for row in self.slide_m_N], "slips must increase")
+        return self
+
+
 class AlongLaw(Block, ZoneLaw):
     """Stiffness of a panel in its own plane, along the vehicle, per unit of the panel's area."""
 

@@ -64,5 +64,11 @@ def _recipe_of_two(combination: Combination, mesh_density: float) -> Combination
 
     leading, trailing = (recipe_of(unit, None, mesh_density) for unit in combination.units)
     block = combination.file.joint
-    joint = Joint(block.place_on_leading_m, block.place_on_trailing_m, block.kind, block.roll_limit_deg)
+    joint = Joint(
+        block.place_on_leading_m,
+        block.place_on_trailing_m,
+        block.kind,
+        0.0 if block.roll_limit_deg is None else block.roll_limit_deg,
+        block.slide_m_N,
+    )
     return CombinationRecipe(combination.file.name, leading, trailing, joint)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from .file_schema import (
+    Bed,
     CoreBox,
     Dimensions,
     End,
@@ -112,6 +113,13 @@ class Resize:
         """Return a box of the rigid core."""
         x, z = _both(self._to.x, box.x_m), _both(self._to.z, box.z_m)
         return box.changed({"x_m": x, "half_width_m": self._to.y * box.half_width_m, "z_m": z})
+
+    def bed(self, bed: Bed | None) -> Bed | None:
+        """Return the bed, whose fixings are as strong as its mass asks for."""
+        if bed is None:
+            return None
+        slide = tuple((slip, self._weight * force) for slip, force in bed.slide_m_N)
+        return bed.changed({"slide_m_N": slide, "core": tuple(self.core(box) for box in bed.core)})
 
     def indentation(self, indentation: Indentation | None) -> Indentation | None:
         """Return the indentation."""

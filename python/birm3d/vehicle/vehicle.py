@@ -27,6 +27,7 @@ from .joint import Joint
 from .old_names import OldVehicleNames
 from .read_recipe import read, read_preset
 from .recipe import VehicleRecipe
+from .sliding_bed import with_sliding_bed
 from .wheel_arguments import load_on_joint
 from .zone import TRUSS_LAW, Zone
 
@@ -430,6 +431,33 @@ class Vehicle(OldVehicleNames):
         """
         return articulate(units, joint, name)
 
+    def with_sliding_bed(self, slide: Sequence[tuple[float, float]] | None = None) -> ArticulatedVehicle:
+        """Return the truck as two units: chassis and load bed, which slides along the frame.
+
+        The bed stays where it is until stopping it takes more than its fixings hold. Then it slides on, and
+        a force that depends on the slip slows it down. Numbers of the file that the whole was given, as a
+        mass, stay. The chassis is the leading unit, so that motions of the result are its own; a sensor of
+        ``"load_bed_leading_edge"`` is on the bed. ``metrics["bed_slip"]`` is how far the bed slid.
+
+        Parameters
+        ----------
+        slide
+            Force that holds the bed [N] against its slip [m], as (slip, force) pairs; see
+            :class:`birm3d.Joint`. ``None``: that of the vehicle's file, whatever the load is.
+
+        Raises
+        ------
+        ValueError
+            If the vehicle's file has no block ``bed``, or the vehicle has two units already.
+        """
+        recipe = self._description
+        if not isinstance(recipe, VehicleRecipe):
+            raise ValueError(f"vehicle must be of one unit, got {self.name!r} of two")
+        self._require_as_built()
+        combined = build(with_sliding_bed(recipe, slide))
+        assert isinstance(combined, ArticulatedVehicle)  # made of two recipes
+        return combined
+
 
 @checked
 @dataclass(frozen=True, eq=False, repr=False)
@@ -497,6 +525,7 @@ class ArticulatedVehicle(Vehicle):
             place_on_leading=joint.place_on_leading - leading.center_of_mass,
             place_on_trailing=joint.place_on_trailing - trailing.center_of_mass,
             roll_limit=math.radians(joint.roll_limit),
+            slide=np.reshape(joint.slide if joint.kind == "sliding" else (), (-1, 2)),
         )
         return _core.Vehicle([core_unit(*unit) for unit in self._placed_units()], [core_joint])
 
@@ -542,7 +571,12 @@ class ArticulatedVehicle(Vehicle):
 
     @property
     def kind(self) -> str | None:
-        """``"tractor_semitrailer"`` where its units are a tractor and a semi-trailer, else ``None``."""
+        """``"tractor_semitrailer"`` of a tractor and a semi-trailer, of a truck with a sliding bed its own.
+
+        Else ``None``.
+        """
+        if self.slides:
+            return self._units[0].kind
         kinds = tuple(unit.kind for unit in self._units)
         return "tractor_semitrailer" if kinds == ("tractor", "semi_trailer") else None
 

@@ -79,6 +79,11 @@ class VehicleFields:
         return None
 
     @property
+    def slides(self) -> bool:
+        """Whether its load bed can slide along the frame."""
+        return self.joint is not None and self.joint.kind == "sliding"
+
+    @property
     def has_file(self) -> bool:
         """Whether the vehicle comes from a file, so that it can be meshed anew."""
         return self._file is not None

@@ -27,6 +27,7 @@ from ..io.file_format import reading
 from ..io.toml import Document, DocumentError, KeyPath, Strict, frozen, plain, received, reject
 from .file_schema import (
     Assumption,
+    Bed,
     Block,
     CoreBox,
     Dimensions,
@@ -113,6 +114,7 @@ class VehicleFile(Strict):
     points: Annotated[tuple[NamedPoint, ...], Field(alias="point")] = ()
     exterior: Exterior
     overhang: Overhang | None = None
+    bed: Bed | None = None
     indentation: Indentation | None = None
     core: Annotated[tuple[CoreBox, ...], Field(min_length=1)]
     zones: Annotated[tuple[Zone, ...], Field(alias="zone", min_length=1)]
@@ -141,6 +143,7 @@ class VehicleFile(Strict):
             check_known(f"scatter.{i}.zones", one.zones, set(self.laws))
         self._check_cores()
         self._check_overhang()
+        self._check_bed()
         for name in () if self.changes is None else self.changes.zone:
             check_known(f"changes.zone.{name}", (name,), set(self.laws))
         known = {source.id for source in self.sources}
@@ -175,10 +178,22 @@ class VehicleFile(Strict):
             limit = f"between underside and upper edge of the body there, {bottom:g} and {top:g} m"
             reject("overhang.z_m", f"must be {limit}, got {self.overhang.z_m:g}")
 
+    def _check_bed(self) -> None:
+        """Require all that goes with the bed to be in the file, and some solids to stay."""
+        if (bed := self.bed) is None:
+            return
+        check_known("bed.solids", bed.solids, {solid.name for solid in self.solids})
+        check_known("bed.points", bed.points, {point.name for point in self.points})
+        check_known("bed.block", (bed.block,), {upper.name for upper in self.exterior.upper})
+        check_known("bed.underside", (bed.underside,), {zone.name for zone in self.zones})
+        if len(set(bed.solids)) == len(self.solids):
+            reject("bed.solids", "must leave solids for the chassis, got all")
+
     def _blocks(self) -> Iterator[tuple[str, Block]]:
         yield "dimensions", self.dimensions
         yield "exterior", self.exterior
-        for name, block in (("overhang", self.overhang), ("indentation", self.indentation)):
+        others = (("overhang", self.overhang), ("bed", self.bed), ("indentation", self.indentation))
+        for name, block in others:
             if block is not None:
                 yield name, block
         groups: Mapping[str, tuple[Block, ...]] = {
@@ -247,6 +262,7 @@ class VehicleFile(Strict):
             "dimensions": to.dimensions(self.dimensions),
             "exterior": to.exterior(self.exterior),
             "overhang": to.overhang(self.overhang),
+            "bed": to.bed(self.bed),
             "indentation": to.indentation(self.indentation),
         }
         return self.changed(changes)
@@ -340,6 +356,8 @@ class _VehicleDocument(ZonesInOrder):
         if "scaled" in self.data:
             self._scale(base)
         own = self.data
+        if "exterior" in own or "overhang" in own:
+            base.data.pop("bed", None)  # a bed is a part of an exterior
         merged = {**base.data, **own}
         shift = 0
         zones: dict[str, Any] = {}

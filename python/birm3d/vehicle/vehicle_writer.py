@@ -103,6 +103,7 @@ def _of_two_units(vehicle: VehicleVariants) -> dict[str, Any]:
             "place_on_leading_m": list(joint.place_on_leading),
             "place_on_trailing_m": list(joint.place_on_trailing),
             "roll_limit_deg": float(joint.roll_limit),
+            "slide_m_N": [list(pair) for pair in joint.slide],
             "source": ["saved"],
             "status": "estimated",
         },

@@ -122,7 +122,7 @@ def _linear_loads(x: list[float], y: list[float], force: float, about_y: float, 
 def load_on_joint(trailing: VehicleFields, place: Floats) -> float:
     """Return what a trailing unit presses on its joint [N], at a place from its mass centre (3,) [m]."""
     if len(trailing.wheels) == 0:
-        return 0.0
+        return units.g(trailing.mass)
     axle = trailing.wheels[:, 0].mean()
     return float(units.g(trailing.mass) * axle / (axle - place[0]))
 

@@ -94,7 +94,7 @@ TEST("what is wrong is named by its line") {
     CHECK(names(refusal(with("birm3d-vehicle", "vehicle")), "line 1"));
     CHECK(names(refusal(with("trusses 2", "trusses 3")), "line 21"));
     CHECK(names(refusal(with("trusses 2", "trusses -1")), ">= 0"));
-    CHECK(names(refusal(with("joints 0", "joints 1\nglued 0 1")), "fifth_wheel or welded"));
+    CHECK(names(refusal(with("joints 0", "joints 1\nglued 0 1")), "fifth_wheel, welded or sliding"));
     CHECK(names(refusal(block + "more"), "nothing after"));
     CHECK(names(refusal(block.substr(0, 200)), "the end of the text") ||
           names(refusal(block.substr(0, 200)), "a number"));

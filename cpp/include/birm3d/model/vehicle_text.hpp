@@ -23,7 +23,8 @@
 //                                 deflection, slope from there on
 //     trusses n                   rows: node (3), anchor (3), curve, scale, wheel or -1, skin node or -1 (see TrussInput)
 //   joints j
-//     rows: fifth_wheel or welded, leading unit, trailing unit, place on each (3 + 3), roll limit (rad)
+//     rows: fifth_wheel, welded or sliding, leading unit, trailing unit, place on each (3 + 3), roll limit (rad)
+//     of a sliding one then: slide N, and N rows of slip (m) and the force held there (N)
 //   end
 #pragma once
 

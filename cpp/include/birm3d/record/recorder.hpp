@@ -51,6 +51,7 @@ struct JointHistory {
     std::vector<Vec3> force;          // on the leading unit, mean over the interval, world (N)
     std::vector<Vec3> moment;         // the same, about the joint's place (N m)
     std::vector<JointAngles> angles;  // of the trailing unit from the leading one
+    Column slip;                      // how far the trailing unit has slid forwards (m)
 };
 
 struct History {
@@ -63,7 +64,7 @@ struct History {
     std::vector<SegmentHistory> segments;  // of a barrier that is free-standing, in the order of its elements
     Column kinetic, potential, stored, crushed;                                    // J
     Column barrier_friction, tire_friction, ground_friction, impacts, joint_work;  // J
-    Column segment_friction, suspension;                                           // J
+    Column segment_friction, suspension, sliding;                                  // J
     double kinetic_at_start = 0.0;                                                 // at the first instant (J)
     double energy_residual =
         0.0;  // greatest departure of the sum of all energies from that at that instant (J)

@@ -18,6 +18,7 @@ struct Balances {
         impacts,
         segment_friction,
         dampers,
+        sliding,
         terms
     };
 

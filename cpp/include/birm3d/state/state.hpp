@@ -55,10 +55,11 @@ struct Energies {
     double segment_friction = 0.0;  // lost to friction of free-standing segments on the ground
     double springs = 0.0;           // in the springs of wheels, less that at rest
     double dampers = 0.0;           // lost in the dampers of wheels
+    double sliding = 0.0;           // lost where a unit slides on another one
 
     double total() const {
         return kinetic + potential + stored + crushed + barrier_friction + tire_friction + ground_friction +
-               impacts + joints + segment_friction + springs + dampers;
+               impacts + joints + segment_friction + springs + dampers + sliding;
     }
 };
 
