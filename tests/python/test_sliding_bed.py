@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import birm3d
 import numpy as np
 import pytest
 from birm3d import Barrier, Joint, Simulation, Vehicle, units
+from birm3d.simulation.scene_file import read_scene_file
 from birm3d.vehicle.sliding_bed import UNDERSIDE
 from birm3d.vehicle.vehicle_file import VehicleFileError
 
@@ -118,6 +120,34 @@ def test_a_truck_of_another_mass_has_fixings_in_proportion(truck: Vehicle) -> No
         assert (own_slip, own) == (slip, pytest.approx(1.5 * force))
     # A heavier load does not make fixings stronger.
     assert truck.with_gvw(7500.0).with_sliding_bed().joint.slide == truck.with_sliding_bed().joint.slide
+
+
+def test_studies_vary_the_fixings_and_predictions_draw_them(truck: Vehicle) -> None:
+    wall = Simulation(truck.with_sliding_bed(), Barrier.rigid_wall(), 20.0)
+    study = birm3d.sweep(wall, {"vehicle.bed_fixings": [0.25, 0.5, 1.0]}, progress=False)
+    slips = list(study["bed_slip"])
+    assert slips == sorted(slips, reverse=True)
+    assert slips[2] == pytest.approx(wall.run().metrics["bed_slip"])
+    prediction = birm3d.predict(wall, n=8, progress=False)
+    assert "vehicle.bed_fixings" in prediction.drawn
+    assert prediction.low["bed_slip"] < prediction.high["bed_slip"]
+    fixed = Simulation(truck, Barrier.rigid_wall(), 20.0)
+    assert "vehicle.bed_fixings" not in birm3d.predict(fixed, n=8, progress=False).drawn
+
+
+def test_command_line_and_scene_files_let_it_slide(
+    tmp_path: Path, command: Callable[..., int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert command("run", "--vehicle", "cargo_truck", "--sliding-bed", "--speed", "20m/s") == 0
+    assert "with a sliding bed" in capsys.readouterr().out
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        '[vehicle]\npreset = "cargo_truck"\nsliding_bed = true\n[barrier]\nkind = "rigid_wall"\n'
+        '[impact]\nspeed = "20 m/s"\n',
+        encoding="utf-8",
+    )
+    result = read_scene_file(scene).run()
+    assert result.metrics["bed_slip"] > 0.0
 
 
 def test_vehicles_without_a_bed_say_so() -> None:

@@ -85,6 +85,9 @@ _OPTIONS = (
         "--mesh-density", type=float, default=1.0, show_default=True, help="Elements relative to the file's."
     ),
     click.option(
+        "--sliding-bed", is_flag=True, help="Let the load bed slide, of a truck whose file has one."
+    ),
+    click.option(
         "--barrier",
         type=KindChoice([*KINDS, "none"]),
         default="rigid_wall",
@@ -170,6 +173,8 @@ def simulation_of(scene: Path | None, options: dict[str, Any]) -> Simulation:
             raise click.UsageError(f"give a scene file, or --vehicle and --speed: --{name} is missing")
     make = Vehicle.from_file if options["vehicle"].endswith(".toml") else Vehicle.preset
     vehicle = make(options["vehicle"], gvw=options["gvw"], mesh_density=options["mesh_density"])
+    if options["sliding_bed"]:
+        vehicle = vehicle.with_sliding_bed()
     barrier = barrier_of(options)
     settings = {
         name: options[name]

@@ -37,6 +37,7 @@ _PARTS = {
     "barrier_friction": "friction of vehicle on barrier",
     "tire_friction": "friction of tyres on the ground",
     "edge_flank": "sideways force at a wall's rounded edge",
+    "bed_fixings": "strength of the fixings of a load bed that slides",
 }
 _ROUNDING = 1e-6  # SI and degrees: values below are rounding errors
 _Z = 1.2816  # of the normal distribution, 80 %, two sides

@@ -13,6 +13,7 @@ name                            value
 ``vehicle.mesh_density``        relative number of shell elements
 ``vehicle.rate_sensitivity``    [s/m], see :meth:`birm3d.Vehicle.with_rate_sensitivity`
 ``vehicle.indentation_length``  see :meth:`birm3d.Vehicle.with_indentation_length`
+``vehicle.bed_fixings``         factor on the force that holds a load bed that slides (now 1)
 ``zone.<zone>.<number>``        a number of :class:`birm3d.Zone` that the zone has, as ``k_initial``
 ``zone.<zone>.stress[i]``       stress of point i of the zone's envelope [N per m^2]
 ``zone.<zone>.deflection[i]``   its deflection [m]
@@ -43,6 +44,7 @@ from ..scene.scene import APPROACH, Scene
 from ..scene.settings import Settings
 from ..units import quantity_in, si
 from ..vehicle.class_scatter import joined
+from ..vehicle.combination_recipe import CombinationRecipe
 from ..vehicle.vehicle import TRUSS_LAW, Vehicle
 from ..vehicle.zone import positive
 from .simulation import Simulation
@@ -152,6 +154,8 @@ def _names(scene: Scene) -> tuple[str, ...]:
     if not vehicle.mass_center_height > 0.0:  # on the ground, as of laboratories: no ratio leads away
         no_effect.add("mass_center_height")
     names += [f"vehicle.{name}" for name in _VEHICLE if name not in no_effect]
+    if vehicle.slides:
+        names.append("vehicle.bed_fixings")
     if not vehicle.zones and vehicle.joint is None:
         names += [f"truss.{name}" for name in TRUSS_LAW]
     for zone in vehicle.zones_met:
@@ -191,7 +195,7 @@ def value_of(simulation: Simulation, name: str) -> Any:
         return getattr(scene.settings, rest)
     if group == "truss":
         return scene.vehicle.truss_law[rest]
-    if group == "scatter":
+    if group == "scatter" or name == "vehicle.bed_fixings":
         return 1.0
     if group == "vehicle":
         return scene.vehicle.mass if rest == "gvw" else getattr(scene.vehicle, rest)
@@ -302,6 +306,9 @@ def _varied_vehicle(vehicle: Vehicle, groups: Mapping[str, Mapping[str, Any]]) -
         recipe = recipe.each(indentation_length=length)
     if "gvw" in numbers:
         recipe = recipe.with_mass(positive("gvw", si("gvw", numbers["gvw"], "mass")))
+    if "bed_fixings" in numbers:
+        assert isinstance(recipe, CombinationRecipe)  # the parameter is of vehicles that slide, see _names
+        recipe = recipe.with_fixings(checks.number("bed_fixings", numbers["bed_fixings"]))
     if "mass_center_height" in numbers:
         height = numbers["mass_center_height"]
         recipe = recipe.with_mass_center_height(

@@ -32,6 +32,7 @@ class _Vehicle(Strict):
     file: str | None = None
     gvw: str | None = None
     mesh_density: Annotated[float, Field(gt=0.0)] = 1.0
+    sliding_bed: bool = False
 
     @model_validator(mode="after")
     def _check(self) -> _Vehicle:
@@ -224,6 +225,8 @@ def read_scene_file(path: str | Path) -> Simulation:
 def _vehicle(path: Path, block: _Vehicle) -> Vehicle:
     gvw = None if block.gvw is None else units.parse(block.gvw, "mass")
     if block.preset is not None:
-        return Vehicle.preset(block.preset, gvw=gvw, mesh_density=block.mesh_density)
-    assert block.file is not None  # one of the two is given, see _Vehicle
-    return Vehicle.from_file(path.parent / block.file, gvw=gvw, mesh_density=block.mesh_density)
+        vehicle = Vehicle.preset(block.preset, gvw=gvw, mesh_density=block.mesh_density)
+    else:
+        assert block.file is not None  # one of the two is given, see _Vehicle
+        vehicle = Vehicle.from_file(path.parent / block.file, gvw=gvw, mesh_density=block.mesh_density)
+    return vehicle.with_sliding_bed() if block.sliding_bed else vehicle

@@ -59,6 +59,7 @@ _PARAMETERS = {
     "barrier_friction": "barrier.friction",
     "tire_friction": "settings.mu_tire",
     "edge_flank": "settings.edge_flank_factor",
+    "bed_fixings": "vehicle.bed_fixings",
 }
 
 

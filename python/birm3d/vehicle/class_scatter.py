@@ -16,6 +16,7 @@ QUANTITIES = (
     "tire_friction",
     "springs",
     "edge_flank",
+    "bed_fixings",
 )
 """What may differ, in the order in which it is drawn."""
 

@@ -110,6 +110,10 @@ class CombinationRecipe:
         """Refuse: give the unit that is meant another law, and the vehicle this unit."""
         raise ValueError(f"truss law must be given to one of the units of {self.name!r}, got {changes}")
 
+    def with_fixings(self, factor: float) -> CombinationRecipe:
+        """Return the recipe of a truck whose sliding bed is held by another force, times a factor."""
+        return dataclasses.replace(self, joint=self.joint.with_fixings(positive("bed_fixings", factor)))
+
     def scaled_to(self, mass: float, factors: Mapping[str, float]) -> CombinationRecipe:
         """Return the recipe of another mass [kg]: masses and places of both units go in proportion."""
         factor = mass / self.mass

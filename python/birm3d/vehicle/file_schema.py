@@ -369,6 +369,7 @@ class Scatter(Block):
         "tire_friction",
         "springs",
         "edge_flank",
+        "bed_fixings",
     ]
     zones: tuple[LawName, ...] = ()
     median: Positive = 1.0

@@ -88,6 +88,10 @@ class Joint:
         ahead, behind = (_product(factors, place) for place in places)
         return replace(self, place_on_leading=ahead, place_on_trailing=behind)
 
+    def with_fixings(self, factor: float) -> Joint:
+        """Return the joint with the force that it holds times a factor, at each slip."""
+        return replace(self, slide=tuple((slip, factor * force) for slip, force in self.slide))
+
     @property
     def shift(self) -> Floats:
         """From the origin of the leading unit's axes to that of the trailing one's, shape (3,) [m]."""

@@ -565,6 +565,11 @@ class ArticulatedVehicle(Vehicle):
         return articulate(self._units, joint, self.name)
 
     @property
+    def title(self) -> str:
+        """Words of the file, and that its bed slides."""
+        return f"{super().title} with a sliding bed" if self.slides else super().title
+
+    @property
     def truss_law(self) -> Mapping[str, float]:
         """Refused: it is asked of one of the units."""
         raise ValueError(f"truss law must be asked of one of the units, got {self.name!r} of two")
