@@ -44,7 +44,7 @@ BARRIERS = {
 def test_the_impulse_ends_when_the_vehicle_has_left() -> None:
     """A later contact is another event: it is said, and adds nothing."""
     vehicle = Vehicle.preset("pickup", mesh_density=0.2)
-    result = Simulation(vehicle, Barrier.jersey(), 27.0, 20.0).run()
+    result = Simulation(vehicle, Barrier.jersey(), 33.0, 20.0).run()
     assert result.metrics["later_contacts"] == 1.0
     loads = birm3d.design_load(result, natural_period=0.05)
     dt, force = result.scene.settings.output_interval, result.barrier_force[:, 0]
@@ -86,7 +86,9 @@ def test_recomputed_from_the_histories(name: str) -> None:
         across = into if straight else np.array([force[0, at], force[1, at], 0.0]) / level[at]
         filtered = filtfilt(b, a, load.force, axis=0, padtype="constant")
         size = np.abs(filtered @ into) if straight else np.hypot(filtered[:, 0], filtered[:, 1])
-        assert row.impulse_vector == pytest.approx(dt * load.force[1:].sum(axis=0), rel=1e-9)
+        whole = dt * load.force[1:].sum(axis=0)
+        # The vertical part nearly cancels: rounding is that of the whole.
+        assert row.impulse_vector == pytest.approx(whole, abs=1e-9 * float(np.linalg.norm(whole)))
         assert row.force_50ms == pytest.approx(level[at], rel=1e-9)
         assert row.moment == pytest.approx(turning.max(), rel=1e-9)
         assert row.peak_force == pytest.approx(size.max(), rel=2e-3)

@@ -94,8 +94,8 @@ def test_the_instant_is_the_last_loss_of_contact(name: str) -> None:
     interval = result.scene.settings.output_interval
     last = result.time[np.flatnonzero(result.sum_of_contact_forces)[-1]]
     # A row is the mean of the interval that ends there. The last load fades out: rows are differences of sums
-    # over the run, zero below a millionth of a newton.
-    assert abs(separation - last) <= 6.0 * interval
+    # over the run, zero below a millionth of a newton. At the bollards that is 0.7 ms before the end.
+    assert abs(separation - last) <= 8.0 * interval
     row = int(separation / interval)
     speed = math.hypot(*result.velocity[row, :2])
     assert result.metrics["exit_speed"] == pytest.approx(speed, rel=1e-3)

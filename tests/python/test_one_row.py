@@ -57,8 +57,9 @@ def test_what_a_scene_can_not_have_is_no_column_of_a_study() -> None:
     segments = {name for name, metric in METRICS.items() if metric.of == "segments"}
     assert joint == {"max_articulation_angle", "peak_joint_force", "peak_joint_force_50ms"}
     assert len(segments) == 3
-    assert set(METRICS) - set(checked_metrics(None, False, False)) == joint | segments | {"run_time"}
-    assert set(METRICS) - set(checked_metrics(None, True, True)) == {"run_time"}
+    absent = set(METRICS) - set(checked_metrics(None, False, False, False))
+    assert absent == joint | segments | {"bed_slip", "run_time"}
+    assert set(METRICS) - set(checked_metrics(None, True, True, True)) == {"run_time"}
     assert set(compared_metrics(METRICS)) == {
         name for name, metric in METRICS.items() if metric.error == "answer"
     }

@@ -289,8 +289,9 @@ def test_exit_box_by_hand(pickup_on_jersey: Result, body_to_world) -> None:
     along -= along[nearest, 0]
     out = -tracks[..., 0]
     speed = result.velocity[-1] * [1.0, np.sign(result.velocity[0, 1]), 0.0]
-    straight = out[:, -1] - speed[0] / speed[1] * (10.0 - along[:, -1])
-    assert box.reached == pytest.approx(max(out[along <= 10.0].max(), straight.max()), abs=1e-6)
+    remaining = 10.0 - along[:, -1]
+    straight = (out[:, -1] - speed[0] / speed[1] * remaining)[remaining >= 0.0]
+    assert box.reached == pytest.approx(max([out[along <= 10.0].max(), *straight]), abs=1e-6)
     assert box.inside
     heavy = exit_box(result, heavy=True)
     assert (heavy.width - box.width, heavy.length) == pytest.approx((2.2, 20.0))

@@ -196,11 +196,12 @@ def exit_box(result: Result, heavy: bool) -> ExitBox:
     nearest = int(np.argmin(out[:, 0]))
     ahead = ahead - ahead[nearest, 0]
     reached = float(np.where(ahead <= length, out, -math.inf).max())
-    # Straight on from the last row, wheel by wheel, to the end of the box.
+    # Straight on from the last row, wheel by wheel, to the end of the box; some may be there already.
     outward, forward = -float(result.velocity[-1] @ past), float(result.velocity[-1] @ along)
-    if forward > 0.0:
-        remaining = np.maximum(0.0, length - ahead[:, -1]) / forward
-        reached = max(reached, float((out[:, -1] + outward * remaining).max()))
+    inside = ahead[:, -1] <= length
+    if forward > 0.0 and inside.any():
+        remaining = (length - ahead[inside, -1]) / forward
+        reached = max(reached, float((out[inside, -1] + outward * remaining).max()))
     return ExitBox(width, length, reached)
 
 
