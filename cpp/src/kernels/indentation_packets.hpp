@@ -1,5 +1,11 @@
 // Which place of a post or an edge the nodes of a packet follow, by how much, and how they push on it. For files that are compiled
 // once for each instruction set; see base/packet.hpp for what that forbids.
+//
+// Symbols of kernels/indentation.hpp and their names here:
+//   e, w, l   into the panel, across the post and along it         w*, f       FollowedPlace::w, FollowedPlace::e
+//   s, ds/dd  Slope::slope, Slope::grows                           |w - w*|    FollowedPlace::beyond, with (l - l*)+ added
+//   q         slope_of_face()                                      e - D       FollowedPlace::gap
+//   g, g k    grip, and flank_low or flank_high times grip         -du         outward_displacement()
 #pragma once
 
 #include "base/packet.hpp"
