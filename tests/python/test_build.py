@@ -130,7 +130,13 @@ def test_flags_for_one_machine_leave_every_instruction_set_its_name(tmp_path: Pa
         f"-I{ROOT / 'cpp/include'}",
         f"-I{ROOT / 'cpp/src'}",
     ]
-    for kernel, function in (("crush", "press_flat"), ("detect", "ask_prism")):
+    kernels = {
+        "crush": "press_flat",
+        "detect": "ask_prism",
+        "friction": "find_friction",
+        "indentation": "find_indentation",
+    }
+    for kernel, function in kernels.items():
         source = ROOT / f"cpp/src/kernels/{kernel}_simd.cpp"
         for definition, name in (("-DOTHER", "baseline"), ("-DBIRM3D_INSTRUCTION_SET=avx2", "avx2")):
             run(*compiler, definition, source, "-o", made)

@@ -326,6 +326,17 @@ def test_no_function_above_60_and_no_file_above_300_lines() -> None:
     assert length_errors(ROOT) == []
 
 
+def test_no_thread_keeps_memory_of_its_own() -> None:
+    """Such memory is hidden state. In a thread of Python's, ThreadSanitizer takes its end for a data race."""
+    found = [
+        str(path.relative_to(ROOT))
+        for folder in ("cpp", "bindings")
+        for path in sorted((ROOT / folder).rglob("*.?pp"))
+        if "thread_local" in path.read_text(encoding="utf-8")
+    ]
+    assert not found
+
+
 def test_names_in_the_core_are_no_prepositions() -> None:
     """A variable is called by what it is: `of` says nothing."""
     named = re.compile(r"^[^/\"\n]*[\w>&*\]] of(?: [=:]|[;,)\[{(])", re.MULTILINE)

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
-#include <vector>
 
 namespace birm3d {
 
@@ -54,8 +54,7 @@ std::optional<TwoSignals> peaks_of_filtered(std::span<const TwoSignals> signal, 
     // Before the start the filter is settled; after the end it runs on for this long.
     const auto padding =
         std::min(n - 1, static_cast<std::size_t>(std::ceil(2.0 / (channel_class * interval))));
-    thread_local std::vector<TwoSignals> once;
-    once.resize(n + padding);
+    const auto once = std::make_unique_for_overwrite<TwoSignals[]>(n + padding);
     filter.settle(signal.front());
     for (std::size_t k = 0; k < n; ++k)
         once[k] = filter.next(signal[k]);
@@ -63,7 +62,7 @@ std::optional<TwoSignals> peaks_of_filtered(std::span<const TwoSignals> signal, 
         once[k] = filter.next(signal.back());
     TwoSignals peak;
     peak.fill(-std::numeric_limits<double>::infinity());
-    filter.settle(once.back());
+    filter.settle(once[n + padding - 1]);
     for (std::size_t k = n + padding; k-- > n;)
         filter.next(once[k]);
     for (std::size_t k = n; k-- > 0;) {

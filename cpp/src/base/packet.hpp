@@ -2,7 +2,7 @@
 // and without contraction: every width gives the same bits.
 //
 // For files that are compiled once for each instruction set. Neither this header nor any other that such a file
-// includes may define a shared symbol: the linker would keep one copy for all processors.
+// includes may define a shared symbol: the linker would keep one copy for all processors. tests/cpp/instruction_sets holds this.
 #pragma once
 
 #include <cstddef>

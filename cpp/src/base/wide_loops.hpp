@@ -3,6 +3,9 @@
 // Unlike *_simd.cpp, which are compiled once for each instruction set, the loop is one function here that is compiled
 // twice. All that it calls is inlined, so that no symbol of the wider instructions can be shared with other files.
 // Contraction is off and sums keep their order: both give the same bits.
+//
+// With AVX2 a run of 40 trusses takes 6 % less time, of which recording is a large part. A car at a wall at 25 degrees takes 1 %
+// less. kernels/simd_table.hpp has the gain of the other loops.
 #pragma once
 
 namespace birm3d {

@@ -33,7 +33,7 @@ IndentedPanels find_indented_panels(const ContactPass& pass, std::size_t k,
     const Obstacle& obstacle = pass.obstacle(k);
     const std::vector<IndentedPanels>& all = pass.before.indented;
     const auto known = std::find_if(all.begin(), all.end(),
-                                    [&](const IndentedPanels& d) { return d.obstacle == near.index; });
+                                    [&](const IndentedPanels& by) { return by.obstacle == near.index; });
     const IndentedPanels last = known != all.end() ? *known : IndentedPanels{near.index};
     const bool pushes = pushes_on(pass.before, near.index);
     const Twist motion = twist_in_body_axes(pass.unit.body, pass.before.body);
@@ -99,20 +99,20 @@ double gap_to_indentation(const IndentedPanel& indented, std::uint8_t panel_bits
 void find_block_indentations(const ContactPass& pass, const std::vector<std::size_t>& of_group,
                              ContactBlock& block) {
     block.indentations.clear();
-    for (const std::size_t d : of_group) {
-        const IndentedPanel& indented = pass.indentations[d];
+    for (const std::size_t index : of_group) {
+        const IndentedPanel& indented = pass.indentations[index];
         const double gap = gap_to_indentation(indented, pass.mesh.panels_of[block.index], block.start->box,
                                               block.start->touching, block.start->hangs);
         if (gap == infinity) continue;
-        block.indentations.push_back({d, gap});
+        block.indentations.push_back({index, gap});
         if (std::find(block.reachable.begin(), block.reachable.end(), indented.near) == block.reachable.end())
             block.reachable.insert(
                 std::lower_bound(block.reachable.begin(), block.reachable.end(), indented.near),
                 indented.near);
     }
     std::sort(block.indentations.begin(), block.indentations.end(),
-              [](const BlockIndentation& x, const BlockIndentation& y) {
-                  return x.gap != y.gap ? x.gap < y.gap : x.indentation < y.indentation;
+              [](const BlockIndentation& one, const BlockIndentation& other) {
+                  return one.gap != other.gap ? one.gap < other.gap : one.indentation < other.indentation;
               });
 }
 
@@ -175,10 +175,11 @@ bool lags_behind_surface(const ContactPass& pass, const ContactBlock& block, std
 
 // Is any of the block's indentations that of a wall's edge?
 bool any_edge(const ContactPass& pass, const ContactBlock& block) {
-    return std::any_of(block.indentations.begin(), block.indentations.end(), [&](const BlockIndentation& d) {
-        const Obstacle& obstacle = pass.obstacle(pass.indentations[d.indentation].near);
-        return obstacle.top_edge || std::get<Post>(obstacle.shape).opens;
-    });
+    return std::any_of(
+        block.indentations.begin(), block.indentations.end(), [&](const BlockIndentation& reached) {
+            const Obstacle& obstacle = pass.obstacle(pass.indentations[reached.indentation].near);
+            return obstacle.top_edge || std::get<Post>(obstacle.shape).opens;
+        });
 }
 
 // For each node of a block: what follow_indentation() asks about the surface that the node touches.

@@ -19,12 +19,12 @@ BIRM3D_INLINE void add(Packet& sum, const Packet& row) {
 
 }  // namespace
 
-FrictionSums find_friction(const Sliding& s, const SlidingNodes& nodes, double* q);
+FrictionSums find_friction(const Sliding& sliding, const SlidingNodes& nodes, double* q);
 ResistanceSums find_resistance(const double* q, const SlidingNodes& nodes);
 Moments find_moments(const double* q, const SlidingNodes& nodes);
 
-FrictionSums find_friction(const Sliding& s, const SlidingNodes& nodes, double* q) {
-    const Packet zero = 0.0, full_speed = s.full_speed;
+FrictionSums find_friction(const Sliding& sliding, const SlidingNodes& nodes, double* q) {
+    const Packet zero = 0.0, full_speed = sliding.full_speed;
     Packet fx = zero, fy = zero, fz = zero, tx = zero, ty = zero, tz = zero, stiffest = zero;
     for (std::size_t i = 0; i < block_size; i += packet_length) {
         const Packet normal_force = Packet::load(nodes.normal_force + i);
@@ -37,12 +37,13 @@ FrictionSums find_friction(const Sliding& s, const SlidingNodes& nodes, double* 
         const Packet nx = Packet::load(nodes.nx + i), ny = Packet::load(nodes.ny + i),
                      nz = Packet::load(nodes.nz + i);
         // Sliding velocity u = v + w x r, without its normal part.
-        const Packet ux = s.vx + s.wy * z - s.wz * y, uy = s.vy + s.wz * x - s.wx * z,
-                     uz = s.vz + s.wx * y - s.wy * x;
+        const Packet ux = sliding.vx + sliding.wy * z - sliding.wz * y,
+                     uy = sliding.vy + sliding.wz * x - sliding.wx * z,
+                     uz = sliding.vz + sliding.wx * y - sliding.wy * x;
         const Packet un = ux * nx + uy * ny + uz * nz;
         const Packet sx = ux - un * nx, sy = uy - un * ny, sz = uz - un * nz;
         const Packet speed = square_root(sx * sx + sy * sy + sz * sz);
-        const Packet per_speed = s.mu * normal_force / greater(speed, full_speed);
+        const Packet per_speed = sliding.mu * normal_force / greater(speed, full_speed);
         const Packet slow = where_above(tolerance::fast_sliding * full_speed, speed, per_speed, zero);
         slow.store(q + i);
         stiffest = greater(stiffest, slow);

@@ -53,7 +53,7 @@ BIRM3D_BLOCK_LOOP double furthest(const BlockColumn& panel_of, double panel, con
 }  // namespace
 
 void Indentation::set_axes(const Vec3& foot, const Vec3& axis_up, const Panel& panel) {
-    const Vec3 &e = panel.inward, &o = foot;
+    const Vec3& e = panel.inward;
     const double leaning = axis_up.dot(e);
     per_stretch = axis_up.cross(e).norm();
     stretch = 1.0 / per_stretch;
@@ -61,9 +61,9 @@ void Indentation::set_axes(const Vec3& foot, const Vec3& axis_up, const Panel& p
     ex = e.x(), ey = e.y(), ez = e.z();
     wx = w.x(), wy = w.y(), wz = w.z();
     lx = l.x(), ly = l.y(), lz = l.z();
-    ox = o.x(), oy = o.y(), oz = o.z();
+    ox = foot.x(), oy = foot.y(), oz = foot.z();
     tilt = stretch * leaning;
-    surface = (panel.box.center - o).dot(e) - panel.box.half.dot(e.cwiseAbs());
+    surface = (panel.box.center - foot).dot(e) - panel.box.half.dot(e.cwiseAbs());
     per_reach = 1.0 / length;
 }
 
@@ -85,13 +85,13 @@ Indentation::Indentation(const TopEdge& edge, const Placement& stands, const Pan
     const Vec3 axis_up = stands.direction_from_own(Vec3::UnitZ());
     set_axes(stands.from_own({edge.x, 0.0, 0.0}), axis_up, panel);
     set_outline(panel.box);
-    const Vec3 y = stands.direction_from_own(Vec3::UnitY());
-    const double y_e = y.dot(into()), y_w = y.dot(across()), y_l = y.dot(along());
-    least_w = std::min(edge.low * y_w, edge.high * y_w);
-    most_w = std::max(edge.low * y_w, edge.high * y_w);
+    const Vec3 line = stands.direction_from_own(Vec3::UnitY());  // of the edge
+    const double line_e = line.dot(into()), line_w = line.dot(across()), line_l = line.dot(along());
+    least_w = std::min(edge.low * line_w, edge.high * line_w);
+    most_w = std::max(edge.low * line_w, edge.high * line_w);
     top = edge.height * per_stretch;
-    top_slope = y_l / y_w;
-    edge_slope = y_e / y_w;
+    top_slope = line_l / line_w;
+    edge_slope = line_e / line_w;
     face_slope = edge_slope - tilt * top_slope;
     is_face = true;
     grip = 1.0;
@@ -142,26 +142,30 @@ namespace {
 
 // Of a linear function over a range: its value is base + slope x.
 Range linear(double base, double slope, const Range& x) {
-    const double a = slope == 0.0 ? base : base + slope * x.low,
-                 b = slope == 0.0 ? base : base + slope * x.high;
-    return {std::min(a, b), std::max(a, b)};
+    const double at_low = slope == 0.0 ? base : base + slope * x.low,
+                 at_high = slope == 0.0 ? base : base + slope * x.high;
+    return {std::min(at_low, at_high), std::max(at_low, at_high)};
 }
 
-Range extent(const Indentation& d, const Box& box, const Vec3& axis) {
-    const double middle = (box.center - d.foot()).dot(axis), half = box.half.dot(axis.cwiseAbs());
+Range extent(const Indentation& indentation, const Box& box, const Vec3& axis) {
+    const double middle = (box.center - indentation.foot()).dot(axis), half = box.half.dot(axis.cwiseAbs());
     return {middle - half, middle + half};
 }
 
 // The part of the face or post that is before a range across.
-Range before(const Indentation& d, const Range& w) {
-    return {std::clamp(w.low, d.least_w, d.most_w), std::clamp(w.high, d.least_w, d.most_w)};
+Range before(const Indentation& indentation, const Range& w) {
+    return {std::clamp(w.low, indentation.least_w, indentation.most_w),
+            std::clamp(w.high, indentation.least_w, indentation.most_w)};
 }
 
 // Places along `into` of the post's axis at the heights of a box; of a face, of its top edge before the box.
-Range middle_over(const Indentation& d, const Box& box) {
-    if (d.is_face) return linear(d.tilt * d.top, d.edge_slope, before(d, extent(d, box, d.across())));
-    const Range l = extent(d, box, d.along());
-    return linear(0.0, d.tilt, {std::min(l.low, d.top), std::min(l.high, d.top)});
+Range middle_over(const Indentation& indentation, const Box& box) {
+    if (indentation.is_face)
+        return linear(indentation.tilt * indentation.top, indentation.edge_slope,
+                      before(indentation, extent(indentation, box, indentation.across())));
+    const Range l = extent(indentation, box, indentation.along());
+    return linear(0.0, indentation.tilt,
+                  {std::min(l.low, indentation.top), std::min(l.high, indentation.top)});
 }
 
 }  // namespace
@@ -203,28 +207,31 @@ struct BoxInIndentation {
     double outermost, depth, drawn_in;
 };
 
-BoxInIndentation box_in_indentation(const Indentation& d, const Box& box, bool hangs) {
-    const double outermost = extent(d, box, d.into()).low;
-    const Range w = extent(d, box, d.across()), l = extent(d, box, d.along());
-    const double deepest = d.stretch * d.radius + middle_over(d, box).high, depth = deepest - d.surface;
-    const Range tops = linear(d.top, d.top_slope, before(d, w));
-    const double off = std::max({w.low - d.most_w, d.least_w - w.high, 0.0});
+BoxInIndentation box_in_indentation(const Indentation& indentation, const Box& box, bool hangs) {
+    const double outermost = extent(indentation, box, indentation.into()).low;
+    const Range w = extent(indentation, box, indentation.across()),
+                l = extent(indentation, box, indentation.along());
+    const double deepest = indentation.stretch * indentation.radius + middle_over(indentation, box).high,
+                 depth = deepest - indentation.surface;
+    const Range tops = linear(indentation.top, indentation.top_slope, before(indentation, w));
+    const double off = std::max({w.low - indentation.most_w, indentation.least_w - w.high, 0.0});
     // A face draws in what is or was above its top edge, and nothing beside its ends.
-    if (d.is_face && (off > 0.0 || (l.high <= tops.low - at_edge && !hangs)))
+    if (indentation.is_face && (off > 0.0 || (l.high <= tops.low - at_edge && !hangs)))
         return {outermost, depth, -infinity};
     return {outermost, depth,
-            most_drawn_in(depth, off + std::max(l.low - tops.high, 0.0), d.length, flattest_face(d))};
+            most_drawn_in(depth, off + std::max(l.low - tops.high, 0.0), indentation.length,
+                          flattest_face(indentation))};
 }
 
 }  // namespace
 
-double most_inside(const Indentation& d, const Box& box, bool hangs) {
-    const BoxInIndentation in = box_in_indentation(d, box, hangs);
-    return d.surface + in.drawn_in - in.outermost;
+double most_inside(const Indentation& indentation, const Box& box, bool hangs) {
+    const BoxInIndentation in = box_in_indentation(indentation, box, hangs);
+    return indentation.surface + in.drawn_in - in.outermost;
 }
 
-bool spans(const Indentation& d, const Box& box, bool hangs) {
-    return box_in_indentation(d, box, hangs).drawn_in > 0.0;
+bool spans(const Indentation& indentation, const Box& box, bool hangs) {
+    return box_in_indentation(indentation, box, hangs).drawn_in > 0.0;
 }
 
 double gap_of(const Indentation& indentation, const TrussBlockState& nodes, const BlockColumn& panel_of,

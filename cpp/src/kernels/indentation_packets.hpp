@@ -1,5 +1,11 @@
-// Where the nodes of a packet stand before an indentation, which place of the post or edge they follow, and by how much. For
-// files that are compiled once for each instruction set; see base/packet.hpp for what that forbids.
+// Which place of a post or an edge the nodes of a packet follow, by how much, and how they push on it. For files that are compiled
+// once for each instruction set; see base/packet.hpp for what that forbids.
+//
+// Symbols of kernels/indentation.hpp and their names here:
+//   e, w, l   into the panel, across the post and along it         w*, f       FollowedPlace::w, FollowedPlace::e
+//   s, ds/dd  Slope::slope, Slope::grows                           |w - w*|    FollowedPlace::beyond, with (l - l*)+ added
+//   q         slope_of_face()                                      e - D       FollowedPlace::gap
+//   g, g k    grip, and flank_low or flank_high times grip         -du         outward_displacement()
 #pragma once
 
 #include "base/packet.hpp"
@@ -10,47 +16,56 @@ namespace birm3d::BIRM3D_INSTRUCTION_SET {
 // Least value that marks a node as following an indentation.
 inline constexpr double least_drawn = 1e-9;
 
-// Depth of the post's surface beyond its axis at `a` across, and its derivative.
+// Depth of the post's surface beyond its axis at `w` across, and its derivative.
 struct Rise {
-    Packet rise, across;
+    Packet rise, by_w;
 };
-BIRM3D_INLINE Rise rise_at(const IndentationNumbers& d, const Packet& a) {
-    const Packet zero = 0.0, steep_arc = d.steep_arc;
-    const Packet far = where_above(zero, a, -1.0 * a, a);
+BIRM3D_INLINE Rise rise_at(const IndentationNumbers& indentation, const Packet& w) {
+    const Packet zero = 0.0, steep_arc = indentation.steep_arc;
+    const Packet far = where_above(zero, w, -1.0 * w, w);
     const Packet on = lesser(far, steep_arc);
-    const Packet root = square_root(d.radius * d.radius - on * on);
-    return {where_above(far, steep_arc, d.rise_there - steepest * (far - steep_arc), d.stretch * root),
-            where_above(far, steep_arc, where_above(zero, a, steepest, -steepest), -d.stretch * a / root)};
+    const Packet root = square_root(indentation.radius * indentation.radius - on * on);
+    return {where_above(far, steep_arc, indentation.rise_there - steepest * (far - steep_arc),
+                        indentation.stretch * root),
+            where_above(far, steep_arc, where_above(zero, w, steepest, -steepest),
+                        -indentation.stretch * w / root)};
 }
 
-// Positions of a packet of nodes in the post's axes, and the middle of the post at their heights.
-struct Standing {
-    Packet e, w, l, up, deepest;
+// Where a packet of nodes is: into the panel (e), across the post (w) and along it (l), from its foot.
+struct NodePlace {
+    Packet e, w, l;
+    Packet post_l;   // along, of the place of the post at the node's height: the top, for nodes above it
+    Packet deepest;  // into, of the middle of the post there
 };
-BIRM3D_INLINE Standing stand(const IndentationNumbers& d, const PanelNodes& nodes, std::size_t i) {
-    Standing s;
-    const Packet rx = Packet::load(nodes.x + i) - d.ox, ry = Packet::load(nodes.y + i) - d.oy,
-                 rz = Packet::load(nodes.z + i) - d.oz;
-    s.e = d.ex * rx + d.ey * ry + d.ez * rz;
-    s.w = d.wx * rx + d.wy * ry + d.wz * rz;
-    s.l = d.lx * rx + d.ly * ry + d.lz * rz;
-    s.up = lesser(s.l, d.top + d.top_slope * s.w);
-    s.deepest = d.tilt * s.up + (d.stretch * d.radius + d.face_slope * s.w);
-    return s;
+BIRM3D_INLINE NodePlace place_of(const IndentationNumbers& indentation, const PanelNodes& nodes,
+                                 std::size_t i) {
+    NodePlace place;
+    const Packet rx = Packet::load(nodes.x + i) - indentation.ox,
+                 ry = Packet::load(nodes.y + i) - indentation.oy,
+                 rz = Packet::load(nodes.z + i) - indentation.oz;
+    place.e = indentation.ex * rx + indentation.ey * ry + indentation.ez * rz;
+    place.w = indentation.wx * rx + indentation.wy * ry + indentation.wz * rz;
+    place.l = indentation.lx * rx + indentation.ly * ry + indentation.lz * rz;
+    place.post_l = lesser(place.l, indentation.top + indentation.top_slope * place.w);
+    place.deepest = indentation.tilt * place.post_l +
+                    (indentation.stretch * indentation.radius + indentation.face_slope * place.w);
+    return place;
 }
 
 // Lower bound of the gaps: the post is taken as deep everywhere as in its middle, with the least slope beside it.
-BIRM3D_INLINE Packet no_less_than(const IndentationNumbers& d, const Standing& s) {
-    const Packet zero = 0.0, by_depth = (s.deepest - d.surface) * d.per_reach;
-    const Packet slope = lesser(lesser(greater(by_depth, least_slope), steepest), flattest_face(d));
-    const Packet beside = greater(greater(s.w - d.most_w, d.least_w - s.w), zero);
-    return s.e - (s.deepest - slope * (beside + (s.l - s.up)));
+BIRM3D_INLINE Packet no_less_than(const IndentationNumbers& indentation, const NodePlace& place) {
+    const Packet zero = 0.0, by_depth = (place.deepest - indentation.surface) * indentation.per_reach;
+    const Packet slope = lesser(lesser(greater(by_depth, least_slope), steepest), flattest_face(indentation));
+    const Packet beside = greater(greater(place.w - indentation.most_w, indentation.least_w - place.w), zero);
+    return place.e - (place.deepest - slope * (beside + (place.l - place.post_l)));
 }
 
 // The point of the post that each node of a packet follows.
 struct FollowedPlace {
     Slope<Packet> slope;  // of the skin beside the post
-    Packet a, at, beyond, gap;
+    Packet e, w;          // of that point, into the panel and across
+    Packet beyond;        // distance of the node beside and above that point
+    Packet gap;
     Packet on_face;  // across from that point, if the skin lies on a face of the edge; else 0
     // Above 0 if it does so and the panel does not reach as far on the other side, or if the panel ends before the edge.
     Packet alone;
@@ -58,71 +73,130 @@ struct FollowedPlace {
 };
 
 // Of a face: the place of its top edge straight below each node.
-BIRM3D_INLINE FollowedPlace follow_edge(const IndentationNumbers& d, const Standing& s) {
-    FollowedPlace h;
-    h.slope = slope_at<Packet>(s.deepest - d.surface, d.per_reach);
-    h.a = s.w;
-    h.rise = {0.0, 0.0};
-    h.at = s.deepest;
-    h.beyond = s.l - s.up;
-    h.on_face = 0.0;
-    h.alone = 0.0;
-    h.gap = s.e - (h.at - h.slope.slope * h.beyond);
-    return h;
+BIRM3D_INLINE FollowedPlace follow_edge(const IndentationNumbers& indentation, const NodePlace& place) {
+    FollowedPlace followed;
+    followed.slope = slope_at<Packet>(place.deepest - indentation.surface, indentation.per_reach);
+    followed.w = place.w;
+    followed.rise = {0.0, 0.0};
+    followed.e = place.deepest;
+    followed.beyond = place.l - place.post_l;
+    followed.on_face = 0.0;
+    followed.alone = 0.0;
+    followed.gap = place.e - (followed.e - followed.slope.slope * followed.beyond);
+    return followed;
 }
 
 // Slope of an edge's face on the side of each node.
-BIRM3D_INLINE Packet slope_of_face(const IndentationNumbers& d, const Standing& s) {
+BIRM3D_INLINE Packet slope_of_face(const IndentationNumbers& indentation, const NodePlace& place) {
     const Packet zero = 0.0;
-    return where_above(s.w, zero, d.side_high.slope, d.side_low.slope);
+    return where_above(place.w, zero, indentation.side_high.slope, indentation.side_low.slope);
 }
 
-BIRM3D_INLINE FollowedPlace find_followed(const IndentationNumbers& d, const Standing& s) {
-    if (d.is_face) return follow_edge(d, s);
-    FollowedPlace h;
+BIRM3D_INLINE FollowedPlace find_followed(const IndentationNumbers& indentation, const NodePlace& place) {
+    if (indentation.is_face) return follow_edge(indentation, place);
+    FollowedPlace followed;
     // Skin that would fall off more steeply than a face of the edge lies on the face.
-    const Packet zero = 0.0, of_face = slope_of_face(d, s);
-    const Slope<Packet> free = slope_at<Packet>(s.deepest - d.surface, d.per_reach);
-    h.slope = {lesser(free.slope, of_face), where_above(free.slope, of_face, zero, free.grows)};
-    const Packet low = d.low, high = d.high;
+    const Packet zero = 0.0, of_face = slope_of_face(indentation, place);
+    const Slope<Packet> free = slope_at<Packet>(place.deepest - indentation.surface, indentation.per_reach);
+    followed.slope = {lesser(free.slope, of_face), where_above(free.slope, of_face, zero, free.grows)};
+    const Packet low = indentation.low, high = indentation.high;
     // The nearest point of the post, within the panel, whose slope is not steeper than that of the indentation.
-    const Packet slope_there = h.slope.slope * d.per_stretch;
-    const Packet arc = d.radius * slope_there / square_root(1.0 + slope_there * slope_there);
-    const Packet near = lesser(greater(s.w, -1.0 * arc), arc), highest = greater(s.w, high),
-                 lowest = lesser(s.w, low);
-    h.a = where_above(near, highest, highest, where_above(lowest, near, lowest, near));
-    h.rise = rise_at(d, h.a);
-    h.at = d.tilt * s.up + h.rise.rise;
-    const Packet beside = where_above(s.w, h.a, s.w - h.a, h.a - s.w);
-    h.beyond = beside + (s.l - s.up);
-    const Packet other_side = where_above(s.w, zero, -1.0 * low, high);
-    h.on_face = where_above(free.slope, of_face, beside, zero);
-    h.alone = where_above(free.slope, of_face, beside - other_side, -1.0 * other_side);
-    h.gap = s.e - (h.at - h.slope.slope * h.beyond);
-    return h;
+    const Packet slope_there = followed.slope.slope * indentation.per_stretch;
+    const Packet arc = indentation.radius * slope_there / square_root(1.0 + slope_there * slope_there);
+    const Packet near = lesser(greater(place.w, -1.0 * arc), arc), highest = greater(place.w, high),
+                 lowest = lesser(place.w, low);
+    followed.w = where_above(near, highest, highest, where_above(lowest, near, lowest, near));
+    followed.rise = rise_at(indentation, followed.w);
+    followed.e = indentation.tilt * place.post_l + followed.rise.rise;
+    const Packet beside = where_above(place.w, followed.w, place.w - followed.w, followed.w - place.w);
+    followed.beyond = beside + (place.l - place.post_l);
+    const Packet other_side = where_above(place.w, zero, -1.0 * low, high);
+    followed.on_face = where_above(free.slope, of_face, beside, zero);
+    followed.alone = where_above(free.slope, of_face, beside - other_side, -1.0 * other_side);
+    followed.gap = place.e - (followed.e - followed.slope.slope * followed.beyond);
+    return followed;
 }
 
 // Displacement along e of a following node for a unit displacement of the post inwards, and along the panel.
-struct Drawn {
+struct FollowingRate {
     Packet in, across;
     Packet by_turn;  // for each unit by which the slope of the face becomes less
 };
-BIRM3D_INLINE Drawn drawn(const IndentationNumbers& d, const FollowedPlace& h) {
-    const Packet zero = 0.0, low = d.flank_low * d.grip, high = d.flank_high * d.grip;
-    const Packet slope = h.slope.slope, flank = lesser(greater(h.rise.across, -1.0 * slope), slope);
-    const Packet factor = where_above(h.a, zero, high, low);
-    return {greater(d.grip * (1.0 - h.slope.grows * h.beyond), least_drawn),
-            factor * flank / square_root(1.0 + flank * flank), d.grip * h.on_face};
+BIRM3D_INLINE FollowingRate following_rate(const IndentationNumbers& indentation,
+                                           const FollowedPlace& followed) {
+    const Packet zero = 0.0, low = indentation.flank_low * indentation.grip,
+                 high = indentation.flank_high * indentation.grip;
+    const Packet slope = followed.slope.slope,
+                 flank = lesser(greater(followed.rise.by_w, -1.0 * slope), slope);
+    const Packet factor = where_above(followed.w, zero, high, low);
+    return {greater(indentation.grip * (1.0 - followed.slope.grows * followed.beyond), least_drawn),
+            factor * flank / square_root(1.0 + flank * flank), indentation.grip * followed.on_face};
 }
 
 // Outward displacement of nodes along e within the step (m): -du of kernels/indentation.hpp, by the trapezoid rule. `flatter`:
 // by how much the slope of the edge's face has become less.
-BIRM3D_INLINE Packet outward_displacement(const Standing& now, const Standing& then, const Drawn& at_end,
-                                          const Drawn& at_start, const Packet& flatter) {
+BIRM3D_INLINE Packet outward_displacement(const NodePlace& now, const NodePlace& then,
+                                          const FollowingRate& at_end, const FollowingRate& at_start,
+                                          const Packet& flatter) {
     const Packet zero = 0.0, in = (now.deepest - now.e) - (then.deepest - then.e), across = now.w - then.w;
     const Packet turn = where_above(lesser(at_end.by_turn, at_start.by_turn), zero, flatter, zero);
     return -0.5 * ((at_end.in + at_start.in) * in + (at_end.across + at_start.across) * across +
                    (at_end.by_turn + at_start.by_turn) * turn);
+}
+
+// Vectors in body axes, one for each node of a packet.
+struct Vectors {
+    Packet x, y, z;
+};
+
+// Vectors of parts into the panel (e), across the post (w) and along it (l).
+BIRM3D_INLINE Vectors in_body_axes(const IndentationNumbers& indentation, const Packet& e, const Packet& w,
+                                   const Packet& l) {
+    return {e * indentation.ex + w * indentation.wx + l * indentation.lx,
+            e * indentation.ey + w * indentation.wy + l * indentation.ly,
+            e * indentation.ez + w * indentation.wz + l * indentation.lz};
+}
+
+// Displacement of nodes along e for a unit displacement of the post or the face by e, w and l. The push on the vehicle has this
+// direction.
+struct Push {
+    Packet e, w, l;
+};
+BIRM3D_INLINE Push push_of(const IndentationNumbers& indentation, const NodePlace& place,
+                           const FollowingRate& rate) {
+    const Packet zero = 0.0, over = place.l - place.post_l;
+    const Packet slope = where_above(over, zero, indentation.edge_slope, indentation.face_slope);
+    return {rate.in, rate.across + slope * rate.in,
+            where_above(over, zero, zero, rate.in * indentation.tilt)};
+}
+
+// Displacement of nodes along e for a unit rotation of the post about its foot: by its rotation about e, by the tilt of its axis
+// along e, and by the rotation of an edge's face.
+BIRM3D_INLINE Vectors turn_of_post(const IndentationNumbers& indentation, const NodePlace& place,
+                                   const Push& push, const Packet& by_turn) {
+    const Packet zero = 0.0, top = indentation.top;
+    const Packet top_leans = indentation.top_rate * indentation.per_stretch;
+    const double tilt = indentation.tilt, stretch = indentation.stretch;
+    const EdgeSide &low = indentation.side_low, &high = indentation.side_high;
+    const Packet about = push.l * place.w - push.w * place.l;
+    const Packet leaning = push.e * (stretch * stretch * place.post_l + stretch * tilt * indentation.radius +
+                                     where_above(place.l, top, tilt * top_leans, zero));
+    const Packet by_l = by_turn * where_above(place.w, zero, high.turn_l, low.turn_l),
+                 by_w = leaning + by_turn * where_above(place.w, zero, high.turn_w, low.turn_w);
+    return {about * (tilt * indentation.lx - indentation.ex) + by_w * indentation.wx + by_l * indentation.lx,
+            about * (tilt * indentation.ly - indentation.ey) + by_w * indentation.wy + by_l * indentation.ly,
+            about * (tilt * indentation.lz - indentation.ez) + by_w * indentation.wz + by_l * indentation.lz};
+}
+
+// The same for a rotation of the face: the place on the face times the direction of its push. By a rotation about e, or about l
+// of a face that leans, the place below a node moves along the edge too.
+BIRM3D_INLINE Vectors turn_of_face(const IndentationNumbers& indentation, const NodePlace& place,
+                                   const FollowedPlace& followed, const Push& push) {
+    const Packet below = (place.l - place.post_l) * push.w;
+    const Packet e = place.post_l * push.w - place.w * push.l + below,
+                 w = place.post_l * push.e + followed.e * push.l,
+                 l = -1.0 * (followed.e * push.w + place.w * push.e + indentation.tilt * below);
+    return in_body_axes(indentation, e, w, l);
 }
 
 }  // namespace birm3d::BIRM3D_INSTRUCTION_SET

@@ -17,15 +17,15 @@ constexpr double in_reach = 0.01;
 // `yes` for nodes that a face of the edge holds, else `no`: they are further along it than the axis of the edge. A face that
 // falls off from the panel holds those that lie on it alone: without skin on the other side they slide along it.
 // A node that lags inside the face stays with the edge. The face would move it in one step, and the energy would jump.
-BIRM3D_INLINE Packet where_beside_face(const IndentationNumbers& d, const KnownFaces& known,
-                                       const Standing& s, const FollowedPlace& h, const Packet& yes,
-                                       const Packet& no, std::size_t i) {
+BIRM3D_INLINE Packet where_beside_face(const IndentationNumbers& indentation, const KnownFaces& known,
+                                       const NodePlace& place, const FollowedPlace& followed,
+                                       const Packet& yes, const Packet& no, std::size_t i) {
     const Packet zero = 0.0;
     Packet held = no;
-    for (const EdgeFace& face : d.face) {
+    for (const EdgeFace& face : indentation.face) {
         if (face.slope > steepest) continue;
-        const Packet along = face.e * (s.e - d.tilt * s.up) + face.w * s.w;
-        const Packet by_this = is_nearly_parallel(face) ? yes : where_above(h.alone, zero, yes, held);
+        const Packet along = face.e * (place.e - indentation.tilt * place.post_l) + face.w * place.w;
+        const Packet by_this = is_nearly_parallel(face) ? yes : where_above(followed.alone, zero, yes, held);
         held = where_above(along, zero, by_this, held);
     }
     return where_above(Packet::load(known.lags + i), zero, no, held);
@@ -33,13 +33,13 @@ BIRM3D_INLINE Packet where_beside_face(const IndentationNumbers& d, const KnownF
 
 // `yes` for nodes that the post or the top edge can draw in, else `no`. Below its top edge a face holds the skin itself, apart
 // from nodes that sank below the edge: they lag behind the face. `lag`: by how much (m).
-BIRM3D_INLINE Packet where_drawn(const IndentationNumbers& d, const Standing& s, const Packet& lag,
-                                 const Packet& yes, const Packet& no) {
-    if (!d.is_face) return yes;
-    const Packet zero = 0.0, one = 1.0, most = d.most_w, least = d.least_w;
-    const Packet rise = s.l - (d.top + d.top_slope * s.w) + at_edge;
+BIRM3D_INLINE Packet where_drawn(const IndentationNumbers& indentation, const NodePlace& place,
+                                 const Packet& lag, const Packet& yes, const Packet& no) {
+    if (!indentation.is_face) return yes;
+    const Packet zero = 0.0, one = 1.0, most = indentation.most_w, least = indentation.least_w;
+    const Packet rise = place.l - (indentation.top + indentation.top_slope * place.w) + at_edge;
     const Packet above = greater(rise, lag - least_lag);
-    const Packet within = where_above(s.w, most, zero, where_above(least, s.w, zero, one));
+    const Packet within = where_above(place.w, most, zero, where_above(least, place.w, zero, one));
     return where_above(lesser(above, within), zero, yes, no);
 }
 
@@ -60,9 +60,10 @@ BIRM3D_INLINE bool any_matters(const PanelNodes& nodes, const KnownFaces& known,
 }
 
 // Cosine of the normal of the surface that each node is on, and the panel's direction.
-BIRM3D_INLINE Packet cosine_of_surface(const IndentationNumbers& d, const KnownFaces& known, std::size_t i) {
-    return d.ex * Packet::load(known.nx + i) + d.ey * Packet::load(known.ny + i) +
-           d.ez * Packet::load(known.nz + i);
+BIRM3D_INLINE Packet cosine_of_surface(const IndentationNumbers& indentation, const KnownFaces& known,
+                                       std::size_t i) {
+    return indentation.ex * Packet::load(known.nx + i) + indentation.ey * Packet::load(known.ny + i) +
+           indentation.ez * Packet::load(known.nz + i);
 }
 
 // By how much another surface must be nearer than the edge's face to hold skin that lies on it (m): the face itself is no other
@@ -70,39 +71,43 @@ BIRM3D_INLINE Packet cosine_of_surface(const IndentationNumbers& d, const KnownF
 constexpr double coincident = 1e-3;
 
 // Gap to another surface that stops the node from following the indentation. It is infinite where no surface does.
-BIRM3D_INLINE Packet gap_of_holding_surface(const IndentationNumbers& d, const KnownFaces& known,
-                                            const FollowedPlace& h, std::size_t i) {
+BIRM3D_INLINE Packet gap_of_holding_surface(const IndentationNumbers& indentation, const KnownFaces& known,
+                                            const FollowedPlace& followed, std::size_t i) {
     const Packet zero = 0.0, far = infinitely_far, faces = Packet::load(known.least_facing + i);
-    const Packet along = cosine_of_surface(d, known, i);
+    const Packet along = cosine_of_surface(indentation, known, i);
     const Packet gap = where_above(along, faces, Packet::load(known.contact_gap + i), far);
-    const Packet other =
-        where_above(h.on_face, zero, where_above(h.gap * along - gap, coincident, gap, far), gap);
+    const Packet other = where_above(followed.on_face, zero,
+                                     where_above(followed.gap * along - gap, coincident, gap, far), gap);
     return where_above(Packet::load(known.per_force + i), zero, far, other);
 }
 
 // Gap of nodes that do not push (m): e - D, with D of kernels/indentation.hpp. A node inside is at most as deep as the post drew
 // it in within the step. Beside the face of a wall, its edge holds no node.
-BIRM3D_INLINE Packet gap_of_free(const IndentationNumbers& d, const KnownFaces& known, const Standing& s,
-                                 const FollowedPlace& h, const Packet& outward, std::size_t i) {
+BIRM3D_INLINE Packet gap_of_free(const IndentationNumbers& indentation, const KnownFaces& known,
+                                 const NodePlace& place, const FollowedPlace& followed, const Packet& outward,
+                                 std::size_t i) {
     const Packet zero = 0.0, far = infinitely_far;
-    const Packet reached = where_above(h.gap, zero, h.gap, greater(h.gap, outward));
-    return where_beside_face(d, known, s, h, far, reached, i);
+    const Packet reached = where_above(followed.gap, zero, followed.gap, greater(followed.gap, outward));
+    return where_beside_face(indentation, known, place, followed, far, reached, i);
 }
 
 // Gap of loaded nodes under the indentation (m): their displacement du within the step, so that their depth u follows the post.
 // A node that another surface holds follows the indentation only once that has reached it.
-BIRM3D_INLINE Packet gap_of_loaded(const IndentationNumbers& d, const KnownFaces& known,
-                                   const FollowedPlace& h, const Packet& outward, std::size_t i) {
+BIRM3D_INLINE Packet gap_of_loaded(const IndentationNumbers& indentation, const KnownFaces& known,
+                                   const FollowedPlace& followed, const Packet& outward, std::size_t i) {
     const Packet zero = 0.0, far = infinitely_far;
-    const Packet unless_held = where_above(far, gap_of_holding_surface(d, known, h, i), far, outward);
-    return where_above(zero, h.gap, outward, unless_held);
+    const Packet unless_held =
+        where_above(far, gap_of_holding_surface(indentation, known, followed, i), far, outward);
+    return where_above(zero, followed.gap, outward, unless_held);
 }
 
 // 1 where the indentation extends over a node, else 0: D is beyond the panel's outermost node there.
-BIRM3D_INLINE Packet extends_over(const IndentationNumbers& d, const KnownFaces& known, const Standing& s,
-                                  const FollowedPlace& h, std::size_t i) {
-    const Packet zero = 0.0, one = 1.0, surface = d.surface, holds = d.grip > 0.0 ? one : zero;
-    return where_above(s.e - h.gap, surface, where_beside_face(d, known, s, h, zero, holds, i), zero);
+BIRM3D_INLINE Packet extends_over(const IndentationNumbers& indentation, const KnownFaces& known,
+                                  const NodePlace& place, const FollowedPlace& followed, std::size_t i) {
+    const Packet zero = 0.0, one = 1.0, surface = indentation.surface,
+                 holds = indentation.grip > 0.0 ? one : zero;
+    return where_above(place.e - followed.gap, surface,
+                       where_beside_face(indentation, known, place, followed, zero, holds, i), zero);
 }
 
 // The gap that the indentation asks of each node (m). A loaded node follows the indentation while that extends over it, and is
@@ -112,146 +117,126 @@ struct RequiredGap {
     Packet releases;  // 1 for nodes that the indentation releases, else 0
     Packet rank;      // of several indentations, that of lowest rank holds the node: the deepest one there
 };
-BIRM3D_INLINE RequiredGap required_gap(const IndentationNumbers& d, const PanelNodes& nodes,
-                                       const KnownFaces& known, const Standing& s, const FollowedPlace& h,
-                                       const Packet& outward, std::size_t i) {
+BIRM3D_INLINE RequiredGap required_gap(const IndentationNumbers& indentation, const PanelNodes& nodes,
+                                       const KnownFaces& known, const NodePlace& place,
+                                       const FollowedPlace& followed, const Packet& outward, std::size_t i) {
     const Packet zero = 0.0, one = 1.0, far = infinitely_far, pushes = Packet::load(nodes.force + i);
-    const Packet extends = extends_over(d, known, s, h, i);
-    const Packet of_loaded = where_above(extends, zero, gap_of_loaded(d, known, h, outward, i), away);
-    const Packet gap = where_above(pushes, zero, of_loaded, gap_of_free(d, known, s, h, outward, i));
+    const Packet extends = extends_over(indentation, known, place, followed, i);
+    const Packet of_loaded =
+        where_above(extends, zero, gap_of_loaded(indentation, known, followed, outward, i), away);
+    const Packet gap =
+        where_above(pushes, zero, of_loaded, gap_of_free(indentation, known, place, followed, outward, i));
     const Packet releases = where_above(pushes, zero, where_above(extends, zero, zero, one), zero);
-    return {gap, releases, where_above(releases, zero, away, where_above(far, gap, h.gap, far))};
+    return {gap, releases, where_above(releases, zero, away, where_above(far, gap, followed.gap, far))};
 }
 
 // `state`, but 0 for nodes that the indentation would draw into the surface that holds them so far. Nodes that lag inside the
 // surface are left out of that.
-BIRM3D_INLINE Packet unless_drawn_inside(const IndentationNumbers& d, const KnownFaces& known,
-                                         const FollowedPlace& h, const Packet& gap, const Packet& state,
-                                         std::size_t i) {
+BIRM3D_INLINE Packet unless_drawn_inside(const IndentationNumbers& indentation, const KnownFaces& known,
+                                         const FollowedPlace& followed, const Packet& gap,
+                                         const Packet& state, std::size_t i) {
     // Skin on a face of the edge goes with the edge, though the face is a surface that holds it, too.
-    const Packet zero = 0.0, favour = where_above(h.on_face, zero, coincident, zero),
+    const Packet zero = 0.0, favour = where_above(followed.on_face, zero, coincident, zero),
                  gap_so_far = Packet::load(known.gap + i) + favour;
-    const Packet facing = cosine_of_surface(d, known, i);
+    const Packet facing = cosine_of_surface(indentation, known, i);
     const Packet outside = where_above(zero, gap_so_far - facing * gap, zero, state);
     return where_above(Packet::load(known.lags + i), zero, state, where_above(zero, facing, outside, state));
 }
 
 // Rank of what holds each node so far: of a loaded node an indentation's rank or the gap of a surface (m), of a free node the
 // gap.
-BIRM3D_INLINE Packet rank_so_far(const IndentationNumbers& d, const PanelNodes& nodes,
-                                 const KnownFaces& known, const Standing& s, const FollowedPlace& h,
-                                 std::size_t i) {
+BIRM3D_INLINE Packet rank_so_far(const IndentationNumbers& indentation, const PanelNodes& nodes,
+                                 const KnownFaces& known, const NodePlace& place,
+                                 const FollowedPlace& followed, std::size_t i) {
     const Packet zero = 0.0, far = infinitely_far, near = in_reach, gap_so_far = Packet::load(known.gap + i);
     const Packet by_indentation =
         where_above(Packet::load(known.per_force + i), zero, Packet::load(known.rank + i),
-                    gap_of_holding_surface(d, known, h, i));
+                    gap_of_holding_surface(indentation, known, followed, i));
     const Packet by_face = where_above(gap_so_far, near, far, gap_so_far);
     const Packet of_free = where_above(Packet::load(known.lags + i), zero, by_indentation, gap_so_far);
     return where_above(Packet::load(nodes.force + i), zero,
-                       where_beside_face(d, known, s, h, by_face, by_indentation, i), of_free);
+                       where_beside_face(indentation, known, place, followed, by_face, by_indentation, i),
+                       of_free);
 }
 
 // State of the nodes in this indentation: 1 for those that follow it, 2 for those that it releases, else 0. Of
 // several indentations the deepest one at the node governs. A choice by displacements would alternate from step to
 // step.
-BIRM3D_INLINE Packet find_state(const IndentationNumbers& d, const PanelNodes& nodes, const KnownFaces& known,
-                                const Standing& s, const FollowedPlace& h, const Standing& was,
+BIRM3D_INLINE Packet find_state(const IndentationNumbers& indentation, const PanelNodes& nodes,
+                                const KnownFaces& known, const NodePlace& place,
+                                const FollowedPlace& followed, const NodePlace& place_before,
                                 const RequiredGap& required, std::size_t i) {
     const Packet zero = 0.0, one = 1.0, pushes = Packet::load(nodes.force + i);
-    const Packet state = unless_drawn_inside(d, known, h, required.gap, one + required.releases, i);
+    const Packet state =
+        unless_drawn_inside(indentation, known, followed, required.gap, one + required.releases, i);
     const Packet rank = where_above(pushes, zero, required.rank, required.gap);
-    const Packet nearest = where_above(rank_so_far(d, nodes, known, s, h, i), rank, state, zero);
+    const Packet nearest =
+        where_above(rank_so_far(indentation, nodes, known, place, followed, i), rank, state, zero);
     // How far a node that pushes or lags was behind the face as the step began (m).
-    const Packet lag =
-        where_above(greater(pushes, Packet::load(known.lags + i)), zero, was.deepest - was.e, zero);
-    return where_on(nodes, where_drawn(d, s, lag, nearest, zero), zero, i);
-}
-
-// Displacement of nodes, as a vector in body axes, for a unit rotation of the post or the face about its foot.
-struct Turn {
-    Packet x, y, z;
-};
-
-// By rotation of the post about e, by tilt of its axis along e, and by rotation of an edge's face.
-BIRM3D_INLINE Turn turn_of_post(const IndentationNumbers& d, const Standing& n, const Packet& fe,
-                                const Packet& fw, const Packet& fl, const Packet& by_turn) {
-    const Packet zero = 0.0, top = d.top, top_leans = d.top_rate * d.per_stretch;
-    const Packet about = fl * n.w - fw * n.l;
-    const Packet leaning = fe * (d.stretch * d.stretch * n.up + d.stretch * d.tilt * d.radius +
-                                 where_above(n.l, top, d.tilt * top_leans, zero));
-    const Packet by_l = by_turn * where_above(n.w, zero, d.side_high.turn_l, d.side_low.turn_l),
-                 by_w = leaning + by_turn * where_above(n.w, zero, d.side_high.turn_w, d.side_low.turn_w);
-    return {about * (d.tilt * d.lx - d.ex) + by_w * d.wx + by_l * d.lx,
-            about * (d.tilt * d.ly - d.ey) + by_w * d.wy + by_l * d.ly,
-            about * (d.tilt * d.lz - d.ez) + by_w * d.wz + by_l * d.lz};
-}
-
-// The place on the face times the direction of its push. By a rotation about e, or about l of a face that
-// leans, the place below a node moves along the edge too.
-BIRM3D_INLINE Turn turn_of_face(const IndentationNumbers& d, const Standing& n, const FollowedPlace& h,
-                                const Packet& fe, const Packet& fw, const Packet& fl) {
-    const Packet below = (n.l - n.up) * fw;
-    const Packet e = n.up * fw - n.w * fl + below, w = n.up * fe + h.at * fl,
-                 l = -1.0 * (h.at * fw + n.w * fe + d.tilt * below);
-    return {e * d.ex + w * d.wx + l * d.lx, e * d.ey + w * d.wy + l * d.ly, e * d.ez + w * d.wz + l * d.lz};
+    const Packet lag = where_above(greater(pushes, Packet::load(known.lags + i)), zero,
+                                   place_before.deepest - place_before.e, zero);
+    return where_on(nodes, where_drawn(indentation, place, lag, nearest, zero), zero, i);
 }
 
 }  // namespace
 
-void find_indentation(const IndentationNumbers& d, const IndentationNumbers& then, const PanelNodes& nodes,
-                      const KnownFaces& known);
-double find_indentation_gap(const IndentationNumbers& d, const PanelNodes& nodes);
+void find_indentation(const IndentationNumbers& indentation, const IndentationNumbers& then,
+                      const PanelNodes& nodes, const KnownFaces& known);
+double find_indentation_gap(const IndentationNumbers& indentation, const PanelNodes& nodes);
 
-void find_indentation(const IndentationNumbers& d, const IndentationNumbers& then, const PanelNodes& nodes,
-                      const KnownFaces& known) {
+void find_indentation(const IndentationNumbers& indentation, const IndentationNumbers& then,
+                      const PanelNodes& nodes, const KnownFaces& known) {
     const Packet zero = 0.0;
+    const double ox = indentation.ox, oy = indentation.oy, oz = indentation.oz;
     for (std::size_t i = 0; i < block_size; i += packet_length) {
         zero.store(known.follows + i);
-        const Standing n = stand(d, nodes, i), was = stand(then, nodes, i);
-        if (!any_matters(nodes, known, no_less_than(d, n), i)) continue;
-        const FollowedPlace h = find_followed(d, n);
-        const Drawn by = drawn(d, h);
-        const Packet outward = outward_displacement(n, was, by, drawn(then, find_followed(then, was)),
-                                                    slope_of_face(then, was) - slope_of_face(d, n));
-        const RequiredGap required = required_gap(d, nodes, known, n, h, outward, i);
-        const Packet state = find_state(d, nodes, known, n, h, was, required, i);
+        const NodePlace place = place_of(indentation, nodes, i), place_before = place_of(then, nodes, i);
+        if (!any_matters(nodes, known, no_less_than(indentation, place), i)) continue;
+        const FollowedPlace followed = find_followed(indentation, place);
+        const FollowingRate rate = following_rate(indentation, followed),
+                            rate_before = following_rate(then, find_followed(then, place_before));
+        const Packet flatter = slope_of_face(then, place_before) - slope_of_face(indentation, place);
+        const Packet outward = outward_displacement(place, place_before, rate, rate_before, flatter);
+        const RequiredGap required = required_gap(indentation, nodes, known, place, followed, outward, i);
+        const Packet state =
+            find_state(indentation, nodes, known, place, followed, place_before, required, i);
         if (!any_above(state, zero)) continue;
         state.store(known.follows + i);
         const auto put = [&](double* column, const Packet& found) {
             where_above(state, zero, found, Packet::load(column + i)).store(column + i);
         };
-        const Packet over = n.l - n.up, fe = by.in,
-                     fw = by.across + where_above(over, zero, d.edge_slope, d.face_slope) * fe,
-                     fl = where_above(over, zero, zero, fe * d.tilt);
-        const Packet nx = fe * d.ex - fw * d.wx - fl * d.lx, ny = fe * d.ey - fw * d.wy - fl * d.ly,
-                     nz = fe * d.ez - fw * d.wz - fl * d.lz;
-        const Packet size = square_root(fe * fe + fw * fw + fl * fl), per = 1.0 / size;
+        const Push push = push_of(indentation, place, rate);
+        const Vectors normal = in_body_axes(indentation, push.e, -1.0 * push.w, -1.0 * push.l);
+        const Packet size = square_root(push.e * push.e + push.w * push.w + push.l * push.l),
+                     per_size = 1.0 / size;
         put(known.gap, required.gap);
         put(known.rank, required.rank);
-        put(known.bx, d.ex);
-        put(known.by, d.ey);
-        put(known.bz, d.ez);
-        put(known.nx, nx * per);
-        put(known.ny, ny * per);
-        put(known.nz, nz * per);
+        put(known.bx, indentation.ex);
+        put(known.by, indentation.ey);
+        put(known.bz, indentation.ez);
+        put(known.nx, normal.x * per_size);
+        put(known.ny, normal.y * per_size);
+        put(known.nz, normal.z * per_size);
         put(known.per_force, size);
-        put(known.px, d.ox + (h.at * d.ex + h.a * d.wx + n.up * d.lx));
-        put(known.py, d.oy + (h.at * d.ey + h.a * d.wy + n.up * d.ly));
-        put(known.pz, d.oz + (h.at * d.ez + h.a * d.wz + n.up * d.lz));
+        const Vectors point = in_body_axes(indentation, followed.e, followed.w, place.post_l);
+        put(known.px, ox + point.x);
+        put(known.py, oy + point.y);
+        put(known.pz, oz + point.z);
 
-        const Turn q =
-            d.is_face ? turn_of_face(d, n, h, fe, fw, fl) : turn_of_post(d, n, fe, fw, fl, by.by_turn);
-        put(known.tx, per * (d.oy * nz - d.oz * ny + q.x));
-        put(known.ty, per * (d.oz * nx - d.ox * nz + q.y));
-        put(known.tz, per * (d.ox * ny - d.oy * nx + q.z));
+        const Vectors turn = indentation.is_face ? turn_of_face(indentation, place, followed, push)
+                                                 : turn_of_post(indentation, place, push, rate.by_turn);
+        put(known.tx, per_size * (oy * normal.z - oz * normal.y + turn.x));
+        put(known.ty, per_size * (oz * normal.x - ox * normal.z + turn.y));
+        put(known.tz, per_size * (ox * normal.y - oy * normal.x + turn.z));
     }
 }
 
-double find_indentation_gap(const IndentationNumbers& d, const PanelNodes& nodes) {
+double find_indentation_gap(const IndentationNumbers& indentation, const PanelNodes& nodes) {
     Packet least = infinitely_far;
     for (std::size_t i = 0; i < block_size; i += packet_length) {
-        const Standing s = stand(d, nodes, i);
-        const Packet zero = 0.0, gap = where_drawn(d, s, zero, find_followed(d, s).gap, infinitely_far);
+        const NodePlace place = place_of(indentation, nodes, i);
+        const Packet zero = 0.0, gap = where_drawn(indentation, place, zero,
+                                                   find_followed(indentation, place).gap, infinitely_far);
         least = lesser(least, where_on(nodes, gap, infinitely_far, i));
     }
     return least_of(least);

@@ -33,8 +33,9 @@ BIRM3D_INLINE bool is_nearly_parallel(const EdgeFace& face) {
 }
 
 // Slope of the flattest face beside an edge; of a post more than the skin ever has.
-BIRM3D_INLINE double flattest_face(const IndentationNumbers& d) {
-    return d.side_low.slope < d.side_high.slope ? d.side_low.slope : d.side_high.slope;
+BIRM3D_INLINE double flattest_face(const IndentationNumbers& indentation) {
+    return indentation.side_low.slope < indentation.side_high.slope ? indentation.side_low.slope
+                                                                    : indentation.side_high.slope;
 }
 
 // Nodes that are less than this below a top edge count as above it: the surface that is nearest to them may be the top (m).

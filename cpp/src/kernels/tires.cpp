@@ -100,7 +100,7 @@ Wrench skid_friction(const UnitOnTires& on, std::span<const double> normal_impul
 // The direction to the left in which a wheel does not roll: along its axle, seen from above, steered and turned by camber.
 Vec3 direction_across(const Wheel& wheel, const Vec3& left, const Vec3& turned_left, double horizontal,
                       const Mat3& R) {
-    const Vec3 across = wheel.steers() ? turned_left : left;
+    const Vec3& across = wheel.steers() ? turned_left : left;
     if (!(wheel.camber_ratio > 0.0)) return across;
     const double leans_right = std::atan2(R(2, 1), horizontal);
     return turned_by(-wheel.camber_ratio * leans_right, across);

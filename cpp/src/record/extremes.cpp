@@ -19,11 +19,9 @@ double interval_of(const History& history) {
     return history.time.size() > 1 ? history.time[1] - history.time[0] : infinity;
 }
 
-// Component of the barrier's force on all units (N). Each thread keeps its work buffers, so that the metrics of a run
-// allocate nothing.
-const Column& force_on_all(const History& history) {
-    thread_local Column force;
-    force.assign(history.time.size(), 0.0);
+// Component of the barrier's force on all units (N).
+Column force_on_all(const History& history) {
+    Column force(history.time.size(), 0.0);
     for (const UnitHistory& unit : history.units)
         for (std::size_t k = 0; k < force.size(); ++k)
             force[k] += unit.barrier_normal_force[k];
@@ -32,10 +30,10 @@ const Column& force_on_all(const History& history) {
 
 // Peaks of the force, if there is any, and of the deceleration along r. Both filters at once: each waits for its own
 // last result.
-std::optional<TwoSignals> filtered_peaks(const History& history, const Column* force, bool deceleration) {
-    thread_local std::vector<TwoSignals> signal;
-    signal.assign(history.time.size(), {0.0, 0.0});
-    if (force != nullptr)
+std::optional<TwoSignals> filtered_peaks(const History& history, const std::optional<Column>& force,
+                                         bool deceleration) {
+    std::vector<TwoSignals> signal(history.time.size(), {0.0, 0.0});
+    if (force)
         for (std::size_t k = 0; k < signal.size(); ++k)
             signal[k][0] = (*force)[k];
     if (deceleration)
@@ -45,8 +43,8 @@ std::optional<TwoSignals> filtered_peaks(const History& history, const Column* f
 }
 
 void find_extremes_of_columns(const History& history, const ExtremeGroups& wanted, Extremes& found) {
-    const Column* const force =
-        wanted.normal_force || wanted.filtered_force ? &force_on_all(history) : nullptr;
+    std::optional<Column> force;
+    if (wanted.normal_force || wanted.filtered_force) force = force_on_all(history);
     if (wanted.normal_force) found.normal_force = {greatest_of(force->data(), force->size()), force->back()};
     if (!wanted.filtered_force && !wanted.filtered_deceleration) return;
     const std::optional<TwoSignals> peak = filtered_peaks(history, force, wanted.filtered_deceleration);
