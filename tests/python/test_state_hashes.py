@@ -71,8 +71,8 @@ HASHES = {
     "truck, pole of triangles": "9351a79d842abf38",
     "free-standing": "8b513e5bd4bc08b5",
     "minivan on its side": "50fa25478b464c0d",
-    "car, corner of a planter": "7068ea637b442401",
-    "pickup, end of a wall": "75d27fbdfd0443e4",
+    "car, corner of a planter": "9f5557f2ec97e5fc",
+    "pickup, end of a wall": "176b7f312a834bc8",
     "finite-element car, wall": "9be0600936bc9b61",
     "finite-element truck, wall": "f2516accc663599a",
 }
