@@ -34,6 +34,20 @@ def test_a_wall_stops_a_truck_sooner_than_bollards_of_its_height(height: float) 
     assert wall["peak_force_50ms"] > bollards["peak_force_50ms"]
 
 
+def test_the_force_grows_with_the_height_until_the_front_is_covered() -> None:
+    """Mean force of a car over the first 0.6 m; its front ends 0.72 m above the ground."""
+    car = Vehicle.preset("passenger_car", mesh_density=0.5)
+    means = []
+    for height in (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 2.0):
+        result = Simulation(car, Barrier.rigid_wall(height=height), 17.88, duration=0.1).run()
+        way = result.position[:, 0] - result.position[0, 0]
+        until = way <= 0.6
+        means.append(np.trapezoid(-result.barrier_force[until, 0], way[until]) / 0.6)
+    assert (np.diff(means) > -0.002 * means[-1]).all()
+    assert means[0] < 0.55 * means[-1], "measured: 0.51"
+    assert means[-2] > 0.99 * means[-1]
+
+
 def test_the_travel_does_not_jump_as_the_top_passes_a_row_of_nodes() -> None:
     """Once it fell from 1.49 to 0.77 m between heights of 0.60 and 0.61 m."""
     heights = np.arange(0.5, 0.81, 0.02)

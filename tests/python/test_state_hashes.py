@@ -71,8 +71,8 @@ HASHES = {
     "truck, pole of triangles": "9351a79d842abf38",
     "free-standing": "de187dfe9011bf6e",
     "minivan on its side": "08e241c783aa9699",
-    "car, corner of a planter": "672c2dc2176adaa4",
-    "pickup, end of a wall": "5c0c7c84a22eaa14",
+    "car, corner of a planter": "b1b4bd6d4bc05298",
+    "pickup, end of a wall": "732f478bf81bb1af",
     "finite-element car, wall": "9be0600936bc9b61",
     "finite-element truck, wall": "f2516accc663599a",
 }

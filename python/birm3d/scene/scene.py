@@ -12,7 +12,7 @@ from .. import _core
 from ..barrier.base import Barrier
 from ..base.arguments import checked
 from ..vehicle.vehicle import Vehicle
-from .settings import CORNERING_STIFFNESS, MU_TIRE_BARRIER, Settings
+from .settings import CORNERING_STIFFNESS, EDGE_FLANK_FACTOR, MU_TIRE_BARRIER, Settings
 from .width_overlap import offset_of_overlap
 
 __all__ = ["APPROACH", "Scene"]
@@ -60,6 +60,19 @@ class Scene:
         numbers = [zones[i].cornering_stiffness if i >= 0 else None for i in self.vehicle.zone_of_wheel]
         return statistics.fmean(CORNERING_STIFFNESS if one is None else one for one in numbers or [None])
 
+    @property
+    def edge_flank_factor(self) -> float:
+        """Factor of the sideways force on a wall's edge: what the settings ask for, or the (leading) unit's.
+
+        A unit whose file has none counts with that of a car, 1.25.
+        """
+        asked = self.settings.edge_flank_factor
+        if asked is not None:
+            return asked
+        file = self.vehicle.units[0]._file
+        own = None if file is None or file.indentation is None else file.indentation.edge_flank_factor
+        return EDGE_FLANK_FACTOR if own is None else own
+
     def approached(self, numbers: Mapping[str, float]) -> Scene:
         """Return the same scene with other numbers of ``APPROACH``; not checked."""
         scene = object.__new__(Scene)  # dataclasses.replace() takes longer than a metric
@@ -81,9 +94,15 @@ class Scene:
             vehicle=self.vehicle.core,
             barriers=[] if self.barrier is None else [self.barrier.core],
             approach=self.approach,
-            settings=_with_tires(self.settings, self.mu_tire_barrier, self.cornering_stiffness).core,
+            settings=self._settings.core,
             duration=self.duration,
         )
+
+    @property
+    def _settings(self) -> Settings:
+        """With the vehicle's numbers where nothing is asked for."""
+        own = (self.mu_tire_barrier, self.cornering_stiffness, self.edge_flank_factor)
+        return _with_numbers(self.settings, *own)
 
     @property
     def path_offset(self) -> float:
@@ -112,5 +131,5 @@ class Scene:
 
 
 @lru_cache(maxsize=16)
-def _with_tires(settings: Settings, mu_tire_barrier: float, cornering_stiffness: float) -> Settings:
-    return replace(settings, mu_tire_barrier=mu_tire_barrier, cornering_stiffness=cornering_stiffness)
+def _with_numbers(settings: Settings, tires: float, cornering: float, flank: float) -> Settings:
+    return replace(settings, mu_tire_barrier=tires, cornering_stiffness=cornering, edge_flank_factor=flank)

@@ -15,6 +15,12 @@ __all__ = ["CORNERING_STIFFNESS", "MU_TIRE_BARRIER", "Settings"]
 MU_TIRE_BARRIER = 0.6
 """Friction coefficient of tyres on a barrier where none is asked for, see :class:`Settings`."""
 
+EDGE_FLANK_FACTOR = 1.25
+"""Factor of the skin's sideways force on a wall's edge where neither settings nor vehicle have one.
+
+Chosen to meet 150 tests of cars at 25 % overlap; no mechanism is derived for it.
+"""
+
 CORNERING_STIFFNESS = 10.0
 """Cornering stiffness of tyres where neither settings nor vehicle have one [1/rad].
 
@@ -65,8 +71,9 @@ class Settings:
     restitution
         Of rigid contacts: tyres on the ground, the rigid body at the barrier (paper 5.2).
     edge_flank_factor
-        Sideways force of the skin on the rounded edge of a wall, over that on a frictionless wedge. Chosen to
-        meet 150 tests at 25 % overlap; no mechanism is derived for it.
+        Sideways force of the skin on the rounded edge of a wall that catches none of the rails, over that on
+        a frictionless wedge. ``None``: that of the vehicle's file, else 1.25. See
+        :attr:`birm3d.simulation.Scene.edge_flank_factor`.
     contact_model
         ``"projected"``: the truss force projected on the surface's normal, which keeps the energy;
         ``"along_truss"``: the paper's rule, for comparison.
@@ -90,7 +97,7 @@ class Settings:
     braking: float = 0.0
     cornering_stiffness: float | None = _in("1/rad", None)
     restitution: float = 0.1
-    edge_flank_factor: float = 1.25
+    edge_flank_factor: float | None = None
     contact_model: Literal["projected", "along_truss"] = "projected"
     tire_model: Literal["slip", "skid"] = "slip"
 
@@ -109,7 +116,7 @@ class Settings:
             braking: float = 0.0,
             cornering_stiffness: float | None = None,
             restitution: float = 0.1,
-            edge_flank_factor: float = 1.25,
+            edge_flank_factor: float | None = None,
             contact_model: Literal["projected", "along_truss"] = "projected",
             tire_model: Literal["slip", "skid"] = "slip",
         ) -> None: ...
@@ -141,6 +148,8 @@ class Settings:
             given["mu_tire_barrier"] = MU_TIRE_BARRIER
         if self.cornering_stiffness is None:
             given["cornering_stiffness"] = CORNERING_STIFFNESS
+        if self.edge_flank_factor is None:
+            given["edge_flank_factor"] = EDGE_FLANK_FACTOR
         return _core.Settings(given)
 
     def __getstate__(self) -> dict[str, object]:

@@ -192,7 +192,7 @@ def value_of(simulation: Simulation, name: str) -> Any:
     if group == "barrier":
         return getattr(scene.barrier, "rounding" if rest == "edge_radius" else rest)
     if group == "settings":
-        return getattr(scene.settings, rest)
+        return getattr(scene if hasattr(Scene, rest) else scene.settings, rest)  # as they are in the run
     if group == "truss":
         return scene.vehicle.truss_law[rest]
     if group == "scatter" or name == "vehicle.bed_fixings":

@@ -465,9 +465,14 @@ class NamedPoint(Block):
 
 
 class Indentation(Block):
-    """How far a post draws in the skin beside itself, see :meth:`birm3d.Vehicle.with_indentation_length`."""
+    """How a post or a wall's edge draws in the skin beside itself.
+
+    length_m: see :meth:`birm3d.Vehicle.with_indentation_length`. edge_flank_factor: see
+    :attr:`birm3d.simulation.Scene.edge_flank_factor`.
+    """
 
     length_m: Positive
+    edge_flank_factor: Annotated[float, Field(ge=0.0)] | None = None
 
 
 class Overhang(Block):

@@ -217,6 +217,18 @@ TEST("skin that would fall off more steeply than the faces of an edge lies on th
     CHECK(on_faces > 32);
 }
 
+TEST("an edge pushes a panel aside where it stands beside the rails") {
+    const double radius = 0.05;
+    const Post post(radius, std::numeric_limits<double>::infinity(), 0.75 * pi);
+    // The block is at y up to this share of the half width from the middle, to the right. It is open to the left: to lower w.
+    for (const auto& [share, factor] :
+         {std::pair(0.7, edge), {0.5, edge}, {0.45, 0.8}, {0.4, 0.35}, {-0.6, 0.35}}) {
+        const Indentation found(post, standing({2.8, -1.2 * share - radius, 0.0}), front, 0.65, edge);
+        CHECK_CLOSE(found.flank_low, factor, 1e-12, "rounding");
+        CHECK_CLOSE(found.flank_high, 0.0, 1e-12, "the face holds the skin there");
+    }
+}
+
 TEST("force and torque of an edge are what the ways of the nodes ask for by virtual work") {
     std::mt19937 random(13);
     std::uniform_real_distribution<double> share(-1.0, 1.0);

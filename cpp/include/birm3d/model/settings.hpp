@@ -28,8 +28,8 @@ struct Settings {
     double cornering_stiffness =
         10.0;                  // lateral force per normal load and radian of slip at small slip (1/rad)
     double restitution = 0.1;  // of rigid contacts (paper 5.2)
-    // Sideways force of the skin on the rounded edge of a wall, over that on a frictionless wedge. It is chosen by hand to meet
-    // tests with 25 % overlap, all at a radius of 0.15 m.
+    // Sideways force of the skin on the rounded edge of a wall that catches none of the rails, over that on a frictionless wedge.
+    // It is chosen by hand to meet tests with 25 % overlap, all at a radius of 0.15 m.
     double edge_flank_factor = 1.25;
     ContactModel contact_model = ContactModel::projected;
     TireModel tire_model = TireModel::slip;
