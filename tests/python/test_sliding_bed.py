@@ -16,7 +16,7 @@ from birm3d.vehicle.sliding_bed import UNDERSIDE
 from birm3d.vehicle.vehicle_file import VehicleFileError
 
 TRUCKS = ("cargo_truck", "heavy_truck_29500")
-Slide = tuple[tuple[float, float], ...]
+Slide = tuple[tuple[float, ...], ...]
 WEAK = ((0.0, 1.0e5),)
 
 
@@ -102,7 +102,16 @@ def test_a_rating_reads_the_edge_of_the_bed_that_slid(truck: Vehicle) -> None:
     assert weak > fixed + 1.0
 
 
-def test_it_is_saved_and_pickled_as_it_is(truck: Vehicle, tmp_path: Path) -> None:
+def test_a_rating_says_when_the_bed_would_have_left_the_frame(truck: Vehicle) -> None:
+    near, far = (
+        birm3d.rate(at_a_wall(truck.with_sliding_bed([(0.0, force)]), 22.0), "SD-STD-02.01")
+        for force in (4.0e5, 1.0e5)
+    )
+    assert "left the frame" in far.caution
+    assert "left the frame" not in near.caution
+
+
+def test_a_truck_with_a_sliding_bed_is_saved_and_pickled(truck: Vehicle, tmp_path: Path) -> None:
     split = truck.with_sliding_bed(WEAK)
     split.save(tmp_path / "truck.toml")
     assert Vehicle.from_file(tmp_path / "truck.toml") == split
@@ -165,11 +174,12 @@ def test_vehicles_without_a_bed_say_so() -> None:
         ((), "slide must have a pair of slip"),
         (((0.1, 1e4),), "slips .* that increase from 0"),
         (((0.0, 1e4), (0.0, 2e4)), "slips .* that increase from 0"),
-        (((0.0, -1.0),), "finite forces"),
-        (((0.0, float("nan")),), "finite forces"),
+        (((0.0, 1e4, 2.0),), "must be pairs of slip"),
+        (((0.0, -1.0),), "finite slips .* and finite forces"),
+        (((0.0, float("nan")),), "finite slips .* and finite forces"),
     ],
 )
-def test_forces_that_can_not_be_are_refused(truck: Vehicle, slide: Slide, message: str) -> None:
+def test_impossible_slide_forces_are_refused(truck: Vehicle, slide: Slide, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         truck.with_sliding_bed(slide)
     with pytest.raises(ValueError, match=message):
@@ -182,7 +192,7 @@ def test_forces_that_can_not_be_are_refused(truck: Vehicle, slide: Slide, messag
         ('block = "box"\nunderside', 'block = "hold"\nunderside', "bed.block: must be one of box, cab"),
         ('underside = "underside"', 'underside = "floor"', "bed.underside: must be one of"),
         ('"box_roof", "cargo",', '"box_roof", "carg",', "bed.solids: must be one of"),
-        ("    [0.0, 5.1e5],", "    [0.1, 5.1e5],", "must start at a slip of 0"),
+        ("    [0.0, 5.1e5],", "    [0.1, 5.1e5],", "bed.slide_m_N: must start at a slip of 0"),
     ],
 )
 def test_a_bed_that_is_not_there_is_refused_by_line(tmp_path: Path, old: str, new: str, message: str) -> None:
@@ -190,5 +200,5 @@ def test_a_bed_that_is_not_there_is_refused_by_line(tmp_path: Path, old: str, ne
     assert text.count(old) == 1
     path = tmp_path / "truck.toml"
     path.write_text(text.replace(old, new), encoding="utf-8")
-    with pytest.raises(VehicleFileError, match=message):
+    with pytest.raises(VehicleFileError, match=rf"truck.toml:\d+: {message}"):
         Vehicle.from_file(path)

@@ -23,11 +23,11 @@ stays upright (1: yes, 0: no) is compared with what is commonly reported of the 
 is in the table of computed figures: tyres that press a vehicle on the wall add to it.
 
 What the model can not do here: wheels of the 8-t truck are held straight. They press it on the barrier, and
-it slides along for seconds. With free ones it overturns. Rear tyres of other trucks turn them away from the
-barrier while they stand on two wheels. So the barrier's own impulse can be less than the change of
-momentum. A near-side tread that climbs a sloped face lifts the body, not its own wheel, and stays on. The
-load of a trailer does not shift. The 10-t truck has no camber thrust, and leans on the barrier for more
-than a second."""
+it slides along for seconds. With front wheels that follow their travel the computed truck overturns,
+against what is reported. Rear tyres of other trucks turn them away from the barrier while they stand on two
+wheels. So the barrier's own impulse can be less than the change of momentum. A near-side tread that climbs
+a sloped face lifts the body, not its own wheel, and stays on. The load of a trailer does not shift. The
+10-t truck has no camber thrust, and leans on the barrier for more than a second."""
 
 
 def tasks() -> Sequence[str]:

@@ -77,13 +77,13 @@ void add_sliding_impulses(const std::vector<RigidContact>& contacts, std::vector
     }
 }
 
-// Lets joints slide where holding would take more than they hold for `time` (s), and hold where they would slide the other
-// way. Did any change?
+// A joint that holds begins to slide where its impulse exceeds its limit over `time` (s). One that slides holds again where
+// its impulse would drive the motion. Did any change?
 bool decide_sliding(double time, std::span<const ContactBody> bodies, std::vector<RigidContact>& contacts) {
     bool any = false;
     for (RigidContact& contact : contacts) {
-        if (!(contact.holds < infinity)) continue;
-        const double most = time * contact.holds;
+        if (!(contact.most_force < infinity)) continue;
+        const double most = time * contact.most_force;
         if (!contact.slides && std::abs(contact.impulse) > most) {
             contact.slides = any = true;
             contact.impulse = std::copysign(most, contact.impulse);
@@ -124,12 +124,13 @@ void begin_iteration(const State& state, KickMemory& memory) {
 void solve_normal_impulses(const Scene& scene, const KickedBy& by, bool meets, const State& state,
                            KickMemory& memory) {
     if (meets) prepare_solver(scene, state, memory);
-    // A joint slides one way or holds, so that it changes at most twice.
+    // A joint holds, or slides one way or the other. After the last change the impulses are solved for once more.
     constexpr int most_changes = 3;
-    for (int change = 0; change <= most_changes; ++change) {
+    for (int changes = 0;; ++changes) {
         set_motions_with_friction(state, memory.kick, memory.bodies);
         add_sliding_impulses(memory.kick.contacts, memory.bodies);
         memory.solver.solve(memory.kick.contacts, memory.bodies);
+        if (changes == most_changes) break;
         if (!decide_sliding(by.time, memory.bodies, memory.kick.contacts)) break;
         memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
     }
@@ -187,7 +188,7 @@ double correct_targets(const Scene& scene, const State& kicked, double dt,
         drift(rigid_body(scene, b), dt, bodies[b]);
     double widest = 0.0;
     for (RigidContact& contact : contacts) {
-        if (!contact.bilateral || contact.holds < infinity) continue;
+        if (!contact.bilateral || contact.most_force < infinity) continue;
         const Joint& joint = scene.joints[contact.index];
         const double gap = bilateral_gap(joint, contact, bodies[joint.leading], bodies[joint.trailing]);
         contact.target -= gap / dt;

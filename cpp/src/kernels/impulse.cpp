@@ -70,7 +70,7 @@ void ImpulseSolver::prepare(std::span<const RigidContact> contacts, std::span<co
     for (const RigidContact& contact : contacts) {
         ConstraintRow row{contact.body, contact.other, {}, Vec6::Zero()};
         row.bilateral = contact.bilateral;
-        row.given = contact.slides;
+        row.slides = contact.slides;
         row.g = in_unit_mass(unit_wrench(contact, contact.arm), row.body);
         if (row.other >= 0) {
             row.g_other =
@@ -82,7 +82,7 @@ void ImpulseSolver::prepare(std::span<const RigidContact> contacts, std::span<co
         rows_.push_back(row);
     }
     for (std::size_t i = 0; i < rows_.size(); ++i)
-        if (rows_[i].bilateral && !rows_[i].given && rows_[i].diagonal > 0.0) activate(i);
+        if (rows_[i].bilateral && !rows_[i].slides && rows_[i].diagonal > 0.0) activate(i);
 }
 
 void ImpulseSolver::solve(std::span<RigidContact> contacts, std::span<ContactBody> bodies) {
@@ -103,7 +103,7 @@ void ImpulseSolver::solve(std::span<RigidContact> contacts, std::span<ContactBod
         }
     }
     for (std::size_t i = 0; i < rows_.size(); ++i)
-        if (!rows_[i].given) contacts[i].impulse = rows_[i].impulse;
+        if (!rows_[i].slides) contacts[i].impulse = rows_[i].impulse;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const auto u = motion_.segment<6>(6 * static_cast<Index>(b));
         bodies[b].motion.velocity += roots_[b].mass * u.head<3>();
@@ -149,7 +149,7 @@ void ImpulseSolver::activate(std::size_t row) {
 // Starts from the present impulses, which may be those of the last solution.
 void ImpulseSolver::find_impulses() {
     for (ConstraintRow& row : rows_) {
-        row.settled = row.given || row.diagonal == 0.0;  // nothing there can be moved
+        row.settled = row.slides || row.diagonal == 0.0;  // left out: it slides, or nothing can be moved
         row.joined = 0;
     }
     if (active_.empty())

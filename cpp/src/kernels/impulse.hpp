@@ -75,7 +75,7 @@ class ImpulseSolver {
         double rhs = 0.0;          // target less separation velocity without impulses
         double shifted_rhs = 0.0;  // right-hand side of the proximal-point step: rhs + C j_old
         bool bilateral = false;
-        bool given = false;  // its impulse is no unknown
+        bool slides = false;  // its impulse is known: the joint slides
         bool active = false;
         bool settled = false;  // became inactive at once, or repeatedly: at its target to rounding
         int joined = 0;        // how often activated alone

@@ -35,13 +35,13 @@ double flank_factor(double side, double open_flank) {
     return (1.0 - std::abs(side)) * post_flank + std::max(side, 0.0) * open_flank;
 }
 
-// Share of a panel's half width at which the end of a wall stands. Beyond the first it is beside the rails and wedges in outside
-// of them: tests with 25 % overlap, which miss the rails. Below the second the wall catches a rail. Then the front is tied to
-// rails on both sides of the edge, as on both sides of a post. Rails are about a tenth of the half width wide.
+// Where a wall ends, as a share of the panel's half width from its middle. From `beside_rails` outwards the wall misses the rails,
+// as in tests with 25 % overlap. Inside of `on_rail` it has caught a rail, and the edge resists as a post does: rails hold the
+// front on both sides of it. Rails are about a tenth of the half width wide. Sides and rears are taken alike.
 constexpr double beside_rails = 0.5, on_rail = 0.4;
 
-// Factor on the open side of an edge: that of a post where the wall catches a rail. `end`: share of the half width, from the
-// middle towards the part before the wall.
+// Factor on the open side of an edge. `end`: distance of the wall's end from the panel's middle over the half width; negative
+// where the wall reaches past the middle.
 double open_flank_factor(double end, double edge_flank_factor) {
     const double outside = std::clamp((end - on_rail) / (beside_rails - on_rail), 0.0, 1.0);
     return post_flank + outside * (edge_flank_factor - post_flank);
@@ -130,8 +130,10 @@ Indentation::Indentation(const Post& post, const Placement& stands, const Panel&
     const double opens =
         post.opens ? std::max(0.0, 1.0 - 2.0 * off) * open_side(w, stands, *post.opens) : 0.0;
     const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
+    // From the edge's axis to the middle, towards the side on which the edge is open.
+    const double to_middle = opens < 0.0 ? -middle : middle;
     const double open_flank =
-        open_flank_factor((std::copysign(middle, opens * middle) - radius) / half, edge_flank_factor);
+        half > 0.0 ? open_flank_factor((to_middle - radius) / half, edge_flank_factor) : post_flank;
     flank_low = flank_factor(-opens, open_flank);
     flank_high = flank_factor(opens, open_flank);
     if (post.opens) set_faces(post, stands);

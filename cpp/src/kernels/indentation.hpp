@@ -10,8 +10,8 @@
 // The sheet beside a post is held by tension and shear. It goes in with the post, straight along e. It is not carried along
 // the panel, so that an indentation stays where it was made. The factor k scales the sideways displacement by the flank. It is
 // 0.35 for a post, chosen by hand: the sheet's tension on one flank balances a part of that on the other. On the open side of
-// an edge that stands beside the rails it is edge_flank_factor. Before a face that is nearly parallel to the panel, that face holds the skin. Once D has
-// reached a node, its depth u follows the velocity v of the post:
+// an edge that stands beside the rails it is edge_flank_factor. Before a face that is nearly parallel to the panel, that face
+// holds the skin. Once D has reached a node, its depth u follows the velocity v of the post:
 //   du = g (1 - ds/dd |w - w*|) dv_e + g k sin(flank) dv_w
 // v_e is that of the post's deepest place at the node's height; v_w is across the post, away from the node. A post whose
 // axis is `off` beyond the panel's edge touches that edge with its flank. What it pushes there goes in by the square of the

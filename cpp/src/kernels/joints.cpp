@@ -32,7 +32,7 @@ void find_sliding_rows(const Joint& joint, const BodyState& leading, const BodyS
     for (const int axis : {0, 1, 2}) {
         row.normal = leading.orientation * Vec3::Unit(axis);
         row.axis = axis;
-        row.holds = axis == 0 ? slide_force(joint, slip_of(joint, leading, trailing)) : infinity;
+        row.most_force = axis == 0 ? slide_force(joint, slip_of(joint, leading, trailing)) : infinity;
         row.gap = axis == 0 ? 0.0 : bilateral_gap(joint, row, leading, trailing);
         rows.push_back(row);
     }

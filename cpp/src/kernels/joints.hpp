@@ -1,7 +1,8 @@
 // Joints as rows of the impulse solver, for any two bodies.
 //
-// A joint has rows for displacements along the world's x, y and z; a welded joint also for rotations about them. Those of
-// a sliding joint are along the leading body's axes, and the row along r carries a force up to a limit only. Impulses act halfway between the joint's places on the two bodies. So a pair of impulses keeps the angular momentum, whatever
+// A joint has rows for displacements along the world's x, y and z; a welded joint also for rotations about them.
+// Displacement rows of a sliding joint follow the leading body's axes. The row along its r axis carries force up to a limit.
+// Impulses act halfway between the joint's places on the two bodies. So a pair of impulses keeps the angular momentum, whatever
 // the gap between these places. The stops of a fifth wheel are two rows about the Cardan axis s_leading x t_trailing.
 // The difference of the angular velocities along it is the rate of the relative roll, sin(roll) = -s_leading . t_trailing.
 #pragma once

@@ -30,9 +30,9 @@ struct RigidContact {
     bool is_impact = false;   // did it approach hard before the forces of the half step?
     bool about_axis = false;  // turns the bodies about `normal` instead of pushing along it
     int axis = 0;             // of a sliding joint: body axis of the leading body along which `normal` points
-    double holds =
+    double most_force =
         std::numeric_limits<double>::infinity();  // greatest force of a sliding joint along its axis (N)
-    bool slides = false;    // result of a sliding joint: `impulse` is given by `holds`, not by the target
+    bool slides = false;    // result of a sliding joint: `impulse` is that of `most_force`, and no unknown
     double friction = 0.0;  // Coulomb coefficient of a bottomed-out truss
     Vec3 sliding_surface = Vec3::Zero();   // velocity of the obstacle's surface there (m/s)
     Vec3 friction_impulse = Vec3::Zero();  // result: its friction impulse (N s)

@@ -196,7 +196,7 @@ def exit_box(result: Result, heavy: bool) -> ExitBox:
     nearest = int(np.argmin(out[:, 0]))
     ahead = ahead - ahead[nearest, 0]
     reached = float(np.where(ahead <= length, out, -math.inf).max())
-    # Straight on from the last row, wheel by wheel, to the end of the box; some may be there already.
+    # Straight on from the last row, wheel by wheel, to the end of the box. Wheels beyond it are left out.
     outward, forward = -float(result.velocity[-1] @ past), float(result.velocity[-1] @ along)
     inside = ahead[:, -1] <= length
     if forward > 0.0 and inside.any():

@@ -10,9 +10,9 @@ from .criteria import Criterion, criteria_html, criteria_text
 __all__ = ["MODEL_CAUTION", "Rating"]
 
 MODEL_CAUTION = (
-    "Indicative: computed, not tested. The vehicle is one rigid body with a crushable skin: its bed slides "
-    "on the frame only with Vehicle.with_sliding_bed(), its engine can not stop before the cab, its wheels "
-    "stay on; barriers that are "
+    "Indicative: computed, not tested. The vehicle is one rigid body, or two, with a crushable skin: a load "
+    "bed is fixed to the frame unless it was let go, the engine can not stop before the cab, wheels stay on; "
+    "barriers that are "
     "modelled as rigid do not give way, so that tests read more penetration and deflection. "
     "Limits and tolerances are those that are commonly reported of the standard: check them in its text."
 )

@@ -9,13 +9,14 @@ as commonly reported: the standards are not at hand.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from .. import units
 from ..result.event import gets_past, is_open, outcome_words
+from ..vehicle.joint import LONGEST_SLIP
 from .criteria import Criterion
 from .measures import barrier_extent, check_side_on, heading_rows, penetration_history
 from .rating import MODEL_CAUTION, Rating, first_reached
@@ -156,9 +157,19 @@ def rate_security(
         found.greatest,
         contained,
         (mass, *rows[:-1], measured, rows[-1], became),
-        f"{standard.caution} {MODEL_CAUTION}",
+        " ".join([standard.caution, *_of_bed(result), MODEL_CAUTION]),
         vehicle.code,
     )
+
+
+def _of_bed(result: Result) -> Iterator[str]:
+    """Yield a caution where the load bed would have left its frame."""
+    slip = result.metrics.get("bed_slip", 0.0)
+    if slip > LONGEST_SLIP:
+        yield (
+            f"The load bed slid by {slip:.2f} m. Beyond {LONGEST_SLIP:g} m it would have left the frame, so "
+            "that the penetration is not to be relied on."
+        )
 
 
 def _penetration(

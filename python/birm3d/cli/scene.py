@@ -85,7 +85,9 @@ _OPTIONS = (
         "--mesh-density", type=float, default=1.0, show_default=True, help="Elements relative to the file's."
     ),
     click.option(
-        "--sliding-bed", is_flag=True, help="Let the load bed slide, of a truck whose file has one."
+        "--sliding-bed",
+        is_flag=True,
+        help="Let the load bed slide on the frame (trucks whose file has a bed).",
     ),
     click.option(
         "--barrier",

@@ -117,11 +117,12 @@ def _phenomena(case: Case) -> Iterator[tuple[str, str, str]]:
     )
     yield "engine stops before the cabin", "no", "one rigid body a unit"
     slides = result.scene.vehicle.slides
-    told = (
-        f"slid by {metrics['bed_slip']:.2f} m here; the strength of its fixings is an estimate"
-        if slides
-        else "fixed to the frame; Vehicle.with_sliding_bed() lets it go where the vehicle's file has a bed"
-    )
+    if slides:
+        told = f"slid by {metrics['bed_slip']:.2f} m here; the strength of its fixings is an estimate"
+    elif result.scene.vehicle.has_bed:
+        told = "fixed to the frame; Vehicle.with_sliding_bed() frees it"
+    else:
+        told = "the vehicle's file names no bed that could slide"
     yield "load bed slides on the frame", "yes" if slides else "no", told
     springs = result.scene.vehicle.has_springs
     told = (

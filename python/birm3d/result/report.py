@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from .. import units
 from ..barrier.text import barrier_text
 from ..scene.text import overlap_text
+from ..vehicle.joint import LONGEST_SLIP
 from ..vehicle.title import vehicle_text
 from .core_contact import core_lines
 from .element_loads import touched_elements
@@ -65,7 +66,7 @@ def report(result: RunAnalysis) -> str:
             f"  {vehicle.joint.kind}: peak 50-ms mean of the force "
             f"{metrics['peak_joint_force_50ms'] / 1e3:.3g} kN, greatest articulation angle "
             f"{metrics['max_articulation_angle']:.1f} deg"
-            + (f", greatest slip {metrics['bed_slip']:.3f} m" if vehicle.slides else "")
+            + (_slip_text(metrics["bed_slip"]) if vehicle.slides else "")
         )
     if "barrier_deflection" in metrics:
         lines.append(
@@ -84,6 +85,11 @@ def report(result: RunAnalysis) -> str:
         *(f"  {line}" for line in omitted_lines(result)),
     ]
     return "\n".join(lines)
+
+
+def _slip_text(slip: float) -> str:
+    beyond = f", beyond {LONGEST_SLIP:g} m the bed would have left the frame" if slip > LONGEST_SLIP else ""
+    return f", greatest slip {slip:.3f} m{beyond}"
 
 
 def _barrier(barrier: Barrier) -> str:

@@ -64,7 +64,7 @@ class Scene:
     def edge_flank_factor(self) -> float:
         """Factor of the sideways force on a wall's edge: what the settings ask for, or the (leading) unit's.
 
-        A unit whose file has none counts with that of a car, 1.25.
+        Without one in the file it is 1.25, as for cars.
         """
         asked = self.settings.edge_flank_factor
         if asked is not None:
@@ -131,5 +131,12 @@ class Scene:
 
 
 @lru_cache(maxsize=16)
-def _with_numbers(settings: Settings, tires: float, cornering: float, flank: float) -> Settings:
-    return replace(settings, mu_tire_barrier=tires, cornering_stiffness=cornering, edge_flank_factor=flank)
+def _with_numbers(
+    settings: Settings, mu_tire_barrier: float, cornering_stiffness: float, edge_flank_factor: float
+) -> Settings:
+    return replace(
+        settings,
+        mu_tire_barrier=mu_tire_barrier,
+        cornering_stiffness=cornering_stiffness,
+        edge_flank_factor=edge_flank_factor,
+    )

@@ -89,6 +89,9 @@ _UNITS: dict[str, str] = {
 }
 
 
+_OF_THE_VEHICLE = ("mu_tire_barrier", "cornering_stiffness", "edge_flank_factor")
+"""Settings for which the scene takes the vehicle's number where none is asked for."""
+
 _OLD = {"vehicle.dent_reach": "vehicle.indentation_length"}
 """Old name -> name of today."""
 
@@ -192,7 +195,7 @@ def value_of(simulation: Simulation, name: str) -> Any:
     if group == "barrier":
         return getattr(scene.barrier, "rounding" if rest == "edge_radius" else rest)
     if group == "settings":
-        return getattr(scene if hasattr(Scene, rest) else scene.settings, rest)  # as they are in the run
+        return getattr(scene if rest in _OF_THE_VEHICLE else scene.settings, rest)
     if group == "truss":
         return scene.vehicle.truss_law[rest]
     if group == "scatter" or name == "vehicle.bed_fixings":

@@ -22,6 +22,7 @@ the key ``file`` a unit may have all blocks of its vehicle file, as ``[[unit.sol
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -65,6 +66,11 @@ class JointBlock(Block):
             reject("place_on_trailing_m", message)
         if self.kind == "fifth_wheel" and self.roll_limit_deg is None:
             reject("roll_limit_deg", "must be given for a fifth wheel")
+        slips = [slip for slip, _ in self.slide_m_N]
+        if self.kind == "sliding" and not slips:
+            reject("slide_m_N", "must be given for a sliding joint")
+        if slips and (slips[0] != 0.0 or any(b <= a for a, b in pairwise(slips))):
+            reject("slide_m_N", f"must have slips that increase from 0, got {slips}")
         return self
 
 

@@ -111,7 +111,7 @@ class CombinationRecipe:
         raise ValueError(f"truss law must be given to one of the units of {self.name!r}, got {changes}")
 
     def with_fixings(self, factor: float) -> CombinationRecipe:
-        """Return the recipe of a truck whose sliding bed is held by another force, times a factor."""
+        """Return the recipe with the force that holds the sliding bed multiplied by a factor."""
         return dataclasses.replace(self, joint=self.joint.with_fixings(positive("bed_fixings", factor)))
 
     def scaled_to(self, mass: float, factors: Mapping[str, float]) -> CombinationRecipe:

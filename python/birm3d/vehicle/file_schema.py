@@ -517,8 +517,8 @@ class Bed(Block):
     """Load bed that can slide along the frame, see :meth:`birm3d.Vehicle.with_sliding_bed`.
 
     solids, points: names of those that go with the bed, its load included. block: upper block that is its
-    skin. underside: zone whose law its underside takes. slide_m_N: force that holds it, by slip. core: boxes
-    of its rigid core; without them, those that the zones of its block name.
+    skin. underside: zone whose law the bed's underside has. slide_m_N: rows of slip and greatest holding
+    force. core: core boxes of the bed; if there are none, the boxes that the zones of `block` name.
     """
 
     solids: Annotated[tuple[Name, ...], Field(min_length=1)]

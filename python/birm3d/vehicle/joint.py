@@ -11,13 +11,16 @@ import numpy.typing as npt
 
 from ..base.arguments import checked
 
-__all__ = ["Joint", "JointKind"]
+__all__ = ["LONGEST_SLIP", "Joint", "JointKind"]
 
 Floats = npt.NDArray[np.float64]
 Place = tuple[float, float, float]
 JointKind = Literal["fifth_wheel", "welded", "sliding"]
 
 _KINDS = get_args(JointKind)
+
+LONGEST_SLIP = 1.5
+"""A load bed that slides further leaves its frame [m]: about the length of a cab, an estimate."""
 
 # Places of a joint on its two units may differ in height by this much [m]; the core's limit too.
 _FIT = 1e-3
@@ -43,8 +46,9 @@ class Joint:
         Greatest relative roll of a fifth wheel to either side [deg], 0 to below 90. UN Regulation 55 speaks
         of up to 3 deg for a plate that does not oscillate; the default is an estimate within that.
     slide
-        Of a sliding joint only: the force that it holds [N] against the slip to either side [m], as pairs of
+        Of a sliding joint: the force that it holds [N] against the slip to either side [m], as pairs of
         slip and force, the first at slip 0. Between the pairs it is linear, beyond the last one constant.
+        Other kinds do not use it, but keep it for ``with_joint``.
     """
 
     place_on_leading: Place
@@ -72,6 +76,8 @@ class Joint:
             )
 
     def _check_slide(self) -> None:
+        if any(len(pair) != 2 for pair in self.slide):
+            raise ValueError(f"slide must be pairs of slip (m) and force (N), got {self.slide}")
         slips = [slip for slip, _ in self.slide]
         if self.kind == "sliding" and not slips:
             raise ValueError(
@@ -80,7 +86,9 @@ class Joint:
         if slips and (slips[0] != 0.0 or not np.all(np.diff(slips) > 0.0)):
             raise ValueError(f"slide must have slips (m) that increase from 0, got {slips}")
         if not all(np.isfinite(pair).all() and pair[1] >= 0.0 for pair in self.slide):
-            raise ValueError(f"slide must have finite forces (N) of at least 0, got {self.slide}")
+            raise ValueError(
+                f"slide must have finite slips (m) and finite forces (N) of at least 0, got {self.slide}"
+            )
 
     def scaled(self, factors: Sequence[float]) -> Joint:
         """Return the joint with its places times factors along the vehicle, across and upwards."""

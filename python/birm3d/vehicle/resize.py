@@ -115,7 +115,7 @@ class Resize:
         return box.changed({"x_m": x, "half_width_m": self._to.y * box.half_width_m, "z_m": z})
 
     def bed(self, bed: Bed | None) -> Bed | None:
-        """Return the bed, whose fixings are as strong as its mass asks for."""
+        """Return the bed, with holding forces in proportion to its mass."""
         if bed is None:
             return None
         slide = tuple((slip, self._weight * force) for slip, force in bed.slide_m_N)

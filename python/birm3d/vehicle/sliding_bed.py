@@ -1,7 +1,7 @@
 """A truck as two units: the chassis, and the load bed that slides on it once its fixings yield.
 
 A vehicle file says in its block ``bed`` which solids, which block of the skin and which points belong to the
-load bed. Its zones and core boxes are those that no other block needs.
+load bed. Zones of that block alone go with it, and the core boxes that these zones name.
 """
 
 from __future__ import annotations
@@ -80,7 +80,10 @@ def _unit(recipe: VehicleRecipe, file: VehicleFile, mass: float, part: str) -> V
 
 
 def _masses(recipe: VehicleRecipe, chassis: VehicleFile, bed: VehicleFile) -> tuple[float, float]:
-    """Return the masses of chassis and bed [kg]: payload takes a difference from the file, else both do."""
+    """Return the masses of chassis and bed [kg]: of bed and load, what exceeds the structure.
+
+    Below the mass of the structure both parts are lighter in proportion.
+    """
     assert recipe.file is not None  # see with_sliding_bed
     structure = structure_mass(recipe.file)
     if structure and recipe.mass > structure:
@@ -141,7 +144,7 @@ def _bed(file: VehicleFile, bed: Bed) -> VehicleFile:
 
 
 def _base_height(file: VehicleFile, bed: Bed) -> float:
-    """Return the height at which the bed stands on the body [m]: the highest of the upper edge there."""
+    """Return the height at which the bed stands on the body [m], by the body's upper edge at its two ends."""
     upper = next(upper for upper in file.exterior.upper if upper.name == bed.block)
     x, _, _, top = np.array(file.exterior.stations_m)[::-1].T
     return float(np.interp(upper.base_x_m, x, top).max())

@@ -435,9 +435,9 @@ class Vehicle(OldVehicleNames):
         """Return the truck as two units: chassis and load bed, which slides along the frame.
 
         The bed stays where it is until stopping it takes more than its fixings hold. Then it slides on, and
-        a force that depends on the slip slows it down. Numbers of the file that the whole was given, as a
-        mass, stay. The chassis is the leading unit, so that motions of the result are its own; a sensor of
-        ``"load_bed_leading_edge"`` is on the bed. ``metrics["bed_slip"]`` is how far the bed slid.
+        a force that depends on the slip slows it down. A mass, laws or other numbers that were changed
+        before are kept. The chassis is the leading unit, so that motions of the result are its own. A sensor
+        of ``"load_bed_leading_edge"`` is on the bed. ``metrics["bed_slip"]`` is how far the bed slid.
 
         Parameters
         ----------
@@ -566,7 +566,7 @@ class ArticulatedVehicle(Vehicle):
 
     @property
     def title(self) -> str:
-        """Words of the file, and that its bed slides."""
+        """Title of the file, with "with a sliding bed" added where that holds."""
         return f"{super().title} with a sliding bed" if self.slides else super().title
 
     @property
@@ -576,7 +576,7 @@ class ArticulatedVehicle(Vehicle):
 
     @property
     def kind(self) -> str | None:
-        """``"tractor_semitrailer"`` of a tractor and a semi-trailer, of a truck with a sliding bed its own.
+        """``"tractor_semitrailer"`` for a tractor with semi-trailer, the truck's for one with a sliding bed.
 
         Else ``None``.
         """

@@ -84,6 +84,11 @@ class VehicleFields:
         return self.joint is not None and self.joint.kind == "sliding"
 
     @property
+    def has_bed(self) -> bool:
+        """Whether its file names a load bed, see :meth:`birm3d.Vehicle.with_sliding_bed`."""
+        return self._file is not None and self._file.bed is not None
+
+    @property
     def has_file(self) -> bool:
         """Whether the vehicle comes from a file, so that it can be meshed anew."""
         return self._file is not None

@@ -186,6 +186,8 @@ class VehicleFile(Strict):
         check_known("bed.points", bed.points, {point.name for point in self.points})
         check_known("bed.block", (bed.block,), {upper.name for upper in self.exterior.upper})
         check_known("bed.underside", (bed.underside,), {zone.name for zone in self.zones})
+        if not any(zone.blocks == (bed.block,) for zone in self.zones):
+            reject("bed.block", f"must have a zone of its own, got '{bed.block}' without one")
         if len(set(bed.solids)) == len(self.solids):
             reject("bed.solids", "must leave solids for the chassis, got all")
 
@@ -357,7 +359,7 @@ class _VehicleDocument(ZonesInOrder):
             self._scale(base)
         own = self.data
         if "exterior" in own or "overhang" in own:
-            base.data.pop("bed", None)  # a bed is a part of an exterior
+            base.data.pop("bed", None)  # another outline needs another bed
         merged = {**base.data, **own}
         shift = 0
         zones: dict[str, Any] = {}
