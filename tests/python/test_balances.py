@@ -203,7 +203,8 @@ def test_friction_of_body_and_tires_keeps_to_coulomb_at_the_end_of_every_step(
         over.append(np.linalg.norm(friction) - mu * pressed)
         assert abs(friction @ normal) <= 1e-12 * max(largest, 1.0)
     assert max(over) <= 1e-12 * largest  # rounding
-    assert tires_alone > 0 or scene_name == "oblique_66_friction"
+    # Treads without friction are never the last ones at the wall.
+    assert tires_alone > 0 or mu_tire_barrier == 0.0 or scene_name == "oblique_66_friction"
 
 
 @pytest.mark.filterwarnings("ignore:energy_residual.*along_truss:birm3d.BalanceWarning")

@@ -34,7 +34,10 @@ ARGUMENTS: dict[str, Callable[[Path], tuple[Any, ...]]] = {
     "without_bias": lambda folder: (0.015,),
 }
 # Errors that say what a run lacks; all others fail.
-LACKS = r"needs a vehicle of two units|elements must have been touched|needs a barrier|must be"
+LACKS = (
+    r"needs a vehicle of two units|needs a vehicle with_sliding_bed|elements must have been touched|"
+    r"needs a barrier|must be"
+)
 
 
 @cache
@@ -59,6 +62,11 @@ def one_unit() -> Any:
 def articulated() -> Any:
     semi = Vehicle.preset("semi_truck", mesh_density=0.1)
     return Simulation(semi, Barrier.rigid_wall(), 8.0, 30.0, duration=0.1, settings=COARSE).run()
+
+
+def sliding_bed() -> Any:
+    truck = Vehicle.preset("cargo_truck", mesh_density=0.1).with_sliding_bed()
+    return Simulation(truck, Barrier.rigid_wall(), 8.0, duration=0.1, settings=COARSE).run()
 
 
 def free_standing() -> Any:
@@ -117,7 +125,7 @@ def fitted() -> Any:
 KINDS = {
     make.__name__: make
     for make in (
-        *(one_unit, articulated, free_standing, no_barrier, untouched, swept, drawn, fragile),
+        *(one_unit, articulated, sliding_bed, free_standing, no_barrier, untouched, swept, drawn, fragile),
         *(sensitivity, worst, channel, compared, fitted),
     )
 }
@@ -163,12 +171,18 @@ def touch(instance: Any, folder: Path, pictures: bool = True) -> set[str]:
 @pytest.mark.parametrize("name", KINDS)
 def test_every_public_name_works(name: str, tmp_path: Path) -> None:
     instance = KINDS[name]()
-    pictures = name not in ("articulated", "free_standing", "untouched")  # they take time, and are alike
+    pictures = name not in (
+        "articulated",
+        "sliding_bed",
+        "free_standing",
+        "untouched",
+    )  # they take time, and are alike
     seen = touch(instance, tmp_path, pictures)
     assert len(seen) >= 4
     assert repr(instance)
     if isinstance(instance, birm3d.Result):
         assert {"ground_force", "outcome", "outcome_detail", "metrics", "report"} <= seen
+        assert (name == "sliding_bed") == instance.scene.vehicle.slides
         for unit in range(len(instance.scene.vehicle.units)):
             touch(instance.unit(unit), tmp_path)
         for load in instance.element_loads:

@@ -29,8 +29,9 @@
 // flank; its places across the panel are not followed.
 //
 // A node follows the indentation while its truss pushes, also behind a post that has moved on along the panel. Beyond the
-// indentation's extent it is released, and what its truss stores is lost. So are all nodes of a panel once the whole post is
-// deeper than its anchors: a vehicle that scrapes past a post leaves it.
+// indentation's extent it is released, and what its truss stores is lost. A node that stands on another surface, as the ground,
+// stays there. All nodes of a panel are released once the whole post is deeper than its anchors: a vehicle that scrapes past a
+// post leaves it.
 //
 // Of several indentations the deepest one holds a node. An indentation does not release a node that stands on the flank of
 // another post. Skin slides on a post only along the panel: friction acts across e.

@@ -111,7 +111,7 @@ BIRM3D_INLINE Packet extends_over(const IndentationNumbers& indentation, const K
 }
 
 // The gap that the indentation asks of each node (m). A loaded node follows the indentation while that extends over it, and is
-// released afterwards. An unloaded one follows once the indentation has reached it.
+// released afterwards, unless it stands on another surface. An unloaded one follows once the indentation has reached it.
 struct RequiredGap {
     Packet gap;
     Packet releases;  // 1 for nodes that the indentation releases, else 0
@@ -122,11 +122,14 @@ BIRM3D_INLINE RequiredGap required_gap(const IndentationNumbers& indentation, co
                                        const FollowedPlace& followed, const Packet& outward, std::size_t i) {
     const Packet zero = 0.0, one = 1.0, far = infinitely_far, pushes = Packet::load(nodes.force + i);
     const Packet extends = extends_over(indentation, known, place, followed, i);
+    // What stands on another surface, as the ground, is held by that.
+    const Packet left = where_above(far, Packet::load(known.contact_gap + i), far, away);
     const Packet of_loaded =
-        where_above(extends, zero, gap_of_loaded(indentation, known, followed, outward, i), away);
+        where_above(extends, zero, gap_of_loaded(indentation, known, followed, outward, i), left);
     const Packet gap =
         where_above(pushes, zero, of_loaded, gap_of_free(indentation, known, place, followed, outward, i));
-    const Packet releases = where_above(pushes, zero, where_above(extends, zero, zero, one), zero);
+    const Packet lets_go = where_above(far, left, one, zero);
+    const Packet releases = where_above(pushes, zero, where_above(extends, zero, zero, lets_go), zero);
     return {gap, releases, where_above(releases, zero, away, where_above(far, gap, followed.gap, far))};
 }
 

@@ -31,8 +31,7 @@ Floats = npt.NDArray[np.float64]
 
 SHARE = 0.8
 """Of the draws within a band."""
-_MOST = 10
-"""Power of two of the greatest number of draws."""
+_MOST = 10  # power of two of the greatest number of draws
 _BLOW = 2.0
 """Unfiltered over filtered peak of a force above which a rigid body has struck."""
 _SMALL_OVERLAP = 0.4

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from .. import _core
 from .core_arguments import core_unit, is_shape, unit_arguments
 from .dimensions import Dimensions, dimensions
+from .field_checks import check_fields
 from .recipe import VehicleArrays, VehicleRecipe
 from .scaling import SIZES
 from .vehicle_fields import VehicleFields
@@ -31,6 +32,7 @@ class VehicleData(VehicleFields):
     """A vehicle's fields, checked, and what follows from them."""
 
     def __post_init__(self) -> None:
+        check_fields(self)
         super().__post_init__()
         if self._built is not None:
             changed = changed_by_hand(self, self._built)

@@ -128,7 +128,7 @@ def load_on_joint(trailing: VehicleFields, place: Floats) -> float:
 
 
 def _row_for_each_wheel(vehicle: VehicleFields, row: tuple[float, ...]) -> Floats:
-    return np.tile(row, (len(vehicle.wheels), 1))
+    return np.array([row] * len(vehicle.wheels), float).reshape(-1, len(row))
 
 
 def _zones_of_wheels(vehicle: VehicleFields) -> Iterator[tuple[int, Zone]]:
