@@ -54,8 +54,7 @@ def with_sliding_bed(recipe: VehicleRecipe, slide: Slide | None) -> CombinationR
     center, _ = load.mass_properties()
     # The place is below the load's mass centre: then the chassis carries its weight there.
     place = (float(center[0]), 0.0, _base_height(recipe.file, bed))
-    pairs = bed.slide_m_N if slide is None else tuple((float(slip), float(force)) for slip, force in slide)
-    joint = Joint(place, place, "sliding", slide=pairs)
+    joint = Joint(place, place, "sliding", slide=bed.slide_m_N if slide is None else tuple(slide))
     combined = CombinationRecipe(recipe.name, chassis, load, joint)
     height = recipe.mass_center_height
     return combined if height is None else combined.with_mass_center_height(height)
