@@ -72,7 +72,7 @@ HASHES = {
     "free-standing": "de187dfe9011bf6e",
     "minivan on its side": "08e241c783aa9699",
     "car, corner of a planter": "b1b4bd6d4bc05298",
-    "pickup, end of a wall": "732f478bf81bb1af",
+    "pickup, end of a wall": "2d64ac55c922590d",
     "finite-element car, wall": "9be0600936bc9b61",
     "finite-element truck, wall": "f2516accc663599a",
 }
