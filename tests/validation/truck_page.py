@@ -227,16 +227,16 @@ def _with_sliding_bed(vehicle: birm3d.Vehicle) -> list[str]:
     return [SLIDING, "", *_table(head, cells), "", f"Met: {_count(rows)}."]
 
 
-# Greatest slip of the bed's front edge against the frame's rear end in the runs, along the ground [m]: from the
-# curves bed_edge_x and rail_rear_x.
+# Greatest slip of the bed's front edge against the frame's rear end in the runs, along the ground [m]:
+# from the curves bed_edge_x and rail_rear_x.
 FRONT_SLIPS = (0.09, 0.64, 0.00, 0.06, 0.08)
 
-SLIDING = """Chassis of 2,939 kg and bed of 3,871 kg, `with_sliding_bed()`. Only the force that holds the bed
-against its slip was taken from the runs, from that at the wall at 50 mph. It is 670 kN until the bolts fail
-after 0.09 m, then 220 kN. From 0.3 m on it rises to 1.15 MN, as the bed crushes the cab. So that run is no prediction
-here. At the three bollards the computed bed breaks loose, and in the run it does not. There the cab is
-pushed back against the bed, which helps to stop it. The model has no contact between the two. The other
-three runs change little. Travel is that of the mass centre of both."""
+SLIDING = """Chassis of 2,939 kg and bed of 3,871 kg, `with_sliding_bed()`. Only the force that holds the
+bed against its slip was taken from the runs, from that at the wall at 50 mph. It is 670 kN until the bolts
+fail after 0.09 m, then 220 kN. From 0.3 m on it rises to 1.15 MN, as the bed crushes the cab. So that run
+is no prediction here. At the three bollards the computed bed breaks loose, and in the run it does not.
+There the cab is pushed back against the bed, which helps to stop it. The model has no contact between the
+two. The other three runs change little. Travel is that of the mass centre of both."""
 
 PITCH_HEAD = (
     "greatest pitch [deg]",
