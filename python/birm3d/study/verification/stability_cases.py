@@ -144,7 +144,7 @@ def laboratory_cases() -> list[Case]:
         return lambda: Simulation(make(), wall, 15.0, angle, settings=settings)
 
     dense = partial(Vehicle.preset, "passenger_car", mesh_density=17.0)
-    thrown = partial(Vehicle.preset, "pickup", mesh_density=0.25)
+    thrown = partial(Vehicle.preset, "paper_pickup", mesh_density=0.25)  # tyres without camber thrust
     kerb = Barrier.rigid_wall(height=0.4, width=60.0)
     return [
         Case("nodes", "one node", "head-on", lies(weightless, lambda: one(0.0)), True, 0.0),
