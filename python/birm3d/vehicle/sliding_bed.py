@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from .combination_recipe import CombinationRecipe
-from .file_schema import Bed, End
+from .file_schema import Bed, End, Zone
 from .joint import Joint
 from .payload import structure_mass
 from .recipe import VehicleRecipe
@@ -117,10 +117,8 @@ def _bed(file: VehicleFile, bed: Bed) -> VehicleFile:
     own = [zone for zone in file.zones if zone.blocks == (bed.block,)]
     core = bed.core or tuple(box for box in file.core if any(box.name in zone.core for zone in own))
     boxes = tuple(box.name for box in core)
-    as_body = {"blocks": (), "core": boxes} if bed.core else {"blocks": ()}
-    below = next(zone for zone in file.zones if zone.name == bed.underside)
-    underside = {"name": UNDERSIDE, "panels": ("bottom",), "blocks": (), "core": boxes, "along": None}
-    free = {"x_m": None, "y_m": None, "z_m": None}
+    # Of the bed's own skin, which is the body of its file.
+    sides = [zone.changed({"blocks": (), "core": boxes if bed.core else zone.core}) for zone in own]
     upper = next(upper for upper in file.exterior.upper if upper.name == bed.block)
     base = _base_height(file, bed)
     return _part(
@@ -138,7 +136,16 @@ def _bed(file: VehicleFile, bed: Bed) -> VehicleFile:
         ),
         overhang=None,
         core=core,
-        zones=(*(zone.changed(as_body) for zone in own), below.changed({**underside, **free})),
+        zones=(*sides, _underside(file, bed, boxes)),
+    )
+
+
+def _underside(file: VehicleFile, bed: Bed, boxes: tuple[str, ...]) -> Zone:
+    """Return the zone of all of the bed's underside, with the law that the file names for it."""
+    like = next(zone for zone in file.zones if zone.name == bed.underside)
+    everywhere = {"blocks": (), "x_m": None, "y_m": None, "z_m": None}
+    return like.changed(
+        {"name": UNDERSIDE, "panels": ("bottom",), "core": boxes, "along": None, **everywhere}
     )
 
 
