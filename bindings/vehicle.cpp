@@ -161,8 +161,7 @@ void register_vehicle(py::module_& m) {
              py::arg("place_on_leading"), py::arg("place_on_trailing"), py::arg("roll_limit"),
              py::arg("slide"),
              "leading, trailing: numbers of the units; places (3,) m, body axes of each; roll_limit rad; "
-             "slide "
-             "(n, 2): force (N) that a sliding joint holds against slip (m), rows of (slip, force).");
+             "slide (n, 2): force (N) that a sliding joint holds against slip (m), rows of (slip, force).");
     py::class_<Vehicle, std::shared_ptr<Vehicle>>(m, "Vehicle",
                                                   "One or more units and the joints between them. Immutable.")
         .def(py::init([](std::vector<Unit> units, std::vector<Joint> joints) {

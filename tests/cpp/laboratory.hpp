@@ -48,6 +48,17 @@ inline TrussInput front_face(const TrussCurve& curve, int columns, int rows) {
     return input;
 }
 
+// A small truss that nothing touches: every unit needs a skin.
+inline TrussInput speck() {
+    TrussInput input;
+    input.node = {{0.1, 0.0, 0.0}};
+    input.anchor = {{0.0, 0.0, 0.0}};
+    input.curve = {elastic_curve(1e6)};
+    input.curve_of = {0};
+    input.scale = {1.0};
+    return input;
+}
+
 inline std::shared_ptr<const Vehicle> block(const TrussCurve& curve, int columns = 10, int rows = 10,
                                             std::vector<Wheel> wheels = {}, double mass_center_height = 0.0) {
     Vehicle vehicle;

@@ -82,7 +82,7 @@ void add_sliding_impulses(const std::vector<RigidContact>& contacts, std::vector
 bool decide_sliding(double time, std::span<const ContactBody> bodies, std::vector<RigidContact>& contacts) {
     bool any = false;
     for (RigidContact& contact : contacts) {
-        if (!(contact.most_force < infinity)) continue;
+        if (!may_slide(contact)) continue;
         const double most = time * contact.most_force;
         if (!contact.slides && std::abs(contact.impulse) > most) {
             contact.slides = any = true;
@@ -188,7 +188,7 @@ double correct_targets(const Scene& scene, const State& kicked, double dt,
         drift(rigid_body(scene, b), dt, bodies[b]);
     double widest = 0.0;
     for (RigidContact& contact : contacts) {
-        if (!contact.bilateral || contact.most_force < infinity) continue;
+        if (!contact.bilateral || may_slide(contact)) continue;
         const Joint& joint = scene.joints[contact.index];
         const double gap = bilateral_gap(joint, contact, bodies[joint.leading], bodies[joint.trailing]);
         contact.target -= gap / dt;

@@ -35,7 +35,7 @@ void add_to_obstacle(const Scene& scene, const State& state, const RigidContact&
 // The energy term that the loss of a contact's normal impulse adds to.
 double& lost_in(const RigidContact& contact, Energies& energies) {
     if (!contact.bilateral) return energies.impacts;
-    return contact.most_force < std::numeric_limits<double>::infinity() ? energies.sliding : energies.joints;
+    return may_slide(contact) ? energies.sliding : energies.joints;
 }
 
 }  // namespace

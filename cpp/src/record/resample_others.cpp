@@ -14,16 +14,16 @@ namespace birm3d {
 
 namespace {
 
-// How far the trailing unit has slid forwards (m); zero but for rounding where the joint does not slide.
+// How far the trailing unit has slid forwards (m). Zero where the joint does not slide.
 Column slips(const Joint& joint, const History& history) {
     const UnitHistory &leading = history.units[joint.leading], &trailing = history.units[joint.trailing];
-    Column slip;
-    slip.reserve(history.time.size());
+    Column slip(history.time.size(), 0.0);
+    if (joint.kind != JointKind::sliding) return slip;
     for (std::size_t k = 0; k < history.time.size(); ++k) {
         BodyState ahead, behind;
         ahead.position = leading.position[k], ahead.orientation = leading.orientation[k];
         behind.position = trailing.position[k], behind.orientation = trailing.orientation[k];
-        slip.push_back(slip_of(joint, ahead, behind));
+        slip[k] = slip_of(joint, ahead, behind);
     }
     return slip;
 }

@@ -38,6 +38,11 @@ struct RigidContact {
     Vec3 friction_impulse = Vec3::Zero();  // result: its friction impulse (N s)
 };
 
+// Is it the row of a sliding joint along which the bodies may slide?
+inline bool may_slide(const RigidContact& contact) {
+    return contact.most_force < std::numeric_limits<double>::infinity();
+}
+
 // Force and torque of a unit impulse on the body, about its mass centre. The other body's is the opposite, at its own
 // arm.
 inline Wrench unit_wrench(const RigidContact& contact, const Vec3& arm) {

@@ -62,7 +62,7 @@ def plot_vehicle(vehicle: Vehicle) -> Figure:
     for number, view in enumerate(_VIEWS):
         axes = figure.add_subplot(grid[number // 2, number % 2])
         prepare(axes)
-        _draw(axes, vehicle, view, colors)
+        _draw(axes, vehicle, parts, view, colors)
     size = f"{vehicle.length:.2f} x {vehicle.width:.2f} x {vehicle.height:.2f} m"
     spacing = vehicle.units[0].node_spacing
     nodes = f"{vehicle.n_nodes:,} nodes, {spacing * 1e3:.0f} mm apart"
@@ -98,11 +98,11 @@ def _parts(vehicle: Vehicle) -> list[_Part]:
     ]
 
 
-def _draw(axes: Axes, vehicle: Vehicle, view: _View, colors: npt.NDArray[Any]) -> None:
+def _draw(axes: Axes, vehicle: Vehicle, parts: list[_Part], view: _View, colors: npt.NDArray[Any]) -> None:
     """Draw each unit, mass centre and front."""
     sign = -1.0 if view.flip else 1.0
     columns = [view.right, view.up]
-    for part in _parts(vehicle):
+    for part in parts:
         _draw_unit(axes, part, view, colors)
     center = vehicle.center_of_mass[columns] * (sign, 1.0)
     axes.plot(*center, marker="P", ms=9, color=RED, mec="w", zorder=5.0)

@@ -168,11 +168,6 @@ class RunRecord:
         return 0 if barrier is None else len(barrier.core.segments)
 
     @property
-    def _slides(self) -> bool:
-        """Whether a unit can slide on another one."""
-        return self.scene.vehicle.slides
-
-    @property
     def _pinned(self) -> bool:
         """Whether the barrier has segments that are pinned to each other."""
         barrier = self.scene.barrier
@@ -262,7 +257,7 @@ class RunRecord:
     @property
     def bed_slip(self) -> Floats:
         """How far the load bed has slid forwards along the frame, shape (n,) [m]; of a sliding joint."""
-        if not self._slides:
+        if not self.scene.vehicle.slides:
             raise ValueError(f"bed_slip needs a vehicle with_sliding_bed(), got {self.scene.vehicle.name!r}")
         return self._joint.slip
 
@@ -298,7 +293,7 @@ class RunRecord:
             terms["joints"] = self._history.joint_work
         if self.scene.vehicle.has_springs:
             terms["suspension"] = self._history.suspension
-        if self._slides:
+        if self.scene.vehicle.slides:
             terms["sliding"] = self._history.sliding
         total = np.sum(list(terms.values()), axis=0)
         return FrozenMapping({**terms, "total": read_only(total), "residual": read_only(total - total[0])})

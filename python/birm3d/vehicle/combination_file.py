@@ -22,7 +22,6 @@ the key ``file`` a unit may have all blocks of its vehicle file, as ``[[unit.sol
 
 from __future__ import annotations
 
-from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -30,7 +29,7 @@ from pydantic import Field, model_validator
 
 from ..io.file_format import reads
 from ..io.toml import KeyPath, Strict, frozen, reject
-from .file_schema import Block, Point, Positive, Source, Text, check_known
+from .file_schema import Block, Point, Positive, Source, Text, check_known, check_slide
 from .joint import JointKind
 from .vehicle_file import VehicleFile, VehicleFileError, ZonesInOrder, read_vehicle_file
 from .zone_law import NonNegative
@@ -66,11 +65,10 @@ class JointBlock(Block):
             reject("place_on_trailing_m", message)
         if self.kind == "fifth_wheel" and self.roll_limit_deg is None:
             reject("roll_limit_deg", "must be given for a fifth wheel")
-        slips = [slip for slip, _ in self.slide_m_N]
-        if self.kind == "sliding" and not slips:
+        if self.kind == "sliding" and not self.slide_m_N:
             reject("slide_m_N", "must be given for a sliding joint")
-        if slips and (slips[0] != 0.0 or any(b <= a for a, b in pairwise(slips))):
-            reject("slide_m_N", f"must have slips that increase from 0, got {slips}")
+        if self.slide_m_N:
+            check_slide(self.slide_m_N)
         return self
 
 

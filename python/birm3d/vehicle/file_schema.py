@@ -88,6 +88,13 @@ def _check_order(key: str, values: Sequence[float], rule: str, sign: float = 1.0
             reject(key, f"{rule}, got {a:g} followed by {b:g}")
 
 
+def check_slide(rows: Sequence[tuple[float, float]]) -> None:
+    """Require slips that increase from 0, in rows of slip and force under the key slide_m_N."""
+    if rows[0][0] != 0.0:
+        reject("slide_m_N", f"must start at a slip of 0, got {rows[0][0]}")
+    _check_order("slide_m_N", [slip for slip, _ in rows], "slips must increase")
+
+
 def check_unique(key: str, names: list[str]) -> None:
     """Require names that differ."""
     for i, name in enumerate(names):
@@ -532,9 +539,7 @@ class Bed(Block):
 
     @model_validator(mode="after")
     def _check(self) -> Bed:
-        if self.slide_m_N[0][0] != 0.0:
-            reject("slide_m_N", f"must start at a slip of 0, got {self.slide_m_N[0][0]}")
-        _check_order("slide_m_N", [row[0] for row in self.slide_m_N], "slips must increase")
+        check_slide(self.slide_m_N)
         return self
 
 

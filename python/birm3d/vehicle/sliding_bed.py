@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from .combination_recipe import CombinationRecipe
-from .file_schema import Bed, End, Zone
+from .file_schema import Bed, End, Upper, Zone
 from .joint import Joint
 from .payload import structure_mass
 from .recipe import VehicleRecipe
@@ -119,7 +119,7 @@ def _bed(file: VehicleFile, bed: Bed) -> VehicleFile:
     boxes = tuple(box.name for box in core)
     # Of the bed's own skin, which is the body of its file.
     sides = [zone.changed({"blocks": (), "core": boxes if bed.core else zone.core}) for zone in own]
-    upper = next(upper for upper in file.exterior.upper if upper.name == bed.block)
+    upper = _block_of(file, bed)
     base = _base_height(file, bed)
     return _part(
         file,
@@ -149,9 +149,14 @@ def _underside(file: VehicleFile, bed: Bed, boxes: tuple[str, ...]) -> Zone:
     )
 
 
+def _block_of(file: VehicleFile, bed: Bed) -> Upper:
+    """Return the block of the skin that is the bed's."""
+    return next(upper for upper in file.exterior.upper if upper.name == bed.block)
+
+
 def _base_height(file: VehicleFile, bed: Bed) -> float:
     """Return the height at which the bed stands on the body [m], by the body's upper edge at its two ends."""
-    upper = next(upper for upper in file.exterior.upper if upper.name == bed.block)
+    upper = _block_of(file, bed)
     x, _, _, top = np.array(file.exterior.stations_m)[::-1].T
     return float(np.interp(upper.base_x_m, x, top).max())
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -23,7 +23,7 @@ from .built_fields import fields_of, joined_fields
 from .combination_recipe import CombinationRecipe
 from .core_arguments import core_unit, unit_arguments
 from .given_mass import warn_of_mass
-from .joint import Joint
+from .joint import Joint, JointKind
 from .old_names import OldVehicleNames
 from .read_recipe import read, read_preset
 from .recipe import VehicleRecipe
@@ -558,7 +558,7 @@ class ArticulatedVehicle(Vehicle):
         units[index] = unit
         return articulate(units, self.joint, self.name)
 
-    def with_joint(self, joint: Joint | Literal["fifth_wheel", "welded"]) -> ArticulatedVehicle:
+    def with_joint(self, joint: Joint | JointKind) -> ArticulatedVehicle:
         """Return the vehicle with another joint, or with the present one of another kind."""
         if isinstance(joint, str):
             joint = dataclasses.replace(self.joint, kind=joint)

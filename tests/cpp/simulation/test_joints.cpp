@@ -8,19 +8,9 @@
 using namespace birm3d;
 using laboratory::infinity;
 using laboratory::pi;
+using laboratory::speck;
 
 namespace {
-
-// A small truss pair that nothing touches: laboratories of motion need a skin as well.
-TrussInput speck() {
-    TrussInput input;
-    input.node = {{0.1, 0.0, 0.0}};
-    input.anchor = {{0.0, 0.0, 0.0}};
-    input.curve = {laboratory::elastic_curve(1e6)};
-    input.curve_of = {0};
-    input.scale = {1.0};
-    return input;
-}
 
 const Vec3 place_a(-2.0, 0.2, 0.3), place_b(4.0, 0.2, -0.6);
 

@@ -10,22 +10,12 @@
 using namespace birm3d;
 using laboratory::infinity;
 using laboratory::pi;
+using laboratory::speck;
 
 namespace {
 
 constexpr double frame_mass = 3000.0, bed_mass = 4000.0;
 constexpr double reduced_mass = frame_mass * bed_mass / (frame_mass + bed_mass);
-
-// A small truss that nothing touches: laboratories of motion need a skin as well.
-TrussInput speck() {
-    TrussInput input;
-    input.node = {{0.1, 0.0, 0.0}};
-    input.anchor = {{0.0, 0.0, 0.0}};
-    input.curve = {laboratory::elastic_curve(1e6)};
-    input.curve_of = {0};
-    input.scale = {1.0};
-    return input;
-}
 
 // Frame and bed, floating, `slide` as the joint's force. The bed's mass centre is higher than the frame's by `lift` (m).
 Scene floating(const std::vector<SlideKnot>& slide, double lift, double tolerance, double duration) {
