@@ -16,10 +16,10 @@ Element element(Shape shape, const InputArray& position, double heading) {
 }
 
 // None or one: a barrier stands in one way.
-std::optional<FreeStanding> only(const std::vector<FreeStanding>& free_standing) {
-    if (free_standing.size() > 1)
-        refuse("free_standing", "at most 1", static_cast<double>(free_standing.size()));
-    return free_standing.empty() ? std::nullopt : std::optional(free_standing.front());
+template <class Kind>
+std::optional<Kind> only(const char* name, const std::vector<Kind>& given) {
+    if (given.size() > 1) refuse(name, "at most 1", static_cast<double>(given.size()));
+    return given.empty() ? std::nullopt : std::optional(given.front());
 }
 
 Prism::Profile profile_points(const InputArray& array) {
@@ -93,7 +93,14 @@ void register_barrier(py::module_& m) {
              }),
              py::kw_only(), py::arg("density"), py::arg("ground_friction"), py::arg("joint"),
              "density: kg/m^3; ground_friction: Coulomb coefficient.");
-    py::class_<Segment>(m, "Segment", "A free-standing segment of a barrier.")
+    py::class_<YieldingPosts>(m, "YieldingPosts",
+                              "Posts that tilt about their foot against a plastic moment.")
+        .def(py::init([](double mass, double inertia, double plastic_moment) {
+                 return YieldingPosts{mass, inertia, plastic_moment};
+             }),
+             py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("plastic_moment"),
+             "mass: kg; inertia: about a horizontal axis through the foot, kg m^2; plastic_moment: N m.");
+    py::class_<Segment>(m, "Segment", "A free-standing segment of a barrier, or a post that yields.")
         .def_property_readonly(
             "mass", [](const Segment& s) { return s.body.mass; }, "kg")
         .def_property_readonly(
@@ -101,23 +108,36 @@ void register_barrier(py::module_& m) {
             "kg m^2, about the vertical through the mass centre")
         .def_readonly("mass_center_height", &Segment::mass_center_height, "m")
         .def_readonly("half_length", &Segment::half_length, "m")
-        .def_readonly("half_base", &Segment::half_base, "m");
+        .def_readonly("half_base", &Segment::half_base, "m")
+        .def_readonly("plastic_moment", &Segment::plastic_moment,
+                      "N m, of a post that yields; else infinite");
 
     py::class_<Barrier, std::shared_ptr<Barrier>>(m, "Barrier",
                                                   "Elements that stand on the ground. Immutable.")
         .def(
             py::init([](const std::vector<Element>& elements, double friction, const InputArray& origin,
-                        double heading, const std::vector<FreeStanding>& free_standing) {
+                        double heading, const std::vector<FreeStanding>& free_standing,
+                        const std::vector<YieldingPosts>& yielding) {
                 return std::make_shared<Barrier>(elements, friction, vector(origin, "origin"), heading,
-                                                 only(free_standing));
+                                                 only("free_standing", free_standing),
+                                                 only("yielding", yielding));
             }),
             py::kw_only(), py::arg("elements"), py::arg("friction"), py::arg("origin"), py::arg("heading"),
-            py::arg("free_standing"),
+            py::arg("free_standing"), py::arg("yielding") = std::vector<YieldingPosts>{},
             "friction: Coulomb coefficient; origin (3,) m on the barrier's line; heading of it about z, rad; "
-            "free_standing: one, or none where the elements are fixed.")
+            "free_standing, yielding: one, or none where the elements do not slide, or do not yield.")
         .def_property_readonly(
-            "segments", [](const Barrier& barrier) { return barrier.segments; },
+            "segments",
+            [](const Barrier& barrier) {
+                return barrier.free_standing ? barrier.segments : std::vector<Segment>{};
+            },
             "The elements where they are free-standing, else none.")
+        .def_property_readonly(
+            "posts",
+            [](const Barrier& barrier) {
+                return barrier.yielding ? barrier.segments : std::vector<Segment>{};
+            },
+            "The elements where they are posts that yield, else none.")
         .def_property_readonly(
             "normal", [](const Barrier& barrier) { return copy(barrier.normal()); },
             "(3,) of the barrier's line, towards the traffic, world axes");

@@ -93,12 +93,13 @@ void register_extremes(py::module_& m) {
         .def_readonly("force_50ms", &Extremes::ElementLoads::force_50ms, "N, greatest mean over 50 ms")
         .def_readonly("moment", &Extremes::ElementLoads::moment, "N m, greatest moment")
         .def_readonly("moment_50ms", &Extremes::ElementLoads::moment_50ms, "N m, greatest mean over 50 ms");
-    py::class_<Extremes::Segments>(m, "ExtremeSegments",
-                                   "How far the segments of a free-standing barrier move.")
+    py::class_<Extremes::Segments>(m, "ExtremeSegments", "How far the elements of a barrier move.")
         .def_readonly("deflection", &Extremes::Segments::deflection,
                       "m, of the furthest corner of any base, square to the line, away from the traffic")
         .def_readonly("residual_deflection", &Extremes::Segments::residual_deflection,
                       "m, the same at the end")
+        .def_readonly("tilt", &Extremes::Segments::tilt, "rad, greatest tilt of any post that yields")
+        .def_readonly("residual_tilt", &Extremes::Segments::residual_tilt, "rad, the same at the end")
         .def_readonly("overturning", &Extremes::Segments::overturning,
                       "m/s^2, overturning moment over mass and half the base, 50-ms means");
     py::class_<Extremes::JointLoads>(m, "ExtremeJointLoads", "Articulation and force of the first joint.")
@@ -146,7 +147,7 @@ void register_extremes(py::module_& m) {
             "rad and N, articulation and force of the first joint")
         .def_property_readonly(
             "segments", [](const Extremes& found) { return found.segments.value(); },
-            "m and m/s^2, displacement and overturning of free-standing segments");
+            "m and m/s^2, movement of free-standing segments or of posts that yield");
 }
 
 }  // namespace birm3d::bindings

@@ -44,6 +44,23 @@ OutputArray of_segments(const History& history, std::vector<Vec3> SegmentHistory
     return read_only(std::move(result));
 }
 
+// Axes of posts that yield; no columns where there are none.
+OutputArray post_axes(const History& history) {
+    const auto rows = static_cast<py::ssize_t>(history.time.size());
+    const bool yields = !history.segments.empty() && !history.segments.front().axis.empty();
+    const auto posts = yields ? static_cast<py::ssize_t>(history.segments.size()) : py::ssize_t{0};
+    OutputArray result({rows, posts, py::ssize_t{3}});
+    auto at = result.mutable_unchecked<3>();
+    for (py::ssize_t i = 0; i < posts; ++i)
+        for (py::ssize_t row = 0; row < rows; ++row) {
+            const Vec3& axis =
+                history.segments[static_cast<std::size_t>(i)].axis[static_cast<std::size_t>(row)];
+            for (py::ssize_t k = 0; k < 3; ++k)
+                at(row, i, k) = axis[static_cast<Eigen::Index>(k)];
+        }
+    return read_only(std::move(result));
+}
+
 }  // namespace
 
 void register_history(py::module_& m) {
@@ -154,6 +171,7 @@ void register_history(py::module_& m) {
     add_view(history, "suspension", &History::suspension,
              "(n,) J, energy in springs of wheels and lost in their dampers");
     add_view(history, "sliding", &History::sliding, "(n,) J, energy lost where a unit slides on another one");
+    add_view(history, "yielding", &History::yielding, "(n,) J, plastic work of posts that yield");
     history.def_property_readonly(
         "segment_position", [](const History& self) { return of_segments(self, &SegmentHistory::position); },
         "(n, k, 2) m, foot of the axis of each free-standing segment, world");
@@ -166,6 +184,9 @@ void register_history(py::module_& m) {
     history.def_property_readonly(
         "segment_yaw_rate", [](const History& self) { return of_segments(self, &SegmentHistory::yaw_rate); },
         "(n, k) rad/s, yaw rate of each segment");
+    history.def_property_readonly(
+        "post_axis", [](const History& self) { return post_axes(self); },
+        "(n, k, 3) unit vectors from foot to top of posts that yield, world; k = 0 where none does");
     history.def_readonly("momentum_residual", &History::momentum_residual,
                          "max |m a - sum of forces| / max |force|");
     history.def_property_readonly(

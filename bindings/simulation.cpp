@@ -146,7 +146,8 @@ void register_simulation(py::module_& m) {
                     {"impacts", balances.falls[Balances::impacts]},
                     {"barrier_ground_friction", balances.falls[Balances::segment_friction]},
                     {"suspension", balances.falls[Balances::dampers]},
-                    {"sliding", balances.falls[Balances::sliding]}};
+                    {"sliding", balances.falls[Balances::sliding]},
+                    {"yielding", balances.falls[Balances::yielding]}};
             },
             "by name, the greatest fall of each dissipated energy below its highest value so far");
 

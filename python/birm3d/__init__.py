@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     )
     from .assessment.design_load import design_load
     from .assessment.rate import rate
-    from .barrier import Barrier, FreeStanding, lateral_load
+    from .barrier import Barrier, Foundation, FreeStanding, lateral_load
     from .calibration.calibrate import calibrate
     from .io.file_format import FileFormatError
     from .pictures import plot_runs
@@ -81,6 +81,7 @@ __all__ = [
     "DesignLoadInterrupted",
     "ElementLoad",
     "FileFormatError",
+    "Foundation",
     "FreeStanding",
     "HistoryBands",
     "Joint",
@@ -160,6 +161,7 @@ _WHERE = {
     "DesignLoadInterrupted": "assessment:DesignLoadInterrupted",
     "ElementLoad": "result.element_loads:ElementLoad",
     "FileFormatError": "io.file_format:FileFormatError",
+    "Foundation": "barrier:Foundation",
     "FreeStanding": "barrier:FreeStanding",
     "HistoryBands": "study.history_bands:HistoryBands",
     "Joint": "vehicle:Joint",

@@ -6,7 +6,7 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Approach', 'Balances', 'Barrier', 'BusyError', 'ContactModel', 'Departure', 'Element', 'EndReason', 'Event', 'ExtremeAttitude', 'ExtremeElementLoads', 'ExtremeEnergy', 'ExtremeFilteredForce', 'ExtremeGroups', 'ExtremeJointLoads', 'ExtremeMotion', 'ExtremeNormalForce', 'ExtremeSegments', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Scene', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'TrussMesh', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'along_line', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
+__all__: list[str] = ['Approach', 'Balances', 'Barrier', 'BusyError', 'ContactModel', 'Departure', 'Element', 'EndReason', 'Event', 'ExtremeAttitude', 'ExtremeElementLoads', 'ExtremeEnergy', 'ExtremeFilteredForce', 'ExtremeGroups', 'ExtremeJointLoads', 'ExtremeMotion', 'ExtremeNormalForce', 'ExtremeSegments', 'Extremes', 'FreeStanding', 'History', 'Joint', 'JointHistory', 'JointKind', 'MassProperties', 'ObstacleHistory', 'Outcome', 'Run', 'Runner', 'Scene', 'Segment', 'SegmentJoint', 'Settings', 'Simulation', 'Snapshot', 'StepStatistics', 'Stop', 'TireModel', 'TrussCurve', 'TrussMesh', 'Unit', 'UnitHistory', 'UnstableError', 'Vehicle', 'YieldingPosts', 'along_line', 'collide', 'from_roll_pitch_yaw', 'knee_curve', 'mass_properties', 'point_curve', 'roll_pitch_yaw', 'solid_volumes', 'tail_duration', 'tumble']
 class Approach:
     """
     How the vehicle comes (SI, rad). Immutable.
@@ -56,14 +56,19 @@ class Barrier:
     """
     Elements that stand on the ground. Immutable.
     """
-    def __init__(self, *, elements: collections.abc.Sequence[Element], friction: typing.SupportsFloat | typing.SupportsIndex, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, free_standing: collections.abc.Sequence[FreeStanding]) -> None:
+    def __init__(self, *, elements: collections.abc.Sequence[Element], friction: typing.SupportsFloat | typing.SupportsIndex, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], heading: typing.SupportsFloat | typing.SupportsIndex, free_standing: collections.abc.Sequence[FreeStanding], yielding: collections.abc.Sequence[YieldingPosts] = []) -> None:
         """
-        friction: Coulomb coefficient; origin (3,) m on the barrier's line; heading of it about z, rad; free_standing: one, or none where the elements are fixed.
+        friction: Coulomb coefficient; origin (3,) m on the barrier's line; heading of it about z, rad; free_standing, yielding: one, or none where the elements do not slide, or do not yield.
         """
     @property
     def normal(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (3,) of the barrier's line, towards the traffic, world axes
+        """
+    @property
+    def posts(self) -> list[Segment]:
+        """
+        The elements where they are posts that yield, else none.
         """
     @property
     def segments(self) -> list[Segment]:
@@ -407,7 +412,7 @@ class ExtremeNormalForce:
         """
 class ExtremeSegments:
     """
-    How far the segments of a free-standing barrier move.
+    How far the elements of a barrier move.
     """
     @property
     def deflection(self) -> float:
@@ -423,6 +428,16 @@ class ExtremeSegments:
     def residual_deflection(self) -> float:
         """
         m, the same at the end
+        """
+    @property
+    def residual_tilt(self) -> float:
+        """
+        rad, the same at the end
+        """
+    @property
+    def tilt(self) -> float:
+        """
+        rad, greatest tilt of any post that yields
         """
 class Extremes:
     """
@@ -496,7 +511,7 @@ class Extremes:
     @property
     def segments(self) -> ExtremeSegments:
         """
-        m and m/s^2, displacement and overturning of free-standing segments
+        m and m/s^2, movement of free-standing segments or of posts that yield
         """
     @property
     def wheel_climb(self) -> float:
@@ -568,6 +583,11 @@ class History:
         max |m a - sum of forces| / max |force|
         """
     @property
+    def post_axis(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, k, 3) unit vectors from foot to top of posts that yield, world; k = 0 where none does
+        """
+    @property
     def potential(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) J, potential energy of the weight, zero at the start
@@ -621,6 +641,11 @@ class History:
     def tire_friction(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) J, energy lost to friction of tyres on the ground
+        """
+    @property
+    def yielding(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) J, plastic work of posts that yield
         """
 class Joint:
     """
@@ -815,7 +840,7 @@ class Scene:
         ...
 class Segment:
     """
-    A free-standing segment of a barrier.
+    A free-standing segment of a barrier, or a post that yields.
     """
     @property
     def half_base(self) -> float:
@@ -836,6 +861,11 @@ class Segment:
     def mass_center_height(self) -> float:
         """
         m
+        """
+    @property
+    def plastic_moment(self) -> float:
+        """
+        N m, of a post that yields; else infinite
         """
     @property
     def yaw_inertia(self) -> float:
@@ -1333,6 +1363,14 @@ class Vehicle:
     def stands_on_wheels(self) -> list[bool]:
         """
         Of each unit: has it wheels, with all of its skin above the ground at rest? Else its skin does not meet the ground.
+        """
+class YieldingPosts:
+    """
+    Posts that tilt about their foot against a plastic moment.
+    """
+    def __init__(self, *, mass: typing.SupportsFloat | typing.SupportsIndex, inertia: typing.SupportsFloat | typing.SupportsIndex, plastic_moment: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        """
+        mass: kg; inertia: about a horizontal axis through the foot, kg m^2; plastic_moment: N m.
         """
 def collide(mass_a: typing.SupportsFloat | typing.SupportsIndex, inertia_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mass_b: typing.SupportsFloat | typing.SupportsIndex, inertia_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arm_a: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], arm_b: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], restitution: typing.SupportsFloat | typing.SupportsIndex) -> tuple[float, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """

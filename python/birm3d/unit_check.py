@@ -71,6 +71,8 @@ USUAL: Mapping[str, Usual] = MappingProxyType(
         "row_offset": Usual(0.0, 100.0, "m", "mm", magnitude=True),
         "width": _LONG,
         "length": _LONG,
+        "wall_thickness": Usual(0.0005, 0.5, "m", "mm"),
+        "yield_stress": Usual(1e7, 5e9, "Pa", "MPa"),
         "density": Usual(100.0, 20000.0, "kg/m^3", "t/m^3"),
         "payload": Usual(10.0, 100_000.0, "kg", "t", zero=True),
         "indentation_length": Usual(0.0, 5.0, "m", "mm"),

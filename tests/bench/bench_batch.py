@@ -40,7 +40,7 @@ NODES = 1000
 TOLERANCES = (1e-3, 0.01, 0.4)  # the last two: the cheapest whose errors are below 0.1 % and 1 %
 WITHIN = 0.01
 SPEEDS = (18.0, 26.0)  # m/s; below 17.8 the block turns before the knee
-ALL = checked_metrics(None, joined=False, free=False, slides=False)
+ALL = checked_metrics(None, ())
 ALL_LABEL = f"all {len(ALL)} metrics"
 MARK_ALL = 8_000.0  # the same with all metrics
 

@@ -15,6 +15,7 @@ import pytest
 from birm3d import (
     Barrier,
     Channel,
+    Foundation,
     FreeStanding,
     Joint,
     Result,
@@ -135,6 +136,7 @@ def calls(folder: Path) -> dict[str, Call]:
         "Zone, envelope": (Zone, {"envelope": ((0.0, 0.0), (1.0, 1e5)), "k_unloading": 1e6}),
         "Zone.scaled": (Zone(**KNEE).scaled, {"factor": 1.0}),
         "FreeStanding": (FreeStanding, {}),
+        "Foundation": (Foundation, {"moment": 1e5}),
         "Joint": (Joint, PLACES),
         "Barrier.rigid_wall": (Barrier.rigid_wall, {}),
         "Barrier.bollards": (Barrier.bollards, {}),

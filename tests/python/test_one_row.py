@@ -12,6 +12,7 @@ from birm3d import Settings, _core
 from birm3d.metrics import METRIC_UNITS, METRICS
 from birm3d.result import metrics, summary
 from birm3d.result.metric_table import GROUPS, Metric, Shown
+from birm3d.result.run_values import PARTS
 from birm3d.scene_parameters import unit_of
 from birm3d.simulation.scene_file import _Settings
 from birm3d.study.runner import checked_metrics
@@ -54,12 +55,12 @@ def test_a_row_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_what_a_scene_can_not_have_is_no_column_of_a_study() -> None:
     joint = {name for name, metric in METRICS.items() if metric.of == "joint"}
-    segments = {name for name, metric in METRICS.items() if metric.of == "segments"}
+    moving = {name for name, metric in METRICS.items() if metric.of in ("segments", "posts", "moving")}
     assert joint == {"max_articulation_angle", "peak_joint_force", "peak_joint_force_50ms"}
-    assert len(segments) == 3
-    absent = set(METRICS) - set(checked_metrics(None, False, False, False))
-    assert absent == joint | segments | {"bed_slip", "run_time"}
-    assert set(METRICS) - set(checked_metrics(None, True, True, True)) == {"run_time"}
+    assert len(moving) == 5
+    absent = set(METRICS) - set(checked_metrics(None, ()))
+    assert absent == joint | moving | {"bed_slip", "run_time"}
+    assert set(METRICS) - set(checked_metrics(None, PARTS)) == {"run_time"}
     assert set(compared_metrics(METRICS)) == {
         name for name, metric in METRICS.items() if metric.error == "answer"
     }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "birm3d/base/tolerances.hpp"
+#include "contact/post_tilting.hpp"
 #include "contact/rigid_friction.hpp"
 #include "contact/segment_sliding.hpp"
 #include "kernels/integrate.hpp"
@@ -37,13 +38,16 @@ bool has_converged(const std::vector<RigidContact>& contacts, Column& last) {
     return change <= tolerance::friction_settled * sum;
 }
 
-// Has the friction of segments on the ground converged since the last round? Stores it for the next one.
-bool has_converged(const std::vector<Wrench>& on_base, std::vector<Wrench>& last) {
+// Has what holds the elements at the ground converged since the last round? Stores it for the next one. Free-standing
+// segments are held by friction forces, posts that yield by moments.
+bool has_converged(const std::vector<Wrench>& on_base, bool tilts, std::vector<Wrench>& last) {
     last.resize(on_base.size());
     double sum = 0.0, change = 0.0;
     for (std::size_t i = 0; i < on_base.size(); ++i) {
-        sum += on_base[i].force.norm();
-        change = std::max(change, (on_base[i].force - last[i].force).norm());
+        const Vec3 &now = tilts ? on_base[i].torque : on_base[i].force,
+                   &before = tilts ? last[i].torque : last[i].force;
+        sum += now.norm();
+        change = std::max(change, (now - before).norm());
         last[i] = on_base[i];
     }
     // Relative change below which friction counts as converged. At a base corner nearly at rest, rounding decides its
@@ -61,8 +65,7 @@ void set_motions_with_friction(const State& state, const ContactKick& kicked,
         ContactBody& body = bodies[units + i];
         Wrench push = kicked.on_base[i];
         push += kicked.on_cores[units + i];
-        body.motion.velocity += body.inverse_mass * Vec3(push.force.x(), push.force.y(), 0.0);
-        body.motion.angular_velocity.z() += body.inverse_inertia(2, 2) * push.torque.z();
+        add_impulse(body, push, body.motion);
     }
 }
 
@@ -123,15 +126,19 @@ void begin_iteration(const State& state, KickMemory& memory) {
 // Finds the normal impulses that belong to the present friction.
 void solve_normal_impulses(const Scene& scene, const KickedBy& by, bool meets, const State& state,
                            KickMemory& memory) {
+    const bool meets_posts = meets && scene.tilts();
     if (meets) prepare_solver(scene, state, memory);
-    // A joint holds, or slides one way or the other. After the last change the impulses are solved for once more.
-    constexpr int most_changes = 3;
+    // A joint holds, or slides one way or the other; a post stands still or yields. After the last change the impulses are solved
+    // for once more.
+    const int most_changes = meets_posts ? 10 : 3;
     for (int changes = 0;; ++changes) {
         set_motions_with_friction(state, memory.kick, memory.bodies);
         add_sliding_impulses(memory.kick.contacts, memory.bodies);
         memory.solver.solve(memory.kick.contacts, memory.bodies);
         if (changes == most_changes) break;
-        if (!decide_sliding(by.time, memory.bodies, memory.kick.contacts)) break;
+        const bool slides = decide_sliding(by.time, memory.bodies, memory.kick.contacts);
+        const bool yields = meets_posts && decide_yielding(scene, by, state, memory);
+        if (!slides && !yields) break;
         memory.solver.prepare(memory.kick.contacts, memory.bodies, scene.reference_speed());
     }
     sum_tire_impulses(scene, by, memory);
@@ -160,18 +167,22 @@ void solve_with_friction(const Scene& scene, const KickedBy& by, KickMemory& mem
     begin_iteration(state, memory);
     const bool meets = meets_segments(kicked.contacts);
     if (meets) find_segment_friction(scene, by, state, memory);
+    const bool meets_posts = meets && scene.tilts();
+    if (meets_posts) begin_holding_posts(scene, by, state, memory);
     solve_normal_impulses(scene, by, meets, state, memory);
     find_held_motions(scene, by, memory);
     constexpr int most_rounds = 30;
     for (int round = 0; round < most_rounds; ++round) {
         const bool normal_converged = has_converged(kicked.contacts, memory.last);
-        const bool base_converged = !meets || (round > 0 && has_converged(kicked.on_base, memory.on_base));
+        const bool base_converged =
+            !meets || (round > 0 && has_converged(kicked.on_base, scene.tilts(), memory.on_base));
         if (round > 0 && normal_converged && base_converged) break;
         kick_by_friction(scene, by, memory, state);
-        if (meets) find_segment_friction(scene, by, state, memory);
+        if (meets && !meets_posts) find_segment_friction(scene, by, state, memory);
         if (!meets && !any_friction(kicked)) break;
         solve_normal_impulses(scene, by, meets, state, memory);
     }
+    if (meets_posts) free_posts(scene, state, memory);
     kick_by_normal_impulses(scene, kicked, state);
     // An impact that meets no segment does not change the segments.
     if (state.segments.empty() || (by.is_impact && !meets)) return;

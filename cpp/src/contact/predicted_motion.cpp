@@ -1,6 +1,7 @@
 #include "contact/predicted_motion.hpp"
 
 #include "birm3d/base/tolerances.hpp"
+#include "contact/post_tilting.hpp"
 #include "kernels/friction.hpp"
 #include "kernels/integrate.hpp"
 #include "kernels/tires.hpp"
@@ -78,6 +79,12 @@ void predict_segments(const Scene& scene, const State& from, double dt, State& n
             coming += scaled(contact.history.rate, dt * dt / 3.0);
             kick_body(scene, static_cast<std::size_t>(body), reaction_of(coming), now);
         }
+    if (!scene.tilts()) return;
+    for (std::size_t i = 0; i < now.segments.size(); ++i) {
+        BodyState& post = now.segments[i];
+        post.angular_momentum +=
+            plastic_impulse(scene.barrier->segments[i], post, post.angular_momentum, 0.5 * dt);
+    }
 }
 
 }  // namespace birm3d

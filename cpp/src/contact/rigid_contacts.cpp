@@ -107,14 +107,19 @@ void list_bodies(const Scene& scene, const State& state, std::vector<ContactBody
     bodies.clear();
     for (std::size_t b = 0; b < body_count(state); ++b) {
         const RigidBody& body = rigid_body(scene, b);
-        const bool planar = b >= state.units.size();
+        const Freedom freedom = b < state.units.size() ? Freedom::all
+                                : scene.tilts()        ? Freedom::tilt
+                                                       : Freedom::planar;
         // A body that rotates about the vertical only has the same inertia at any yaw.
         Mat3 inverse_inertia = Mat3::Zero();
-        if (planar)
+        if (freedom == Freedom::planar) {
             inverse_inertia(2, 2) = body.inverse_inertia(2, 2);
-        else
+        } else if (freedom == Freedom::tilt) {
+            inverse_inertia = inverse_inertia_of_post(body, body_state(state, b));
+        } else {
             inverse_inertia = inverse_inertia_in_world(body, body_state(state, b));
-        bodies.push_back({body.inverse_mass, inverse_inertia, {}, planar});
+        }
+        bodies.push_back({body.inverse_mass, inverse_inertia, {}, freedom});
     }
     set_motions(state, bodies);
 }
@@ -181,8 +186,9 @@ double loss_of(const RigidContact& contact, std::span<const Twist> before, std::
 void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vector<Twist>& before,
                    const std::vector<Twist>& after, State& state) {
     const auto motion = [&](std::size_t u) { return mean(before[u], after[u]); };
+    double& at_base = scene.tilts() ? state.energies.yielding : state.energies.segment_friction;
     for (std::size_t i = 0; i < kicked.on_base.size(); ++i)
-        state.energies.segment_friction -= power(kicked.on_base[i], motion(state.units.size() + i));
+        at_base -= power(kicked.on_base[i], motion(state.units.size() + i));
     for (std::size_t i = 0; i < kicked.on_pins.size(); ++i)
         state.energies.joints -= power(kicked.on_pins[i], motion(state.units.size() + i));
     for (std::size_t u = 0; u < kicked.on_ground.size(); ++u)

@@ -24,7 +24,7 @@ Twist motion_without(const Wrench& friction, const ContactBody& body) {
             body.motion.angular_velocity - body.inverse_inertia * friction.torque};
 }
 
-// Greatest inverse mass of the segments that a unit of the vehicle pushes, at the point of contact along the ground (1/kg).
+// Greatest inverse mass of the segments that a unit of the vehicle pushes, at the point of contact (1/kg).
 double greatest_other_inverse_mass(const std::vector<RigidContact>& contacts, std::size_t unit,
                                    const std::vector<ContactBody>& bodies) {
     double greatest = 0.0;
@@ -32,8 +32,10 @@ double greatest_other_inverse_mass(const std::vector<RigidContact>& contacts, st
         if (contact.source != ContactSource::core || contact.body != unit || contact.other < 0) continue;
         if (!(contact.impulse > 0.0)) continue;
         const ContactBody& other = bodies[static_cast<std::size_t>(contact.other)];
-        greatest = std::max(greatest, other.inverse_mass + other.inverse_inertia(2, 2) *
-                                                               contact.other_arm.head<2>().squaredNorm());
+        const double turning = other.freedom == Freedom::tilt
+                                   ? 0.5 * other.inverse_inertia.trace() * contact.other_arm.squaredNorm()
+                                   : other.inverse_inertia(2, 2) * contact.other_arm.head<2>().squaredNorm();
+        greatest = std::max(greatest, other.inverse_mass + turning);
     }
     return greatest;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contact/post_tilting.hpp"
 #include "kernels/ground_slide.hpp"
 #include "kernels/joints.hpp"
 #include "scene/bodies.hpp"
@@ -10,11 +11,7 @@ namespace birm3d {
 
 namespace {
 
-bool pushes_segment(const RigidContact& contact) {
-    return contact.source == ContactSource::core && contact.other >= 0;
-}
-
-// Greatest friction impulse of the ground on each segment (N s).
+// Greatest friction impulse of the ground on each free-standing segment (N s).
 void find_limits(const Scene& scene, const Column& pressed, const ContactKick& kicked, Column& limits) {
     limits = pressed;
     for (const RigidContact& contact : kicked.contacts)
@@ -25,7 +22,7 @@ void find_limits(const Scene& scene, const Column& pressed, const ContactKick& k
 }
 
 bool is_pinned(const Scene& scene) {
-    return scene.barrier->free_standing->joint == SegmentJoint::pinned;
+    return scene.slides() && scene.barrier->free_standing->joint == SegmentJoint::pinned;
 }
 
 Vec3 planar_motion(const RigidBody& body, const Vec3& velocity, double spin_momentum) {
@@ -120,11 +117,16 @@ void find_loose_friction(const Scene& scene, KickMemory& memory) {
 
 }  // namespace
 
+bool pushes_segment(const RigidContact& contact) {
+    return contact.source == ContactSource::core && contact.other >= 0;
+}
+
 bool meets_segments(const std::vector<RigidContact>& contacts) {
     return std::any_of(contacts.begin(), contacts.end(), pushes_segment);
 }
 
 void find_segment_friction(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
+    if (scene.tilts()) return find_plastic_moments(scene, by, state, memory);
     find_limits(scene, by.pressed, memory.kick, memory.limits);
     list_slabs(scene, by, state, memory);
     memory.segment_motions.resize(state.segments.size());
@@ -136,6 +138,7 @@ void find_segment_friction(const Scene& scene, const KickedBy& by, const State& 
 }
 
 void move_segments(const Scene& scene, const KickMemory& memory, State& state) {
+    if (scene.tilts()) return move_posts(scene, memory, state);
     // Fraction of the speed that friction can remove from a segment, below which a remaining speed is rounding.
     constexpr double left_over = 1e-4;
     for (std::size_t i = 0; i < state.segments.size(); ++i) {

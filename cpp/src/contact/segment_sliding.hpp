@@ -1,4 +1,5 @@
-// Friction of the ground and impulses of the pins on free-standing segments at one end of the drift.
+// What holds the elements of a barrier that move at one end of the drift: friction of the ground and impulses of the pins on
+// free-standing segments, the plastic moments of posts that yield (contact/post_tilting.hpp).
 #pragma once
 
 #include "contact/impulse_iteration.hpp"
@@ -6,6 +7,9 @@
 #include "state/rigid_contact.hpp"
 
 namespace birm3d {
+
+// Is it a point where the rigid body meets a segment?
+bool pushes_segment(const RigidContact& contact);
 
 // Does the rigid body meet a segment?
 bool meets_segments(const std::vector<RigidContact>& contacts);

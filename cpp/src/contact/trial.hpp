@@ -79,7 +79,8 @@ struct KickMemory {
     std::vector<SlabPin> pins;
     SlabChain chain;
     Column limits;                      // of friction on the ground (N s)
-    std::vector<Vec3> segment_motions;  // along the ground and about the vertical
+    std::vector<Vec3> segment_motions;  // along the ground and about the vertical; of posts angular velocities
+    std::vector<char> posts_held;       // (posts that yield) do they stand still?
 };
 
 // Some of the blocks of a mesh.

@@ -65,9 +65,9 @@ bool tips(const Scene& scene, const State& state) {
 
 // Segments that friction can stop have stopped.
 bool segments_rest(const Scene& scene, const State& state) {
-    if (state.segments.empty() || scene.settings.gravity == 0.0 ||
-        scene.barrier->free_standing->ground_friction == 0.0)
-        return true;
+    const bool slides_on = scene.slides() && (scene.settings.gravity == 0.0 ||
+                                              scene.barrier->free_standing->ground_friction == 0.0);
+    if (state.segments.empty() || slides_on) return true;
     return fastest_segment(scene, state) == 0.0;
 }
 

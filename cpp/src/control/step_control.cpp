@@ -144,10 +144,23 @@ double time_to_release(const LoadHistory& history) {
     return falls_to_zero ? 2.0 * force / (std::sqrt(discriminant) - slope) : infinity;
 }
 
-// A step that ends when the next untouched, straight sliding segment comes to rest (s): its distance is exact then.
+// Time in which a post that nothing pushes comes to rest (s).
+double time_to_stop(const Scene& scene, const State& state, std::size_t post) {
+    const auto pushes = [=](const UnitState& unit) { return pushes_on(unit, post); };
+    if (std::any_of(state.units.begin(), state.units.end(), pushes)) return infinity;
+    return state.segments[post].angular_momentum.norm() / scene.barrier->segments[post].plastic_moment;
+}
+
+// A step that ends when the next untouched post, or the next untouched, straight sliding segment, comes to rest (s): its
+// distance is exact then.
 double time_to_stop(const Scene& scene, const State& state) {
     double earliest = infinity;
-    if (state.segments.empty() || touches(state)) return earliest;
+    if (scene.tilts())
+        for (std::size_t i = 0; i < state.segments.size(); ++i) {
+            const double time = time_to_stop(scene, state, i);
+            if (time > tolerance::shortest_stop) earliest = std::min(earliest, time);
+        }
+    if (!scene.slides() || touches(state)) return earliest;
     const double deceleration = scene.settings.gravity * scene.barrier->free_standing->ground_friction;
     if (!(deceleration > 0.0)) return earliest;
     for (const BodyState& segment : state.segments) {
@@ -165,11 +178,11 @@ double quantize_step(double dt) {
     return std::ldexp(std::floor(part * 32.0) / 32.0, octave);
 }
 
-// Longest step for resting contacts, joints and segments (s). They are integrated to second order without an error
-// estimate, so that the step follows from the tolerance alone.
+// Longest step for resting contacts, joints and elements that move (s). They are integrated to second order without an
+// error estimate, so that the step follows from the tolerance alone. Posts that stand still need none.
 double longest_step(const Scene& scene, const Trial& tried) {
-    if (!tried.body_rests() && scene.joints.empty() && tried.state.segments.empty())
-        return tolerance::longest_step;
+    const bool moves = scene.slides() || (scene.tilts() && fastest_segment(scene, tried.state) > 0.0);
+    if (!tried.body_rests() && scene.joints.empty() && !moves) return tolerance::longest_step;
     return tolerance::longest_resting_step *
            std::sqrt(std::min(1.0, scene.settings.tolerance / Settings{}.tolerance));
 }

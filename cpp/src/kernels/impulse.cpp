@@ -16,10 +16,14 @@ using Eigen::Index;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Lower triangle; zero for a body that can not be turned.
+// R with R R^T = inverse inertia; zero for a body that can not be turned.
 Mat3 root_of(const ContactBody& body) {
     if (body.inverse_inertia.isZero(0.0)) return Mat3::Zero();
-    if (body.planar) return Vec3(0.0, 0.0, std::sqrt(body.inverse_inertia(2, 2))).asDiagonal();
+    if (body.freedom == Freedom::planar)
+        return Vec3(0.0, 0.0, std::sqrt(body.inverse_inertia(2, 2))).asDiagonal();
+    // A projection to a plane, P, over the inertia I: its root is P/sqrt(I), and its trace 2/I.
+    if (body.freedom == Freedom::tilt)
+        return std::sqrt(2.0 / body.inverse_inertia.trace()) * body.inverse_inertia;
     return body.inverse_inertia.llt().matrixL();
 }
 
@@ -45,7 +49,7 @@ double separation_velocity(const RigidContact& contact, std::span<const ContactB
 double inverse_effective_mass(const RigidContact& contact, std::span<const ContactBody> bodies) {
     const auto of_body = [&contact](const ContactBody& body, const Vec3& arm) {
         const Wrench wrench = unit_wrench(contact, arm);
-        if (body.planar)
+        if (body.freedom == Freedom::planar)
             return body.inverse_mass * along_ground(wrench.force).squaredNorm() +
                    body.inverse_inertia(2, 2) * wrench.torque.z() * wrench.torque.z();
         return body.inverse_mass * wrench.force.squaredNorm() +
@@ -66,7 +70,7 @@ void ImpulseSolver::prepare(std::span<const RigidContact> contacts, std::span<co
     roots_.clear();
     rows_.clear();
     for (const ContactBody& body : bodies)
-        roots_.push_back({std::sqrt(body.inverse_mass), root_of(body), body.planar});
+        roots_.push_back({std::sqrt(body.inverse_mass), root_of(body), body.freedom == Freedom::planar});
     for (const RigidContact& contact : contacts) {
         ConstraintRow row{contact.body, contact.other, {}, Vec6::Zero()};
         row.bilateral = contact.bilateral;

@@ -29,17 +29,25 @@
 
 namespace birm3d {
 
+enum class Freedom {
+    all,
+    planar,  // moves along the ground and rotates about the vertical only
+    tilt,    // tilts about a fixed foot: no inverse mass, and equal inverse inertia about two axes only
+};
+
 // A body of the solver, world axes. Zero inverses: it can not be moved.
 struct ContactBody {
     double inverse_mass = 0.0;
     Mat3 inverse_inertia = Mat3::Zero();
     Twist motion;
-    bool planar = false;  // moves along the ground and rotates about the vertical only
+    Freedom freedom = Freedom::all;
 };
 
 // Adds what an impulse on a body changes to a motion of it.
 inline void add_impulse(const ContactBody& body, const Wrench& impulse, Twist& motion) {
-    motion.velocity += body.inverse_mass * impulse.force;
+    Vec3 force = impulse.force;
+    if (body.freedom == Freedom::planar) force.z() = 0.0;
+    motion.velocity += body.inverse_mass * force;
     motion.angular_velocity += body.inverse_inertia * impulse.torque;
 }
 

@@ -43,6 +43,17 @@ std::vector<Segment> segments_of(const std::vector<Element>& elements, const Fre
     return segments;
 }
 
+std::vector<Segment> posts_of(const std::vector<Element>& elements, const YieldingPosts& yielding) {
+    std::vector<Segment> posts;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        const auto* post = std::get_if<Post>(&elements[i].shape);
+        if (post == nullptr || post->opens || elements[i].part_of)
+            refuse("elements[" + std::to_string(i) + "]", "a whole post where posts yield", "another shape");
+        posts.push_back(tilting_post(*post, yielding));
+    }
+    return posts;
+}
+
 }  // namespace
 
 Mat3 Element::rotation() const {
@@ -56,12 +67,14 @@ Mat3 Element::rotation() const {
 }
 
 Barrier::Barrier(std::vector<Element> elements_, double friction_, const Vec3& origin_, double heading_,
-                 const std::optional<FreeStanding>& free_standing_)
+                 const std::optional<FreeStanding>& free_standing_,
+                 const std::optional<YieldingPosts>& yielding_)
     : elements(std::move(elements_)),
       friction(require_not_negative("friction", friction_)),
       origin(origin_),
       heading(require_finite("heading", heading_)),
-      free_standing(free_standing_) {
+      free_standing(free_standing_),
+      yielding(yielding_) {
     if (!origin.allFinite()) refuse("origin", "finite", "a coordinate that is not");
     if (free_standing && origin.z() != 0.0)
         refuse("origin height", "0 m where it is free-standing", origin.z());
@@ -81,7 +94,9 @@ Barrier::Barrier(std::vector<Element> elements_, double friction_, const Vec3& o
             refuse(name + "draws_in_above", "false where it is no prism along the line", "true");
         top_edge_of(*prism);
     }
+    if (free_standing && yielding) refuse("yielding", "none where it is free-standing", "posts");
     if (free_standing) segments = segments_of(elements, *free_standing);
+    if (yielding) segments = posts_of(elements, *yielding);
 }
 
 Barrier Barrier::wall(double friction, const Vec3& origin, double heading) {

@@ -77,9 +77,21 @@ Segment segment_of(const Prism& prism, double density) {
     return {
         RigidBody(mass, mass * Vec3(along + up, across + up, along + across).asDiagonal().toDenseMatrix()),
         z,
+        Vec3(base, y, 0.0).norm(),
         y,
         base,
         {Vec3(-base, -y, -z), Vec3(base, -y, -z), Vec3(-base, y, -z), Vec3(base, y, -z)}};
+}
+
+Segment tilting_post(const Post& post, const YieldingPosts& posts) {
+    require_positive("mass of a post that yields", posts.mass);
+    require_positive("inertia of a post that yields", posts.inertia);
+    require_positive("plastic_moment of a post that yields", posts.plastic_moment);
+    require_finite("height of a post that yields", post.height);
+    // Equal about all axes: a post does not turn about its own, so that this does not count.
+    RigidBody body(posts.mass, posts.inertia * Mat3::Identity());
+    body.inverse_mass = 0.0;
+    return {body, 0.0, post.height, post.radius, post.radius, {}, posts.plastic_moment};
 }
 
 }  // namespace birm3d

@@ -1,4 +1,4 @@
-// Extremes of what the segments of a free-standing barrier do.
+// Extremes of what the elements of a barrier that move do.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -59,9 +59,29 @@ double overturning(const Segment& segment, const SegmentHistory& motion, const O
     return greatest;
 }
 
+Extremes::Segments greatest_tilt(const History& history, const Barrier& barrier) {
+    Extremes::Segments found;
+    const Vec3 past = -barrier.normal();
+    for (std::size_t i = 0; i < history.segments.size(); ++i) {
+        const std::vector<Vec3>& axis = history.segments[i].axis;
+        const double height = barrier.segments[i].reach;
+        double tilt = 0.0, moved = 0.0;
+        for (const Vec3& now : axis) {
+            tilt = std::atan2(std::hypot(now.x(), now.y()), now.z());
+            moved = height * now.dot(past);
+            found.tilt = std::max(found.tilt, tilt);
+            found.deflection = std::max(found.deflection, moved);
+        }
+        found.residual_tilt = std::max(found.residual_tilt, tilt);
+        found.residual_deflection = std::max(found.residual_deflection, moved);
+    }
+    return found;
+}
+
 }  // namespace
 
 Extremes::Segments greatest_movement(const History& history, const Barrier& barrier) {
+    if (barrier.yielding) return greatest_tilt(history, barrier);
     Extremes::Segments found;
     const Vec3 past = -barrier.normal();
     const std::size_t count = history.time.size();

@@ -13,13 +13,22 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+// Bounds of a shape, own axes (m). A post that has a top is cut off at its foot, because one that tilts has its endless lower
+// end in the ground.
+Box seen_box(const Shape& shape) {
+    const auto* post = std::get_if<Post>(&shape);
+    if (post == nullptr || !std::isfinite(post->height)) return bounds(shape);
+    const double half = 0.5 * post->height;
+    return {{0.0, 0.0, half}, {post->radius, post->radius, half}};
+}
+
 // The least and the greatest coordinate of an element along a direction of the world (m).
 struct Range {
     double low, high;
 };
 Range range_along(const Scene& scene, std::size_t i, const State& state, const Vec3& direction) {
     const Pose pose = pose_of(scene, i, state);
-    const Box box = bounds(scene.obstacles[i].shape);
+    const Box box = seen_box(scene.obstacles[i].shape);
     const Vec3 local = pose.rotation.transpose() * direction;
     double middle = pose.position.dot(direction), half = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -72,7 +81,7 @@ double line_position(const Scene& scene, const State& state, const Vec3& towards
 
 double distance_past_line(const Scene& scene, const State& state, const Event& event) {
     const Vec3& center = state.units.front().body.position;
-    if (state.segments.empty() || runs_along_line(scene)) return center.dot(event.towards) - event.line;
+    if (!scene.slides() || runs_along_line(scene)) return center.dot(event.towards) - event.line;
     double nearest = infinity, past = 0.0;
     for (std::size_t i = 0; i < state.segments.size(); ++i) {
         const Pose pose = pose_of(scene, i, state);
@@ -94,7 +103,9 @@ bool stands_over_barrier(const Scene& scene, const State& state) {
         const Pose pose = pose_of(scene, i, state);
         const Box box = bounds(scene.obstacles[i].shape);
         const double top = top_of(scene.obstacles[i].shape);
-        if (!(pose.position.z() + top < body.position.z())) continue;
+        const bool is_post = std::holds_alternative<Post>(scene.obstacles[i].shape);
+        const double up = is_post ? pose.rotation(2, 2) * top : top;
+        if (!(pose.position.z() + up < body.position.z())) continue;
         // The place of the top that is nearest to the mass centre, seen from above.
         Vec3 place = pose.rotation.transpose() * (body.position - pose.position);
         for (int axis = 0; axis < 2; ++axis)

@@ -111,7 +111,8 @@ void Recorder::add_row(const Scene& scene, double time, const Energies& e, const
     row[at_time] = time;
     const std::array energies = {
         e.kinetic,         e.potential, e.stored, e.crushed,          e.barrier_friction,    e.tire_friction,
-        e.ground_friction, e.impacts,   e.joints, e.segment_friction, e.springs + e.dampers, e.sliding};
+        e.ground_friction, e.impacts,   e.joints, e.segment_friction, e.springs + e.dampers, e.sliding,
+        e.yielding};
     std::copy(energies.begin(), energies.end(), row + at_energies);
     row += at_units;
     for (std::size_t u = 0; u < loads.units.size(); ++u) {

@@ -52,7 +52,7 @@ void Recorder::resample_energies(const OutputInstants& output, History& history)
     for (Column* column :
          {&history.kinetic, &history.potential, &history.stored, &history.crushed, &history.barrier_friction,
           &history.tire_friction, &history.ground_friction, &history.impacts, &history.joint_work,
-          &history.segment_friction, &history.suspension, &history.sliding}) {
+          &history.segment_friction, &history.suspension, &history.sliding, &history.yielding}) {
         column->assign(history.time.size(), values_[e]);
         for (const Span& span : output.span) {
             const double a = values_[span.row * width_ + e], b = values_[(span.row + 1) * width_ + e];

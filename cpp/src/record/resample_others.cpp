@@ -1,4 +1,4 @@
-// Resampling of what joints, elements of the barrier and free-standing segments do.
+// Resampling of what joints, elements of the barrier and those of them that move do.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -139,7 +139,10 @@ void Recorder::resample_obstacles(const Scene& scene, const OutputInstants& outp
         means.force.assign(history.time.size(), Vec3::Zero());
         means.moment.assign(history.time.size(), Vec3::Zero());
         const auto& loads = rows_of;  // lambdas take no structured bindings
-        run_wide([&] { set_means(output, loads, scene.from_origin, means); });
+        // A post may turn about a point below its foot, about which its loads are recorded.
+        Vec3 lever = scene.from_origin;
+        if (scene.tilts()) lever.z() += scene.barrier->elements[obstacle].position.z();
+        run_wide([&] { set_means(output, loads, lever, means); });
     }
 }
 
@@ -187,7 +190,9 @@ void Recorder::resample_segments(const Scene& scene, const OutputInstants& outpu
             const Eigen::Map<const Eigen::Vector4d> qa(a + at_segment_orientation),
                 qb(b + at_segment_orientation);
             const Eigen::Vector4d q = (1.0 - s) * qa + s * (qa.dot(qb) < 0.0 ? -1.0 : 1.0) * qb;
-            const double angle = 2.0 * std::atan2(q[2], q[3]);
+            if (scene.tilts())
+                segment.axis.push_back(Quat(q[3], q[0], q[1], q[2]).normalized() * Vec3::UnitZ());
+            const double angle = scene.tilts() ? 0.0 : 2.0 * std::atan2(q[2], q[3]);
             if (k > 0) yaw += std::remainder(angle - last_angle, 2.0 * std::numbers::pi);
             last_angle = angle;
             segment.yaw.push_back(yaw);

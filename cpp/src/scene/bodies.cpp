@@ -30,10 +30,29 @@ void list_body_states(const State& state, std::vector<BodyState>& bodies) {
 void kick_body(const Scene& scene, std::size_t body, const Wrench& impulse, State& state) {
     Wrench part = impulse;
     if (body >= state.units.size()) {
-        part.force.z() = 0.0;
-        part.torque.x() = part.torque.y() = 0.0;
+        if (scene.tilts()) {
+            part = {Vec3::Zero(), tilting_part(body_state(state, body), impulse.torque)};
+        } else {
+            part.force.z() = 0.0;
+            part.torque.x() = part.torque.y() = 0.0;
+        }
     }
     kick(rigid_body(scene, body), part, body_state(state, body));
+}
+
+Vec3 tilting_part(const BodyState& post, const Vec3& torque) {
+    const Vec3 axis = post.orientation * Vec3::UnitZ();
+    return torque - axis.dot(torque) * axis;
+}
+
+Mat3 inverse_inertia_of_post(const RigidBody& body, const BodyState& post) {
+    const Vec3 axis = post.orientation * Vec3::UnitZ();
+    return body.inverse_inertia(0, 0) * (Mat3::Identity() - axis * axis.transpose());
+}
+
+double tilt_of(const BodyState& post) {
+    const Vec3 axis = post.orientation * Vec3::UnitZ();
+    return std::atan2(std::hypot(axis.x(), axis.y()), axis.z());
 }
 
 int body_of_obstacle(const Scene& scene, std::size_t obstacle) {
@@ -42,8 +61,7 @@ int body_of_obstacle(const Scene& scene, std::size_t obstacle) {
 
 double fastest_point(const Segment& segment, const BodyState& body) {
     if (body.velocity.isZero(0.0) && body.angular_momentum.isZero(0.0)) return 0.0;
-    const double reach = Vec3(segment.corner[0].x(), segment.corner[0].y(), 0.0).norm();
-    return body.velocity.norm() + angular_velocity(segment.body, body).norm() * reach;
+    return body.velocity.norm() + angular_velocity(segment.body, body).norm() * segment.reach;
 }
 
 }  // namespace birm3d

@@ -1,4 +1,4 @@
-// The moving bodies of a scene by index: the vehicle's units, then the free-standing segments of the barrier.
+// The moving bodies of a scene by index: the vehicle's units, then the elements of the barrier that move.
 #pragma once
 
 #include <vector>
@@ -17,11 +17,20 @@ BodyState& body_state(State& state, std::size_t body);
 void list_body_states(const State& state, std::vector<BodyState>& bodies);
 
 // impulse: linear and angular about the body's mass centre, world axes (N s, N m s). The ground takes the vertical
-// impulse and the tipping moment on a segment.
+// impulse and the tipping moment on a free-standing segment. Of a post that yields it takes all but the moment that tilts it.
 void kick_body(const Scene& scene, std::size_t body, const Wrench& impulse, State& state);
 
 // Index of the body of an obstacle, or -1 if the obstacle is fixed.
 int body_of_obstacle(const Scene& scene, std::size_t obstacle);
+
+// The part of a torque that tilts a post: square to its own axis.
+Vec3 tilting_part(const BodyState& post, const Vec3& torque);
+
+// Of a post about its foot, world axes: the same about all axes that are square to its own, and zero about that (1/(kg m^2)).
+Mat3 inverse_inertia_of_post(const RigidBody& body, const BodyState& post);
+
+// Angle of a post's own axis to the vertical (rad).
+double tilt_of(const BodyState& post);
 
 // Fastest any point of a segment moves (m/s).
 double fastest_point(const Segment& segment, const BodyState& body);

@@ -240,7 +240,8 @@ void Scene::start(State& state) const {
         const Element& element = barrier->elements[i];
         BodyState segment;
         segment.orientation = from_roll_pitch_yaw({0.0, 0.0, element.heading});
-        segment.position = element.position + barrier->segments[i].mass_center_height * Vec3::UnitZ();
+        segment.position = element.position +
+                           (barrier->origin.z() + barrier->segments[i].mass_center_height) * Vec3::UnitZ();
         state.segments.push_back(segment);
     }
     const double yaw = yaw_of_path(*this);

@@ -51,6 +51,30 @@ void add_to(Hash& hash, const TriangleMesh& mesh) {
             hash.add(corner);
 }
 
+void add_to(Hash& hash, const Barrier& barrier) {
+    hash.add(barrier.friction);
+    hash.add(barrier.origin);
+    hash.add(barrier.heading);
+    for (const Element& element : barrier.elements) {
+        hash.add(static_cast<double>(element.shape.index()));
+        std::visit([&](const auto& shape) { add_to(hash, shape); }, element.shape);
+        hash.add(element.position);
+        hash.add(element.heading);
+        if (element.part_of) hash.add(static_cast<double>(*element.part_of));
+        if (element.upright) hash.add(-1.0);  // no index of an element
+        if (element.draws_in_above) hash.add(-2.0);
+    }
+    if (barrier.free_standing) {
+        hash.add(barrier.free_standing->density);
+        hash.add(barrier.free_standing->ground_friction);
+        hash.add(static_cast<double>(barrier.free_standing->joint));
+    }
+    if (barrier.yielding)
+        for (const double number :
+             {barrier.yielding->mass, barrier.yielding->inertia, barrier.yielding->plastic_moment})
+            hash.add(number);
+}
+
 // Can a segment of this shape continue the segment before it?
 bool continues(const Shape& shape) {
     const auto* prism = std::get_if<Prism>(&shape);
@@ -76,8 +100,7 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
         for (const Element& element : barrier->elements)
             obstacles.push_back({element.shape, element.rotation(),
                                  element.position + barrier->origin.z() * Vec3::UnitZ(), barrier->friction});
-    if (free_segments() > 0 && !settings.ground)
-        refuse("ground", "True where the barrier is free-standing", "False");
+    if (slides() && !settings.ground) refuse("ground", "True where the barrier is free-standing", "False");
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
         const auto& whole = barrier->elements[i].part_of;
         const bool joined = i > 0 && free_segments() == 0 && continues(obstacles[i].shape);
@@ -89,7 +112,7 @@ Scene::Scene(std::shared_ptr<const Vehicle> vehicle_, std::shared_ptr<const Barr
             obstacles[i].top_edge = top_edge_of(std::get<Prism>(obstacles[i].shape));
     }
     joints = vehicle->joints;
-    if (free_segments() > 0 && barrier->free_standing->joint == SegmentJoint::pinned)
+    if (slides() && barrier->free_standing->joint == SegmentJoint::pinned)
         for (std::size_t i = 1; i < free_segments(); ++i) {
             const Segment &one = barrier->segments[i - 1], &next = barrier->segments[i];
             const std::size_t body = vehicle->units.size() + i;
@@ -156,25 +179,7 @@ std::uint64_t Scene::fingerprint() const {
         hash.add(joint.place_on_trailing);
         hash.add(joint.roll_limit);
     }
-    if (barrier) {
-        hash.add(barrier->friction);
-        hash.add(barrier->origin);
-        hash.add(barrier->heading);
-        for (const Element& element : barrier->elements) {
-            hash.add(static_cast<double>(element.shape.index()));
-            std::visit([&](const auto& shape) { add_to(hash, shape); }, element.shape);
-            hash.add(element.position);
-            hash.add(element.heading);
-            if (element.part_of) hash.add(static_cast<double>(*element.part_of));
-            if (element.upright) hash.add(-1.0);  // no index of an element
-            if (element.draws_in_above) hash.add(-2.0);
-        }
-        if (barrier->free_standing) {
-            hash.add(barrier->free_standing->density);
-            hash.add(barrier->free_standing->ground_friction);
-            hash.add(static_cast<double>(barrier->free_standing->joint));
-        }
-    }
+    if (barrier) add_to(hash, *barrier);
     return hash.value();
 }
 

@@ -20,7 +20,7 @@ void check_energies(const Energies& e, const Scene& scene, const State& now, Bal
     balances.at_disposal = std::max(balances.at_disposal, balances.kinetic - e.potential);
     const std::array<double, Balances::terms> terms{e.crushed,         e.barrier_friction, e.tire_friction,
                                                     e.ground_friction, e.impacts,          e.segment_friction,
-                                                    e.dampers,         e.sliding};
+                                                    e.dampers,         e.sliding,          e.yielding};
     for (std::size_t i = 0; i < terms.size(); ++i) {
         note_departure(balances.highest[i] - terms[i], scene, now, balances.falls[i]);
         balances.highest[i] = std::max(balances.highest[i], terms[i]);

@@ -22,13 +22,18 @@ double missed_fraction(double angle) {
     return angle * angle * angle / 12.0;
 }
 
-// Greatest ratio of the inverse effective mass of a free-standing segment, loaded at its end, to that of the unit.
+// Greatest ratio of the inverse effective mass of an element that moves, loaded at its end, to that of the unit.
 double inverse_mass_ratio(const Scene& scene, const RigidBody& body,
                           const std::vector<ContactLoad>& contacts) {
     double most = 0.0;
     for (const ContactLoad& contact : contacts) {
         if (!(contact.obstacle < scene.free_segments()) || !(contact.normal_force > 0.0)) continue;
         const Segment& segment = scene.barrier->segments[contact.obstacle];
+        if (segment.tilts()) {
+            most = std::max(most,
+                            body.mass * segment.reach * segment.reach * segment.body.inverse_inertia(0, 0));
+            continue;
+        }
         const Vec3& end = segment.corner[0];
         most =
             std::max(most, body.mass * (segment.body.inverse_mass + (end.x() * end.x() + end.y() * end.y()) *
@@ -48,7 +53,12 @@ double velocity_error(const EffectiveInertia& inertia, const Load& departure, do
     const double force = departure.wrench.force.norm();
     const Vec3 angular_change = inertia.inverse_inertia * departure.wrench.torque;
     double change = inertia.body.inverse_mass * force + inertia.gyration * angular_change.norm();
-    if (const Segment* segment = inertia.segment) {
+    const Segment* segment = inertia.segment;
+    if (segment && segment->tilts()) {
+        // A light post follows the vehicle. Its error counts by its energy: it is that of the unit with the same energy.
+        const double turn = segment->body.inverse_inertia(0, 0) * departure.reaction_torque.norm();
+        change += std::sqrt(segment->body.inertia(0, 0) * inertia.body.inverse_mass) * turn;
+    } else if (segment) {
         const double yaw_change =
             segment->body.inverse_inertia(2, 2) * std::abs(departure.reaction_torque.z());
         change += segment->body.inverse_mass * force + segment->half_length * yaw_change;

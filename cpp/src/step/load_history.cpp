@@ -152,8 +152,10 @@ double correct_loads(const Scene& scene, std::size_t u, const UnitState& from, T
             history.is_smooth = before.is_smooth;
             loads.push_back(load_of(scene, trial.state, moved.body, contact));
         }
-        const bool moves = joined.front().obstacle < scene.free_segments();
-        inertia.segment = moves ? &scene.barrier->segments[joined.front().obstacle] : nullptr;
+        const std::size_t first = joined.front().obstacle;
+        const bool moves = first < scene.free_segments() &&
+                           !(scene.tilts() && trial.state.segments[first].angular_momentum.isZero(0.0));
+        inertia.segment = moves ? &scene.barrier->segments[first] : nullptr;
         error += correct_structure(inertia, {before, befores, loads, trial.dt}, joined);
     }
     return error;

@@ -25,7 +25,10 @@ _FREE = (
     "The segments stand free: the forces are those of the vehicle on a segment, whose inertia takes a part; "
     "the ground gets no more than the friction of its base."
 )
-_MOVING = "The barrier gives way: its loads hold for the stiffness and strength that it was given."
+_YIELDING = (
+    "The posts yield: the loads hold for the plastic moment that they were given. Steel is stronger than its "
+    "nominal yield stress, and more so in an impact: give a foundation the moment of the strongest post."
+)
 
 _ACTS = "On {elements} a load still acts when the run ends: it is taken as zero from there on."
 _ALONG = "On {elements} the force along the line is greater than that across it, which the table has."
@@ -58,8 +61,8 @@ def barrier_caution(barrier: Barrier) -> list[str]:
     """Return what holds for all runs at a barrier."""
     if barrier.stands_free() is not None:
         kind = _FREE
-    elif any(getattr(barrier, name, None) is not None for name in ("foundation", "wall_thickness")):
-        kind = _MOVING
+    elif barrier.core.posts:
+        kind = _YIELDING
     else:
         kind = _FIXED
     return ["Computed, not tested: check it against a test or a code of practice.", kind, _ONE_BODY]

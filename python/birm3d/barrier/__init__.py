@@ -4,5 +4,6 @@ from __future__ import annotations
 
 from .base import Barrier
 from .free_standing import FreeStanding
+from .yielding import Foundation
 
-__all__ = ["Barrier", "FreeStanding"]
+__all__ = ["Barrier", "Foundation", "FreeStanding"]

@@ -105,13 +105,14 @@ class Barrier(BarrierMakers):
     @cached_property
     def core(self) -> _core.Barrier:
         """The same barrier for the core."""
-        free = self.stands_free()
+        free, posts = self.stands_free(), self.yields()
         return _core.Barrier(
             elements=self.elements(),
             friction=self.friction,
             origin=np.asarray(self.origin, float),
             heading=math.radians(self.heading),
             free_standing=[] if free is None else [free],
+            yielding=[] if posts is None else [posts],
         )
 
     @cached_property
@@ -123,6 +124,14 @@ class Barrier(BarrierMakers):
     def stands_free(self) -> _core.FreeStanding | None:
         """Return how its elements stand free, for the core; ``None`` where they are fixed."""
         return None
+
+    def yields(self) -> _core.YieldingPosts | None:
+        """Return how its posts yield, for the core; ``None`` where they are rigid."""
+        return None
+
+    def turning_points(self) -> list[npt.NDArray[np.float64]]:
+        """Return the points about which its posts turn if they yield, world axes, each (3,) [m]."""
+        return []
 
     def load_front(self) -> Front | None:
         """Return the front on which a load map of the barrier stands; ``None`` where it has none."""

@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 __all__ = ["SeenPart", "Size", "height_text", "length_text", "segments_text"]
 
-_KEY_ENDINGS: Mapping[str, str] = MappingProxyType({"length": "_m", "density": "_kg_m3"})
+_KEY_ENDINGS: Mapping[str, str] = MappingProxyType({"length": "_m", "density": "_kg_m3", "pressure": "_Pa"})
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,8 @@ class Size:
     name
         Argument of ``Barrier.<kind>()``.
     quantity
-        ``"length"``, ``"density"``, ``"count"``, ``"flag"`` (the option says yes), or ``"choice"``.
+        ``"length"``, ``"density"``, ``"pressure"``, ``"count"``, ``"flag"`` (the option says yes),
+        ``"choice"``, or ``"foundation"`` (a table of scene files, no option).
     hint
         What ``--help`` says beside the kinds that have it.
     choices
@@ -41,7 +42,7 @@ class Size:
     @property
     def unit(self) -> str:
         """In SI; "" for what is no quantity."""
-        return {"length": "m", "density": "kg/m^3"}.get(self.quantity, "")
+        return {"length": "m", "density": "kg/m^3", "pressure": "Pa"}.get(self.quantity, "")
 
 
 @dataclass(frozen=True)

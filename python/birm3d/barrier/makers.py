@@ -13,6 +13,7 @@ from ..base.arguments import checked
 from ..unit_check import given, warn_if_mesh_unusual
 from ..units import Quantity, si
 from .free_standing import FreeStanding
+from .yielding import Foundation
 
 if TYPE_CHECKING:
     from .kinds import Bollards, Jersey, MeshBarrier, Planter, Pole, RigidWall
@@ -117,11 +118,19 @@ class BarrierMakers:
         rows: int = 1,
         row_spacing: Quantity = 1.2,
         row_offset: Quantity = 0.0,
+        wall_thickness: Quantity | None = None,
+        yield_stress: Quantity = 355e6,
+        filling: str | float | None = None,
+        foundation: Foundation | None = None,
         friction: float = 0.2,
         origin: Sequence[Quantity] = (0.0, 0.0, 0.0),
         heading: Quantity = 0.0,
     ) -> Bollards:
-        """Return rigid bollards in one or more rows along the barrier's line.
+        """Return bollards in one or more rows along the barrier's line: rigid, or steel tubes that yield.
+
+        A tube that yields stands still until the moment at its foot exceeds the plastic one of its section.
+        Then it tilts about its foot, and the moment resists at any tilt (rigid, perfectly plastic). It does
+        not spring back, buckle or tear.
 
         Parameters
         ----------
@@ -135,6 +144,17 @@ class BarrierMakers:
             Further rows stand behind the first, this far from axis to axis [m]; more than the diameter.
         row_offset
             By which each row is shifted along the line from the one before it [m].
+        wall_thickness
+            Of a steel tube that yields [m]; half of the diameter is a solid bar. ``None``: rigid posts.
+        yield_stress
+            Of the steel [Pa]. The default is the nominal one of S355; steel as delivered has 1.1 to 1.3 times
+            that, and more in an impact.
+        filling
+            Of the tube: ``"concrete"`` (30 MPa), a compressive strength [Pa], or ``None``: it is empty. An
+            empty tube may buckle at its foot before it has its plastic moment.
+        foundation
+            What holds the tube in the ground, see :class:`birm3d.Foundation`; the weaker of the two gives
+            way. ``None``: the ground does not yield.
         friction, origin, heading
             See :class:`Barrier`.
 
@@ -154,6 +174,12 @@ class BarrierMakers:
             rows=rows,
             row_spacing=given("row_spacing", row_spacing),
             row_offset=given("row_offset", row_offset),
+            wall_thickness=None if wall_thickness is None else given("wall_thickness", wall_thickness),
+            yield_stress=given("yield_stress", yield_stress),
+            filling=filling
+            if filling is None or filling == "concrete"
+            else si("filling", filling, "pressure"),
+            foundation=foundation,
         )
 
     @staticmethod

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
+import numpy.typing as npt
 
 from .. import _core
 from ..base.checks import MOST_ELEMENTS
@@ -16,6 +18,7 @@ from .blocks import numbered, positive, positive_and_finite
 from .description import SeenPart, Size, height_text
 from .fronts import PostFront, axes_of
 from .surfaces import cylinder
+from .yielding import CONCRETE_STRENGTH, Foundation, Tube, weaker_of
 
 __all__ = ["Bollards", "Pole"]
 
@@ -82,6 +85,10 @@ class Bollards(Barrier):
     rows: int = 1
     row_spacing: float = 1.2
     row_offset: float = 0.0
+    wall_thickness: float | None = None
+    yield_stress: float = 355e6
+    filling: str | float | None = None
+    foundation: Foundation | None = None
 
     _counts: ClassVar = ("count", "rows")
     title: ClassVar = "bollards"
@@ -93,6 +100,10 @@ class Bollards(Barrier):
         Size("rows", "count"),
         Size("row_spacing", hint="from row to row, axis to axis"),
         Size("row_offset", hint="shift of each row from the one before it"),
+        Size("wall_thickness", hint="of a steel tube that yields; rigid without it"),
+        Size("yield_stress", "pressure", "of the steel"),
+        Size("filling", "choice", "of the tube", choices=("concrete",)),
+        Size("foundation", "foundation", "what it resists"),
     )
     has_posts: ClassVar = True
     is_bottomless: ClassVar = True
@@ -113,15 +124,64 @@ class Bollards(Barrier):
                 )
         if not math.isfinite(self.row_offset):
             raise ValueError(f"row_offset must be finite, got {self.row_offset}")
+        depth = 0.0 if self._weaker is None else self._weaker[1]
         return [
             _core.Element.post(
                 radius=0.5 * self.diameter,
-                height=self.height,
-                position=self.from_origin(across, along),
+                height=self.height + depth,
+                position=self.from_origin(across, along) - np.array([0.0, 0.0, depth]),
                 heading=math.radians(self.heading),
             )
             for across, along in self.places()
         ]
+
+    @cached_property
+    def tube(self) -> Tube | None:
+        """The section of posts that yield; ``None`` of rigid ones."""
+        if self.wall_thickness is None:
+            return None
+        if not 0.0 < self.wall_thickness <= 0.5 * self.diameter:
+            raise ValueError(
+                f"wall_thickness must be > 0 and at most half the diameter ({0.5 * self.diameter:g} m), "
+                f"got {self.wall_thickness}"
+            )
+        positive_and_finite("yield_stress", self.yield_stress)
+        strength = 0.0
+        if isinstance(self.filling, str):
+            if self.filling != "concrete":
+                raise ValueError(
+                    f"filling must be 'concrete', its strength (Pa) or None, got {self.filling!r}"
+                )
+            strength = CONCRETE_STRENGTH
+        elif self.filling is not None:
+            strength = self.filling
+            positive_and_finite("filling", strength)
+        return Tube(self.diameter, self.wall_thickness, self.yield_stress, strength)
+
+    @cached_property
+    def _weaker(self) -> tuple[_core.YieldingPosts, float] | None:
+        """What gives way, and the depth of the point about which the posts turn [m]."""
+        if self.tube is None:
+            for name in ("filling", "foundation"):
+                if getattr(self, name) is not None:
+                    raise ValueError(
+                        f"{name} must be None where no wall_thickness is given (the posts are rigid), "
+                        f"got {getattr(self, name)!r}"
+                    )
+            return None
+        if not math.isfinite(self.height):
+            raise ValueError(f"height must be finite where posts yield, got {self.height}")
+        return weaker_of(self.tube, self.height, self.foundation)
+
+    def yields(self) -> _core.YieldingPosts | None:
+        """Return what gives way of posts that yield."""
+        return None if self._weaker is None else self._weaker[0]
+
+    def turning_points(self) -> list[npt.NDArray[np.float64]]:
+        """Return the feet of posts that yield, or the points below that their foundations turn about."""
+        if self._weaker is None:
+            return []
+        return [self.place(*place) - np.array([0.0, 0.0, self._weaker[1]]) for place in self.places()]
 
     def places(self) -> list[tuple[float, float]]:
         """Return the axes of the bollards across and along the line [m], see :meth:`Barrier.place`."""
@@ -151,6 +211,12 @@ class Bollards(Barrier):
         text += f", {height_text(self.height)}"
         if self.count > 1:
             text += f", {self.spacing:g} m between axes ({self.spacing - self.diameter:.3g} m clear)"
+        if self.wall_thickness is not None and self._weaker is not None:
+            text += f", steel {1e3 * self.wall_thickness:.3g} mm"
+            text += "" if self.filling is None else ", filled with concrete"
+            moment, depth = self.core.posts[0].plastic_moment, self._weaker[1]
+            at = "at the foot" if depth == 0.0 else f"about a point {depth:.2g} m below the ground"
+            text += f", yields at {moment / 1e3:.3g} kN m {at}"
         return text + (f", rows {self.row_spacing:g} m apart (axis to axis)" if self.rows > 1 else "")
 
     def load_front(self) -> PostFront:

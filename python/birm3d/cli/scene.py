@@ -52,6 +52,7 @@ _TYPES: dict[str, Any] = {
     "count": int,
     "length": QuantityOption("length"),
     "density": QuantityOption("density"),
+    "pressure": QuantityOption("pressure"),
 }
 
 
@@ -59,6 +60,8 @@ def _size_options() -> Iterator[Callable[[Command], Command]]:
     """Yield the options of all sizes that kinds of barriers have."""
     sizes = {size.name: size for kind in KINDS.values() for size in kind.sizes}
     for name, size in sizes.items():
+        if size.quantity == "foundation":  # several numbers: of scene files
+            continue
         titles = [kind.title for kind in KINDS.values() if any(other.name == name for other in kind.sizes)]
         hints = dict.fromkeys(
             other.hint for kind in KINDS.values() for other in kind.sizes if other.name == name and other.hint
@@ -205,7 +208,7 @@ def barrier_of(options: dict[str, Any]) -> Barrier | None:
     kind = options["barrier"]
     names_of = {name: [size.name for size in made.sizes] for name, made in KINDS.items()}
     known = dict.fromkeys(name for names in names_of.values() for name in names)
-    sizes = {name: options[name] for name in known if options[name] is not None}
+    sizes = {name: options[name] for name in known if options.get(name) is not None}
     for name in sizes:
         if name not in names_of.get(kind, ()):
             kinds = " or ".join(other for other, names in names_of.items() if name in names)

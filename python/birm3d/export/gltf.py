@@ -102,17 +102,17 @@ def _unit(writer: GltfWriter, root: int, time: int, name: str, shape: UnitShape,
 
 def _barrier(writer: GltfWriter, root: int, time: int, run: Instants) -> None:
     """Add the elements of the barrier, each with its foot as the origin."""
+    from scipy.spatial.transform import Rotation
+
     for element, (corners, faces) in enumerate(run.surfaces):
-        free = element < run.shift.shape[1]
-        foot = np.append(run.foot[element], 0.0) if free else np.zeros(3)
+        moves = element < run.motion.movable
+        foot = run.motion.foot[element] if moves else np.zeros(3)
         mesh = writer.mesh(f"barrier {element + 1}", corners - foot, faces, _BARRIER)
         node = writer.node(f"barrier {element + 1}", parent=root, mesh=mesh, translation=foot)
-        if free:
-            half = 0.5 * run.yaw[:, element]
-            none = np.zeros_like(half)
-            shift = np.column_stack([run.shift[:, element], none])
-            writer.animate(node, "translation", time, foot + shift)
-            writer.animate(node, "rotation", time, np.stack([none, none, np.sin(half), np.cos(half)], axis=1))
+        if moves:
+            turn = Rotation.from_matrix(run.motion.turn[:, element]).as_quat()
+            writer.animate(node, "translation", time, foot + run.motion.shift[:, element])
+            writer.animate(node, "rotation", time, _continuous(turn))
 
 
 def _triangles(quads: Ints) -> tuple[Ints, Ints]:

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from ..barrier.base import Surface
 from ..barrier.surfaces import barrier_surfaces
+from ..result.element_motion import ElementMotion, element_motion
 from ..result.frames import frame_times
 from ..result.skin import Skin, skins_at
 from ..vehicle.unit_shapes import UnitShape, unit_shapes
@@ -34,31 +35,19 @@ class Instants(NamedTuple):
         For each instant the skin of each unit, nodes as in `shapes`.
     surfaces
         Elements of the barrier where they stood at first: corners (n, 3) [m], triangles (m, 3).
-    shift, yaw
-        Of the first elements, those that stand free: from where they stood, shape (k, e, 2) [m], and about
-        the upright axis there, (k, e) [rad].
-    foot
-        Where these stood, shape (e, 2) [m].
+    motion
+        Of the elements that move.
     """
 
     time: Floats
     shapes: tuple[UnitShape, ...]
     skins: list[tuple[Skin, ...]]
     surfaces: list[Surface]
-    shift: Floats
-    yaw: Floats
-    foot: Floats
+    motion: ElementMotion
 
     def surface_at(self, k: int, element: int) -> Floats:
         """Return the corners of an element of the barrier at an instant, shape (n, 3) [m]."""
-        corners = self.surfaces[element][0]
-        if element >= self.shift.shape[1]:
-            return corners
-        c, s = np.cos(self.yaw[k, element]), np.sin(self.yaw[k, element])
-        foot = self.foot[element]
-        moved = np.array(corners, float)
-        moved[:, :2] = (corners[:, :2] - foot) @ np.array([[c, s], [-s, c]]) + foot + self.shift[k, element]
-        return moved
+        return self.motion.moved(k, element, self.surfaces[element][0])
 
 
 def instants_of(result: Result, frames: int) -> Instants:
@@ -73,21 +62,12 @@ def instants_of(result: Result, frames: int) -> Instants:
     skins = skins_at(result, time)
     shapes = unit_shapes(result.scene.vehicle)
     world = np.vstack([skin.world for units in skins for skin in units])
-    place = result.segment_position
-    parts = range(place.shape[1])
-    at = [[np.interp(time, result.time, place[:, i, axis]) for axis in (0, 1)] for i in parts]
-    yaw = [np.radians(np.interp(time, result.time, result.segment_yaw[:, i])) for i in parts]
-    now = np.array(at, float).reshape(len(parts), 2, len(time)).transpose(2, 0, 1)
-    foot = np.array(place[0, :, :2], float).reshape(-1, 2)
-    angle = np.array(yaw, float).reshape(len(parts), len(time)).T
     return Instants(
         time=time,
         shapes=shapes,
         skins=skins,
         surfaces=barrier_surfaces(result.scene.barrier, world),
-        shift=now - foot,
-        yaw=angle - angle[:1],
-        foot=foot,
+        motion=element_motion(result, time),
     )
 
 

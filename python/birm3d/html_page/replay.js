@@ -215,12 +215,13 @@ function makeReplay(box, data) {
     gl.bufferSubData(gl.ARRAY_BUFFER, 0, unit.crush);
     unit.pose = poseOf(mixed(unit.rotation[i], unit.rotation[j], share), mixed(unit.center[i], unit.center[j], share));
   }
-  function poseOfSegment(part, [i, j, share]) {
+  // Of an element of the barrier that moves: p -> turn (p - foot) + foot + shift. The turn is stored row by row.
+  function poseOfElement(part, [i, j, share]) {
     if (!part.foot) return still;
-    const [x, y] = mixed(part.foot[i], part.foot[j], share);
-    const yaw = part.yaw[i] + share * (part.yaw[j] - part.yaw[i]);
-    const c = Math.cos(yaw), s = Math.sin(yaw), [x0, y0] = part.foot[0];
-    return Float32Array.of(c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, x - c * x0 + s * y0, y - s * x0 - c * y0, 0, 1);
+    const t = mixed(part.turn[i], part.turn[j], share), shift = mixed(part.shift[i], part.shift[j], share);
+    const at = part.foot.map((x, a) => x + shift[a] - t[3 * a] * part.foot[0] - t[3 * a + 1] * part.foot[1]
+      - t[3 * a + 2] * part.foot[2]);
+    return Float32Array.of(t[0], t[3], t[6], 0, t[1], t[4], t[7], 0, t[2], t[5], t[8], 0, ...at, 1);
   }
 
   // ---- camera --------------------------------------------------------------------------------------------
@@ -282,7 +283,7 @@ function makeReplay(box, data) {
       gl.depthMask(false);
     }
     for (const part of barrier) {
-      draw(part.mesh, poseOfSegment(part, now), "#b9b4aa", { alpha: seeThrough ? 0.3 : 1 });
+      draw(part.mesh, poseOfElement(part, now), "#b9b4aa", { alpha: seeThrough ? 0.3 : 1 });
     }
     gl.depthMask(true);
   }

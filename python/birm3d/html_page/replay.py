@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from ..barrier.surfaces import barrier_axes, barrier_surfaces
 from ..result.crushed_side import crushed_direction
+from ..result.element_motion import element_motion
 from ..result.skin import Skin, skins_at
 from ..vehicle.unit_shapes import UnitShape, unit_shapes
 
@@ -129,18 +130,18 @@ def _unit(shape: UnitShape, skins: list[Skin]) -> dict[str, Any]:
 
 
 def _barrier(result: Result, times: Floats, world: Floats) -> list[dict[str, Any]]:
-    """Return the surfaces of the barrier; free-standing segments with where they are over time."""
+    """Return the surfaces of the barrier; elements that move with where they are over time."""
     parts: list[dict[str, Any]] = []
+    motion = element_motion(result, times)
     for i, (vertices, faces) in enumerate(barrier_surfaces(result.scene.barrier, world)):
         part: dict[str, Any] = {
             "vertices": _text(np.asarray(vertices, "<f4")),  # they may be further off than 16 bits reach
             "faces": _text(faces.astype("<u4")),
         }
-        if i < result.segment_position.shape[1]:
-            place = result.segment_position[:, i]
-            foot = [np.interp(times, result.time, place[:, axis]) for axis in (0, 1)]
-            yaw = np.radians(np.interp(times, result.time, result.segment_yaw[:, i]))
-            part |= {"foot": np.round(np.transpose(foot), 4).tolist(), "yaw": np.round(yaw, 6).tolist()}
+        if i < motion.movable:
+            part["foot"] = np.round(motion.foot[i], 4).tolist()
+            part["shift"] = np.round(motion.shift[:, i], 4).tolist()
+            part["turn"] = np.round(motion.turn[:, i].reshape(-1, 9), 6).tolist()
         parts.append(part)
     return parts
 

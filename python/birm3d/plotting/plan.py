@@ -14,6 +14,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
+from ..barrier.surfaces import barrier_surfaces
+from ..result.element_motion import element_motion
 from ..result.event import outcome_words
 from ..result.segment_motion import base_corners
 from ..result.skin import Skin, skins_at
@@ -37,6 +39,7 @@ _HEIGHTS = (3.4, 9.0)
 _FLAT = 2.6  # below this height of a panel, inches, its label takes two lines
 # Exit box of EN 1317-2 and MASH: depth A = a + width + 0.16 length over a length B. Cars (MASH: and pickups),
 # here up to 3.5 t, have a = 2.2 m and B = 10 m; heavier vehicles a = 4.4 m and B = 20 m.
+_STILL = 1e-3  # least movement of a post that is drawn (m)
 _CAR = 3500.0
 
 
@@ -183,6 +186,22 @@ def draw_barrier(axes: Axes, view: PlanAxes, world: Floats, drawn: list[Floats],
         axes.add_collection(
             PolyCollection(list(flat[faces]), fc="0.75", ec="0.75", lw=0.6, label=label, zorder=1.5)
         )
+        drawn.append(flat)
+    _draw_tilted(axes, view, world, drawn, result)
+
+
+def _draw_tilted(axes: Axes, view: PlanAxes, world: Floats, drawn: list[Floats], result: Result) -> None:
+    """Draw posts that yielded as they ended."""
+    motion = element_motion(result, result.time[-1:])
+    surfaces = barrier_surfaces(result.scene.barrier, world)
+    label = "tilted posts at the end"
+    for element, (corners, faces) in enumerate(surfaces[: motion.movable]):
+        moved = motion.moved(0, element, corners)
+        if np.abs(moved - corners).max() < _STILL:
+            continue
+        flat = view.plan(moved)
+        axes.add_collection(PolyCollection(list(flat[faces]), fc="0.55", ec="0.55", label=label, zorder=1.6))
+        label = "_"
         drawn.append(flat)
 
 

@@ -16,6 +16,7 @@ from .. import units
 from ..barrier.surfaces import Surface, barrier_axes, barrier_surfaces
 from ..plotting.style import title
 from ..result.crushed_side import crushed_direction
+from ..result.element_motion import element_motion
 from ..result.skin import Skin, skins_at
 from ..vehicle.unit_shapes import unit_shapes
 from .camera import Camera, View, check_view, driver_camera, outside_camera
@@ -110,8 +111,12 @@ class Stage:
         surfaces = barrier_surfaces(self._result.scene.barrier, around)
         self._posts = _posts_near(self._result.scene.barrier, surfaces, around)
         opacity = _SEEN_THROUGH if self._is_behind() else 1.0
-        for vertices, faces in surfaces:
+        self._motion = element_motion(self._result, self.times)
+        self._moving: list[tuple[Any, Any]] = []  # surfaces of elements that move, and their first corners
+        for element, (vertices, faces) in enumerate(surfaces):
             surface = pv.PolyData(vertices, polygons(faces))
+            if element < self._motion.movable:
+                self._moving.append((surface, vertices))
             look = {"show_edges": False, "smooth_shading": False, "ambient": 0.3, "opacity": opacity}
             plotter.add_mesh(surface, color=_BARRIER, **look)
         low, high = np.floor(around.min(axis=0) - _AROUND), np.ceil(around.max(axis=0) + _AROUND)
@@ -148,6 +153,8 @@ class Stage:
         """Show the instant ``times[k]``."""
         for part, skin in zip(self._parts, self._skins[k], strict=True):
             part.move(skin)
+        for element, (surface, corners) in enumerate(self._moving):
+            surface.points = self._motion.moved(k, element, corners)
         time = float(self.times[k])
         speed = float(
             np.linalg.norm([np.interp(time, self._result.time, v) for v in self._result.velocity.T])

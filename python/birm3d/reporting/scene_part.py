@@ -69,7 +69,12 @@ def _barrier_rows(case: Case) -> Iterator[tuple[str, str]]:
     barrier = case.result.scene.barrier
     if barrier is None:
         return
-    stands = "free-standing segments" if len(barrier.core.segments) else "fixed: it does not move"
+    stands = "fixed: it does not move"
+    if barrier.core.segments:
+        stands = "free-standing segments"
+    elif barrier.core.posts:
+        moment = barrier.core.posts[0].plastic_moment
+        stands = f"posts that yield at a moment of {moment / 1e3:.3g} kN m at the point about which they turn"
     yield "barrier stands", stands
     yield "friction of vehicle on barrier", f"{barrier.friction:g}"
     if any(barrier.origin) or barrier.heading:

@@ -53,8 +53,8 @@ class Metric(NamedTuple):
     value
         Makes it of a run; ``None``: the run does not have it.
     of
-        What a run must have: nothing ("run"), a "barrier", "segments" that stand free, a "joint", or one of
-        kind "sliding".
+        What a run must have: nothing ("run"), a "barrier", or one of
+        :data:`birm3d.result.run_values.PARTS`.
     error
         "answer": it has an error; "balance": it is one itself; "effort": it says how an answer was found.
     shown
@@ -66,7 +66,7 @@ class Metric(NamedTuple):
     meaning: str
     needs: str
     value: Callable[[RunValues], float | None]
-    of: Literal["run", "barrier", "segments", "joint", "sliding"] = "barrier"
+    of: Literal["run", "barrier", "segments", "posts", "moving", "joint", "sliding"] = "barrier"
     error: Literal["answer", "balance", "effort"] = "answer"
     shown: Shown | None = None
 
@@ -190,16 +190,27 @@ METRICS: Mapping[str, Metric] = MappingProxyType(
         "barrier_deflection": Metric(
             "m",
             "barrier",
-            "how far the furthest corner of any segment's base moved square to the line, away from traffic",
+            "how far the furthest corner of any segment's base, or the top of any post that yields, moved "
+            "square to the line, away from traffic",
             "segments",
             lambda run: run.extremes.segments.deflection,
-            "segments",
+            "moving",
             shown=_metres("deflection of the barrier", headline=True),
         ),
         "residual_barrier_deflection": Metric(
             *("m", "barrier", "the same at the end of the run", "segments"),
-            *(lambda run: run.extremes.segments.residual_deflection, "segments"),
+            *(lambda run: run.extremes.segments.residual_deflection, "moving"),
             shown=_metres("deflection of the barrier that stays"),
+        ),
+        "post_tilt": Metric(
+            *("deg", "barrier", "greatest tilt of any post that yields, from the vertical", "segments"),
+            *(lambda run: math.degrees(run.extremes.segments.tilt), "posts"),
+            shown=Shown("tilt of a post", ".1f", "deg"),
+        ),
+        "residual_post_tilt": Metric(
+            *("deg", "barrier", "the same at the end of the run", "segments"),
+            *(lambda run: math.degrees(run.extremes.segments.residual_tilt), "posts"),
+            shown=Shown("tilt of a post that stays", ".1f", "deg"),
         ),
         "max_overturning_ratio": Metric(
             "",

@@ -118,10 +118,6 @@ def _functions(names: tuple[str, ...], with_barrier: bool) -> tuple[tuple[str, _
 def _guarded(metric: Metric) -> _Function:
     """Return the function of a metric, ``None`` of a run that can not have it."""
     value = metric.value
-    if metric.of == "segments":
-        return lambda run: value(run) if run.segments else None
-    if metric.of == "joint":
-        return lambda run: value(run) if run.joined else None
-    if metric.of == "sliding":
-        return lambda run: value(run) if run.slides else None
-    return value
+    if metric.of in ("run", "barrier"):
+        return value
+    return lambda run: value(run) if metric.of in run.parts else None

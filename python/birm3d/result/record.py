@@ -196,6 +196,29 @@ class RunRecord:
         """Of each free-standing segment, shape (n, k) [deg/s]."""
         return read_only(np.degrees(self._of_segments("segment_yaw_rate", ())))
 
+    @property
+    def _posts(self) -> int:
+        """How many posts that yield the barrier has."""
+        barrier = self.scene.barrier
+        return 0 if barrier is None else len(barrier.core.posts)
+
+    @property
+    def post_axis(self) -> Floats:
+        """Unit vectors from the foot to the top of each post that yields, world axes, shape (n, k, 3).
+
+        Posts are those of ``scene.barrier.element_names``; k is 0 where the barrier is rigid.
+        """
+        if self._posts == 0:
+            return read_only(np.zeros((len(self.time), 0, 3)))
+        values: Floats = self._history.post_axis
+        return values
+
+    @cached_property
+    def post_tilt(self) -> Floats:
+        """Angle of each post that yields to the vertical, shape (n, k) [deg]."""
+        axis = self.post_axis
+        return read_only(np.degrees(np.arctan2(np.hypot(axis[..., 0], axis[..., 1]), axis[..., 2])))
+
     def _of_segments(self, name: str, more: tuple[int, ...]) -> Floats:
         if self._segments == 0:  # files of earlier versions have none
             return read_only(np.zeros((len(self.time), 0, *more)))
@@ -284,7 +307,7 @@ class RunRecord:
         Where units or segments are joined also ``joints``: the work of joint forces in the held directions.
         It is zero up to the error of the steps, and is separate so that this error is not mistaken for a
         loss. The loss at the stops of a fifth wheel is in ``impacts``. Where a load bed can slide also
-        ``sliding``, what that lost.
+        ``sliding``, what that lost. Where posts yield also ``yielding``, the work of their plastic moments.
         """
         terms = {name: getattr(self._history, name) for name in _ENERGIES}
         if self._segments:
@@ -295,6 +318,8 @@ class RunRecord:
             terms["suspension"] = self._history.suspension
         if self.scene.vehicle.slides:
             terms["sliding"] = self._history.sliding
+        if self._posts:
+            terms["yielding"] = self._history.yielding
         total = np.sum(list(terms.values()), axis=0)
         return FrozenMapping({**terms, "total": read_only(total), "residual": read_only(total - total[0])})
 

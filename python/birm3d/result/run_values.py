@@ -13,10 +13,12 @@ from .stored import Stored
 
 __all__ = [
     "ALONG_LINE",
+    "PARTS",
     "ResultOutcome",
     "RunValues",
     "Vector",
     "energy_residual",
+    "parts_of",
     "relative_to_start",
     "share_of_start",
 ]
@@ -27,6 +29,27 @@ ALONG_LINE = _core.along_line
 """Below this sine of its angle a path runs along the barrier's line."""
 # Residuals of a vehicle that stands are judged against the energy it has at this speed, m/s.
 _STANDSTILL = 0.1
+
+
+PARTS = ("segments", "posts", "moving", "joint", "sliding")
+"""What only some scenes have, and some metrics need.
+
+Free-standing segments, posts that yield, one of these, a joint between two units, and one of the kind
+"sliding".
+"""
+
+
+def parts_of(scene: Scene) -> frozenset[str]:
+    """Return which of :data:`PARTS` a scene has."""
+    barrier, vehicle = scene.barrier, scene.vehicle
+    found = {"joint"} if vehicle.joint is not None else set()
+    if vehicle.slides:
+        found.add("sliding")
+    if barrier is not None and barrier.core.segments:
+        found |= {"segments", "moving"}
+    if barrier is not None and barrier.core.posts:
+        found |= {"posts", "moving"}
+    return frozenset(found)
 
 
 class ResultOutcome:
@@ -72,20 +95,10 @@ class RunValues:
         self.barrier = scene.barrier
         vars(self).update(self.extremes.groups)
 
-    @property
-    def joined(self) -> bool:
-        """Whether the vehicle has two units."""
-        return self.scene.vehicle.joint is not None
-
-    @property
-    def slides(self) -> bool:
-        """Whether one of the vehicle's units is a load bed that can slide."""
-        return self.scene.vehicle.slides
-
     @cached_property
-    def segments(self) -> bool:
-        """Whether the barrier stands free."""
-        return self.barrier is not None and bool(self.barrier.core.segments)
+    def parts(self) -> frozenset[str]:
+        """Which of :data:`PARTS` the scene has."""
+        return parts_of(self.scene)
 
     @property
     def along(self) -> bool:

@@ -26,6 +26,7 @@ def _classes() -> Mapping[str, type[Any]]:
     """Return the classes that scenes are made of by the names they have in files."""
     from ..barrier.free_standing import FreeStanding
     from ..barrier.kinds import KINDS, MeshBarrier
+    from ..barrier.yielding import Foundation
     from ..vehicle.joint import Joint
     from ..vehicle.mesher import ExteriorMesh
     from ..vehicle.vehicle import ArticulatedVehicle, Vehicle, Zone
@@ -36,7 +37,7 @@ def _classes() -> Mapping[str, type[Any]]:
     known: tuple[type[Any], ...] = (
         *(ArticulatedVehicle, Joint, Vehicle, VehicleFile, ExteriorMesh, Zone),
         *KINDS.values(),
-        *(MeshBarrier, FreeStanding),
+        *(MeshBarrier, FreeStanding, Foundation),
         *(Scene, Settings),
     )
     return {kind.__name__: kind for kind in known}

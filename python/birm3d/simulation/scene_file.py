@@ -12,6 +12,7 @@ from .. import units
 from ..barrier.base import Barrier
 from ..barrier.free_standing import FreeStanding
 from ..barrier.kinds import KINDS
+from ..barrier.yielding import Foundation
 from ..io.file_format import reads
 from ..io.toml import Document, DocumentError, Strict, frozen, reject
 from ..scene.settings import Settings
@@ -59,6 +60,18 @@ class _FreeStanding(Strict):
         )
 
 
+class _Foundation(Strict):
+    """The table ``foundation`` of bollards that yield; see :class:`birm3d.Foundation`."""
+
+    moment_N_m: float  # noqa: N815  (unit)
+    depth_m: float = 0.0
+    mass_kg: float = 0.0
+
+    def made(self) -> Foundation:
+        """Return what holds the posts."""
+        return Foundation(self.moment_N_m, self.depth_m, self.mass_kg)
+
+
 class _Placed(Strict):
     """What every kind of barrier has; the sizes of the kinds are added below."""
 
@@ -91,7 +104,7 @@ class _Placed(Strict):
             if key in self.model_fields_set
         }
         for argument, value in given.items():
-            if isinstance(value, _FreeStanding):
+            if isinstance(value, (_FreeStanding, _Foundation)):
                 given[argument] = value.made()
         barrier: Barrier = getattr(Barrier, self.kind)(
             friction=self.friction, origin=self.origin_m, heading=self.heading_deg, **given
@@ -103,9 +116,12 @@ _SIZES = {size.key: size for kind in KINDS.values() for size in kind.sizes}
 _OF_QUANTITY: dict[str, Any] = {
     "length": float | None,
     "density": float | None,
+    "pressure": float | None,
     "count": int | None,
     "flag": bool | _FreeStanding,
-    "choice": str | tuple[tuple[float, float], ...] | None,  # a profile may be points too
+    # A profile may be points too, and a filling its strength.
+    "choice": str | float | tuple[tuple[float, float], ...] | None,
+    "foundation": _Foundation | None,
 }
 _FIELDS: dict[str, Any] = {
     key: (_OF_QUANTITY[size.quantity], False if size.quantity == "flag" else None)

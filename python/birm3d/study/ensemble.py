@@ -9,6 +9,7 @@ from ..base.arguments import checked
 from ..base.complaints import Complaints
 from ..base.progress import progress_bar
 from ..result.metrics import METRIC_UNITS
+from ..result.run_values import PARTS
 from ..simulation.simulation import Simulation
 from .runner import StudyInterrupted, StudyStoppedError, checked_metrics
 from .table import Study
@@ -74,7 +75,7 @@ def ensemble(
     from .executors import ExecutorError, run_all
     from .outcome_table import OutcomeTable
 
-    wanted = checked_metrics(metrics, joined=True, free=True, slides=True)
+    wanted = checked_metrics(metrics, PARTS)
     units = {name: METRIC_UNITS[name] for name in wanted}
     total = len(simulations) if isinstance(simulations, Sized) else None
     outcomes = OutcomeTable(len(wanted), total)

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..result.metrics import METRIC_UNITS
 from ..result.result import Result
+from ..result.run_values import parts_of
 from ..simulation.parameters import varied_scene
 from ..simulation.simulation import Simulation
 from .float_rows import FloatRows
@@ -48,8 +49,7 @@ def predict_and_look(
     """
     columns = drawn_parameters(simulation, check_draws("n", n))
     scene, rows = simulation.scene, np.column_stack(list(columns.values()))
-    free = scene.barrier is not None and bool(scene.barrier.core.segments)
-    wanted = checked_metrics(None, scene.vehicle.joint is not None, free, scene.vehicle.slides)
+    wanted = checked_metrics(None, parts_of(scene))
     scenes = [varied_scene(scene, dict(zip(columns, map(float, row), strict=True))) for row in rows]
     outcomes = OutcomeTable(len(wanted), len(rows))
     found: dict[int, Found] = {}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
@@ -17,6 +17,7 @@ from ..base.checks import is_number
 from ..base.complaints import Complaints
 from ..base.progress import progress_bar
 from ..result.metrics import METRIC_UNITS, METRICS
+from ..result.run_values import PARTS, parts_of
 from ..simulation.parameters import value_of, varied
 from ..simulation.simulation import Simulation
 from .float_rows import FloatRows
@@ -137,13 +138,12 @@ def run_study(
     from .store import RunStore, StoreError
 
     names = tuple(names)
-    vehicle = simulation.scene.vehicle
-    any_vehicle = "vehicle" in names
-    joined = vehicle.joint is not None or any_vehicle
-    slides = vehicle.slides or any_vehicle
-    barrier = simulation.scene.barrier
-    free = (barrier is not None and bool(barrier.core.segments)) or "barrier" in names
-    wanted = checked_metrics(metrics, joined, free, slides)
+    parts = set(parts_of(simulation.scene))
+    if "vehicle" in names:
+        parts |= {"joint", "sliding"}
+    if "barrier" in names:
+        parts |= {"segments", "posts", "moving"}
+    wanted = checked_metrics(metrics, parts)
     table: Sequence[tuple[Any, ...]]
     if isinstance(rows, np.ndarray):
         table = FloatRows(np.asarray(rows, float))
@@ -212,10 +212,13 @@ def run_study(
     return study(outcomes, grid=grid)
 
 
-def checked_metrics(metrics: Sequence[str] | None, joined: bool, free: bool, slides: bool) -> tuple[str, ...]:
-    """Return the metrics of a study; those of joints and segments by themselves only where there may be."""
-    absent = {"joint": not joined, "segments": not free, "sliding": not slides}
-    usual = tuple(name for name in _STUDY_METRICS if not absent.get(METRICS[name].of, False))
+def checked_metrics(metrics: Sequence[str] | None, parts: Collection[str]) -> tuple[str, ...]:
+    """Return the metrics of a study; those of joints and segments by themselves only where there may be.
+
+    ``parts``: of :data:`birm3d.result.run_values.PARTS`, those that some run may have.
+    """
+    absent = set(PARTS) - set(parts)
+    usual = tuple(name for name in _STUDY_METRICS if METRICS[name].of not in absent)
     wanted = usual if metrics is None else tuple(dict.fromkeys(metrics))
     if not wanted:
         raise ValueError("metrics must name at least one, got none")

@@ -28,10 +28,12 @@ struct Element {
 };
 
 struct Barrier {
-    // origin, heading: of the line, world. friction: Coulomb coefficient vehicle-barrier. free_standing: absent where it is
-    // fixed; else all elements are prisms, see segment_of(), and pinned ones follow each other end to end along y.
+    // origin, heading: of the line, world. friction: Coulomb coefficient vehicle-barrier. free_standing: absent where it does
+    // not slide; else all elements are prisms, see segment_of(), and pinned ones follow each other end to end along y.
+    // yielding: absent where no post yields; else all elements are posts.
     Barrier(std::vector<Element> elements, double friction, const Vec3& origin, double heading,
-            const std::optional<FreeStanding>& free_standing = {});
+            const std::optional<FreeStanding>& free_standing = {},
+            const std::optional<YieldingPosts>& yielding = {});
 
     // Flat, without end. origin: a point of the traffic face's foot (m). heading: turn of the line about z (rad).
     static Barrier wall(double friction, const Vec3& origin, double heading);
@@ -46,7 +48,8 @@ struct Barrier {
     Vec3 origin;      // m, world
     double heading;   // rad
     std::optional<FreeStanding> free_standing;
-    std::vector<Segment> segments;  // (elements) where they are free-standing
+    std::optional<YieldingPosts> yielding;
+    std::vector<Segment> segments;  // (elements) where they are free-standing or yield; else none
 };
 
 }  // namespace birm3d

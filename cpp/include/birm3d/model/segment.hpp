@@ -1,11 +1,16 @@
-// Free-standing segments of a barrier: solids that slide on the ground.
+// Elements of a barrier that move: free-standing segments slide on the ground, posts that yield tilt about their foot.
 //
-// A segment moves along the ground and turns about the vertical; it neither tips nor leaves the ground. Its mass
-// properties follow from the solid: section area times length times density, of what stands above z = 0.
+// A free-standing segment moves along the ground and turns about the vertical; it neither tips nor leaves the ground.
+// Its mass properties follow from the solid: section area times length times density, of what stands above z = 0.
+//
+// A post that yields turns about its foot, but not about its own axis. The moment that resists is constant and acts
+// against the turning (rigid, perfectly plastic hinge): the post stands still until the load's moment exceeds it.
 #pragma once
 
 #include <array>
+#include <limits>
 
+#include "birm3d/geometry/post.hpp"
 #include "birm3d/geometry/prism.hpp"
 #include "birm3d/model/vehicle.hpp"
 
@@ -22,16 +27,35 @@ struct FreeStanding {
     SegmentJoint joint = SegmentJoint::pinned;
 };
 
+// Posts that yield, all alike.
+struct YieldingPosts {
+    double mass;            // kg
+    double inertia;         // about a horizontal axis through the foot (kg m^2)
+    double plastic_moment;  // at the foot (N m)
+};
+
+// An element that moves. A post that yields has its foot where a segment has its mass centre: the body's inertia is about the
+// foot, and its inverse mass is zero, because the foot stays where it is.
 struct Segment {
-    RigidBody body;              // own axes of the element, origin at the mass centre
-    double mass_center_height;   // above the ground (m)
-    double half_length;          // m
-    double half_base;            // from the middle to the nearer edge of its base (m)
+    RigidBody body;             // own axes of the element, origin at the mass centre
+    double mass_center_height;  // above the ground (m)
+    double reach;        // greatest distance of a moving point from the axis through the mass centre (m)
+    double half_length;  // m
+    double half_base;    // from the middle to the nearer edge of its base (m)
     std::array<Vec3, 4> corner;  // of its base, from the mass centre, own axes (m)
+    double plastic_moment = std::numeric_limits<double>::infinity();  // of a post that yields (N m)
+
+    bool tilts() const { return plastic_moment < std::numeric_limits<double>::infinity(); }
 };
 
 // Refuses a density that is not > 0, and a prism without ends or top or with nothing above z = 0. The mass centre
 // must stand above the origin of the prism, within 1e-9 m.
 Segment segment_of(const Prism& prism, double density);
+
+// Refuses posts without end, and numbers that are not > 0.
+Segment tilting_post(const Post& post, const YieldingPosts& posts);
+
+// Tilt at which a post that yields lies on the ground: it turns no further (rad).
+inline constexpr double lying_tilt = 1.4;
 
 }  // namespace birm3d

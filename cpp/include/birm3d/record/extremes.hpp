@@ -73,11 +73,13 @@ struct Extremes {
         double force = 0.0, force_50ms = 0.0;    // N
         double moment = 0.0, moment_50ms = 0.0;  // N m
     };
-    // Motion and loads of the segments of a free-standing barrier.
+    // Motion and loads of the segments of a free-standing barrier, or of posts that yield.
     struct Segments {
         // Distances by which the furthest corner of any base moved square to the line, away from the traffic (m): the
-        // greatest, and that at the end.
+        // greatest, and that at the end. Of posts that yield: the same of their tops' axes.
         double deflection = 0.0, residual_deflection = 0.0;
+        // Angles of posts that yield to the vertical (rad): the greatest of any, and that at the end.
+        double tilt = 0.0, residual_tilt = 0.0;
         // Greatest of (|M| + F_z b) / (m b) in means over 50 ms (m/s^2). b is half the base and F_z the vertical
         // force on the segment. M is the moment on it about its long axis, less that of its own inertia.
         double overturning = 0.0;

@@ -40,11 +40,12 @@ struct ObstacleHistory {
     std::vector<Vec3> moment;  // about the element's foot (N m)
 };
 
-// A free-standing segment of the barrier.
+// A free-standing segment of the barrier, or a post that yields.
 struct SegmentHistory {
     std::vector<Vec3> position;  // foot of its axis, world (m)
     std::vector<Vec3> velocity;  // mass centre, world (m/s)
     Column yaw, yaw_rate;        // from the start, about the vertical (rad, rad/s)
+    std::vector<Vec3> axis;      // of a post that yields: unit vector from its foot to its top, world
 };
 
 struct JointHistory {
@@ -61,10 +62,10 @@ struct History {
     std::vector<UnitHistory> units;
     std::vector<ObstacleHistory> obstacles;  // of the elements that were touched
     std::vector<JointHistory> joints;
-    std::vector<SegmentHistory> segments;  // of a barrier that is free-standing, in the order of its elements
-    Column kinetic, potential, stored, crushed;                                    // J
+    std::vector<SegmentHistory> segments;        // of a barrier that moves, in the order of its elements
+    Column kinetic, potential, stored, crushed;  // J
     Column barrier_friction, tire_friction, ground_friction, impacts, joint_work;  // J
-    Column segment_friction, suspension, sliding;                                  // J
+    Column segment_friction, suspension, sliding, yielding;                         // J
     double kinetic_at_start = 0.0;                                                 // at the first instant (J)
     double energy_residual =
         0.0;  // greatest departure of the sum of all energies from that at that instant (J)

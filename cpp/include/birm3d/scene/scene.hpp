@@ -59,8 +59,12 @@ struct Scene {
     double thinnest;                  // no obstacle is thinner, from any side (m)
     std::vector<char> skin_meets_ground;  // (units) those that stand on wheels, where there is ground
 
-    // How many of the obstacles, from the first, are free-standing segments: all of the barrier's or none.
+    // How many of the obstacles, from the first, can move: all of the barrier's or none.
     std::size_t free_segments() const { return barrier ? barrier->segments.size() : 0; }
+    // Do they slide on the ground?
+    bool slides() const { return barrier && barrier->free_standing; }
+    // Do they tilt about their feet?
+    bool tilts() const { return barrier && barrier->yielding; }
 
     State initial_state() const;
     void start(State& state) const;  // the same in the memory of a state of the vehicle

@@ -19,6 +19,7 @@ struct Balances {
         segment_friction,
         dampers,
         sliding,
+        yielding,
         terms
     };
 

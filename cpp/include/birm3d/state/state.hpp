@@ -56,10 +56,11 @@ struct Energies {
     double springs = 0.0;           // in the springs of wheels, less that at rest
     double dampers = 0.0;           // lost in the dampers of wheels
     double sliding = 0.0;           // lost where a unit slides on another one
+    double yielding = 0.0;           // plastic work of posts that yield
 
     double total() const {
         return kinetic + potential + stored + crushed + barrier_friction + tire_friction + ground_friction +
-               impacts + joints + segment_friction + springs + dampers + sliding;
+               impacts + joints + segment_friction + springs + dampers + sliding + yielding;
     }
 };
 
@@ -129,7 +130,7 @@ struct State : Progress {
     }
 
     std::vector<UnitState> units;
-    std::vector<BodyState> segments;  // of the barrier, where they are free-standing; else none
+    std::vector<BodyState> segments;  // of the barrier, where they are free-standing or yield; else none
     std::vector<char> was_near;       // (elements of the barrier) in any step? Statistics only
     Balances balances;                // the same
 
