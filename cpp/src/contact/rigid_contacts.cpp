@@ -194,7 +194,11 @@ void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vec
     for (std::size_t u = 0; u < kicked.on_ground.size(); ++u)
         state.energies.tire_friction -= power(kicked.on_ground[u], motion(u));
     for (const RigidContact& contact : kicked.contacts) {
-        lost_in(contact, state.energies) += loss_of(contact, before, after);
+        const double loss = loss_of(contact, before, after);
+        // A post that its plastic moment stops before the rigid core: the core gives back a part of that moment's work.
+        const bool gives_back =
+            loss < 0.0 && scene.tilts() && contact.other >= 0 && contact.source == ContactSource::core;
+        (gives_back ? at_base : lost_in(contact, state.energies)) += loss;
         if (contact.source == ContactSource::core)
             friction_of(scene, contact.obstacle, state.energies) -=
                 power({contact.friction_impulse, contact.arm.cross(contact.friction_impulse)},
