@@ -99,7 +99,8 @@ void register_barrier(py::module_& m) {
                  return YieldingPosts{mass, inertia, plastic_moment};
              }),
              py::kw_only(), py::arg("mass"), py::arg("inertia"), py::arg("plastic_moment"),
-             "mass: kg; inertia: about a horizontal axis through the foot, kg m^2; plastic_moment: N m.");
+             "mass: kg; inertia: about a horizontal axis through the foot, kg m^2; plastic_moment: N m.")
+        .def_readonly("plastic_moment", &YieldingPosts::plastic_moment, "N m");
     py::class_<Segment>(m, "Segment", "A free-standing segment of a barrier, or a post that yields.")
         .def_property_readonly(
             "mass", [](const Segment& s) { return s.body.mass; }, "kg")

@@ -213,10 +213,10 @@ class Bollards(Barrier):
             text += f", {self.spacing:g} m between axes ({self.spacing - self.diameter:.3g} m clear)"
         if self.wall_thickness is not None and self._weaker is not None:
             text += f", steel {1e3 * self.wall_thickness:.3g} mm"
-            text += "" if self.filling is None else ", filled with concrete"
-            moment, depth = self.core.posts[0].plastic_moment, self._weaker[1]
-            at = "at the foot" if depth == 0.0 else f"about a point {depth:.2g} m below the ground"
-            text += f", yields at {moment / 1e3:.3g} kN m {at}"
+            text += "" if self.filling is None else " with concrete"
+            posts, depth = self._weaker
+            text += f", yields at {posts.plastic_moment / 1e3:.3g} kN m"
+            text += "" if depth == 0.0 else f", {depth:.2g} m below the ground"
         return text + (f", rows {self.row_spacing:g} m apart (axis to axis)" if self.rows > 1 else "")
 
     def load_front(self) -> PostFront:

@@ -102,7 +102,7 @@ def plot_crush(
         axes.set_xlim(limits if side == "right" else limits[::-1])
     heights = field.height[nodes]
     above.set_ylim(float(heights.min()) - margin, float(heights.max()) + margin)
-    figure.suptitle(title(result))
+    figure.suptitle(title(result, figure))
     figure.draw_without_rendering()  # the map's equal scales move it, and with it the room for labels
     return figure
 

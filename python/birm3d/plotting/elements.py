@@ -96,7 +96,7 @@ def plot_elements(result: Result) -> Figure:
     moment_panel.set_xlabel("time [ms]")
     moment_panel.set_xlim(0.0, end)
     legend([force_panel])
-    figure.suptitle(title(result))
+    figure.suptitle(title(result, figure))
     return figure
 
 

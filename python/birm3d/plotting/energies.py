@@ -36,9 +36,10 @@ _LOOKS = {
     "impacts": _Look("#7F7F7F", DASHED, 1.6),
     "barrier_ground_friction": _Look("#A39A00", DASH_DOT, 1.6),
     "joints": _Look("#5D3A9B", DOTTED, 1.8),
+    "yielding": _Look("#393B79", DASH_DOT, 1.8),
 }
 # For terms that have no look above, in their order.
-_OTHERS = ("#17BECF", "#9EDAE5", "#C49C94", "#98DF8A", "#F7B6D2", "#393B79")
+_OTHERS = ("#17BECF", "#9EDAE5", "#C49C94", "#98DF8A", "#F7B6D2", "#637939")
 
 
 def energy_look(names: list[str]) -> dict[str, tuple[str, Style, float]]:

@@ -94,7 +94,7 @@ def plot_histories(result: Result) -> Figure:
     limit_time(panels[-1], result)
     for axes in (force, acceleration, rates, tires):
         cut_peaks(axes)
-    figure.suptitle(title(result))
+    figure.suptitle(title(result, figure))
     return figure
 
 

@@ -83,5 +83,5 @@ def plot_result(result: Result) -> Figure:
 
     limit_time(panels[-1], result)
     cut_peaks(force, slowing)
-    figure.suptitle(title(result))
+    figure.suptitle(title(result, figure))
     return figure

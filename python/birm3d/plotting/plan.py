@@ -102,7 +102,7 @@ def plot_plan(result: Result, times: Sequence[float] | None = None, *, exit_box:
     fit_to(figure, axes, np.vstack(drawn), _WIDTH, _HEIGHTS, room=_TEXTS)
     flat = figure.get_figheight() - _TEXTS < _FLAT
     axes.set_ylabel(view.labels[1].replace("front of the", "front of\nthe") if flat else view.labels[1])
-    figure.suptitle(f"{title(result)}\n{_outcome(result)}", fontsize="medium")
+    figure.suptitle(f"{title(result, figure)}\n{_outcome(result)}", fontsize="medium")
     figure.legend(loc="outside lower center", ncols=4, frameon=False, fontsize="small", borderaxespad=0.0)
     return figure
 

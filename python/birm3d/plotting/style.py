@@ -78,9 +78,13 @@ def prepare(*panels: Axes) -> None:
         axes.set_prop_cycle(cycler(color=CYCLE) + cycler(linestyle=STYLES) + cycler(linewidth=WIDTHS))
 
 
-def title(result: Result) -> str:
-    """Return vehicle, mass, speed and angle, and in a second line the barrier: kind, count and sizes."""
-    return scene_text(result.scene, separator="\n")
+def title(result: Result, figure: Figure | None = None) -> str:
+    """Return vehicle, mass, speed and angle, and in a second line the barrier: kind, count and sizes.
+
+    Lines that are longer than the ``figure`` is wide are broken.
+    """
+    text = scene_text(result.scene, separator="\n")
+    return text if figure is None else "\n".join(wrapped(line, figure) for line in text.splitlines())
 
 
 def filtered(signal: Floats, channel_class: float, interval: float) -> tuple[Floats, str]:
