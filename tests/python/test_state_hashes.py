@@ -71,8 +71,8 @@ HASHES = {
     "truck, pole of triangles": "9351a79d842abf38",
     "free-standing": "de187dfe9011bf6e",
     "minivan on its side": "08e241c783aa9699",
-    "car, corner of a planter": "b1b4bd6d4bc05298",
-    "pickup, end of a wall": "3bdfdcf5b07bdf43",
+    "car, corner of a planter": "13f6987ddde5211e",
+    "pickup, end of a wall": "d3e2c21139b114fb",
     "finite-element car, wall": "9be0600936bc9b61",
     "finite-element truck, wall": "f2516accc663599a",
 }

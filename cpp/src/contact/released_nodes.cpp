@@ -5,6 +5,7 @@
 
 #include "base/block_loop.hpp"
 #include "birm3d/base/tolerances.hpp"
+#include "contact/leaving_nodes.hpp"
 #include "contact/stopping_face.hpp"
 
 namespace birm3d {
@@ -13,19 +14,6 @@ namespace {
 
 // Least distance between two tested points of a path (m): thinner surfaces may be missed.
 constexpr double least_stride = 2e-3;
-
-// How far each node that pushed has followed a receding surface, or its truss has extended: the greater of both (m).
-BIRM3D_BLOCK_LOOP void find_recessions(const TrussBlockState& last, const TrussBlockState& next,
-                                       const BlockContact& contact, BlockColumn& recession) {
-    BIRM3D_INDEPENDENT
-    for (std::size_t i = 0; i < block_size; ++i) {
-        const double extension = last.deflection[i] - next.deflection[i];
-        const double motion = contact.nx[i] * (last.x[i] - next.x[i]) +
-                              contact.ny[i] * (last.y[i] - next.y[i]) +
-                              contact.nz[i] * (last.z[i] - next.z[i]);
-        recession[i] = last.force[i] > 0.0 ? (motion > extension ? motion : extension) : 0.0;
-    }
-}
 
 double gap_at(const ContactPass& pass, std::size_t k, const Vec3& place) {
     return nearest(pass.shape(k), pass.near[k].now.to_own(place)).gap;
@@ -95,28 +83,6 @@ std::optional<Vec3> first_stop(const ContactPass& pass, const DistantObstacles& 
         }
     }
     return path.at(outside);
-}
-
-// Did a post or a top edge indent any panel that the block has nodes of?
-bool was_indented(const ContactPass& pass, const ContactBlock& block) {
-    return (pass.mesh.panels_of[block.index] & pass.indented_before) != 0;
-}
-
-// Marks with 1 the nodes that an indentation has released, and those that it held when it vanished within this step. It
-// vanishes as its post tips across the panel. Such a node is far from the surface that it would follow now: further
-// than the motions of the step allow.
-void find_leaving(const ContactPass& pass, const ContactBlock& block, BlockColumn& leaves) {
-    leaves.fill(0.0);
-    if (!was_indented(pass, block)) return;
-    alignas(64) BlockColumn recession;
-    find_recessions(*block.start, *block.end, block.contact, recession);
-    for (std::size_t i = 0; i < block_size; ++i) {
-        const double panel = pass.mesh.block[block.index].panel[i];
-        const bool was_indented =
-            panel >= 0.0 && (pass.indented_before >> static_cast<unsigned>(panel) & 1U) != 0;
-        const bool released = !block.indentations.empty() && block.released[i] > 0.0;
-        leaves[i] = released || (was_indented && recession[i] > pass.greatest_following) ? 1.0 : 0.0;
-    }
 }
 
 // The place to which the truss of a released node returns it.
@@ -250,28 +216,32 @@ bool find_stopped(const ContactPass& pass, const FlatContact* plane, ContactBloc
                   DistantObstacles& distant) {
     block.stopped.clear();
     const TrussBlockState& last = *block.start;
-    alignas(64) BlockColumn leaves, released;
+    alignas(64) BlockColumn leaves, released, work;
     HeldNodes held;
     find_leaving(pass, block, leaves);
+    if (std::any_of(leaves.begin(), leaves.end(), [](double leaving) { return leaving > 0.0; }))
+        find_work_until_leaving(pass, block, work);
     find_released(pass, plane, block, held, released);
     for (std::size_t i = 0; i < block_size; ++i) {
-        if (leaves[i] > 0.0)
+        if (leaves[i] > 0.0) {
             block.stopped.push_back({i, free_place(pass.mesh.block[block.index], last, i), last.residual[i],
-                                     last.residual[i], last.peak_deflection[i], 0.0, last.unloading[i], 0.0});
-        else if (released[i] > 0.0)
+                                     last.residual[i], last.peak_deflection[i], 0.0, last.unloading[i],
+                                     work[i]});
+            block.stopped.back().leaves = true;
+        } else if (released[i] > 0.0)
             find_stop(pass, plane, i, {held.x[i], held.y[i], held.z[i]}, block, distant);
     }
     return !block.stopped.empty() && !distant.were_met;
 }
 
-// Counts the work on their trusses up to their release.
+// Counts the work on their trusses up to their release. What an indentation releases may be held again, see count_leaving().
 void stop_nodes(const ContactPass& pass, ContactBlock& block, ContactSums& sums) {
     TrussBlockState& nodes = block.alter();
     nodes.touching = true;
     for (const StoppedNode& node : block.stopped) {
         if (!node.stays) {
             set_truss(node, nodes);
-            sums.several.released_work += node.work;
+            if (!node.leaves) sums.several.released_work += node.work;
         }
         for (std::size_t k = 0; k < pass.near.size(); ++k) {
             const auto place = std::lower_bound(block.reachable.begin(), block.reachable.end(), k);
@@ -282,6 +252,11 @@ void stop_nodes(const ContactPass& pass, ContactBlock& block, ContactSums& sums)
     }
     for (const std::size_t k : block.reachable)
         sums.obstacles[k].reached = true;
+}
+
+void count_leaving(const ContactBlock& block, ContactSums& sums) {
+    for (const StoppedNode& node : block.stopped)
+        if (node.leaves && block.end->force[node.node_index] == 0.0) sums.several.released_work += node.work;
 }
 
 }  // namespace birm3d

@@ -146,7 +146,9 @@ struct UnloadingCurve {
           i(i_),
           recovery(Packet::load(truss_.recovery + i_)),
           coefficient(Packet::load(before.unloading + i_)),
-          residual(Packet::load(before.residual + i_)) {}
+          residual(Packet::load(before.residual + i_)),
+          force_before(Packet::load(before.force + i_)),
+          deflection_before(Packet::load(before.deflection + i_)) {}
     // The first where a truss unloads along a line, else the second: has_recovery() for eight trusses.
     BIRM3D_INLINE Packet where_line(const Packet& line, const Packet& curve) const {
         const Packet longest = longest_recovery;
@@ -160,6 +162,13 @@ struct UnloadingCurve {
         const Packet zero = 0.0;
         return coefficient * power(greater(d - residual, zero));
     }
+    // The length r at which all work of this step on the truss is stored. Never more is: what was crushed stays crushed.
+    BIRM3D_INLINE Packet by_energy(const Packet& d, const Packet& envelope) const {
+        const Packet zero = 0.0, least = tolerance::truss_length;
+        const Packet stored = force_before * greater(deflection_before - residual, zero);
+        const Packet work = 0.5 * (degree() + 1.0) * (force_before + envelope) * (d - deflection_before);
+        return where_line(longest_recovery, greater((stored + work) / envelope, least));
+    }
     BIRM3D_INLINE void load(const Packet& d, const Packet& unloading, const Packet& envelope) {
         const Packet zero = 0.0, least = tolerance::truss_length, length = Packet::load(truss.length + i);
         const auto where_loading = [&](const Packet& now, const Packet& else_) {
@@ -167,7 +176,7 @@ struct UnloadingCurve {
         };
         const Packet uncrushed = greater(length - d, least) / length;
         const Packet by_slope = degree() * envelope * Packet::load(truss.compliance + i);
-        const Packet R = lesser(lesser(recovery * uncrushed, d), by_slope);
+        const Packet R = lesser(lesser(lesser(recovery * uncrushed, d), by_slope), by_energy(d, envelope));
         coefficient = where_loading(envelope / power(R), coefficient);
         residual = where_loading(d - R, residual);
     }
@@ -186,6 +195,7 @@ struct UnloadingCurve {
     const PressColumns& truss;
     std::size_t i;
     Packet recovery, coefficient, residual;
+    Packet force_before, deflection_before;  // as the step began (N, m)
 };
 
 // Releases the nodes of the packet at i whose trusses have stopped pushing. A node on a receding surface stops where

@@ -124,18 +124,42 @@ double envelope_force(const TrussCurve& curve, double deflection) {
     return force;
 }
 
+namespace {
+
+// Work of the loading envelope up to a deflection (J).
+double envelope_work(const TrussCurve& curve, double deflection) {
+    double work = 0.0;
+    double slope = 0.0;
+    for (std::size_t j = 0; j < curve.slope.size(); ++j) {
+        const double beyond = std::max(0.0, deflection - curve.deflection[j]);
+        work += 0.5 * (curve.slope[j] - slope) * beyond * beyond;
+        slope = curve.slope[j];
+    }
+    return work;
+}
+
+// Leads the truss along its envelope to a greater deflection than before.
+void load(const TrussCurve& curve, TrussMemory& memory, double deflection) {
+    const double n = degree(curve);
+    const double stored = memory.peak_force * memory.length / (n + 1.0);
+    const double work = envelope_work(curve, deflection) - envelope_work(curve, memory.peak_deflection);
+    memory.peak_deflection = deflection;
+    memory.peak_force = envelope_force(curve, deflection);
+    memory.length = std::min({curve.recovery, deflection, n * memory.peak_force / curve.k_unloading});
+    if (has_recovery(curve.recovery) && memory.peak_force > 0.0)
+        memory.length = std::min(memory.length, (n + 1.0) * (stored + work) / memory.peak_force);
+}
+
+}  // namespace
+
 double truss_force(const TrussCurve& curve, TrussMemory& memory, double deflection) {
     if (deflection > memory.peak_deflection) {
-        memory.peak_deflection = deflection;
-        memory.peak_force = envelope_force(curve, deflection);
+        load(curve, memory, deflection);
         return memory.peak_force;
     }
     if (!(memory.peak_force > 0.0)) return 0.0;
-    const double n = degree(curve);
-    const double length =
-        std::min({curve.recovery, memory.peak_deflection, n * memory.peak_force / curve.k_unloading});
-    const double left = std::max(0.0, 1.0 - (memory.peak_deflection - deflection) / length);
-    return memory.peak_force * std::pow(left, n);
+    const double left = std::max(0.0, 1.0 - (memory.peak_deflection - deflection) / memory.length);
+    return memory.peak_force * std::pow(left, degree(curve));
 }
 
 }  // namespace birm3d

@@ -5,9 +5,9 @@
 
 #include "birm3d/base/tolerances.hpp"
 #include "control/end_of_event.hpp"
-#include "kernels/integrate.hpp"
 #include "record/position_at_barrier.hpp"
 #include "record/rest.hpp"
+#include "record/sliding.hpp"
 
 namespace birm3d {
 
@@ -18,9 +18,6 @@ constexpr double parallel = 0.017452406;
 
 // A vehicle in contact as the longest run ends slides along the line up to this angle to it: tangent of 6 degrees.
 constexpr double still_along = 0.1;
-
-// A vehicle slower than this share of its approach speed is stopped, not redirected.
-constexpr double slow = 0.1;
 
 bool touches_barrier(const Scene& scene, const State& state) {
     for (const UnitState& unit : state.units)
@@ -49,7 +46,7 @@ void judge_departure(const Scene& scene, const State& state, Event& event) {
     // Component of the approach in that direction. A path square to the line has none: what moves back was stopped.
     const double came = scene.heading().dot(line_direction(event));
     const bool goes_on = std::abs(came) < parallel ? into > -parallel * speed : along * came > 0.0;
-    if (goes_on && std::abs(along) > -into && speed > slow * scene.approach.speed) {
+    if (goes_on && std::abs(along) > -into && speed > tolerance::stopped_share * scene.approach.speed) {
         event.verdict = Verdict::redirected;
         event.manner = is_beyond_end(scene, state, event) ? Manner::slides_to_end : Manner::leaves;
         return;
@@ -69,28 +66,6 @@ void judge_rest(const Scene& scene, const State& state, Event& event) {
         event.verdict = Verdict::stopped;
         event.manner = state.touched ? Manner::rests : Manner::rests_untouched;
     }
-}
-
-// Does the vehicle slide along a straight barrier in a state that can not change: no motion across, no rotation, no
-// contact load?
-bool slides_on(const Scene& scene, const State& state, const Event& event) {
-    if (!state.touched || !state.segments.empty() || runs_along_line(scene)) return false;
-    const double least = rest_energy(scene);
-    double across = state.energies.stored;
-    for (std::size_t u = 0; u < state.units.size(); ++u) {
-        const RigidBody& body = scene.vehicle->units[u].body;
-        const BodyState& now = state.units[u].body;
-        const double along = now.velocity.dot(line_direction(event));
-        across += kinetic_energy(body, now) - 0.5 * body.mass * along * along;
-        if (!(across < least)) return false;
-    }
-    for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i) {
-        const Shape& shape = scene.obstacles[i].shape;
-        const bool straight =
-            std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Prism>(shape);
-        if (!straight || scene.obstacles[i].structure != 0) return false;
-    }
-    return distance_past_line(scene, state, event) < 0.0;
 }
 
 }  // namespace
@@ -115,6 +90,7 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
     event.least_upright = std::min(event.least_upright, least_up_cosine(state));
     if (!scene.barrier) return;
     note_slowness(scene, state, event);
+    note_sliding(scene, state, event);
     const BodyState& body = state.units.front().body;
     if (!event.over_top && body.position.dot(event.towards) > event.line) {
         if (!event.crossed) event.crossed = true, event.crossing = body.position;
@@ -158,7 +134,8 @@ void judge_at_longest(const Scene& scene, const State& state, Event& event) {
     const Vec3& velocity = state.units.front().body.velocity;
     const double along = velocity.dot(line_direction(event)), across = velocity.dot(event.towards);
     const bool goes_on = along * scene.heading().dot(line_direction(event)) > 0.0;
-    if (!(velocity.norm() > slow * scene.approach.speed)) return judge_rest(scene, state, event);
+    if (!(velocity.norm() > tolerance::stopped_share * scene.approach.speed))
+        return judge_rest(scene, state, event);
     if (!goes_on || std::abs(across) > still_along * std::abs(along)) return;
     if (distance_past_line(scene, state, event) < 0.0)
         event.verdict = Verdict::redirected, event.manner = Manner::slides_on;

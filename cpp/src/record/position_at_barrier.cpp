@@ -141,11 +141,16 @@ bool passes_between(const Scene& scene, const State& state, const Event& event) 
 }
 
 bool is_beyond_end(const Scene& scene, const State& state, const Event& event) {
+    return distance_to_end(scene, state, event) < 0.0;
+}
+
+double distance_to_end(const Scene& scene, const State& state, const Event& event) {
     const BodyState& body = state.units.front().body;
     const Vec3 line = line_direction(event), direction = body.velocity.dot(line) < 0.0 ? Vec3(-line) : line;
+    double end = -infinity;
     for (std::size_t i = 0; i < scene.barrier->elements.size(); ++i)
-        if (!(range_along(scene, i, state, direction).high < body.position.dot(direction))) return false;
-    return true;
+        end = std::max(end, range_along(scene, i, state, direction).high);
+    return end - body.position.dot(direction);
 }
 
 }  // namespace birm3d

@@ -33,4 +33,7 @@ bool passes_between(const Scene& scene, const State& state, const Event& event);
 // Is the mass centre of unit 0 beyond the barrier's end in the direction in which the unit moves along the line?
 bool is_beyond_end(const Scene& scene, const State& state, const Event& event);
 
+// How far the barrier goes on beyond that mass centre in that direction (m). Negative beyond its end.
+double distance_to_end(const Scene& scene, const State& state, const Event& event);
+
 }  // namespace birm3d

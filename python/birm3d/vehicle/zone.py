@@ -103,7 +103,8 @@ class Zone(Mapping[str, Any]):
     elastic_recovery
         Length r that an uncrushed structure gives back [m]. Crushed by d, it gives back R = r (1 - d / length
         of the truss), at most d and 5 stress / ``k_unloading``. On the way the stress falls with the fifth
-        power of what is left of R. So restitution falls with speed. ``None``: the one slope of Fig. 3.
+        power of what is left of R. So restitution falls with speed. R is shorter where the load would else
+        store more energy than it puts in. ``None``: the one slope of Fig. 3.
     tail_depth, tail_slope
         From this deflection on [m] the envelope is steeper by this [N/m per m^2], as what has been crushed is
         packed together. ``None``: no tail.

@@ -102,6 +102,28 @@ TEST("no path of a truss with a recovery gains energy, and a loop returns a sixt
     CHECK_CLOSE(returned / (peak * 0.08 / 6.0), 1.0, 1e-6, "midpoint rule");
 }
 
+TEST("loading undoes no crush, however steep the envelope gets") {
+    TrussCurve tailed = with_tail(knee_curve(500.0, 0.02, 0.0, infinity, 10000.0), 0.3, 8500.0);
+    tailed.recovery = 0.09;
+    const auto lead = [&](int steps) {
+        TrussMemory memory;
+        double force = 0.0, work = 0.0, crushed = 0.0;
+        for (int i = 1; i <= steps; ++i) {
+            const double next = truss_force(tailed, memory, 0.33 * i / steps);
+            work += 0.5 * (force + next) * 0.33 / steps;
+            force = next;
+            const double now = work - memory.peak_force * memory.length / 6.0;
+            CHECK(now >= crushed - 10.0 * 0.33 / steps * 0.33 / steps * tailed.slope.back());
+            crushed = now;
+        }
+        return memory.length;
+    };
+    const double length = lead(4000);
+    CHECK(length < 0.9 * 5.0 * envelope_force(tailed, 0.33) / tailed.k_unloading);
+    CHECK_CLOSE(lead(400) / length, 1.0, 2e-3, "of second order in the step");
+    CHECK_CLOSE(lead(1600) / length, 1.0, 2e-4, "the same");
+}
+
 TEST("a recovery above the longest stands for none") {
     TrussCurve giving = curve;
     giving.recovery = 10.0 * longest_recovery;

@@ -153,6 +153,9 @@ inline constexpr double along_line = 1e-9;
 // that turns back is slow for an instant only.
 inline constexpr double rest_duration = 0.25;
 
+// A vehicle slower than this share of its approach speed is stopped, not redirected.
+inline constexpr double stopped_share = 0.1;
+
 // The instant at which the outcome of a run is decided is found to within this (s).
 inline constexpr double decision_resolution = 1e-6;
 

@@ -25,6 +25,8 @@
 //   r = min(r_e (1 - d_p / L), d_p, n F_p / k_unloading)
 //
 // L is the length of the truss, infinite for a curve by itself. What has been crushed does not spring back.
+// While a truss is loaded, r grows no faster than its work allows: F_p r / (n + 1) grows by the work at most.
+// A steep rise of the envelope would else store more than the load puts in, and crushed energy would come back.
 // The slope is steepest where the load turned, n F_p / r. The energy given back is F_p r / (n + 1).
 //
 // The degree n comes from the rebound of NHTSA test 10146. The wall's force does work of 17.6 mm times its
@@ -78,6 +80,7 @@ double envelope_force(const TrussCurve& curve, double deflection);
 struct TrussMemory {
     double peak_deflection = 0.0;
     double peak_force = 0.0;
+    double length = 0.0;  // r, which the truss springs back from the peak (m)
 };
 double truss_force(const TrussCurve& curve, TrussMemory& memory, double deflection);
 

@@ -51,6 +51,10 @@ struct Event {
     // Time since which the kinetic energy of all that moves has been below that of a vehicle at rest (s).
     double slow_since = std::numeric_limits<double>::infinity();
 
+    // Time since which the vehicle has slid along the barrier with no other motion (s), and its speed then (m/s).
+    double slides_since = std::numeric_limits<double>::infinity();
+    double slides_from_speed = 0.0;
+
     bool left = false;        // has the vehicle left the barrier for good?
     bool separated = false;   // has it touched the barrier and left? Then the values of release are final
     double deflection = 0.0;  // greatest deflection of any truss as it had left, less its springback (m)
