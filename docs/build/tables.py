@@ -230,11 +230,14 @@ def limits() -> str:
 
     truck = birm3d.Vehicle.preset("cargo_truck")
     crash = birm3d.Simulation(truck, birm3d.Barrier.bollards(count=7), impact_speed=units.mph(30))
+    tubes = birm3d.Barrier.bollards(count=7, diameter=0.273, wall_thickness=0.02)
+    yields = birm3d.Simulation(truck, tubes, impact_speed=units.mph(30))
     row = birm3d.Barrier.jersey(length=60.0, segments=15, free_standing=True)
     pickup = birm3d.Simulation(birm3d.Vehicle.preset("pickup"), row, impact_speed="100 km/h", impact_angle=25)
     found = (
         birm3d.greatest_gap(crash, gaps=(0.5, 3.0)),
         birm3d.least_height(crash, heights=(0.3, 1.3)),
+        birm3d.least_wall_thickness(yields, thicknesses=(0.004, 0.03), deflection=0.5),
         birm3d.least_segment_mass(pickup, masses=(500, 8000), deflection=0.8),
     )
     worst = birm3d.worst_offset(crash, spacings=[1.2, 1.5, 1.8, 2.1])

@@ -262,6 +262,7 @@ def assessments(car: Vehicle, semi: Vehicle, slow: Result, folder: Path) -> dict
     """The same of what judges runs and searches for limits of a barrier."""
     quick, saloon = Settings(output_interval=1e-3), car.scaled_to(2100.0)
     row = Simulation(car, Barrier.bollards(count=5), 5.0, settings=quick)
+    tubes = Simulation(car, Barrier.bollards(count=5, wall_thickness=0.01), 5.0, settings=quick)
     hit = Simulation(saloon, Barrier.rigid_wall(), 15.0, settings=quick).run()
     free = Barrier.jersey(length=24.0, segments=4, free_standing=FreeStanding())
     chain = Simulation(car, free, 15.0, 20.0, settings=quick)
@@ -306,6 +307,10 @@ def assessments(car: Vehicle, semi: Vehicle, slow: Result, folder: Path) -> dict
         "least_segment_mass": (
             birm3d.least_segment_mass,
             {"simulation": chain, "deflection": 5.0, "points": 2, "resolution": 4000.0},
+        ),
+        "least_wall_thickness": (
+            birm3d.least_wall_thickness,
+            {"simulation": tubes, "offsets": (0.0,), "thicknesses": (0.01, 0.02), **coarse},
         ),
         "predict": (birm3d.predict, {"simulation": row, "n": 8}),
         "history_bands": (birm3d.history_bands, {"study": likely, "channels": ["travel"]}),

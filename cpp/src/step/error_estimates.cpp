@@ -53,12 +53,7 @@ double velocity_error(const EffectiveInertia& inertia, const Load& departure, do
     const double force = departure.wrench.force.norm();
     const Vec3 angular_change = inertia.inverse_inertia * departure.wrench.torque;
     double change = inertia.body.inverse_mass * force + inertia.gyration * angular_change.norm();
-    const Segment* segment = inertia.segment;
-    if (segment && segment->tilts()) {
-        // A light post follows the vehicle. Its error counts by its energy: it is that of the unit with the same energy.
-        const double turn = segment->body.inverse_inertia(0, 0) * departure.reaction_torque.norm();
-        change += std::sqrt(segment->body.inertia(0, 0) * inertia.body.inverse_mass) * turn;
-    } else if (segment) {
+    if (const Segment* segment = inertia.segment) {
         const double yaw_change =
             segment->body.inverse_inertia(2, 2) * std::abs(departure.reaction_torque.z());
         change += segment->body.inverse_mass * force + segment->half_length * yaw_change;

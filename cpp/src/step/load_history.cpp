@@ -152,10 +152,9 @@ double correct_loads(const Scene& scene, std::size_t u, const UnitState& from, T
             history.is_smooth = before.is_smooth;
             loads.push_back(load_of(scene, trial.state, moved.body, contact));
         }
-        const std::size_t first = joined.front().obstacle;
-        const bool moves = first < scene.free_segments() &&
-                           !(scene.tilts() && trial.state.segments[first].angular_momentum.isZero(0.0));
-        inertia.segment = moves ? &scene.barrier->segments[first] : nullptr;
+        // A post that yields is so light that it follows the vehicle: the error is that of the vehicle.
+        const bool slides = scene.slides() && joined.front().obstacle < scene.free_segments();
+        inertia.segment = slides ? &scene.barrier->segments[joined.front().obstacle] : nullptr;
         error += correct_structure(inertia, {before, befores, loads, trial.dt}, joined);
     }
     return error;

@@ -69,7 +69,7 @@ COMMANDS = {
     "search": _Command(
         "search",
         "search",
-        "Search for the greatest gap, the least height or segment mass, or the worst offset.",
+        "Search for the greatest gap, the least height, segment mass or wall of a tube, or the worst offset.",
     ),
     "sweep": _Command(
         "sweep", "sweep", "Run a SCENE file, or --vehicle and --speed, with many values of what it has."

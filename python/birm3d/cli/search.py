@@ -42,7 +42,7 @@ def _range(default: str, unit: str) -> Callable[[Any], Any]:
 
 @click.group()
 def search() -> None:
-    """Search for the greatest gap, the least height or segment mass, or the worst offset."""
+    """Search for the greatest gap, the least height, segment mass or wall of a tube, or the worst offset."""
 
 
 # A gap is one between bollards, so that these are what is searched where nothing else is said.
@@ -136,6 +136,36 @@ def segment_mass(
         deflection=deflection,
         points=points,
         draws=draws,
+    )
+    _show(found, as_json, plot)
+
+
+@search.command("wall-thickness", context_settings={"default_map": {"barrier": "bollards"}})
+@scene_options
+@_range("0.004:0.03", "m")
+@click.option("--deflection", type=QuantityOption("length"), help="Greatest of a post's top (m).")
+@_POINTS
+@_DRAWS
+@_JSON
+@_PLOT
+def wall_thickness(
+    scene: Path | None,
+    limits: str,
+    deflection: float | None,
+    points: int,
+    draws: int | None,
+    as_json: bool,
+    plot: Path | None,
+    **options: Any,
+) -> None:
+    """Find the least wall of steel tubes with which a row of bollards stops the vehicle."""
+    from ..study.design_limits import least_wall_thickness
+
+    wanted = _limits(limits, "length")
+    if scene is None and options["wall_thickness"] is None:
+        options["wall_thickness"] = wanted[1]
+    found = least_wall_thickness(
+        simulation_of(scene, options), wanted, deflection=deflection, points=points, draws=draws
     )
     _show(found, as_json, plot)
 

@@ -1,6 +1,6 @@
-"""Searches that a designer asks for by name: greatest gap, least height, least mass of a segment."""
+"""Searches that a designer asks for by name: greatest gap, least height, segment mass or wall of a tube."""
 
-# Longer than 300 lines: three searches with arguments explained for users.
+# Longer than 300 lines: four searches with arguments explained for users.
 from __future__ import annotations
 
 import dataclasses
@@ -15,7 +15,7 @@ from ..simulation.simulation import Simulation
 from ..units import Quantity, si
 from .limit_search import CONTAINED, Limit, Question, search_limit
 
-__all__ = ["OFFSET_SHARES", "greatest_gap", "least_height", "least_segment_mass"]
+__all__ = ["OFFSET_SHARES", "greatest_gap", "least_height", "least_segment_mass", "least_wall_thickness"]
 
 OFFSET_SHARES = (-0.25, 0.0, 0.25, 0.5)
 """Impact offsets over the spacing, from the middle of a row of posts: at a post, in a gap, and between."""
@@ -36,6 +36,11 @@ _OVER = (
 _SLIDES = (
     "Computed, not tested. Segments slide but do not tip, and their joints do not break: look at "
     "max_overturning_ratio too."
+)
+
+_YIELDS = (
+    "Computed, not tested. Tubes do not buckle or tear, and have the yield stress that they were given: look "
+    "at post_tilt too, and leave a margin."
 )
 
 
@@ -256,6 +261,73 @@ def least_segment_mass(
         [si("masses", mass, "mass") for mass in masses],
         points=points,
         resolution=_resolution(resolution, "mass"),
+        draws=draws,
+        executor=executor,
+        progress=progress,
+    )
+
+
+@checked
+def least_wall_thickness(
+    simulation: Simulation,
+    thicknesses: Sequence[Quantity] = (0.004, 0.03),
+    *,
+    deflection: Quantity | None = None,
+    offsets: Sequence[Quantity] | None = None,
+    points: int = 11,
+    resolution: Quantity | None = None,
+    draws: int | None = None,
+    executor: Any = None,
+    progress: bool | None = None,
+) -> Limit:
+    """Return the least wall of the steel tubes with which a row of bollards stops the vehicle.
+
+    A wall thickness holds if no run gets over or through the row, and ``barrier_deflection``, that of a
+    post's top, is within the limit. Diameter, steel and filling stay as they are.
+
+    Parameters
+    ----------
+    simulation
+        A scene with bollards that yield, of any ``wall_thickness``. A foundation that gives way before the
+        tube does bounds what a thicker wall can do.
+    thicknesses
+        (least, greatest) [m]; at most half of the diameter.
+    deflection
+        Greatest ``barrier_deflection`` [m]; ``None``: any.
+    offsets
+        ``impact_offset`` of the runs [m]; ``None``: at a post, in a gap, and between.
+    points, resolution, draws, executor, progress
+        See :func:`greatest_gap`.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, its limit and the value; :class:`birm3d.NotInRangeError` if the greatest
+        thickness does not hold.
+    StudyInterrupted
+        With the finished runs.
+    """
+    barrier = _barrier(simulation)
+    if not isinstance(barrier, Bollards) or barrier.wall_thickness is None:
+        raise ValueError(f"simulation must have bollards with a wall_thickness, got {barrier}")
+    question = Question(
+        name="wall thickness",
+        argument="thicknesses",
+        unit="m",
+        greatest=False,
+        parameter="barrier.wall_thickness",
+        of_value=float,
+        offsets=_usual_offsets(simulation, barrier, offsets),
+        measure="barrier_deflection",
+        most=_at_most("deflection", deflection),
+        caution=_YIELDS,
+    )
+    return search_limit(
+        simulation,
+        question,
+        [si("thicknesses", thickness, "length") for thickness in thicknesses],
+        points=points,
+        resolution=_resolution(resolution, "length"),
         draws=draws,
         executor=executor,
         progress=progress,
