@@ -103,6 +103,22 @@ def test_energy_as_the_top_lets_go_of_skin_inside_the_wall(
     assert left[1] < 2e-4
 
 
+@pytest.mark.filterwarnings("ignore::birm3d.CoreContactWarning")  # some roll over
+@pytest.mark.parametrize("height", [0.1, 0.2, 0.35, 0.57, 0.8, 1.2])
+@pytest.mark.parametrize("yaw", [0.0, 48.0, -117.0])
+def test_energy_at_any_height(height: float, yaw: float) -> None:
+    """A minivan that climbs the top, sinks over it or rolls; at the planter it stays between the ends."""
+    van = Vehicle.preset("minivan", mesh_density=0.5)
+    for barrier in (
+        Barrier.rigid_wall(height=height),
+        Barrier.planter(length=12.0, width=1.0, height=height),
+        Barrier.jersey(height=max(height, 0.5)),
+    ):
+        settings = Settings(tolerance=1e-3)
+        result = Simulation(van, barrier, 17.7, 75.0, impact_yaw=yaw, settings=settings).run()
+        assert abs(result.metrics["energy_residual"]) < 1e-3, barrier
+
+
 def test_mirrored() -> None:
     pickup = Vehicle.preset("pickup")
     left, right = (
