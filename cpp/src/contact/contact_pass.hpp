@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -104,7 +105,8 @@ struct ContactBlock {
     std::array<std::size_t, block_size> nearest;  // index in `reachable` of each node's obstacle
     alignas(64) BlockColumn second_gap;  // of each node, to the second nearest of several obstacles (m)
     alignas(64) BlockColumn released;    // nodes that an indentation releases (1, else 0)
-    bool hangs;                          // does any of its nodes follow a top edge?
+    bool hangs;                          // does any of its nodes follow a top edge, or lag?
+    std::bitset<block_size> lags;        // nodes that lag inside their nearest surface, see lagging_nodes.hpp
     std::optional<Vec3> flat_normal;     // of all nodes in `contact`, where they met one plane
     std::vector<Corner> corners;         // nodes that are on several surfaces
     std::vector<StoppedNode> stopped;

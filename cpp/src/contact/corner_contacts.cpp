@@ -7,6 +7,7 @@
 #include "birm3d/base/tolerances.hpp"
 #include "contact/contact_loads.hpp"
 #include "contact/indentation.hpp"
+#include "contact/lagging_nodes.hpp"
 #include "contact/released_nodes.hpp"
 
 namespace birm3d {
@@ -66,7 +67,7 @@ CornerFace nearest_face_of(const ContactBlock& block, std::size_t i) {
     return face;
 }
 
-// The face of the k-th reachable obstacle that is nearest to `place`; its gap is that of the node.
+// The face of the k-th reachable obstacle that is nearest to `place`; its gap is that of the node, without its lag.
 CornerFace face_at(const ContactPass& pass, const ContactBlock& block, std::size_t k, const Vec3& place,
                    const Vec3& node) {
     const NearObstacle& near = pass.near[block.reachable[k]];
@@ -75,6 +76,7 @@ CornerFace face_at(const ContactPass& pass, const ContactBlock& block, std::size
     face.reachable_index = k;
     face.normal = face.gradient = face.direction = near.now.direction_from_own(there.normal);
     face.gap = there.gap + face.normal.dot(node - place);
+    if (block.start->hangs) face.gap = without_lag(near, node, face.normal, face.gap);
     return face;
 }
 

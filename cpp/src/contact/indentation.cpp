@@ -8,6 +8,7 @@
 
 #include "base/block_loop.hpp"
 #include "birm3d/base/tolerances.hpp"
+#include "contact/lagging_nodes.hpp"
 #include "kernels/integrate.hpp"
 #include "scene/indentation_gaps.hpp"
 
@@ -164,13 +165,11 @@ bool pushed_on_surface(const ContactPass& pass, const ContactBlock& block, std::
 // Was the node inside the plane of its nearest surface as the step began? Then it did not follow that surface so far, and
 // does not when it ceases to push: the surface would carry it out at once, without work of the body.
 bool lags_behind_surface(const ContactPass& pass, const ContactBlock& block, std::size_t i) {
-    constexpr double least = 1e-4;  // m
     const TrussBlockState& nodes = *block.start;
     if (!(block.faces.gap[i] <= 0.0)) return false;
-    const NearObstacle& near = pass.near[block.reachable[block.nearest[i]]];
-    const Vec3 node(nodes.x[i], nodes.y[i], nodes.z[i]);
-    const Vec3 motion = near.before.to_own(node) - near.now.to_own(node);
-    return block.faces.gap[i] + near.now.direction_to_own(block.contact.normal(i)).dot(motion) < -least;
+    return lags_behind(gap_as_step_began(pass.near[block.reachable[block.nearest[i]]],
+                                         {nodes.x[i], nodes.y[i], nodes.z[i]}, block.contact.normal(i),
+                                         block.faces.gap[i]));
 }
 
 // Is any of the block's indentations that of a wall's edge?

@@ -9,6 +9,7 @@
 #include "contact/corner_contacts.hpp"
 #include "contact/entered_face.hpp"
 #include "contact/indentation.hpp"
+#include "contact/lagging_nodes.hpp"
 #include "kernels/indentation_simd.hpp"
 
 namespace birm3d {
@@ -234,6 +235,7 @@ void find_nearest_surface(const ContactPass& pass, ContactBlock& block) {
                                           [&](std::size_t k) { return only_indented(pass, panel_bits, k); });
     const bool changed = !all_indented && find_surfaces(pass, block);
     follow_indentations(pass, block);
+    keep_lags(pass, block);
     if (block.start->touching) bound_gaps(block.start->force, block.faces.gap);
     // The nearest point of a single obstacle is in no corner.
     if (changed || block.reachable.size() > 1) resolve_corner_contacts(pass, block);

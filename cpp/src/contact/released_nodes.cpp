@@ -149,6 +149,7 @@ void find_stop(const ContactPass& pass, const FlatContact* plane, std::size_t i,
     const TrussBlock& truss = pass.mesh.block[block.index];
     const TrussBlockState &last = *block.start, &next = *block.end;
     if (plane == nullptr && block.faces.per_force[i] > 0.0) return;  // an indentation holds it
+    if (plane == nullptr && block.lags[i]) return;                   // it is inside a surface already
     const Vec3 anchor = anchor_of(truss, i);
     const Vec3 to(next.x[i], next.y[i], next.z[i]), was(last.x[i], last.y[i], last.z[i]);
     const Vec3 n = block.contact.normal(i);

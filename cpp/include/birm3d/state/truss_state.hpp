@@ -18,7 +18,8 @@ struct BlockFlags {
     bool touching = false;  // does any node push on an obstacle?
     bool slack = false;     // does an obstacle hold any node beyond the free length of its truss?
     bool met = false;       // has anything come into it, in any step?
-    bool hangs = false;     // does any node follow a top edge (top_edge.hpp)? It may sink below the edge.
+    // Does any node follow a top edge (top_edge.hpp), or lag inside a surface since then? It may sink below the edge.
+    bool hangs = false;
 };
 
 struct alignas(64) TrussBlockState : BlockFlags {
