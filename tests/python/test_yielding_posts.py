@@ -262,13 +262,13 @@ def test_least_wall_thickness(car: Vehicle) -> None:
     """The tube that the search gives keeps the deflection; the next one tried does not."""
     row = Simulation(car, Barrier.bollards(count=3, **TUBE), units.mph(35))
     found = birm3d.least_wall_thickness(
-        row, (0.005, 0.014), deflection="10 cm", offsets=(0.0,), points=4, resolution=0.001, draws=0
+        row, (0.008, 0.014), deflection="3 cm", offsets=(0.0,), points=4, resolution=0.001, draws=0
     )
     assert found.fails_at is not None
     assert 0.0 < found.value - found.fails_at <= 0.001
     for thickness, holds in ((found.value, True), (found.fails_at, False)):
         barrier = Barrier.bollards(count=3, **(TUBE | {"wall_thickness": thickness}))
         run = Simulation(car, barrier, units.mph(35)).run()
-        assert (run.metrics["barrier_deflection"] <= 0.1) == holds
+        assert (run.metrics["barrier_deflection"] <= 0.03) == holds
     with pytest.raises(ValueError, match="simulation must have bollards with a wall_thickness"):
         birm3d.least_wall_thickness(Simulation(car, Barrier.bollards(count=3), 5.0))
