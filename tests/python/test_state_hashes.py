@@ -55,6 +55,12 @@ SCENES: dict[str, Callable[[], Simulation]] = {
     "pickup, end of a wall": lambda: Simulation(
         car("pickup"), Barrier.rigid_wall(width=4.0, height=1.0, segments=2), 17.9, overlap=0.4
     ),
+    "truck, bollards that yield": lambda: Simulation(
+        car("cargo_truck"),
+        Barrier.bollards(count=3, diameter=0.22, wall_thickness=0.012, filling="concrete"),
+        *(13.0, 80.0, 0.2),
+        duration=0.4,
+    ),
     "finite-element car, wall": lambda: Simulation(fitted("fitted_n"), Barrier.rigid_wall(), 10.0, 65.0),
     "finite-element truck, wall": lambda: Simulation(fitted("fitted_truck"), Barrier.rigid_wall(), 8.0),
 }
@@ -73,6 +79,7 @@ HASHES = {
     "minivan on its side": "08e241c783aa9699",
     "car, corner of a planter": "13f6987ddde5211e",
     "pickup, end of a wall": "d3e2c21139b114fb",
+    "truck, bollards that yield": "f0354ad48bdbe3f7",
     "finite-element car, wall": "9be0600936bc9b61",
     "finite-element truck, wall": "f2516accc663599a",
 }
