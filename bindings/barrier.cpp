@@ -134,7 +134,7 @@ void register_barrier(py::module_& m) {
             },
             "The elements where they are free-standing, else none.")
         .def_property_readonly(
-            "posts",
+            "yielding_posts",
             [](const Barrier& barrier) {
                 return barrier.yielding ? barrier.segments : std::vector<Segment>{};
             },

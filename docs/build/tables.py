@@ -237,7 +237,7 @@ def limits() -> str:
     found = (
         birm3d.greatest_gap(crash, gaps=(0.5, 3.0)),
         birm3d.least_height(crash, heights=(0.3, 1.3)),
-        birm3d.least_wall_thickness(yields, thicknesses=(0.004, 0.03), deflection=0.5),
+        birm3d.least_tube_thickness(yields, thicknesses=(0.004, 0.03), deflection=0.5),
         birm3d.least_segment_mass(pickup, masses=(500, 8000), deflection=0.8),
     )
     worst = birm3d.worst_offset(crash, spacings=[1.2, 1.5, 1.8, 2.1])

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from .simulation import presets as scenes
     from .simulation.rerun import Rerun, rerun
     from .study import Study
-    from .study.design_limits import greatest_gap, least_height, least_segment_mass, least_wall_thickness
+    from .study.design_limits import greatest_gap, least_height, least_segment_mass, least_tube_thickness
     from .study.ensemble import ensemble
     from .study.fragility import fragility
     from .study.history_bands import HistoryBands, history_bands
@@ -124,7 +124,7 @@ __all__ = [
     "lateral_load",
     "least_height",
     "least_segment_mass",
-    "least_wall_thickness",
+    "least_tube_thickness",
     "load",
     "metrics",
     "monte_carlo",
@@ -205,7 +205,7 @@ _WHERE = {
     "lateral_load": "barrier.lateral_load",
     "least_height": "study.design_limits:least_height",
     "least_segment_mass": "study.design_limits:least_segment_mass",
-    "least_wall_thickness": "study.design_limits:least_wall_thickness",
+    "least_tube_thickness": "study.design_limits:least_tube_thickness",
     "load": "result.result:load",
     "metrics": "result.metrics",
     "monte_carlo": "study.monte_carlo:monte_carlo",

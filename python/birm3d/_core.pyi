@@ -66,14 +66,14 @@ class Barrier:
         (3,) of the barrier's line, towards the traffic, world axes
         """
     @property
-    def posts(self) -> list[Segment]:
-        """
-        The elements where they are posts that yield, else none.
-        """
-    @property
     def segments(self) -> list[Segment]:
         """
         The elements where they are free-standing, else none.
+        """
+    @property
+    def yielding_posts(self) -> list[Segment]:
+        """
+        The elements where they are posts that yield, else none.
         """
 class BusyError(RuntimeError):
     """

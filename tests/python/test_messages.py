@@ -308,8 +308,8 @@ def assessments(car: Vehicle, semi: Vehicle, slow: Result, folder: Path) -> dict
             birm3d.least_segment_mass,
             {"simulation": chain, "deflection": 5.0, "points": 2, "resolution": 4000.0},
         ),
-        "least_wall_thickness": (
-            birm3d.least_wall_thickness,
+        "least_tube_thickness": (
+            birm3d.least_tube_thickness,
             {"simulation": tubes, "offsets": (0.0,), "thicknesses": (0.01, 0.02), **coarse},
         ),
         "predict": (birm3d.predict, {"simulation": row, "n": 8}),

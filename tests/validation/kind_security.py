@@ -19,7 +19,7 @@ short of the barrier. Contained: 1, else 0.
 Left out: MIL-8IN-B and -C and JERSEY-4000 (their foundations or sections failed: our barriers are rigid),
 TT203, TT210, DSC7000 and RSA-SM (no size of what was hit was found).
 
-What the model can not do here: posts and their foundations do not yield, and a rigid post contains. In
+What is not used here: posts that yield, as no foundation's moment is published, and a rigid post contains. In
 DSC635 both moved. So these rows are checks. "With a sliding bed" is `cargo_truck` by `with_sliding_bed()`:
 its fixings hold 17 times the weight of bed and load. At these posts it slides by millimetres, and the
 reading stays 2.4 to 2.7 m below the limits, which are met for the wrong reason. "Weak fixings" hold a

@@ -114,7 +114,7 @@ void begin_iteration(const State& state, KickMemory& memory) {
     kicked.on_cores.assign(memory.bodies.size(), {});
     list_motions(state, memory.bodies, memory.pushed);
     for (RigidContact& contact : kicked.contacts) {
-        if (contact.source != ContactSource::core || contact.other < 0) continue;
+        if (!pushes_segment(contact)) continue;
         const Twist& other = sliding_motions(memory)[static_cast<std::size_t>(contact.other)];
         contact.sliding_surface = other.velocity + other.angular_velocity.cross(contact.other_arm);
     }
@@ -166,7 +166,7 @@ void solve_with_friction(const Scene& scene, const KickedBy& by, KickMemory& mem
     ContactKick& kicked = memory.kick;
     begin_iteration(state, memory);
     const bool meets = meets_segments(kicked.contacts);
-    if (meets) find_segment_friction(scene, by, state, memory);
+    if (meets) find_base_reactions(scene, by, state, memory);
     const bool meets_posts = meets && scene.tilts();
     if (meets_posts) begin_holding_posts(scene, by, state, memory);
     solve_normal_impulses(scene, by, meets, state, memory);
@@ -178,7 +178,7 @@ void solve_with_friction(const Scene& scene, const KickedBy& by, KickMemory& mem
             !meets || (round > 0 && has_converged(kicked.on_base, scene.tilts(), memory.on_base));
         if (round > 0 && normal_converged && base_converged) break;
         kick_by_friction(scene, by, memory, state);
-        if (meets && !meets_posts) find_segment_friction(scene, by, state, memory);
+        if (meets && !meets_posts) find_base_reactions(scene, by, state, memory);
         if (!meets && !any_friction(kicked)) break;
         solve_normal_impulses(scene, by, meets, state, memory);
     }
@@ -186,7 +186,7 @@ void solve_with_friction(const Scene& scene, const KickedBy& by, KickMemory& mem
     kick_by_normal_impulses(scene, kicked, state);
     // An impact that meets no segment does not change the segments.
     if (state.segments.empty() || (by.is_impact && !meets)) return;
-    find_segment_friction(scene, by, state, memory);
+    find_base_reactions(scene, by, state, memory);
     move_segments(scene, memory, state);
 }
 

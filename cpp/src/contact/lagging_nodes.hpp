@@ -1,5 +1,5 @@
 // Skin that hangs over the top of a wall can sink into the wall with the vehicle. Once the top edge lets go of it, it lags inside the
-// faces of the wall. A face moves such a node by as much as the face itself moves, and does not put it out at once. That would
+// faces of the wall. A face moves such a node by as much as the face itself moves, and does not push it out at once. That would
 // crush its truss by energy that the body never lost.
 #pragma once
 
@@ -14,11 +14,11 @@ double gap_as_step_began(const NearObstacle& near, const Vec3& node, const Vec3&
 // Does a node with that gap lag? Others are on the plane, to rounding and to the chords of their paths.
 bool lags_behind(double gap_as_step_began);
 
-// The same gap, but of a node that lags: that by which the plane comes to it within the step.
+// The gap to use in this step. Of a node that lags inside the plane: only the plane's advance within the step.
 double without_lag(const NearObstacle& near, const Vec3& node, const Vec3& normal, double gap);
 
-// Takes the lag out of the gaps to the nearest surfaces, and sets ContactBlock::lags. Blocks that never hung over a top stay as they
-// are.
+// Takes the lag out of the gaps to the nearest surfaces, and sets ContactBlock::lags. Blocks that did not hang over a top in the
+// last step stay as they are.
 void keep_lags(const ContactPass& pass, ContactBlock& block);
 
 }  // namespace birm3d

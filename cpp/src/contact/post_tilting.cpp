@@ -31,7 +31,7 @@ void set_body(const Scene& scene, const State& state, std::size_t post, bool is_
 
 Vec3 plastic_impulse(const Segment& post, const BodyState& body, const Vec3& momentum, double time) {
     const double size = momentum.norm(), most = post.plastic_moment * time;
-    if (size <= most || tilt_of(body) >= lying_tilt) return -momentum;
+    if (size <= most || tilt_of(body) >= post.lying_tilt) return -momentum;
     return -most / size * momentum;
 }
 
@@ -58,7 +58,7 @@ void begin_holding_posts(const Scene& scene, const KickedBy& by, const State& st
 }
 
 bool decide_yielding(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
-    // Relative change of an impulse's direction that counts.
+    // Relative change of an impulse that counts.
     constexpr double settled = 1e-6;
     std::vector<Vec3>& momenta = memory.segment_motions;
     sum_momenta(state, memory, momenta);

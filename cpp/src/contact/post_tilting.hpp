@@ -2,7 +2,7 @@
 // Like Coulomb friction it is a limited impulse that never reverses the motion, found at the end of each half kick.
 //
 // Where the rigid core meets a post, the impulse depends on whether the post stands still. One that does is fixed for the
-// solver, one that yields is a free body under the known impulse of its plastic moment. Which posts yield is found by turns.
+// solver, one that yields is a free body under the known impulse of its plastic moment. Which posts yield is found iteratively.
 // An impact has no duration, so that a plastic moment has no impulse in it.
 #pragma once
 

@@ -195,9 +195,8 @@ void book_contacts(const Scene& scene, const ContactKick& kicked, const std::vec
         state.energies.tire_friction -= power(kicked.on_ground[u], motion(u));
     for (const RigidContact& contact : kicked.contacts) {
         const double loss = loss_of(contact, before, after);
-        // A post that its plastic moment stops before the rigid core: the core gives back a part of that moment's work.
-        const bool gives_back =
-            loss < 0.0 && scene.tilts() && contact.other >= 0 && contact.source == ContactSource::core;
+        // A post that its plastic moment holds against the rigid core pushes the core: that is a part of the moment's work.
+        const bool gives_back = loss < 0.0 && scene.tilts() && pushes_segment(contact);
         (gives_back ? at_base : lost_in(contact, state.energies)) += loss;
         if (contact.source == ContactSource::core)
             friction_of(scene, contact.obstacle, state.energies) -=

@@ -125,7 +125,7 @@ bool meets_segments(const std::vector<RigidContact>& contacts) {
     return std::any_of(contacts.begin(), contacts.end(), pushes_segment);
 }
 
-void find_segment_friction(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
+void find_base_reactions(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory) {
     if (scene.tilts()) return find_plastic_moments(scene, by, state, memory);
     find_limits(scene, by.pressed, memory.kick, memory.limits);
     list_slabs(scene, by, state, memory);

@@ -14,12 +14,12 @@ bool pushes_segment(const RigidContact& contact);
 // Does the rigid body meet a segment?
 bool meets_segments(const std::vector<RigidContact>& contacts);
 
-// Finds ground friction and pin impulses for the present impulses of `memory.kick.contacts` and
-// `memory.kick.on_cores`. Stores them in `memory.kick` and `memory.segment_motions`. `state` has the segments'
-// motions without any of these.
-void find_segment_friction(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory);
+// Finds ground friction and pin impulses, or the impulses of plastic moments, for the present impulses of
+// `memory.kick.contacts` and `memory.kick.on_cores`. Stores them in `memory.kick` and `memory.segment_motions`. `state` has
+// the elements' motions without any of these.
+void find_base_reactions(const Scene& scene, const KickedBy& by, const State& state, KickMemory& memory);
 
-// Sets the segments' motions to those found. A segment that friction holds gets exactly zero velocity.
+// Sets the elements' motions to those found. One that friction or its plastic moment holds gets exactly zero velocity.
 void move_segments(const Scene& scene, const KickMemory& memory, State& state);
 
 // Appends rows of the pins between segments that move or are pushed, with the speeds that they were found to have.

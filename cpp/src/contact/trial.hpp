@@ -78,9 +78,10 @@ struct KickMemory {
     std::vector<PinnedSlab> slabs;
     std::vector<SlabPin> pins;
     SlabChain chain;
-    Column limits;                      // of friction on the ground (N s)
-    std::vector<Vec3> segment_motions;  // along the ground and about the vertical; of posts angular velocities
-    std::vector<char> posts_held;       // (posts that yield) do they stand still?
+    Column limits;  // of friction on the ground (N s)
+    std::vector<Vec3>
+        segment_motions;           // along the ground and about the vertical; of posts angular velocities
+    std::vector<char> posts_held;  // (posts that yield) do they stand still?
 };
 
 // Some of the blocks of a mesh.

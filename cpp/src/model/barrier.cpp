@@ -49,7 +49,7 @@ std::vector<Segment> posts_of(const std::vector<Element>& elements, const Yieldi
         const auto* post = std::get_if<Post>(&elements[i].shape);
         if (post == nullptr || post->opens || elements[i].part_of)
             refuse("elements[" + std::to_string(i) + "]", "a whole post where posts yield", "another shape");
-        posts.push_back(tilting_post(*post, yielding));
+        posts.push_back(tilting_post(*post, yielding, -elements[i].position.z()));
     }
     return posts;
 }

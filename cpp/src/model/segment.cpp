@@ -83,15 +83,18 @@ Segment segment_of(const Prism& prism, double density) {
         {Vec3(-base, -y, -z), Vec3(base, -y, -z), Vec3(-base, y, -z), Vec3(base, y, -z)}};
 }
 
-Segment tilting_post(const Post& post, const YieldingPosts& posts) {
+Segment tilting_post(const Post& post, const YieldingPosts& posts, double depth) {
     require_positive("mass of a post that yields", posts.mass);
     require_positive("inertia of a post that yields", posts.inertia);
     require_positive("plastic_moment of a post that yields", posts.plastic_moment);
     require_finite("height of a post that yields", post.height);
-    // Equal about all axes: a post does not turn about its own, so that this does not count.
+    // Equal about all axes. That about its own is never used.
     RigidBody body(posts.mass, posts.inertia * Mat3::Identity());
     body.inverse_mass = 0.0;
-    return {body, 0.0, post.height, post.radius, post.radius, {}, posts.plastic_moment};
+    // Further down the vehicle would meet the post's endless lower end, which rises from the ground.
+    constexpr double lying = 1.4;
+    const double lying_tilt = depth > 0.0 ? std::min(lying, std::acos(depth / post.height)) : lying;
+    return {body, 0.0, post.height, post.radius, post.radius, {}, posts.plastic_moment, lying_tilt};
 }
 
 }  // namespace birm3d

@@ -139,7 +139,7 @@ void Recorder::resample_obstacles(const Scene& scene, const OutputInstants& outp
         means.force.assign(history.time.size(), Vec3::Zero());
         means.moment.assign(history.time.size(), Vec3::Zero());
         const auto& loads = rows_of;  // lambdas take no structured bindings
-        // A post may turn about a point below its foot, about which its loads are recorded.
+        // Loads of a post are recorded about its centre of rotation, which may be below the ground.
         Vec3 lever = scene.from_origin;
         if (scene.tilts()) lever.z() += scene.barrier->elements[obstacle].position.z();
         run_wide([&] { set_means(output, loads, lever, means); });

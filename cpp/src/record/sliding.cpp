@@ -42,7 +42,7 @@ bool is_straight(const Scene& scene, bool rounded) {
     return true;
 }
 
-// Will friction leave the vehicle fast enough, and does the barrier go on beside it, as long as the longest run takes?
+// Will the vehicle still be fast enough after braking, and be beside the barrier, when the longest run ends?
 bool goes_on_sliding(const Scene& scene, const State& state, const Event& event) {
     const double along = state.units.front().body.velocity.dot(line_direction(event)),
                  speed = std::abs(along);

@@ -10,7 +10,7 @@ void note_sliding(const Scene& scene, const State& state, Event& event);
 
 // Does the vehicle slide along the barrier in a state that can not change? It moves neither across the line nor up, and does not
 // rotate. Either nothing presses it on the barrier, or it has slid so for tolerance::rest_duration. What presses, as straight
-// wheels do, also brakes it by friction. So it must stay fast enough, and before the barrier, until the longest run ends.
+// wheels do, also brakes it by friction. So it must stay fast enough, and beside the barrier, until the longest run ends.
 bool slides_on(const Scene& scene, const State& state, const Event& event);
 
 }  // namespace birm3d

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from ..barrier.base import Barrier
+from ..barrier.kinds import Bollards
 from ..result.element_loads import ElementLoad, touched_elements
 from ..result.result import Result
 from ..signals.filters import cfc
@@ -26,8 +27,14 @@ _FREE = (
     "the ground gets no more than the friction of its base."
 )
 _YIELDING = (
-    "The posts yield: the loads hold for the plastic moment that they were given. Steel is stronger than its "
-    "nominal yield stress, and more so in an impact: give a foundation the moment of the strongest post."
+    "The posts yield, and the loads hold for the moment that they were given. Real steel is stronger, 1.5 to "
+    "2 times with hardening and rate: design a foundation for the moment and the shear of that upper bound. "
+    "About a point at the depth d below the ground, a post that is loaded at the height h asks for 1 + d/h "
+    "times its plastic moment."
+)
+_SLENDER = (
+    "The tubes are slender (D/t beyond class 1 of EN 1993-1-1): they may buckle at the foot and lose their "
+    "moment, which is not computed."
 )
 
 _ACTS = "On {elements} a load still acts when the run ends: it is taken as zero from there on."
@@ -61,8 +68,9 @@ def barrier_caution(barrier: Barrier) -> list[str]:
     """Return what holds for all runs at a barrier."""
     if barrier.stands_free() is not None:
         kind = _FREE
-    elif barrier.core.posts:
-        kind = _YIELDING
+    elif barrier.core.yielding_posts:
+        slender = isinstance(barrier, Bollards) and barrier.tube is not None and barrier.tube.is_slender
+        kind = f"{_YIELDING} {_SLENDER}" if slender else _YIELDING
     else:
         kind = _FIXED
     return ["Computed, not tested: check it against a test or a code of practice.", kind, _ONE_BODY]

@@ -18,7 +18,6 @@ __all__ = [
     "block_profile",
     "numbered",
     "positive",
-    "positive_and_finite",
     "rounded_block",
     "seen_block",
 ]
@@ -38,12 +37,6 @@ def positive(name: str, value: float) -> None:
     """Refuse a length that is not > 0."""
     if not value > 0.0:
         raise ValueError(f"{name} must be > 0 m, got {value}")
-
-
-def positive_and_finite(name: str, value: float) -> None:
-    """Refuse a length that is not finite and > 0."""
-    if not 0.0 < value < math.inf:
-        raise ValueError(f"{name} must be finite and > 0 m, got {value}")
 
 
 def along_line(

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..base.arguments import checked
-from ..unit_check import given, warn_if_mesh_unusual
+from ..unit_check import USUAL, given, warn_if_mesh_unusual, warn_if_unusual
 from ..units import Quantity, si
 from .free_standing import FreeStanding
 from .yielding import Foundation
@@ -147,14 +147,14 @@ class BarrierMakers:
         wall_thickness
             Of a steel tube that yields [m]; half of the diameter is a solid bar. ``None``: rigid posts.
         yield_stress
-            Of the steel [Pa]. The default is the nominal one of S355; steel as delivered has 1.1 to 1.3 times
-            that, and more in an impact.
+            Of the steel [Pa]. The default is the nominal one of S355. Delivered steel, strain hardening and
+            the rate of an impact make it 1.5 to 2 times as strong, an estimate. Run a lower and an upper one.
         filling
-            Of the tube: ``"concrete"`` (30 MPa), a compressive strength [Pa], or ``None``: it is empty. An
-            empty tube may buckle at its foot before it has its plastic moment.
+            Of the tube: ``"concrete"`` (30 MPa), a compressive strength [Pa], or ``None``: it is empty. A
+            slender tube may buckle at its foot before it has its plastic moment; design loads caution of it.
         foundation
-            What holds the tube in the ground, see :class:`birm3d.Foundation`; the weaker of the two gives
-            way. ``None``: the ground does not yield.
+            What holds the tube in the ground, see :class:`birm3d.Foundation`. The weaker of the two gives
+            way, judged by a load 0.6 m above the ground. ``None``: the ground does not yield.
         friction, origin, heading
             See :class:`Barrier`.
 
@@ -176,9 +176,7 @@ class BarrierMakers:
             row_offset=given("row_offset", row_offset),
             wall_thickness=None if wall_thickness is None else given("wall_thickness", wall_thickness),
             yield_stress=given("yield_stress", yield_stress),
-            filling=filling
-            if filling is None or filling == "concrete"
-            else si("filling", filling, "pressure"),
+            filling=_filling(filling),
             foundation=foundation,
         )
 
@@ -329,6 +327,16 @@ class BarrierMakers:
             vertices=points,
             faces=np.array(faces),
         )
+
+
+def _filling(filling: str | float | None) -> str | float | None:
+    """Return the filling of a tube; text with a unit as a strength [Pa]."""
+    if filling in (None, "concrete"):
+        return filling
+    strength = si("filling", filling, "pressure")
+    if not isinstance(filling, str):
+        warn_if_unusual("filling", strength, USUAL["concrete_strength"])
+    return strength
 
 
 def _common(friction: float, origin: Sequence[Quantity], heading: Quantity) -> tuple[float, Point, float]:

@@ -9,8 +9,9 @@ from typing import ClassVar
 import numpy as np
 
 from .. import _core
+from ..base.checks import positive_and_finite
 from .base import Surface
-from .blocks import positive_and_finite, seen_block
+from .blocks import seen_block
 from .description import SeenPart, Size
 from .fronts import FlatFront, axes_of
 from .rounded_block import BlockPlan, RoundedBlock

@@ -12,13 +12,13 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from ..base.checks import MOST_ELEMENTS
+from ..base.checks import MOST_ELEMENTS, positive_and_finite
 from .base import Barrier, Surface
-from .blocks import numbered, positive, positive_and_finite
+from .blocks import numbered, positive
 from .description import SeenPart, Size, height_text
 from .fronts import PostFront, axes_of
 from .surfaces import cylinder
-from .yielding import CONCRETE_STRENGTH, Foundation, Tube, weaker_of
+from .yielding import CONCRETE_STRENGTH, Foundation, Tube, Weaker, weaker_of
 
 __all__ = ["Bollards", "Pole"]
 
@@ -73,7 +73,7 @@ class Pole(Barrier):
 
 @dataclass(frozen=True)
 class Bollards(Barrier):
-    """Rigid bollards in rows.
+    """Bollards in rows: rigid, or steel tubes that yield.
 
     A bollard draws in the skin beside it, see :meth:`birm3d.Vehicle.with_indentation_length`.
     """
@@ -124,7 +124,7 @@ class Bollards(Barrier):
                 )
         if not math.isfinite(self.row_offset):
             raise ValueError(f"row_offset must be finite, got {self.row_offset}")
-        depth = 0.0 if self._weaker is None else self._weaker[1]
+        depth = 0.0 if self.weaker is None else self.weaker.rotation_depth
         return [
             _core.Element.post(
                 radius=0.5 * self.diameter,
@@ -145,7 +145,7 @@ class Bollards(Barrier):
                 f"wall_thickness must be > 0 and at most half the diameter ({0.5 * self.diameter:g} m), "
                 f"got {self.wall_thickness}"
             )
-        positive_and_finite("yield_stress", self.yield_stress)
+        positive_and_finite("yield_stress", self.yield_stress, "Pa")
         strength = 0.0
         if isinstance(self.filling, str):
             if self.filling != "concrete":
@@ -155,12 +155,12 @@ class Bollards(Barrier):
             strength = CONCRETE_STRENGTH
         elif self.filling is not None:
             strength = self.filling
-            positive_and_finite("filling", strength)
+            positive_and_finite("filling", strength, "Pa")
         return Tube(self.diameter, self.wall_thickness, self.yield_stress, strength)
 
     @cached_property
-    def _weaker(self) -> tuple[_core.YieldingPosts, float] | None:
-        """What gives way, and the depth of the point about which the posts turn [m]."""
+    def weaker(self) -> Weaker | None:
+        """What gives way of posts that yield; ``None`` of rigid ones."""
         if self.tube is None:
             for name in ("filling", "foundation"):
                 if getattr(self, name) is not None:
@@ -175,13 +175,14 @@ class Bollards(Barrier):
 
     def yields(self) -> _core.YieldingPosts | None:
         """Return what gives way of posts that yield."""
-        return None if self._weaker is None else self._weaker[0]
+        return None if self.weaker is None else self.weaker.posts
 
     def turning_points(self) -> list[npt.NDArray[np.float64]]:
-        """Return the feet of posts that yield, or the points below that their foundations turn about."""
-        if self._weaker is None:
+        """Return the centres of rotation of posts that yield."""
+        if self.weaker is None:
             return []
-        return [self.place(*place) - np.array([0.0, 0.0, self._weaker[1]]) for place in self.places()]
+        down = np.array([0.0, 0.0, self.weaker.rotation_depth])
+        return [self.place(*place) - down for place in self.places()]
 
     def places(self) -> list[tuple[float, float]]:
         """Return the axes of the bollards across and along the line [m], see :meth:`Barrier.place`."""
@@ -211,12 +212,16 @@ class Bollards(Barrier):
         text += f", {height_text(self.height)}"
         if self.count > 1:
             text += f", {self.spacing:g} m between axes ({self.spacing - self.diameter:.3g} m clear)"
-        if self.wall_thickness is not None and self._weaker is not None:
+        if self.wall_thickness is not None and self.weaker is not None:
             text += f", steel {1e3 * self.wall_thickness:.3g} mm"
             text += "" if self.filling is None else " with concrete"
-            posts, depth = self._weaker
-            text += f", yields at {posts.plastic_moment / 1e3:.3g} kN m"
-            text += "" if depth == 0.0 else f", {depth:.2g} m below the ground"
+            turns, moment = self.weaker.foundation_turns, self.weaker.posts.plastic_moment
+            what = (
+                f"the foundation turns {self.weaker.rotation_depth:.2g} m below the ground"
+                if turns
+                else "yields"
+            )
+            text += f", {what} at {moment / 1e3:.3g} kN m"
         return text + (f", rows {self.row_spacing:g} m apart (axis to axis)" if self.rows > 1 else "")
 
     def load_front(self) -> PostFront:

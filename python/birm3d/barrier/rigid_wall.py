@@ -11,8 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
+from ..base.checks import positive_and_finite
 from .base import Surface
-from .blocks import numbered, positive, positive_and_finite, seen_block
+from .blocks import numbered, positive, seen_block
 from .description import SeenPart, Size, height_text, length_text, segments_text
 from .fronts import FlatFront, axes_of, feet_of
 from .rounded_block import BlockPlan, RoundedBlock

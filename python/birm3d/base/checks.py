@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from numbers import Real
 from typing import Any
@@ -20,6 +21,7 @@ __all__ = [
     "is_whole",
     "number",
     "pair",
+    "positive_and_finite",
     "shown",
     "whole_number",
 ]
@@ -76,6 +78,12 @@ def pair(name: str, value: Sequence[float]) -> tuple[float, float]:
     if len(value) != 2:
         raise ValueError(f"{name} must be two numbers, got {shown(value)}")
     return number(name, value[0]), number(name, value[1])
+
+
+def positive_and_finite(name: str, value: float, unit: str = "m") -> None:
+    """Refuse what is not finite and > 0, a length where no other unit is named."""
+    if not 0.0 < value < math.inf:
+        raise ValueError(f"{name} must be finite and > 0 {unit}, got {value}")
 
 
 def index(name: str, value: Any, count: int, things: str) -> int:

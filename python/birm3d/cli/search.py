@@ -140,7 +140,7 @@ def segment_mass(
     _show(found, as_json, plot)
 
 
-@search.command("wall-thickness", context_settings={"default_map": {"barrier": "bollards"}})
+@search.command("tube-thickness", context_settings={"default_map": {"barrier": "bollards"}})
 @scene_options
 @_range("0.004:0.03", "m")
 @click.option("--deflection", type=QuantityOption("length"), help="Greatest of a post's top (m).")
@@ -148,7 +148,7 @@ def segment_mass(
 @_DRAWS
 @_JSON
 @_PLOT
-def wall_thickness(
+def tube_thickness(
     scene: Path | None,
     limits: str,
     deflection: float | None,
@@ -159,12 +159,12 @@ def wall_thickness(
     **options: Any,
 ) -> None:
     """Find the least wall of steel tubes with which a row of bollards stops the vehicle."""
-    from ..study.design_limits import least_wall_thickness
+    from ..study.design_limits import least_tube_thickness
 
     wanted = _limits(limits, "length")
     if scene is None and options["wall_thickness"] is None:
         options["wall_thickness"] = wanted[1]
-    found = least_wall_thickness(
+    found = least_tube_thickness(
         simulation_of(scene, options), wanted, deflection=deflection, points=points, draws=draws
     )
     _show(found, as_json, plot)

@@ -148,7 +148,7 @@ def _phenomena(case: Case) -> Iterator[tuple[str, str, str]]:
         over = metrics.get("max_overturning_ratio", 0.0)
         yield "segments that slide and turn on the ground", "yes", "friction on the ground"
         yield "segments that tip", "no", f"greatest overturning over restoring moment {over:.2f}"
-    elif barrier.core.posts:
+    elif barrier.core.yielding_posts:
         yield "posts that yield at the foot or in the foundation", "yes", "constant plastic moment"
         yield "posts that buckle, tear or spring back", "no", "forces and deflections assume that they do not"
     else:

@@ -72,9 +72,8 @@ def _barrier_rows(case: Case) -> Iterator[tuple[str, str]]:
     stands = "fixed: it does not move"
     if barrier.core.segments:
         stands = "free-standing segments"
-    elif barrier.core.posts:
-        moment = barrier.core.posts[0].plastic_moment
-        stands = f"posts that yield at a moment of {moment / 1e3:.3g} kN m at the point about which they turn"
+    elif barrier.core.yielding_posts:
+        stands = "posts that yield at the ground, or turn with their foundation, as their text says"
     yield "barrier stands", stands
     yield "friction of vehicle on barrier", f"{barrier.friction:g}"
     if any(barrier.origin) or barrier.heading:

@@ -93,7 +93,7 @@ def _barrier(result: RunAnalysis) -> Iterator[str]:
     if loaded < elements:
         yield f"histories of {_of(elements - loaded, elements)} elements (never touched)"
     free = getattr(barrier, "free_standing", None)
-    if barrier.core.posts:
+    if barrier.core.yielding_posts:
         yield "buckling, tearing and springing back of its posts (their plastic moments are constant)"
     elif free is None:
         yield f"its motion (fixed: {elements:,} {'element' if elements == 1 else 'elements'})"

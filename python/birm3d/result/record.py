@@ -200,7 +200,7 @@ class RunRecord:
     def _posts(self) -> int:
         """How many posts that yield the barrier has."""
         barrier = self.scene.barrier
-        return 0 if barrier is None else len(barrier.core.posts)
+        return 0 if barrier is None else len(barrier.core.yielding_posts)
 
     @property
     def post_axis(self) -> Floats:

@@ -93,6 +93,6 @@ def _slip_text(slip: float) -> str:
 
 
 def _barrier(barrier: Barrier) -> str:
-    moving = barrier.core.segments or barrier.core.posts
+    moving = barrier.core.segments or barrier.core.yielding_posts
     each = f", {moving[0].mass:,.0f} kg each" if moving else ""
     return f"to the line of the barrier: {barrier_text(barrier)}{each}, friction {barrier.friction:g}"

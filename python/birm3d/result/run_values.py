@@ -47,7 +47,7 @@ def parts_of(scene: Scene) -> frozenset[str]:
         found.add("sliding")
     if barrier is not None and barrier.core.segments:
         found |= {"segments", "moving"}
-    if barrier is not None and barrier.core.posts:
+    if barrier is not None and barrier.core.yielding_posts:
         found |= {"posts", "moving"}
     return frozenset(found)
 

@@ -64,12 +64,12 @@ class _Foundation(Strict):
     """The table ``foundation`` of bollards that yield; see :class:`birm3d.Foundation`."""
 
     moment_N_m: float  # noqa: N815  (unit)
-    depth_m: float = 0.0
+    rotation_depth_m: float = 0.0
     mass_kg: float = 0.0
 
     def made(self) -> Foundation:
         """Return what holds the posts."""
-        return Foundation(self.moment_N_m, self.depth_m, self.mass_kg)
+        return Foundation(self.moment_N_m, self.rotation_depth_m, self.mass_kg)
 
 
 class _Placed(Strict):

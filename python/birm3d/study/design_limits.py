@@ -15,7 +15,7 @@ from ..simulation.simulation import Simulation
 from ..units import Quantity, si
 from .limit_search import CONTAINED, Limit, Question, search_limit
 
-__all__ = ["OFFSET_SHARES", "greatest_gap", "least_height", "least_segment_mass", "least_wall_thickness"]
+__all__ = ["OFFSET_SHARES", "greatest_gap", "least_height", "least_segment_mass", "least_tube_thickness"]
 
 OFFSET_SHARES = (-0.25, 0.0, 0.25, 0.5)
 """Impact offsets over the spacing, from the middle of a row of posts: at a post, in a gap, and between."""
@@ -39,8 +39,9 @@ _SLIDES = (
 )
 
 _YIELDS = (
-    "Computed, not tested. Tubes do not buckle or tear, and have the yield stress that they were given: look "
-    "at post_tilt too, and leave a margin."
+    "Computed, not tested. Tubes do not buckle or tear, whatever their D/t, and have the yield stress that "
+    "they were given: look at post_tilt too. Where posts tilt far, a few percent of strength decide whether "
+    "a vehicle is held or rides over: leave a margin."
 )
 
 
@@ -268,7 +269,7 @@ def least_segment_mass(
 
 
 @checked
-def least_wall_thickness(
+def least_tube_thickness(
     simulation: Simulation,
     thicknesses: Sequence[Quantity] = (0.004, 0.03),
     *,
@@ -295,7 +296,8 @@ def least_wall_thickness(
     deflection
         Greatest ``barrier_deflection`` [m]; ``None``: any.
     offsets
-        ``impact_offset`` of the runs [m]; ``None``: at a post, in a gap, and between.
+        ``impact_offset`` of the runs [m]; ``None``: at a post, in a gap, and between; of
+        one bollard the scene's.
     points, resolution, draws, executor, progress
         See :func:`greatest_gap`.
 
@@ -311,7 +313,7 @@ def least_wall_thickness(
     if not isinstance(barrier, Bollards) or barrier.wall_thickness is None:
         raise ValueError(f"simulation must have bollards with a wall_thickness, got {barrier}")
     question = Question(
-        name="wall thickness",
+        name="tube thickness",
         argument="thicknesses",
         unit="m",
         greatest=False,

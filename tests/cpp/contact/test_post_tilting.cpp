@@ -65,7 +65,7 @@ TEST(
     BodyState body;
     CHECK((below + plastic_impulse(post, body, below, dt)).isZero(0.0));
     CHECK((above + plastic_impulse(post, body, above, dt)).norm() > 0.9 * dt * tube.plastic_moment);
-    body.orientation = Eigen::AngleAxisd(lying_tilt, Vec3::UnitX());
+    body.orientation = Eigen::AngleAxisd(post.lying_tilt, Vec3::UnitX());
     CHECK((above + plastic_impulse(post, body, above, dt)).isZero(0.0));
 }
 

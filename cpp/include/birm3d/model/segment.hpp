@@ -1,4 +1,5 @@
 // Elements of a barrier that move: free-standing segments slide on the ground, posts that yield tilt about their foot.
+// That is the centre of rotation: at the ground, or below it where the foundation turns.
 //
 // A free-standing segment moves along the ground and turns about the vertical; it neither tips nor leaves the ground.
 // Its mass properties follow from the solid: section area times length times density, of what stands above z = 0.
@@ -31,7 +32,7 @@ struct FreeStanding {
 struct YieldingPosts {
     double mass;            // kg
     double inertia;         // about a horizontal axis through the foot (kg m^2)
-    double plastic_moment;  // at the foot (N m)
+    double plastic_moment;  // of the tube, or that the foundation resists, about the foot (N m)
 };
 
 // An element that moves. A post that yields has its foot where a segment has its mass centre: the body's inertia is about the
@@ -39,11 +40,14 @@ struct YieldingPosts {
 struct Segment {
     RigidBody body;             // own axes of the element, origin at the mass centre
     double mass_center_height;  // above the ground (m)
-    double reach;        // greatest distance of a moving point from the axis through the mass centre (m)
+    double reach;        // of a moving point from the axis through the mass centre; of a post its height (m)
     double half_length;  // m
     double half_base;    // from the middle to the nearer edge of its base (m)
     std::array<Vec3, 4> corner;  // of its base, from the mass centre, own axes (m)
     double plastic_moment = std::numeric_limits<double>::infinity();  // of a post that yields (N m)
+
+    double lying_tilt =
+        0.0;  // tilt at which a post that yields lies on the ground: it turns no further (rad)
 
     bool tilts() const { return plastic_moment < std::numeric_limits<double>::infinity(); }
 };
@@ -52,10 +56,8 @@ struct Segment {
 // must stand above the origin of the prism, within 1e-9 m.
 Segment segment_of(const Prism& prism, double density);
 
-// Refuses posts without end, and numbers that are not > 0.
-Segment tilting_post(const Post& post, const YieldingPosts& posts);
-
-// Tilt at which a post that yields lies on the ground: it turns no further (rad).
-inline constexpr double lying_tilt = 1.4;
+// Refuses posts without end, and numbers that are not > 0. `depth`: of the foot below the ground (m). A post lies on the ground
+// at a tilt of 1.4 rad. One that turns about a deeper point does so where its top has come down to the ground.
+Segment tilting_post(const Post& post, const YieldingPosts& posts, double depth = 0.0);
 
 }  // namespace birm3d
