@@ -65,7 +65,7 @@ struct History {
     std::vector<SegmentHistory> segments;        // of a barrier that moves, in the order of its elements
     Column kinetic, potential, stored, crushed;  // J
     Column barrier_friction, tire_friction, ground_friction, impacts, joint_work;  // J
-    Column segment_friction, suspension, sliding, yielding;                         // J
+    Column segment_friction, suspension, sliding, yielding;                        // J
     double kinetic_at_start = 0.0;                                                 // at the first instant (J)
     double energy_residual =
         0.0;  // greatest departure of the sum of all energies from that at that instant (J)

@@ -56,7 +56,7 @@ struct Energies {
     double springs = 0.0;           // in the springs of wheels, less that at rest
     double dampers = 0.0;           // lost in the dampers of wheels
     double sliding = 0.0;           // lost where a unit slides on another one
-    double yielding = 0.0;           // plastic work of posts that yield
+    double yielding = 0.0;          // plastic work of posts that yield
 
     double total() const {
         return kinetic + potential + stored + crushed + barrier_friction + tire_friction + ground_friction +
