@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import dataclasses
 import json
+import math
 import re
 import sys
 from collections.abc import Callable
@@ -627,8 +628,11 @@ def test_other_kinds_of_runs(make: Any, tmp_path: Path, monkeypatch: pytest.Monk
         assert ["changed" in row for row in page.table("Passenger car: stiffness") if row[0] == "bumper"] == [
             True
         ]
-        moved = np.array(data["barrier"][1]["foot"])
-        assert np.abs(moved[-1] - result.segment_position[-1, 1]).max() < 1e-3
+        part = data["barrier"][1]
+        moved = np.array(part["foot"]) + np.array(part["shift"])
+        assert np.abs(moved[-1, :2] - result.segment_position[-1, 1]).max() < 1e-3
+        yaw = math.radians(result.segment_yaw[-1, 1])
+        assert np.array(part["turn"])[-1, [0, 3]] == pytest.approx([math.cos(yaw), math.sin(yaw)], abs=1e-5)
 
 
 def test_a_verdict_is_a_word_of_its_own() -> None:

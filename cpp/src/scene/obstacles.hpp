@@ -44,7 +44,8 @@ double fastest_point(const Unit& unit, const BodyState& body);
 double fastest_segment(const Scene& scene, const State& state);
 
 // Gap of the point that is nearest to an obstacle (m); infinite if there is none. It is exact, so that it does not
-// depend on the order of nodes in blocks. The flags choose nodes, anchors and the ground.
+// depend on the order of nodes in blocks. The flags choose nodes, anchors and the ground. Skin that an indentation draws in, or
+// that hangs over a top edge and may lag inside the wall, is left out.
 struct Nearness {
     bool ground = false;
     bool nodes = true;

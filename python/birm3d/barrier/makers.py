@@ -331,7 +331,7 @@ class BarrierMakers:
 
 def _filling(filling: str | float | None) -> str | float | None:
     """Return the filling of a tube; text with a unit as a strength [Pa]."""
-    if filling in (None, "concrete"):
+    if filling is None or (isinstance(filling, str) and filling == "concrete"):
         return filling
     strength = si("filling", filling, "pressure")
     if not isinstance(filling, str):
