@@ -132,6 +132,19 @@ def test_a_post_lies_on_the_ground_where_its_top_has_come_down_to_it() -> None:
     assert run.post_tilt.max() == pytest.approx(math.degrees(math.acos(0.5)), abs=2.0)  # one step further
 
 
+def test_a_load_height_at_which_the_other_one_gives_way_is_told() -> None:
+    tube = Tube(TUBE["diameter"], TUBE["wall_thickness"], 355e6).plastic_moment
+    for height, told in ((0.45, "A load below 0.45 m"), (0.8, "A load below 0.80 m"), (0.1, "")):
+        # Both give way under the same load at this height: M_t / h = M_f / (h + 1).
+        foundation = Foundation(tube * (height + 1.0) / height, rotation_depth=1.0)
+        barrier = Barrier.bollards(count=2, foundation=foundation, **TUBE)
+        assert barrier.weaker is not None
+        assert barrier.weaker.switch_height == pytest.approx(height)
+        assert barrier.weaker.foundation_turns == (height > 0.6)
+        cautions = " ".join(barrier_caution(barrier))
+        assert (told in cautions) if told else ("A load below" not in cautions)
+
+
 def test_a_run_books_the_work_of_the_plastic_moments(at_three: birm3d.Result) -> None:
     tilt, yielding = np.radians(at_three.post_tilt), at_three.energy["yielding"]
     moment = Barrier.bollards(count=3, **TUBE).core.yielding_posts[0].plastic_moment

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
@@ -31,6 +31,11 @@ _YIELDING = (
     "2 times with hardening and rate: design a foundation for the moment and the shear of that upper bound. "
     "About a point at the depth d below the ground, a post that is loaded at the height h asks for 1 + d/h "
     "times its plastic moment."
+)
+_LOW_LOAD, _HIGH_LOAD = 0.3, 1.0  # heights above the ground between which vehicles load posts, about (m)
+_SWITCHES = (
+    "A load below {height:.2f} m turns the foundation, a higher one bends the tube. Only what a load at "
+    "0.6 m moves gives way here: check the other one by itself."
 )
 _SLENDER = (
     "The tubes are slender (D/t beyond class 1 of EN 1993-1-1): they may buckle at the foot and lose their "
@@ -69,11 +74,20 @@ def barrier_caution(barrier: Barrier) -> list[str]:
     if barrier.stands_free() is not None:
         kind = _FREE
     elif barrier.core.yielding_posts:
-        slender = isinstance(barrier, Bollards) and barrier.tube is not None and barrier.tube.is_slender
-        kind = f"{_YIELDING} {_SLENDER}" if slender else _YIELDING
+        kind = " ".join([_YIELDING, *_of_posts(barrier)])
     else:
         kind = _FIXED
     return ["Computed, not tested: check it against a test or a code of practice.", kind, _ONE_BODY]
+
+
+def _of_posts(barrier: Barrier) -> Iterator[str]:
+    """Yield what the section and the foundation of posts that yield ask to be said."""
+    if not isinstance(barrier, Bollards) or barrier.tube is None or barrier.weaker is None:
+        return
+    if barrier.tube.is_slender:
+        yield _SLENDER
+    if _LOW_LOAD < barrier.weaker.switch_height < _HIGH_LOAD:
+        yield _SWITCHES.format(height=barrier.weaker.switch_height)
 
 
 def run_cautions(result: Result) -> dict[str, tuple[str, ...]]:

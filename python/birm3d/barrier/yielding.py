@@ -240,6 +240,8 @@ class Weaker:
     rotation_depth: float
     """Of the centre of rotation below the ground [m]."""
     foundation_turns: bool
+    switch_height: float
+    """Of a load above the ground [m]: a lower one turns the foundation, a higher one bends the tube."""
 
 
 def weaker_of(tube: Tube, height: float, foundation: Foundation | None) -> Weaker:
@@ -249,9 +251,13 @@ def weaker_of(tube: Tube, height: float, foundation: Foundation | None) -> Weake
     if foundation is not None and foundation.moment / (lever + foundation.rotation_depth) < moment / lever:
         moment, depth, block = foundation.moment, foundation.rotation_depth, foundation.mass
         turns = True
+    # Tube and foundation give way under the same load where M_t / h = M_f / (h + d).
+    switch = 0.0
+    if foundation is not None:
+        stronger = foundation.moment - tube.plastic_moment
+        switch = foundation.rotation_depth * tube.plastic_moment / stronger if stronger > 0.0 else math.inf
     length = height + depth
     mass = tube.mass_per_length * length
     inertia = mass * (length**2 / 3.0 + tube.diameter**2 / 16.0) + block * depth**2 / 3.0
-    return Weaker(
-        _core.YieldingPosts(mass=mass + block, inertia=inertia, plastic_moment=moment), depth, turns
-    )
+    posts = _core.YieldingPosts(mass=mass + block, inertia=inertia, plastic_moment=moment)
+    return Weaker(posts, depth, turns, switch)
