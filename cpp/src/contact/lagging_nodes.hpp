@@ -1,6 +1,6 @@
-// Skin that hangs over the top of a wall can sink into the wall with the vehicle. Once the top edge lets go of it, it lags inside the
-// faces of the wall. A face moves such a node by as much as the face itself moves, and does not push it out at once. That would
-// crush its truss by energy that the body never lost.
+// Skin that hangs over the top of a wall can sink into the wall with the vehicle. The top edge later releases such a node inside
+// the wall: it lags behind the wall's faces. A face moves it only by as much as the face itself moves. To push it out at once
+// would crush its truss by energy that the body never lost.
 #pragma once
 
 #include "contact/contact_pass.hpp"

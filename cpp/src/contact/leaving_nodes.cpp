@@ -81,12 +81,12 @@ void find_leaving(const ContactPass& pass, const ContactBlock& block, BlockColum
     find_distances(block, distance);
     for (std::size_t i = 0; i < block_size; ++i) {
         const double panel = pass.mesh.block[block.index].panel[i];
-        const bool was_indented =
+        const bool on_indented =
             panel >= 0.0 && (pass.indented_before >> static_cast<unsigned>(panel) & 1U) != 0;
         const bool released = !block.indentations.empty() && block.released[i] > 0.0;
         const bool follows = !block.indentations.empty() && block.faces.per_force[i] > 0.0;
         const double farthest = follows ? pass.greatest_following : 2.0 * pass.margin;
-        leaves[i] = released || (was_indented && distance[i] > farthest) ? 1.0 : 0.0;
+        leaves[i] = released || (on_indented && distance[i] > farthest) ? 1.0 : 0.0;
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/channel_filter.hpp"
 #include "birm3d/record/extremes.hpp"
+#include "scene/bodies.hpp"
 
 namespace birm3d {
 
@@ -67,7 +68,7 @@ Extremes::Segments greatest_tilt(const History& history, const Barrier& barrier)
         const double height = barrier.segments[i].reach;
         double tilt = 0.0, moved = 0.0;
         for (const Vec3& now : axis) {
-            tilt = std::atan2(std::hypot(now.x(), now.y()), now.z());
+            tilt = tilt_of(now);
             moved = height * now.dot(past);
             found.tilt = std::max(found.tilt, tilt);
             found.deflection = std::max(found.deflection, moved);

@@ -50,9 +50,12 @@ Mat3 inverse_inertia_of_post(const RigidBody& body, const BodyState& post) {
     return body.inverse_inertia(0, 0) * (Mat3::Identity() - axis * axis.transpose());
 }
 
-double tilt_of(const BodyState& post) {
-    const Vec3 axis = post.orientation * Vec3::UnitZ();
+double tilt_of(const Vec3& axis) {
     return std::atan2(std::hypot(axis.x(), axis.y()), axis.z());
+}
+
+double tilt_of(const BodyState& post) {
+    return tilt_of(Vec3(post.orientation * Vec3::UnitZ()));
 }
 
 int body_of_obstacle(const Scene& scene, std::size_t obstacle) {

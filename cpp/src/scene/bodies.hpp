@@ -17,7 +17,7 @@ BodyState& body_state(State& state, std::size_t body);
 void list_body_states(const State& state, std::vector<BodyState>& bodies);
 
 // impulse: linear and angular about the body's mass centre, world axes (N s, N m s). The ground takes the vertical
-// impulse and the tipping moment on a free-standing segment. Of a post that yields it takes all but the moment that tilts it.
+// impulse and the tipping moment on a free-standing segment. On a post that yields only the tilting moment acts.
 void kick_body(const Scene& scene, std::size_t body, const Wrench& impulse, State& state);
 
 // Index of the body of an obstacle, or -1 if the obstacle is fixed.
@@ -29,7 +29,8 @@ Vec3 tilting_part(const BodyState& post, const Vec3& torque);
 // Of a post about its foot, world axes: the same about all axes that are square to its own, and zero about that (1/(kg m^2)).
 Mat3 inverse_inertia_of_post(const RigidBody& body, const BodyState& post);
 
-// Angle of a post's own axis to the vertical (rad).
+// Angle of a post's own axis to the vertical (rad). `axis`: unit vector from its foot to its top.
+double tilt_of(const Vec3& axis);
 double tilt_of(const BodyState& post);
 
 // Fastest any point of a segment moves (m/s).

@@ -193,9 +193,11 @@ def draw_barrier(axes: Axes, view: PlanAxes, world: Floats, drawn: list[Floats],
 def _draw_tilted(axes: Axes, view: PlanAxes, world: Floats, drawn: list[Floats], result: Result) -> None:
     """Draw posts that yielded as they ended."""
     motion = element_motion(result, result.time[-1:])
+    if motion.movable == 0:
+        return
     surfaces = barrier_surfaces(result.scene.barrier, world)
     label = "tilted posts at the end"
-    for element, (corners, faces) in enumerate(surfaces[: motion.movable]):
+    for element, (corners, faces) in enumerate(surfaces):
         moved = motion.moved(0, element, corners)
         if np.abs(moved - corners).max() < _STILL:
             continue

@@ -73,7 +73,7 @@ def _barrier_rows(case: Case) -> Iterator[tuple[str, str]]:
     if barrier.core.segments:
         stands = "free-standing segments"
     elif barrier.core.yielding_posts:
-        stands = "posts that yield at the ground, or turn with their foundation, as their text says"
+        stands = "posts that yield at the ground, or turn with their foundation"
     yield "barrier stands", stands
     yield "friction of vehicle on barrier", f"{barrier.friction:g}"
     if any(barrier.origin) or barrier.heading:

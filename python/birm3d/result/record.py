@@ -179,22 +179,22 @@ class RunRecord:
 
         Segments are those of ``scene.barrier.element_names``; k is 0 where the barrier is fixed.
         """
-        return self._of_segments("segment_position", (2,))
+        return self._of_moving("segment_position", self._segments, (2,))
 
     @property
     def segment_velocity(self) -> Floats:
         """Of the mass centre of each free-standing segment, world x and y, shape (n, k, 2) [m/s]."""
-        return self._of_segments("segment_velocity", (2,))
+        return self._of_moving("segment_velocity", self._segments, (2,))
 
     @cached_property
     def segment_yaw(self) -> Floats:
         """Turn of each free-standing segment since the start, positive to the left, shape (n, k) [deg]."""
-        return read_only(np.degrees(self._of_segments("segment_yaw", ())))
+        return read_only(np.degrees(self._of_moving("segment_yaw", self._segments)))
 
     @cached_property
     def segment_yaw_rate(self) -> Floats:
         """Of each free-standing segment, shape (n, k) [deg/s]."""
-        return read_only(np.degrees(self._of_segments("segment_yaw_rate", ())))
+        return read_only(np.degrees(self._of_moving("segment_yaw_rate", self._segments)))
 
     @property
     def _posts(self) -> int:
@@ -202,16 +202,13 @@ class RunRecord:
         barrier = self.scene.barrier
         return 0 if barrier is None else len(barrier.core.yielding_posts)
 
-    @property
+    @cached_property
     def post_axis(self) -> Floats:
         """Unit vectors from the foot to the top of each post that yields, world axes, shape (n, k, 3).
 
         Posts are those of ``scene.barrier.element_names``; k is 0 where the barrier is rigid.
         """
-        if self._posts == 0:
-            return read_only(np.zeros((len(self.time), 0, 3)))
-        values: Floats = self._history.post_axis
-        return values
+        return self._of_moving("post_axis", self._posts, (3,))
 
     @cached_property
     def post_tilt(self) -> Floats:
@@ -219,8 +216,9 @@ class RunRecord:
         axis = self.post_axis
         return read_only(np.degrees(np.arctan2(np.hypot(axis[..., 0], axis[..., 1]), axis[..., 2])))
 
-    def _of_segments(self, name: str, more: tuple[int, ...]) -> Floats:
-        if self._segments == 0:  # files of earlier versions have none
+    def _of_moving(self, name: str, count: int, more: tuple[int, ...] = ()) -> Floats:
+        """Return a column of the history for each element that moves; ``count``: how many there are."""
+        if count == 0:  # files of earlier versions have none
             return read_only(np.zeros((len(self.time), 0, *more)))
         values: Floats = getattr(self._history, name)
         return values

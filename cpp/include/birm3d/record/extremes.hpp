@@ -76,7 +76,7 @@ struct Extremes {
     // Motion and loads of the segments of a free-standing barrier, or of posts that yield.
     struct Segments {
         // Distances by which the furthest corner of any base moved square to the line, away from the traffic (m): the
-        // greatest, and that at the end. Of posts that yield: the same of their tops' axes.
+        // greatest, and that at the end. Of posts that yield: those of the middle of the top.
         double deflection = 0.0, residual_deflection = 0.0;
         // Angles of posts that yield to the vertical (rad): the greatest of any, and that at the end.
         double tilt = 0.0, residual_tilt = 0.0;
