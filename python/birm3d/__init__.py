@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from .result.element_loads import ElementLoad
     from .result.energy_balance import BalanceWarning
     from .result.load_map import LoadMap
+    from .result.low_barrier import LowBarrierWarning
     from .result.missed import MissedBarrierWarning
     from .result.overlap import OverlapWarning
     from .result.result import load, write_capsule
@@ -87,6 +88,7 @@ __all__ = [
     "Joint",
     "Limit",
     "LoadMap",
+    "LowBarrierWarning",
     "MassWarning",
     "MissedBarrierWarning",
     "NotInRangeError",
@@ -168,6 +170,7 @@ _WHERE = {
     "Joint": "vehicle:Joint",
     "Limit": "study.limit_search:Limit",
     "LoadMap": "result.load_map:LoadMap",
+    "LowBarrierWarning": "result.low_barrier:LowBarrierWarning",
     "MassWarning": "vehicle.mass_check:MassWarning",
     "MissedBarrierWarning": "result.missed:MissedBarrierWarning",
     "NotInRangeError": "study.limit_search:NotInRangeError",

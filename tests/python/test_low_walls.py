@@ -15,6 +15,8 @@ from birm3d.barrier.rigid_wall import RigidWall
 
 SPEED = 13.4  # m/s
 
+pytestmark = pytest.mark.filterwarnings("ignore::birm3d.LowBarrierWarning")
+
 
 @cache
 def truck() -> Vehicle:

@@ -10,6 +10,7 @@ import numpy as np
 from ..barrier.base import Barrier
 from ..barrier.kinds import Bollards
 from ..result.element_loads import ElementLoad, touched_elements
+from ..result.low_barrier import low_barrier_lines
 from ..result.result import Result
 from ..signals.filters import cfc
 from .element_design import peak_filter
@@ -103,6 +104,7 @@ def run_cautions(result: Result) -> dict[str, tuple[str, ...]]:
     found[_TIPS] = _tipping(result)
     if loads and height_caution(result):
         found[_LOW] = ("the barrier",)
+    found |= {line: ("the barrier",) for line in low_barrier_lines(result)}
     if result.outcome == "undecided":
         found[_UNDECIDED] = ("the barrier",)
     elif not loads:

@@ -16,6 +16,7 @@ import numpy as np
 
 from .. import units
 from ..result.event import gets_past, is_open, outcome_words
+from ..result.low_barrier import low_barrier_lines
 from ..vehicle.joint import LONGEST_SLIP
 from .criteria import Criterion
 from .measures import barrier_extent, check_side_on, heading_rows, penetration_history
@@ -157,7 +158,7 @@ def rate_security(
         found.greatest,
         contained,
         (mass, *rows[:-1], measured, rows[-1], became),
-        " ".join([standard.caution, *_of_bed(result), MODEL_CAUTION]),
+        " ".join([*low_barrier_lines(result), standard.caution, *_of_bed(result), MODEL_CAUTION]),
         vehicle.code,
     )
 

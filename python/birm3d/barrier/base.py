@@ -25,6 +25,8 @@ __all__ = ["Barrier", "Surface"]
 Surface: TypeAlias = "tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]"
 """Vertices (n, 3), world axes [m], and triangles (m, 3), counter-clockwise seen from outside."""
 
+_ENDLESS = 1e6  # m: barriers without end are taken as so high
+
 
 @checked
 @dataclass(frozen=True)
@@ -114,6 +116,13 @@ class Barrier(BarrierMakers):
             free_standing=[] if free is None else [free],
             yielding=[] if posts is None else [posts],
         )
+
+    @cached_property
+    def _top(self) -> float:
+        """Greatest height above the ground [m]; infinite where it has no end."""
+        surfaces = self.surfaces(_ENDLESS, (-1.0, 1.0))
+        top = max(float(points[:, 2].max()) for points, _ in surfaces)
+        return top if top < 0.5 * _ENDLESS else math.inf
 
     @cached_property
     def _past(self) -> tuple[float, float, float]:

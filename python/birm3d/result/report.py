@@ -12,6 +12,7 @@ from ..vehicle.title import vehicle_text
 from .core_contact import core_lines
 from .element_loads import touched_elements
 from .event import outcome_words
+from .low_barrier import low_barrier_lines
 from .omitted import omitted_lines
 
 if TYPE_CHECKING:
@@ -61,6 +62,7 @@ def report(result: RunAnalysis) -> str:
         f"initial kinetic energy, momentum residual {metrics['momentum_residual']:.1e}",
     ]
     lines += core_lines(result)
+    lines += [f"  {line}" for line in low_barrier_lines(result)]
     if vehicle.joint is not None:
         lines.append(
             f"  {vehicle.joint.kind}: peak 50-ms mean of the force "

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from .core_contact import core_complaints
 from .energy_balance import open_balances
+from .low_barrier import low_barrier
 from .missed import missed_barrier
 from .overlap import overlaps
 
@@ -23,12 +24,13 @@ __all__ = ["complaints_of_run", "warn_of_run"]
 def complaints_of_run(
     scene: Scene, statistics: _core.StepStatistics, balances: _core.Balances, event: _core.Event
 ) -> Iterator[Complaint]:
-    """Return complaints of overlap of body and barrier, blows on the core, open balances, missed barriers."""
+    """Return complaints: overlap, blows on the core, open balances, missed barriers, low barriers."""
     return chain(
         overlaps(scene, statistics),
         core_complaints(scene, statistics),
         open_balances(scene, balances),
         missed_barrier(scene, event),
+        low_barrier(scene, event),
     )
 
 
@@ -47,6 +49,8 @@ def warn_of_run(
         As a warning, see :func:`birm3d.result.energy_balance.warn_if_open`.
     MissedBarrierWarning
         As a warning, if the vehicle went past the end of the barrier and never touched it.
+    LowBarrierWarning
+        As a warning, if a barrier that contains a front is lower than the front's middle.
     """
     for complaint in complaints_of_run(scene, statistics, balances, event):
         complaint.warn()

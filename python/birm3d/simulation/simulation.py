@@ -169,10 +169,11 @@ class Simulation:
         CoreContactWarning
             As a warning, if the barrier pressed the rigid core with more than the vehicle's weight.
         BalanceWarning
-            As a warning, if a balance of the run does not close: energy, momentum, or dissipation that falls;
-            see :func:`birm3d.result.energy_balance.warn_if_open`.
+            As a warning, if a balance of the run does not close: energy, momentum, or dissipation that falls.
         MissedBarrierWarning
             As a warning, if the vehicle went past the end of the barrier and never touched it.
+        LowBarrierWarning
+            As a warning, if a barrier that contains a front is lower than the front's middle.
         ValueError
             If the frames are more than the result's rows or outside the run, or if the run takes more steps
             than a record holds; :meth:`result` has those that were taken.

@@ -126,7 +126,8 @@ def run_study(
         A KeyboardInterrupt, with the finished runs in its ``study`` and in the store.
     MassWarning
         As a warning, once, if the vehicle's class can not have the mass in some rows.
-    OverlapWarning, CoreContactWarning, BalanceWarning, CoarseSkinWarning, MissedBarrierWarning
+    OverlapWarning, CoreContactWarning, BalanceWarning, CoarseSkinWarning, MissedBarrierWarning,
+    LowBarrierWarning
         As warnings, each once for all runs that were run now: how many and which rows are not reliable, and
         what is wrong with the worst.
     """

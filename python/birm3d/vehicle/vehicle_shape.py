@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from .. import _core
 from .along_panel import build_along
+from .front_height import middle_of_shape
 from .mesher import build_mesh
 from .tire_nodes import build_tread, zones_of_wheels
 from .vehicle_file import VehicleFile
@@ -69,6 +70,7 @@ class VehicleShape:
             array.setflags(write=False)
         self._trusses: OrderedDict[tuple[object, ...], _core.TrussMesh] = OrderedDict()
         self._seen: OrderedDict[bytes, tuple[Floats, Floats]] = OrderedDict()
+        self._middles: OrderedDict[tuple[object, ...], float | None] = OrderedDict()
 
     @cached_property
     def without_tire_nodes(self) -> VehicleShape:
@@ -133,6 +135,14 @@ class VehicleShape:
             self._trusses[key] = known
             _forget_first(self._trusses, _LAWS)
         return known
+
+    def middle_of_front(self, zones: Mapping[str, Zone]) -> float | None:
+        """Return :func:`birm3d.vehicle.front_height.middle_of_shape`; the last few are remembered."""
+        key = tuple(zones.items())
+        if key not in self._middles:
+            self._middles[key] = middle_of_shape(self, zones)
+            _forget_first(self._middles, _LAWS)
+        return self._middles[key]
 
     def __reduce__(self) -> tuple[object, ...]:
         arrays = (self.nodes, self.anchors, self.area, self.zone_of_node, self.wheel_of_node)

@@ -1,0 +1,110 @@
+"""A verdict at a barrier below the middle of the front is warned of: a real front may ride over."""
+
+from __future__ import annotations
+
+import warnings
+
+import birm3d
+import numpy as np
+import pytest
+from birm3d import Barrier, LowBarrierWarning, Simulation, Vehicle, units
+from birm3d.vehicle.front_height import middle_of_front
+from birm3d.vehicle.test_bodies import laboratory_block
+
+TRUCK = Vehicle.preset("cargo_truck", mesh_density=0.3)
+SPEED = units.mph(30)
+ROW = 0.15  # m, between rows of nodes of this mesh
+
+
+def low_warnings(sim: Simulation) -> list[str]:
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("ignore")
+        warnings.simplefilter("always", LowBarrierWarning)
+        sim.run()
+    return [str(one.message) for one in told]
+
+
+def test_the_middle_of_a_front_is_found_from_its_stresses() -> None:
+    """Recomputed node by node: what the front takes up in its first 0.3 m, below and above the middle."""
+    for name in ("passenger_car", "pickup", "cargo_truck", "semi_truck"):
+        unit = Vehicle.preset(name, mesh_density=0.3).units[0]
+        middle = middle_of_front(unit)
+        assert middle is not None
+        total, below = 0.0, {-ROW: 0.0, ROW: 0.0}
+        depths = np.linspace(0.0, 0.3, 601)
+        for i in np.flatnonzero(unit.is_skin):
+            inward = unit.anchors[i] - unit.nodes[i]
+            if not -inward[0] >= abs(inward[1:]).max():
+                continue
+            curve = unit.zones[list(unit.zones)[unit.zone_of_node[i]]].curve
+            work = unit.area[i] * np.trapezoid([curve.envelope(d) for d in depths], depths)
+            total += work
+            for way in below:
+                below[way] += work * (unit.nodes[i, 2] + unit.mass_center_height < middle + way)
+        assert below[-ROW] < 0.5 * total < below[ROW]
+        assert middle < unit.mass_center_height
+
+
+@pytest.mark.parametrize(
+    ("barrier", "warned"),
+    [
+        (Barrier.bollards(count=3, height=0.5), True),
+        (Barrier.bollards(count=3, height=0.7), False),
+        (Barrier.rigid_wall(height=0.5), True),
+        (Barrier.rigid_wall(), False),
+        (Barrier.planter(length=4.0, width=1.0, height=0.5), True),
+        (Barrier.bollards(count=3, height=0.2), False),  # driven over, and so the outcome says
+    ],
+)
+def test_low_barriers_that_contain_are_warned_of(barrier: Barrier, warned: bool) -> None:
+    told = low_warnings(Simulation(TRUCK, barrier, SPEED))
+    assert len(told) == warned
+    if warned:
+        assert "height must be at least 0.57 m" in told[0]
+        assert "what the front resists with ends (Cargo truck)" in told[0]
+
+
+@pytest.mark.parametrize("scene", [{"impact_angle": 20.0}, {"impact_yaw": 90.0}, {"impact_roll": 180.0}])
+def test_only_fronts_that_come_first_are_judged(scene: dict[str, float]) -> None:
+    wall = Barrier.rigid_wall(height=0.5)
+    assert low_warnings(Simulation(TRUCK, wall, 8.0, **{"impact_angle": 90.0, **scene})) == []
+
+
+def test_a_barrier_on_a_step_is_as_high_as_it_stands() -> None:
+    """Heights count from the ground, not from the barrier's foot."""
+    low = Barrier.bollards(count=3, height=0.5)
+    assert low_warnings(Simulation(TRUCK, low, SPEED))
+    stands = Barrier.bollards(count=3, height=0.5, origin=(0.0, 0.0, 0.2))
+    assert low_warnings(Simulation(TRUCK, stands, SPEED)) == []
+
+
+def test_vehicles_from_arrays_have_no_zones_to_judge() -> None:
+    block = laboratory_block(24, k_initial=1e6, k_unloading=1e7)
+    assert middle_of_front(block) is None
+
+
+@pytest.mark.filterwarnings("ignore::birm3d.LowBarrierWarning")
+def test_verdicts_loads_and_reports_say_it() -> None:
+    truck = Vehicle.preset("cargo_truck")
+    result = Simulation(truck, Barrier.bollards(count=3, height=0.5), units.mph(50)).run()
+    said = "Half of what the front resists with stands above 0.59 m."
+    assert said in birm3d.rate(result, "ASTM F2656").caution
+    assert said in result.report()
+    high = Simulation(truck, Barrier.bollards(count=3), units.mph(50)).run()
+    assert "The barrier ends" not in birm3d.rate(high, "ASTM F2656").caution + high.report()
+    loads = birm3d.design_load(Simulation(TRUCK, Barrier.bollards(count=1, height=0.5), SPEED))
+    assert "The barrier ends 0.50 m above the ground" in loads.caution
+
+
+def test_studies_name_their_rows() -> None:
+    crash = Simulation(TRUCK, Barrier.bollards(count=3), SPEED)
+    with pytest.warns(LowBarrierWarning, match=r"may ride over \(row 0\)"):
+        birm3d.sweep(crash, {"barrier.height": [0.5, 1.0]}, metrics=["max_pitch"])
+
+
+def test_the_search_for_a_height_tells_where_to_stop() -> None:
+    crash = Simulation(TRUCK, Barrier.bollards(count=1), SPEED)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", LowBarrierWarning)
+        found = birm3d.least_height(crash, (0.3, 1.0), points=3, resolution=0.2, offsets=[0.0], draws=0)
+    assert "do not go below 0.57 m" in found.caution
