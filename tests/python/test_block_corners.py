@@ -60,12 +60,12 @@ def test_a_corner_resists_at_least_as_a_post_that_would_fit_into_it(name: str) -
 @pytest.mark.parametrize(
     ("name", "angle"),
     [(name, angle) for name in ("passenger_car", "pickup") for angle in (25.0, 45.0, 65.0)]
-    + [("cargo_truck", angle) for angle in (25.0, 45.0, 70.0)],
+    + [("cargo_truck", angle) for angle in (25.0, 45.0, 75.0)],
 )
 def test_no_corner_of_a_planter_meets_the_core(name: str, angle: float) -> None:
     """At 40 mph. Once a car had 137 g (CFC60) at 25 degrees: its fire wall met the corner.
 
-    At 55 to 65 degrees the truck turns by 90 degrees, and its flank swings against the corner.
+    At 50 to 70 degrees the truck turns by 90 degrees, and its flank swings against the corner.
     """
     result = crash(name, Barrier.planter(height=0.9), angle)
     assert result.metrics["core_contact_force"] == 0.0

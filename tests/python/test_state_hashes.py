@@ -79,7 +79,7 @@ HASHES = {
     "minivan on its side": "08e241c783aa9699",
     "car, corner of a planter": "13f6987ddde5211e",
     "pickup, end of a wall": "d3e2c21139b114fb",
-    "truck, bollards that yield": "f0354ad48bdbe3f7",
+    "truck, bollards that yield": "698d0a7ab05b6121",
     "finite-element car, wall": "9be0600936bc9b61",
     "finite-element truck, wall": "f2516accc663599a",
 }

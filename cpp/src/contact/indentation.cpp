@@ -224,14 +224,15 @@ void follow_indentations(const ContactPass& pass, ContactBlock& block) {
     HoldingSurfaces holding;
     find_holding_surfaces(pass, block, holding);
     rank.fill(infinity);
-    const BlockColumn& panel_of = pass.mesh.block[block.index].panel;
+    const TrussBlock& trusses = pass.mesh.block[block.index];
     for (const BlockIndentation& reached : block.indentations) {
         const IndentedPanel& indented = pass.indentations[reached.indentation];
         const bool first = reached.indentation == block.indentations.front().indentation;
-        if (!first && reached.gap > furthest_off(*block.start, panel_of, indented.panel, block.faces.gap))
+        if (!first &&
+            reached.gap > furthest_off(*block.start, trusses.panel, indented.panel, block.faces.gap))
             continue;
         alignas(64) const BlockColumn gap = block.faces.gap;
-        follow_indentation(indented.indentation, indented.before, *block.start, panel_of, indented.panel,
+        follow_indentation(indented.indentation, indented.before, *block.start, trusses, indented.panel,
                            holding.contact_gap, holding.least_facing,
                            indented.indentation.is_face ? holding.lags : holding.lags_pushing, block.faces,
                            block.contact, rank, follows);

@@ -49,7 +49,7 @@ void add_start(const ContactPass& pass, std::size_t b, std::size_t k, std::size_
     const Indentation then = indentation_by(pass.obstacle(k), pass.near[k].before, pass.mesh.panel[p],
                                             pass.mesh, pass.scene.settings);
     alignas(64) BlockColumn follows;
-    follow_indentation(then, then, pass.before.trusses.block[b], pass.mesh.block[b].panel, p, start.free,
+    follow_indentation(then, then, pass.before.trusses.block[b], pass.mesh.block[b], p, start.free,
                        start.any_facing, start.nothing, start.faces, start.contact, start.rank, follows);
     for (std::size_t i = 0; i < block_size; ++i)
         if (follows[i] > 0.0) start.by[i] = follows[i] == 1.0 ? std::optional(k) : std::nullopt;

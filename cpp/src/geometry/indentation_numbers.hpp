@@ -26,7 +26,10 @@ struct IndentationNumbers {
     // Of a face for each unit of w; of a post zero: l of the top edge, e of the face and e of the edge.
     double top_slope = 0.0, face_slope = 0.0, edge_slope = 0.0;
     bool is_face = false;
-    double top_rate;         // of `top`, for each unit of change of the axis's part along e
+    double top_rate;  // of `top`, for each unit of change of the axis's part along e
+    double upward;    // l of the body's upward axis
+    double
+        lying;  // added to how far the post reaches over the panel's lower edge: 0, or much where that is no lower edge (m)
     double tilt;             // e of the axis for each unit of l
     double radius, stretch;  // the post's, and that of its section with a plane of e and w over it
     double surface;          // into, of the outermost node of the panel

@@ -20,6 +20,10 @@ struct Range {
 // Below this sine of the tilt, the highest point of the rim is rounded off. Otherwise the torque would jump there.
 constexpr double rounded = 0.05;
 
+// Above this cosine of the body's upward axis and the post's, the lower edge of a panel is its lowest part. Else no part of the
+// panel is left out.
+constexpr double least_upright = 0.7, no_edge = 1e3;
+
 // Sideways force of the skin on a post's flank, relative to that on a frictionless wedge. It is chosen by hand; 0.1 to 0.4
 // would do. With less, a pole 0.35 m off the middle gives less sideways than finite elements show. With more, posts at the end
 // of a bumper throw it aside.
@@ -77,6 +81,8 @@ void Indentation::set_axes(const Vec3& foot, const Vec3& axis_up, const Panel& p
     tilt = stretch * leaning;
     surface = (panel.box.center - foot).dot(e) - panel.box.half.dot(e.cwiseAbs());
     per_reach = 1.0 / length;
+    upward = lz;
+    lying = upward > least_upright ? 0.0 : no_edge;
 }
 
 void Indentation::set_outline(const Box& outline) {
@@ -251,21 +257,21 @@ bool spans(const Indentation& indentation, const Box& box, bool hangs) {
     return box_in_indentation(indentation, box, hangs).drawn_in > 0.0;
 }
 
-double gap_of(const Indentation& indentation, const TrussBlockState& nodes, const BlockColumn& panel_of,
+double gap_of(const Indentation& indentation, const TrussBlockState& nodes, const TrussBlock& trusses,
               std::size_t panel) {
     return simd.find_indentation_gap(
-        indentation, {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), panel_of.data(),
-                      static_cast<double>(panel)});
+        indentation, {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(),
+                      trusses.below.data(), trusses.panel.data(), static_cast<double>(panel)});
 }
 
 void follow_indentation(const Indentation& indentation, const Indentation& then, const TrussBlockState& nodes,
-                        const BlockColumn& panel_of, std::size_t panel, const BlockColumn& contact_gap,
+                        const TrussBlock& trusses, std::size_t panel, const BlockColumn& contact_gap,
                         const BlockColumn& least_facing, const BlockColumn& lags, NodeFaces& faces,
                         BlockContact& contact, BlockColumn& rank, BlockColumn& follows) {
     simd.find_indentation(
         indentation, then,
-        {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), panel_of.data(),
-         static_cast<double>(panel)},
+        {nodes.x.data(), nodes.y.data(), nodes.z.data(), nodes.force.data(), trusses.below.data(),
+         trusses.panel.data(), static_cast<double>(panel)},
         {faces.gap.data(), faces.per_force.data(), faces.bx.data(), faces.by.data(), faces.bz.data(),
          contact.nx.data(), contact.ny.data(), contact.nz.data(), contact.px.data(), contact.py.data(),
          contact.pz.data(), contact.tx.data(), contact.ty.data(), contact.tz.data(), rank.data(),

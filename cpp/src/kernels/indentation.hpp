@@ -41,6 +41,10 @@
 // the wider body behind: it meets the nodes there as any surface does. For the edge of a wall all nodes count, as the wall's
 // face crushes what is deeper beside it.
 //
+// A post or a face draws in skin above its top only where the panel comes down to it. Below a node the panel ends at its lowest
+// node there (heights_above_edge). If that is above the top, as a load bed's side is beside a low wall, nothing begins to hold the
+// node.
+//
 // A vertical face with a top edge (top_edge.hpp) holds the skin before it, and draws in the skin above its top:
 //   D(w, l) = E(w) - s (l - top)+
 // E is the place of the edge along e, a line that may be oblique to the panel. The skin goes in with the edge, straight along e,
@@ -115,7 +119,7 @@ double most_inside(const Indentation& indentation, const Box& box, bool hangs = 
 bool spans(const Indentation& indentation, const Box& box, bool hangs = false);
 
 // Least gap of the nodes of a block that are on the panel (m); infinite if there are none.
-double gap_of(const Indentation& indentation, const TrussBlockState& nodes, const BlockColumn& panel_of,
+double gap_of(const Indentation& indentation, const TrussBlockState& nodes, const TrussBlock& trusses,
               std::size_t panel);
 
 // Finds the nodes of the panel that follow the indentation or that it releases, and sets their `faces` and `contact`.
@@ -128,7 +132,7 @@ double gap_of(const Indentation& indentation, const TrussBlockState& nodes, cons
 // `rank`: of the indentation that each node follows so far, at first infinite. Free nodes outside may be left
 // unchanged.
 void follow_indentation(const Indentation& indentation, const Indentation& then, const TrussBlockState& nodes,
-                        const BlockColumn& panel_of, std::size_t panel, const BlockColumn& contact_gap,
+                        const TrussBlock& trusses, std::size_t panel, const BlockColumn& contact_gap,
                         const BlockColumn& least_facing, const BlockColumn& lags, NodeFaces& faces,
                         BlockContact& contact, BlockColumn& rank, BlockColumn& follows);
 

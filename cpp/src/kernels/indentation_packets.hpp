@@ -36,6 +36,8 @@ struct NodePlace {
     Packet e, w, l;
     Packet post_l;   // along, of the place of the post at the node's height: the top, for nodes above it
     Packet deepest;  // into, of the middle of the post there
+    Packet
+        met;  // how far the panel's lower edge below the node is below the top: above 0 if the panel meets the post there
 };
 BIRM3D_INLINE NodePlace place_of(const IndentationNumbers& indentation, const PanelNodes& nodes,
                                  std::size_t i) {
@@ -49,6 +51,8 @@ BIRM3D_INLINE NodePlace place_of(const IndentationNumbers& indentation, const Pa
     place.post_l = lesser(place.l, indentation.top + indentation.top_slope * place.w);
     place.deepest = indentation.tilt * place.post_l +
                     (indentation.stretch * indentation.radius + indentation.face_slope * place.w);
+    const Packet lower_edge = place.l - indentation.upward * Packet::load(nodes.below + i);
+    place.met = indentation.top + indentation.top_slope * place.w - lower_edge + indentation.lying;
     return place;
 }
 

@@ -82,12 +82,13 @@ BIRM3D_INLINE Packet gap_of_holding_surface(const IndentationNumbers& indentatio
 }
 
 // Gap of nodes that do not push (m): e - D, with D of kernels/indentation.hpp. A node inside is at most as deep as the post drew
-// it in within the step. Beside the face of a wall, its edge holds no node.
+// it in within the step. Beside the face of a wall, its edge holds no node. Where the panel ends above the post, no node is drawn in.
 BIRM3D_INLINE Packet gap_of_free(const IndentationNumbers& indentation, const KnownFaces& known,
                                  const NodePlace& place, const FollowedPlace& followed, const Packet& outward,
                                  std::size_t i) {
     const Packet zero = 0.0, far = infinitely_far;
-    const Packet reached = where_above(followed.gap, zero, followed.gap, greater(followed.gap, outward));
+    const Packet within = where_above(followed.gap, zero, followed.gap, greater(followed.gap, outward));
+    const Packet reached = where_above(place.met, zero, within, far);
     return where_beside_face(indentation, known, place, followed, far, reached, i);
 }
 
@@ -238,8 +239,9 @@ double find_indentation_gap(const IndentationNumbers& indentation, const PanelNo
     Packet least = infinitely_far;
     for (std::size_t i = 0; i < block_size; i += packet_length) {
         const NodePlace place = place_of(indentation, nodes, i);
-        const Packet zero = 0.0, gap = where_drawn(indentation, place, zero,
-                                                   find_followed(indentation, place).gap, infinitely_far);
+        const Packet zero = 0.0, met = where_above(place.met, zero, find_followed(indentation, place).gap,
+                                                   infinitely_far);
+        const Packet gap = where_drawn(indentation, place, zero, met, infinitely_far);
         least = lesser(least, where_on(nodes, gap, infinitely_far, i));
     }
     return least_of(least);

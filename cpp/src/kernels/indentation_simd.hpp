@@ -46,7 +46,9 @@ inline constexpr double away = 10.0;
 
 // The nodes of a block that are on one panel.
 struct PanelNodes {
-    const double *x, *y, *z, *force, *panel;
+    const double *x, *y, *z, *force;
+    const double* below;  // heights above the panel's lower edge, see TrussBlock (m)
+    const double* panel;
     double number;  // of the panel
 };
 

@@ -190,6 +190,7 @@ void TrussMesh::find_tread(const TrussInput& input, const std::vector<Wheel>& wh
 
 void TrussMesh::find_panels(const TrussInput& input) {
     std::array<std::vector<Vec3>, panels> nodes, anchors_of;
+    std::array<std::vector<std::size_t>, panels> slots;
     panels_of.fill().assign(blocks, 0);
     for (std::size_t b = 0; b < skin_blocks; ++b) {
         BlockColumn& panel_of_node = block.fill()[b].panel;
@@ -200,6 +201,7 @@ void TrussMesh::find_panels(const TrussInput& input) {
             panels_of.fill()[b] |= static_cast<std::uint8_t>(1U << p);
             nodes[p].push_back(input.node[source]);
             anchors_of[p].push_back(input.anchor[source]);
+            slots[p].push_back(b * block_size + i);
         }
         std::fill(panel_of_node.begin() + static_cast<std::ptrdiff_t>(nodes_in(b)), panel_of_node.end(),
                   panel_of_node[nodes_in(b) - 1]);
@@ -217,6 +219,9 @@ void TrussMesh::find_panels(const TrussInput& input) {
         panel[p].box = box_around(nodes[p]);
         panel[p].anchors = box_around(anchors_of[p]);
         panel[p].outlines = outlines_of(nodes[p], panel[p].inward);
+        const std::vector<double> heights = heights_above_edge(nodes[p], panel[p].inward);
+        for (std::size_t k = 0; k < heights.size(); ++k)
+            block.fill()[slots[p][k] / block_size].below[slots[p][k] % block_size] = heights[k];
     }
 }
 

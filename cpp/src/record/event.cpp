@@ -58,7 +58,7 @@ void judge_departure(const Scene& scene, const State& state, Event& event) {
 // Gives the event of a vehicle that came to rest before it had left its verdict.
 void judge_rest(const Scene& scene, const State& state, Event& event) {
     const double past = distance_past_line(scene, state, event);
-    if (past > 0.0 && event.over_top) {
+    if (past > 0.0 && (event.over_top || is_behind_element(scene, state, event))) {
         event.verdict = Verdict::overridden, event.manner = Manner::over;
     } else if (past > 0.0 && !event.touching) {
         event.verdict = Verdict::passed, event.manner = Manner::rests_beyond;
@@ -71,8 +71,8 @@ void judge_rest(const Scene& scene, const State& state, Event& event) {
 }  // namespace
 
 Verdict Event::outcome() const {
-    const bool not_past = verdict != Verdict::passed && verdict != Verdict::overridden;
-    return not_past && rolled_over() ? Verdict::rolled_over : verdict;
+    if (!rolled_over() || verdict == Verdict::passed || verdict == Verdict::overridden) return verdict;
+    return behind ? Verdict::overridden : Verdict::rolled_over;
 }
 
 Event begin_event(const Scene& scene, const State& start) {
@@ -96,6 +96,7 @@ void follow_event(const Scene& scene, const State& state, const StepContact& con
         if (!event.crossed) event.crossed = true, event.crossing = body.position;
         event.over_top = stands_over_barrier(scene, state);
     }
+    if (event.crossed && event.rolled_over()) event.behind = is_behind_element(scene, state, event);
     const bool touched_before = event.touching;
     event.touching = contact.held_by_barrier || touches_barrier(scene, state);
     if (event.touching) {
@@ -131,6 +132,10 @@ bool is_decided(const Scene& scene, const State& state, Event& event) {
 
 void judge_at_longest(const Scene& scene, const State& state, Event& event) {
     if (event.decided() || !state.touched || runs_along_line(scene)) return;
+    if (is_behind_element(scene, state, event)) {
+        event.verdict = Verdict::overridden, event.manner = Manner::over;
+        return;
+    }
     const Vec3& velocity = state.units.front().body.velocity;
     const double along = velocity.dot(line_direction(event)), across = velocity.dot(event.towards);
     const bool goes_on = along * scene.heading().dot(line_direction(event)) > 0.0;

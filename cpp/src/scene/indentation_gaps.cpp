@@ -69,7 +69,7 @@ double gap_of_panel(const Indentation& indentation, std::size_t panel, const Tru
         for (const Bound& block : blocks) {
             if (block.gap > least) break;
             least = std::min(least, gap_of(indentation, unit.trusses.block[block.number],
-                                           mesh.block[block.number].panel, panel));
+                                           mesh.block[block.number], panel));
             if (least <= enough) return least;
         }
     }
@@ -99,6 +99,7 @@ void for_each_indentation(const Scene& scene, const UnitState& unit, const Unit&
             if (distance > 0.0) {
                 indentation.low = -infinity;
                 indentation.high = infinity;
+                indentation.lying = infinity;
             }
             use(indentation, i, p);
         }

@@ -7,7 +7,8 @@ be out of its reach. What it does then decides, except for rolling over, which c
 
 ``overridden``
     It left past the barrier's line, or rests there. While its mass centre was past the line, the top of an
-    element was below its rigid body.
+    element was below its rigid body. Or it has rolled over, or rests, behind the far side of the element
+    over which it crossed the line.
 ``passed``
     It left past the line, or towards it beyond the barrier's end, or rests behind the barrier out of reach.
 ``rolled_over``

@@ -144,7 +144,7 @@ def least_height(
 ) -> Limit:
     """Return the least height of a barrier that the vehicle does not get over.
 
-    A height holds if no run gets past the barrier, be it over or through it.
+    A height holds if no run gets past the barrier, be it over or through it, or rolls over.
 
     Parameters
     ----------
@@ -189,6 +189,7 @@ def least_height(
         measure="vehicle_penetration",
         most=_at_most("penetration", penetration),
         caution=_OVER.format(middle="the bumper beam" if middle is None else _MIDDLE.format(middle)),
+        outcomes=("stopped", "redirected"),  # who rolls over leans across the top
     )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LowBarrierWarning)  # low heights are tried on purpose

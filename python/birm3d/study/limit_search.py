@@ -75,7 +75,8 @@ class Question(NamedTuple):
     @property
     def criterion(self) -> str:
         """When a value holds, in words."""
-        text = "the vehicle is stopped or turned away"
+        rolled = ", or rolls over before it" if "rolled_over" in self.outcomes else ""
+        text = f"the vehicle is stopped or turned away{rolled}"
         if "passed" in self.outcomes:
             text += ", or passes its end"
         return text if self.most is None else f"{text}, {self.measure.replace('_', ' ')} <= {self.most:g} m"

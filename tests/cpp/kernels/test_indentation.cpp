@@ -46,8 +46,8 @@ Followed follow(const Indentation& now, const Indentation& last, double force) {
     least_facing.fill(0.5);
     contact_gap.fill(std::numeric_limits<double>::infinity());
     rank.fill(std::numeric_limits<double>::infinity());
-    follow_indentation(now, last, nodes, mesh.block[0].panel, 1, contact_gap, least_facing, lags, found,
-                       found, rank, found.follows);
+    follow_indentation(now, last, nodes, mesh.block[0], 1, contact_gap, least_facing, lags, found, found,
+                       rank, found.follows);
     return found;
 }
 

@@ -206,3 +206,19 @@ TEST("copies share their columns; a mesh that is seen from elsewhere has new pla
         CHECK_CLOSE((moved.node(i) + Vec3(0.5, -0.25, 0.125) - mesh.node(i)).norm(), 0.0, 1e-15, "rounding");
     }
 }
+
+TEST("heights above the lower edge are those of a column of the panel") {
+    // The left half of a front begins at z = 0, the right half at 0.8.
+    std::vector<Vec3> nodes;
+    for (int y = -5; y <= 5; ++y)
+        for (int z = y < 0 ? 8 : 0; z <= 12; ++z)
+            nodes.emplace_back(1.0, 0.3 * y, 0.1 * z);
+    const std::vector<double> heights = heights_above_edge(nodes, -Vec3::UnitX());
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+        CHECK_CLOSE(heights[k], nodes[k].z() - (nodes[k].y() < -0.1 ? 0.8 : 0.0), 1e-15, "rounding");
+    for (const double height : heights_above_edge(nodes, -Vec3::UnitZ()))
+        CHECK(height == 0.0);
+    // Of a side, columns stand along x: there all nodes are in one.
+    const std::vector<double> of_side = heights_above_edge(nodes, Vec3::UnitY());
+    CHECK_CLOSE(*std::max_element(of_side.begin(), of_side.end()), 1.2, 1e-15, "rounding");
+}

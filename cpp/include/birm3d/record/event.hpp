@@ -9,11 +9,11 @@
 namespace birm3d {
 
 enum class Verdict {
-    undecided,    // the run ended before the outcome was known
-    stopped,      // the barrier contained the vehicle, which rebounds from it or rests
-    redirected,   // the barrier contained the vehicle, which goes on along it
-    passed,       // the vehicle got past the barrier's line or its end
-    overridden,   // it got past the line with the barrier's top under its rigid body
+    undecided,   // the run ended before the outcome was known
+    stopped,     // the barrier contained the vehicle, which rebounds from it or rests
+    redirected,  // the barrier contained the vehicle, which goes on along it
+    passed,      // the vehicle got past the barrier's line or its end
+    overridden,  // it got past the line with the barrier's top under its rigid body, or lies behind what it crossed
     rolled_over,  // it did not get past the line, and an up axis of a unit pointed below the horizontal
 };
 
@@ -43,6 +43,7 @@ struct Event {
     bool over_top = false;
     bool crossed = false;          // was unit 0's mass centre ever past the line?
     Vec3 crossing = Vec3::Zero();  // unit 0's mass centre as it first was past the line, world axes (m)
+    bool behind = false;           // has it rolled over, and is that mass centre behind what it crossed?
 
     bool touching = false;                  // does the vehicle touch the barrier now?
     double released_at = 0.0;               // time at which it last lost contact with the barrier (s)
