@@ -237,7 +237,7 @@ def test_a_kind_is_known_in_three_files() -> None:
     paths = [path for folder in folders for path in (package / folder).rglob("*.py")]
     known = [path for path in paths if code.search(path.read_text(encoding="utf-8"))]
     there = sorted(str(path.relative_to(package)) for path in known)
-    assert there == ["barrier/kinds.py", "barrier/makers.py", "barrier/planter.py"]
+    assert there == ["barrier/barrier.py", "barrier/kinds.py", "barrier/planter.py"]
 
 
 def test_every_size_is_an_argument_and_every_kind_can_be_made() -> None:
@@ -246,6 +246,9 @@ def test_every_size_is_an_argument_and_every_kind_can_be_made() -> None:
         placed = {"friction", "origin", "heading"}
         assert {size.name for size in made.sizes} == set(arguments) - placed
         assert isinstance(getattr(Barrier, kind)(), made)
+        assert issubclass(made, Barrier)
+        # The site's table of kinds is made of these.
+        assert isinstance(vars(Barrier)[kind], staticmethod)
 
 
 # ---- names of numbers --------------------------------------------------------------------------------------

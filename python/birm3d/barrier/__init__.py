@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .base import Barrier
+from .barrier import Barrier
 from .free_standing import FreeStanding
 from .yielding import Foundation
 

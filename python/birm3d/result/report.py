@@ -15,7 +15,7 @@ from .event import outcome_words
 from .omitted import omitted_lines
 
 if TYPE_CHECKING:
-    from ..barrier.base import Barrier
+    from ..barrier.barrier import Barrier
     from .analysis import RunAnalysis
 
 __all__ = ["END_REASONS", "report"]

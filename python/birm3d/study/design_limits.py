@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from ..barrier.base import Barrier
+from ..barrier.barrier import Barrier
 from ..barrier.kinds import PROFILES, Bollards, Jersey
 from ..base.arguments import checked
 from ..simulation.simulation import Simulation
