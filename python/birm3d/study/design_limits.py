@@ -13,7 +13,7 @@ from ..barrier.kinds import PROFILES, Bollards, Jersey
 from ..base.arguments import checked
 from ..simulation.simulation import Simulation
 from ..units import Quantity, si
-from .limit_search import CONTAINED, Limit, Question, search_limit
+from .limit_search import CONTAINED, Effort, Limit, Question, search_limit
 
 __all__ = ["OFFSET_SHARES", "greatest_gap", "least_height", "least_segment_mass", "least_tube_thickness"]
 
@@ -113,16 +113,8 @@ def greatest_gap(
     )
     limits = [si("gaps", gap, "length") for gap in gaps]
     _check_width(simulation, row, limits)
-    return search_limit(
-        simulation,
-        question,
-        limits,
-        points=points,
-        resolution=_resolution(resolution, "length"),
-        draws=draws,
-        executor=executor,
-        progress=progress,
-    )
+    effort = Effort(points, resolution, draws, executor, progress)
+    return search_limit(simulation, question, limits, effort)
 
 
 @checked
@@ -185,16 +177,9 @@ def least_height(
         most=_at_most("penetration", penetration),
         caution=_OVER,
     )
-    return search_limit(
-        simulation,
-        question,
-        _usual_heights(barrier) if heights is None else [si("heights", h, "length") for h in heights],
-        points=points,
-        resolution=_resolution(resolution, "length"),
-        draws=draws,
-        executor=executor,
-        progress=progress,
-    )
+    limits = _usual_heights(barrier) if heights is None else heights
+    effort = Effort(points, resolution, draws, executor, progress)
+    return search_limit(simulation, question, limits, effort)
 
 
 @checked
@@ -256,16 +241,8 @@ def least_segment_mass(
         # Between pinned segments nothing passes: who is past the barrier and not over it has slid to its end.
         outcomes=(*CONTAINED, "passed") if barrier.is_pinned else CONTAINED,
     )
-    return search_limit(
-        simulation,
-        question,
-        [si("masses", mass, "mass") for mass in masses],
-        points=points,
-        resolution=_resolution(resolution, "mass"),
-        draws=draws,
-        executor=executor,
-        progress=progress,
-    )
+    effort = Effort(points, resolution, draws, executor, progress)
+    return search_limit(simulation, question, masses, effort)
 
 
 @checked
@@ -324,16 +301,8 @@ def least_tube_thickness(
         most=_at_most("deflection", deflection),
         caution=_YIELDS,
     )
-    return search_limit(
-        simulation,
-        question,
-        [si("thicknesses", thickness, "length") for thickness in thicknesses],
-        points=points,
-        resolution=_resolution(resolution, "length"),
-        draws=draws,
-        executor=executor,
-        progress=progress,
-    )
+    effort = Effort(points, resolution, draws, executor, progress)
+    return search_limit(simulation, question, thicknesses, effort)
 
 
 def _barrier(simulation: Simulation) -> Barrier:
@@ -405,7 +374,3 @@ def _at_most(name: str, value: Quantity | None) -> float | None:
     if not found >= 0.0:
         raise ValueError(f"{name} must be >= 0 m, got {found}")
     return found
-
-
-def _resolution(value: Quantity | None, quantity: str) -> float | None:
-    return None if value is None else si("resolution", value, quantity)
