@@ -111,7 +111,7 @@ class BarrierKind:
         """Return how its posts yield, for the core; ``None`` where they are rigid."""
         return None
 
-    def turning_points(self) -> list[npt.NDArray[np.float64]]:
+    def rotation_centers(self) -> list[npt.NDArray[np.float64]]:
         """Return the points about which its posts turn if they yield, world axes, each (3,) [m]."""
         return []
 

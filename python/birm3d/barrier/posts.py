@@ -177,7 +177,7 @@ class BollardsKind(BarrierKind):
         """Return what gives way of posts that yield."""
         return None if self.weaker is None else self.weaker.posts
 
-    def turning_points(self) -> list[npt.NDArray[np.float64]]:
+    def rotation_centers(self) -> list[npt.NDArray[np.float64]]:
         """Return the centres of rotation of posts that yield."""
         if self.weaker is None:
             return []
