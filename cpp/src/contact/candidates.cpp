@@ -1,7 +1,6 @@
 #include "contact/candidates.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 #include "contact/indentation.hpp"
@@ -11,8 +10,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // How far a node in contact can have moved off its surface within the step (m).
 double margin_of(const Scene& scene, std::size_t u, const State& from, const Trial& trial) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 #include "contact/post_tilting.hpp"
@@ -17,8 +16,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool any_sprung(const KickMemory& memory) {
     return std::any_of(memory.sprung.begin(), memory.sprung.end(),

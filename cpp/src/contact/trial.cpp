@@ -8,8 +8,6 @@ namespace birm3d {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 void clear(ContactImpulses& impulses) {
     std::fill(impulses.tire.begin(), impulses.tire.end(), 0.0);
     std::fill(impulses.sprung.begin(), impulses.sprung.end(), 0.0);

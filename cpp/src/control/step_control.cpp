@@ -15,8 +15,6 @@ namespace birm3d {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // Least divisor: an estimated error may be zero (m/s).
 constexpr double least_error = 1e-300;
 

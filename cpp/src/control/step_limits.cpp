@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "birm3d/base/tolerances.hpp"
@@ -15,8 +14,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Position of an obstacle and relative motion of the unit (body axes).
 struct RelativeObstacle {

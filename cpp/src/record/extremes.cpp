@@ -1,6 +1,5 @@
 #include "birm3d/record/extremes.hpp"
 
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -11,8 +10,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // The first two rows are the interval.
 double interval_of(const History& history) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "birm3d/base/tolerances.hpp"
 #include "scene/obstacles.hpp"
@@ -10,8 +9,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Bounds of a shape, own axes (m). A post that has a top is cut off at its foot, because one that tilts has its endless lower
 // end in the ground.

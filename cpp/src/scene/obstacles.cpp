@@ -1,7 +1,6 @@
 #include "scene/obstacles.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 
 #include "kernels/detect.hpp"
@@ -11,8 +10,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Points of a block and a box around them.
 struct Points {

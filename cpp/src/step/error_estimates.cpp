@@ -11,8 +11,6 @@ namespace birm3d {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 double radius_of_gyration(const RigidBody& body) {
     return std::sqrt(0.5 * body.inertia.trace() * body.inverse_mass);
 }

@@ -1,7 +1,6 @@
 #include "step/half_kick.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -19,8 +18,6 @@
 namespace birm3d {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Rounding of the gap of a tyre that stands on the ground (m).
 constexpr double rounding_gap = 1e-12;
