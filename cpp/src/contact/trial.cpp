@@ -51,7 +51,7 @@ void Trial::restart(const Vehicle& vehicle, const State& from) {
 
 void Trial::begin(const State& from, double step) {
     static_cast<Progress&>(state) = from;
-    state.segments = from.segments;
+    state.moving_elements = from.moving_elements;
     state.time += step;
     dt = step;
     error = 0.0;

@@ -67,7 +67,8 @@ Extremes extremes_of(const History& history, const Vehicle& vehicle, const Barri
     if (wanted.joint && !history.joints.empty()) found.joint = greatest_joint_loads(history);
     if (!barrier) return found;
     if (wanted.penetration) found.penetration = greatest_penetration(history, vehicle, *barrier);
-    if (wanted.segments && !history.segments.empty()) found.segments = greatest_movement(history, *barrier);
+    if (wanted.moving_elements && !history.moving_elements.empty())
+        found.moving_elements = greatest_movement(history, *barrier);
     if (wanted.element_loads) found.element_loads = greatest_element_loads(history, *barrier);
     return found;
 }

@@ -235,13 +235,14 @@ State Scene::initial_state() const {
 void Scene::start(State& state) const {
     state.reset(*vehicle);
     if (barrier) state.was_near.assign(barrier->elements.size(), char{0});
-    for (std::size_t i = 0; i < free_segments(); ++i) {
+    for (std::size_t i = 0; i < moving_count(); ++i) {
         const Element& element = barrier->elements[i];
-        BodyState segment;
-        segment.orientation = from_roll_pitch_yaw({0.0, 0.0, element.heading});
-        segment.position = element.position +
-                           (barrier->origin.z() + barrier->segments[i].mass_center_height) * Vec3::UnitZ();
-        state.segments.push_back(segment);
+        BodyState moving;
+        moving.orientation = from_roll_pitch_yaw({0.0, 0.0, element.heading});
+        moving.position =
+            element.position +
+            (barrier->origin.z() + barrier->moving_elements[i].mass_center_height) * Vec3::UnitZ();
+        state.moving_elements.push_back(moving);
     }
     const double yaw = yaw_of_path(*this);
     const Vec3 heading = this->heading();
